@@ -1,0 +1,25 @@
+// The separating axis test for two oriented boxes.
+#pragma once
+
+#include "engine/geometry/shapes.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+enum class SatAxis { face_a, face_b, edges };
+
+// The axis of largest separation among the 15 candidates. separation <= 0 on it: the boxes overlap
+// (closed sets: touching counts), and it is minus the penetration depth. separation > 0: they are
+// disjoint, and it is a lower bound of their distance.
+struct SatResult {
+    Real separation = Real(0);
+    Vec3 normal{Real(0)}; // unit, from A to B
+    SatAxis axis = SatAxis::face_a;
+    int index_a = 0; // which face axis or edge direction of A (0..2)
+    int index_b = 0;
+};
+
+SatResult separating_axis(const Box &a, const Box &b);
+
+bool overlaps(const Box &a, const Box &b);
+
+} // namespace plumb::inline PLUMB_PRECISION

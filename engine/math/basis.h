@@ -1,0 +1,33 @@
+// An orthonormal basis around a direction.
+#pragma once
+
+#include "engine/math/types.h"
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+struct TangentBasis {
+    Vec3 t1{Real(0)};
+    Vec3 t2{Real(0)};
+};
+
+// Two unit vectors at right angles to the unit vector n and to each other, t1 x t2 = n.
+//
+// The Householder reflection that carries a fixed direction p to -n carries its companions u and v
+// to the basis (Hughes, Moeller 1999, "Building an Orthonormal Basis from a Unit Vector", with the
+// one pole moved from an axis to -p, a direction that no contact on a floor or a wall has).
+// Continuous everywhere else, so that friction impulses kept in this basis stay true when a normal
+// wavers. At n == -p itself: u and v.
+inline TangentBasis tangent_basis(const Vec3 &n) {
+    const Vec3 p{Real(0.48), Real(0.6), Real(0.64)};
+    const Vec3 u{Real(-0.8), Real(0), Real(0.6)};
+    const Vec3 v{Real(0.36), Real(-0.8), Real(0.48)};
+    const Real from_pole = Real(1) + glm::dot(n, p);
+    if (from_pole <= Real(1e-6))
+        return {v, u};
+    const Vec3 w = (n + p) / from_pole;
+    return {u - glm::dot(n, u) * w, v - glm::dot(n, v) * w};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,45 @@
+// Names for GLM's types in the engine's precision, and the rigid transform.
+#pragma once
+
+#include "engine/core/precision.h"
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+using Vec3 = glm::vec<3, Real, glm::defaultp>;
+using Mat3 = glm::mat<3, 3, Real, glm::defaultp>;
+using Quat = glm::qua<Real, glm::defaultp>; // constructor order is (w, x, y, z)
+
+inline constexpr Quat identity_rotation{Real(1), Real(0), Real(0), Real(0)};
+
+// A rigid transform: rotate, then translate. `rotation` has unit length.
+struct Transform {
+    Vec3 position{Real(0)};
+    Quat rotation = identity_rotation;
+};
+
+// q v q^-1. Exact in length for a quaternion that is a rounding off unit length, where GLM's product
+// scales the vector: what turns a vector back and forth in every step then loses or gains it.
+inline Vec3 rotated(const Quat &q, const Vec3 &v) {
+    const Vec3 axis{q.x, q.y, q.z};
+    const Real scale = Real(2) / glm::dot(q, q);
+    return v + scale * glm::cross(axis, glm::cross(axis, v) + q.w * v);
+}
+
+inline Vec3 to_world_point(const Transform &frame, const Vec3 &local) {
+    return frame.position + frame.rotation * local;
+}
+inline Vec3 to_world_vector(const Transform &frame, const Vec3 &local) {
+    return frame.rotation * local;
+}
+inline Vec3 to_local_point(const Transform &frame, const Vec3 &world) {
+    return glm::conjugate(frame.rotation) * (world - frame.position);
+}
+inline Vec3 to_local_vector(const Transform &frame, const Vec3 &world) {
+    return glm::conjugate(frame.rotation) * world;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

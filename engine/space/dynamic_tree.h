@@ -1,0 +1,179 @@
+// A binary tree of axis-aligned boxes that change: the broad phase.
+#pragma once
+
+#include "engine/geometry/raycast.h"
+#include "engine/geometry/shapes.h"
+#include "engine/geometry/slab.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Leaves hold boxes fattened by a margin, so that small moves cost nothing. Insertion by branch and
+// bound on the surface area, with rotations (Catto, "Dynamic Bounding Volume Hierarchies", GDC
+// 2019). Copyable: a copy answers every query as the original does. The set of leaves a query
+// visits depends on the fat boxes alone; the order of visits on the history. The tree must not be
+// changed from within a visit.
+class DynamicTree {
+  public:
+    using Leaf = std::int32_t;
+    static constexpr Leaf none = -1;
+
+    // `margin` >= 0 in metres is added on every side of each box.
+    explicit DynamicTree(Real margin);
+
+    // `user` is given back by queries. An empty or non-finite box fails a check.
+    Leaf insert(const Aabb &box, std::uint32_t user);
+    // A leaf that is not in the tree fails a check, here and below. Its number may be used again.
+    void remove(Leaf leaf);
+    // Returns whether the leaf had to be moved in the tree: its fat box no longer held the new one.
+    bool update(Leaf leaf, const Aabb &box);
+
+    std::uint32_t user(Leaf leaf) const;
+    const Aabb &fat_bounds(Leaf leaf) const;
+    std::size_t size() const { return leaf_count_; }
+
+    // Calls visit(user) for every leaf whose fat box touches `box` (closed sets; an empty box
+    // touches nothing); stops when it returns false.
+    template <typename Visit> void query(const Aabb &box, Visit &&visit) const;
+
+    // Calls visit(user, ray) -> Real for leaves whose fat box the ray meets, the nearer child
+    // first; the answer is the new max_t (return ray.max_t to go on, 0 to stop). The closest-hit
+    // search is built on it. A zero or non-finite direction, or a NaN, fails a check.
+    template <typename Visit> void raycast(Ray ray, Visit &&visit) const;
+
+    // Fails a check when links, boxes or heights are not consistent. For tests.
+    void validate() const;
+    int height() const; // 0 for a single leaf or none
+
+  private:
+    using Index = std::int32_t;
+
+    struct Node {
+        Aabb box;
+        Index parent = none; // of a free node: the next free one
+        std::array<Index, 2> children{none, none};
+        std::int32_t height = 0; // 0: leaf, -1: free
+        std::uint32_t user = 0;
+
+        bool is_leaf() const { return height == 0; }
+    };
+
+    // Indices still to be visited: on the stack of the caller unless the tree is very deep.
+    class Pending {
+      public:
+        bool is_empty() const { return count_ == 0; }
+        void push(Index index, Real key = Real(0)) {
+            if (count_ < inline_capacity)
+                inline_[count_] = {index, key};
+            else
+                more_.push_back({index, key});
+            ++count_;
+        }
+        struct Entry {
+            Index index;
+            Real key;
+        };
+        Entry pop() {
+            --count_;
+            if (count_ < inline_capacity)
+                return inline_[count_];
+            const Entry last = more_.back();
+            more_.pop_back();
+            return last;
+        }
+
+      private:
+        static constexpr std::size_t inline_capacity = 96;
+        std::array<Entry, inline_capacity> inline_;
+        std::vector<Entry> more_;
+        std::size_t count_ = 0;
+    };
+
+    static bool touches(const Aabb &a, const Aabb &b) {
+        return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y &&
+               b.min.y <= a.max.y && a.min.z <= b.max.z && b.min.z <= a.max.z;
+    }
+    static bool is_empty_box(const Aabb &box) {
+        return !(box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z);
+    }
+    static void check_ray(const Ray &ray);
+
+    Node &node(Index index) { return nodes_[static_cast<std::size_t>(index)]; }
+    const Node &node(Index index) const { return nodes_[static_cast<std::size_t>(index)]; }
+    void check_leaf(Leaf leaf) const;
+    Aabb fattened(const Aabb &box) const;
+    Index allocate();
+    void release(Index index);
+    Index best_sibling(const Aabb &box) const;
+    void link(Leaf leaf);
+    void unlink(Leaf leaf);
+    void refit_upwards(Index index);
+    void refit(Index index);
+    void rotate(Index index);
+    int slot_in_parent(Index index) const;
+
+    Real margin_ = Real(0);
+    std::vector<Node> nodes_;
+    Index root_ = none;
+    Index free_ = none;
+    std::size_t leaf_count_ = 0;
+};
+
+template <typename Visit> void DynamicTree::query(const Aabb &box, Visit &&visit) const {
+    if (root_ == none || is_empty_box(box))
+        return;
+    Pending pending;
+    pending.push(root_);
+    while (!pending.is_empty()) {
+        const Node &here = node(pending.pop().index);
+        if (!touches(here.box, box))
+            continue;
+        if (here.is_leaf()) {
+            if (!visit(here.user))
+                return;
+        } else {
+            pending.push(here.children[1]);
+            pending.push(here.children[0]);
+        }
+    }
+}
+
+template <typename Visit> void DynamicTree::raycast(Ray ray, Visit &&visit) const {
+    check_ray(ray);
+    if (root_ == none)
+        return;
+    Real enter = Real(0);
+    Real exit = Real(0);
+    int axis = -1;
+    if (!slab_interval(node(root_).box, ray, enter, exit, axis))
+        return;
+    Pending pending; // nodes that the ray meets, with the parameter where it enters
+    pending.push(root_, enter);
+    while (!pending.is_empty()) {
+        const typename Pending::Entry entry = pending.pop();
+        if (entry.key > ray.max_t)
+            continue; // a hit since then is nearer
+        const Node &here = node(entry.index);
+        if (here.is_leaf()) {
+            ray.max_t = visit(here.user, static_cast<const Ray &>(ray));
+            if (!(ray.max_t > Real(0)))
+                return;
+            continue;
+        }
+        std::array<Real, 2> enters{};
+        std::array<bool, 2> is_met{};
+        for (std::size_t i = 0; i < 2; ++i)
+            is_met[i] = slab_interval(node(here.children[i]).box, ray, enters[i], exit, axis);
+        const std::size_t far = enters[1] < enters[0] ? 0 : 1;
+        if (is_met[far])
+            pending.push(here.children[far], enters[far]);
+        if (is_met[1 - far])
+            pending.push(here.children[1 - far], enters[1 - far]);
+    }
+}
+
+} // namespace plumb::inline PLUMB_PRECISION
