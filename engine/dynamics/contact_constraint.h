@@ -1,0 +1,95 @@
+// Contacts as velocity constraints: prepared once a step, solved many times.
+#pragma once
+
+#include "engine/dynamics/method.h"
+#include "engine/math/basis.h"
+
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// One contact point, seen from both centres of mass.
+struct ContactPointConstraint {
+    Vec3 r_a{Real(0)}; // world, from a's centre of mass, at the start of the step
+    Vec3 r_b{Real(0)};
+    // The same points without the rounding radius of a sphere or capsule, in the body's frame: a
+    // round surface keeps its distance when the body rolls, so only the core's point turns with it.
+    Vec3 core_a{Real(0)};
+    Vec3 core_b{Real(0)};
+    Real rounding = Real(0);    // separation = (core_b - core_a) . normal + rounding
+    Real normal_mass = Real(0); // 1 / (n^T K n)
+    // 1 / (the largest eigenvalue of K in the tangent plane). One number for both directions: the
+    // step is then along the sliding velocity, and the cone's projection ends at the friction of
+    // maximal dissipation. With K's inverse the four corners of a box brace against each other
+    // sideways and lose 6 % of their grip.
+    Real tangent_mass = Real(0);
+    Vec3 impulse{Real(0)};    // accumulated in this substep: normal, t1, t2 (N s)
+    Vec3 remembered{Real(0)}; // of the substep before
+};
+
+struct ContactConstraint {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    Vec3 normal{Real(0)};
+    TangentBasis tangents;
+    Real friction = Real(0);
+    Real restitution = Real(0);
+    int count = 0;
+    std::array<ContactPointConstraint, 4> points{};
+};
+
+// How hard a violated constraint pulls back (Catto 2011, "Soft Constraints", with the spring given
+// as natural frequency and damping ratio; a rigid constraint has bias_rate 0, mass 1 and impulse
+// 0).
+struct Softness {
+    Real bias_rate = Real(0); // 1/s
+    Real mass_scale = Real(1);
+    Real impulse_scale = Real(0);
+};
+
+// `frequency` in Hz; h is the substep (s). Catto 2024, "Solver2D": with zeta the damping ratio and
+// omega = 2 pi f, a1 = 2 zeta + h omega, a2 = h omega a1, bias omega / a1, mass a2 / (1 + a2),
+// impulse 1 / (1 + a2).
+Softness make_soft(Real frequency, Real damping_ratio, Real h);
+
+// What the bias of one solver pass does about penetration.
+struct ContactBias {
+    Softness softness;            // of penetrating points
+    Real push_velocity = Real(0); // m/s; 0: leave penetration alone
+    Real slop = Real(0);          // m, penetration left alone
+    // Whether points that are apart and bear nothing are left to the next substep, as in a relaxing
+    // pass: what they would prevent lies beyond the end of this one.
+    bool loaded_only = false;
+};
+
+// 1 / (K along n): the effective mass of two points against each other along a unit vector.
+Real inverse_effective_mass(const Motion &a, const Motion &b, const Vec3 &r_a, const Vec3 &r_b,
+                            const Vec3 &direction);
+
+// Changes the tangential impulse of a point so that it stops sliding, the total cut to `limit` (N
+// s) in length: Coulomb's circular cone.
+void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, Motion &a,
+                    Motion &b, Real limit);
+
+std::vector<ContactConstraint> prepare_contacts(StepContext &context);
+// The separation of a point at the present poses (m).
+Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
+                        const Motion &a, const Motion &b);
+// Warm starting: a substep begins by remembering what the one before accumulated, and recalls it,
+// all at once or in shares: adds it to the accumulated impulses and applies it.
+void remember_contacts(std::span<ContactConstraint> contacts);
+void recall_contacts(StepContext &context, std::span<ContactConstraint> contacts, Real share);
+// One Gauss-Seidel pass. Points that are still apart may close the gap within h and no faster.
+void solve_contacts(StepContext &context, std::span<ContactConstraint> contacts,
+                    const ContactBias &bias, Real h);
+// Hands the accumulated impulses back to the world's contacts for the next step.
+void store_contacts(StepContext &context, std::span<const ContactConstraint> contacts);
+
+// Bounces: every contact with restitution that would be struck within the next h gets Newton's
+// impact law, one pair of bodies after another, until none approaches: so an impact runs through a
+// row of touching bodies as it does in a cradle. Where gravity acts along the way, the rebound
+// speed is the one that the body would have at its present height had it bounced at the surface:
+// energy is kept whatever h is. To be called at the start of a substep, before gravity is applied.
+void resolve_impacts(StepContext &context, std::span<const ContactConstraint> contacts, Real h);
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,101 @@
+#include "engine/dynamics/contact_constraint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// The rebound speed of one contact point that approaches with `speed` < 0 at distance `gap`, under
+// a relative acceleration `pull` along the normal (negative: towards each other); empty when it is
+// not struck within h, or too slow to come back to where it is.
+struct Rebound {
+    bool struck = false;
+    Real speed = Real(0);
+};
+
+Rebound rebound(Real gap, Real speed, Real pull, Real restitution, Real threshold, Real h) {
+    // A tenth early does no harm, as the rebound accounts for the gap; a hair late, and the solver
+    // would have stopped the body first.
+    if (speed >= -threshold || gap + Real(1.1) * h * (speed + h * pull) > Real(0))
+        return {};
+    const Real height = std::max(gap, Real(0));
+    // Energy from here to the surface and back: v^2 - 2 a s.
+    const Real surface_squared = std::max(speed * speed - Real(2) * pull * height, Real(0));
+    const Real back_squared = restitution * restitution * surface_squared + Real(2) * pull * height;
+    if (back_squared <= threshold * threshold)
+        return {};
+    return {true, std::sqrt(back_squared)};
+}
+
+// Newton's law for all points of one pair of bodies together. Returns whether anything was struck.
+bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
+    Motion &a = context.motions[contact.a];
+    Motion &b = context.motions[contact.b];
+    const Vec3 gravity{context.settings.gravity};
+    const Vec3 pull_a = a.inv_mass > Real(0) ? gravity : Vec3{Real(0)};
+    const Vec3 pull_b = b.inv_mass > Real(0) ? gravity : Vec3{Real(0)};
+    const Real pull = glm::dot(pull_b - pull_a, contact.normal);
+    const auto threshold = static_cast<Real>(context.settings.restitution_threshold);
+
+    const auto normal_speed = [&](const ContactPointConstraint &point) {
+        return glm::dot(b.velocity_at(point.r_b) - a.velocity_at(point.r_a), contact.normal);
+    };
+    std::array<Rebound, 4> rebounds;
+    bool any = false;
+    for (int k = 0; k < contact.count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        const ContactPointConstraint &point = contact.points[index];
+        rebounds[index] = rebound(present_separation(contact, point, a, b), normal_speed(point),
+                                  pull, contact.restitution, threshold, h);
+        any = any || rebounds[index].struck;
+    }
+    if (!any)
+        return false;
+
+    // The points of one manifold share the impulse by Gauss-Seidel.
+    const int passes = contact.count == 1 ? 1 : context.settings.impact_passes;
+    std::array<Real, 4> normal_impulse{};
+    for (int pass = 0; pass < passes; ++pass)
+        for (int k = 0; k < contact.count; ++k) {
+            const auto index = static_cast<std::size_t>(k);
+            if (!rebounds[index].struck)
+                continue;
+            const ContactPointConstraint &point = contact.points[index];
+            const Real change = point.normal_mass * (rebounds[index].speed - normal_speed(point));
+            const Real total = std::max(normal_impulse[index] + change, Real(0));
+            const Vec3 impulse = (total - normal_impulse[index]) * contact.normal;
+            normal_impulse[index] = total;
+            a.apply_impulse(-impulse, point.r_a);
+            b.apply_impulse(impulse, point.r_b);
+        }
+    if (contact.friction > Real(0))
+        for (int k = 0; k < contact.count; ++k) {
+            const auto index = static_cast<std::size_t>(k);
+            ContactPointConstraint point = contact.points[index];
+            point.impulse = Vec3{normal_impulse[index], Real(0), Real(0)};
+            solve_friction(contact, point, a, b, contact.friction * normal_impulse[index]);
+        }
+    return true;
+}
+
+} // namespace
+
+void resolve_impacts(StepContext &context, std::span<const ContactConstraint> contacts, Real h) {
+    bool any = true;
+    for (int sweep = 0; any && sweep < context.settings.impact_sweeps; ++sweep) {
+        any = false;
+        for (const ContactConstraint &contact : contacts)
+            if (contact.restitution > Real(0) && strike(context, contact, h)) {
+                any = true;
+                ++context.impacts;
+            }
+    }
+    if (any)
+        ++context.unresolved_impacts;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,28 @@
+// What a method for advancing a world says about itself, in either precision.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace plumb {
+
+struct MethodInfo {
+    std::string_view name;   // in files and on the command line: "soft_step"
+    std::string_view title;  // for people: "Soft step"
+    std::string_view source; // where it is published
+    bool contacts = false;   // can hold bodies apart
+    bool joints = false;     // can hold bodies together
+    int default_substeps = 1;
+    int default_iterations = 1;
+    // Declared work of one step: passes over all bodies, and over all constraints.
+    int (*body_passes)(int substeps, int iterations) = nullptr;
+    int (*constraint_passes)(int substeps, int iterations) = nullptr;
+};
+
+// All methods, in the registry's order (engine/dynamics/methods/registry.cpp).
+std::span<const MethodInfo> method_infos();
+
+// Null when there is no method of that name.
+const MethodInfo *find_method_info(std::string_view name);
+
+} // namespace plumb

@@ -1,0 +1,34 @@
+// The only list of methods. Command line, panels, charts and tests read it.
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <vector>
+
+// One line for each method; each is a function of that name, in a file of its own, that returns its
+// row.
+#define PLUMB_METHODS(METHOD)                                                                      \
+    METHOD(soft_step)                                                                              \
+    METHOD(sequential_impulses)                                                                    \
+    METHOD(semi_implicit_euler)                                                                    \
+    METHOD(rk4)
+
+namespace plumb::inline PLUMB_PRECISION {
+
+#define PLUMB_DECLARE_METHOD(name) Method name();
+PLUMB_METHODS(PLUMB_DECLARE_METHOD)
+#undef PLUMB_DECLARE_METHOD
+
+std::span<const Method> methods() {
+#define PLUMB_METHOD_ROW(name) name(),
+    static const std::vector<Method> rows{PLUMB_METHODS(PLUMB_METHOD_ROW)};
+#undef PLUMB_METHOD_ROW
+    return rows;
+}
+
+const Method *find_method(std::string_view name) {
+    const std::span<const Method> rows = methods();
+    const auto found = std::ranges::find(rows, name, [](const Method &m) { return m.info.name; });
+    return found == rows.end() ? nullptr : &*found;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

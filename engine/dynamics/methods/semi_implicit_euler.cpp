@@ -1,0 +1,52 @@
+// Semi-implicit (symplectic) Euler for free bodies: velocities first, then poses with the new ones.
+// First order; keeps energy bounded. Hairer, Lubich, Wanner 2003, "Geometric numerical integration
+// illustrated by the Stormer-Verlet method", eq. (1.5).
+#include "engine/dynamics/method.h"
+#include "engine/dynamics/motion.h"
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+void advance(StepContext &context) {
+    const StepSettings &settings = context.settings;
+    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Vec3 gravity{settings.gravity};
+    for (int substep = 0; substep < settings.substeps; ++substep)
+        for (std::size_t i = 0; i < context.motions.size(); ++i) {
+            const Body &body = context.bodies[i];
+            Motion &motion = context.motions[i];
+            if (body.kind == BodyKind::fixed)
+                continue;
+            if (body.kind == BodyKind::dynamic) {
+                motion.velocity += h * gravity;
+                // Euler's equations in world axes: w' = -I^-1 (w x I w).
+                const Vec3 momentum =
+                    spin_momentum(motion.rotation, body.inertia, motion.angular_velocity);
+                motion.angular_velocity -=
+                    h * (motion.inv_inertia * glm::cross(motion.angular_velocity, momentum));
+            }
+            motion.position += h * motion.velocity;
+            motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
+            motion.inv_inertia = world_inverse_inertia(motion.rotation, body.inv_inertia);
+        }
+}
+
+} // namespace
+
+Method semi_implicit_euler() {
+    return {{.name = "semi_implicit_euler",
+             .title = "Semi-implicit Euler",
+             .source = "Hairer, Lubich, Wanner 2003",
+             .contacts = false,
+             .joints = false,
+             .default_substeps = 1,
+             .default_iterations = 1,
+             .body_passes = [](int substeps, int) { return substeps; },
+             .constraint_passes = [](int, int) { return 0; }},
+            advance};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

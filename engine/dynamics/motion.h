@@ -1,0 +1,60 @@
+// Unconstrained rigid motion over one substep.
+#pragma once
+
+#include "engine/dynamics/body.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// The inverse inertia tensor in world axes.
+Mat3 world_inverse_inertia(const Quat &rotation, const Vec3 &inv_inertia);
+
+// R I R^T w: angular momentum (kg m^2/s, world) about the centre of mass.
+Vec3 spin_momentum(const Quat &rotation, const Vec3 &inertia, const Vec3 &angular_velocity);
+
+// `rotation` after turning with constant world `angular_velocity` for `h` seconds: exact
+// (exponential map).
+Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h);
+
+// The body-frame angular velocity after `h` seconds of torque-free spin, from `spin` in the body's
+// principal axes: Euler's equations I w' = -w x I w by the implicit midpoint rule, which keeps
+// kinetic energy and the length of the angular momentum for any step (quadratic invariants; Hairer,
+// Lubich, Wanner 2006, "Geometric Numerical Integration", thm IV.2.1). Solved by `iterations`
+// Newton steps.
+Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iterations);
+
+// When a substep's gravity and gyroscopic torque reach the velocities that a solver works on:
+// all before it (semi-implicit Euler), or half before and half after the move (velocity Verlet).
+enum class Kick { before, around };
+
+// One body's substep, with a constraint solver's velocity changes in the middle:
+//
+//   FreeFlight flight = begin_flight(...)   velocities as the solver shall find them
+//   ... the solver changes motion.velocity and motion.angular_velocity, or not ...
+//   move(...)                               the pose after h
+//   end_flight(...)                         velocities at the end of h
+//
+// A body whose velocities come back untouched flew free: its path is then exact under gravity,
+// x + v h + g h^2 / 2, and its torque-free turn keeps energy and world angular momentum. Otherwise
+// the pose follows the solver's velocities, which is what the constraints were solved for.
+struct FreeFlight {
+    Vec3 velocity{Real(0)};         // what the solver was given
+    Vec3 angular_velocity{Real(0)}; // likewise
+    Vec3 mean_velocity{Real(0)};    // over the substep, in free flight
+    Vec3 late_velocity{Real(0)};    // the part of gravity's change that comes after the move
+    // Body frame, for bodies with unequal inertias: the mean over the substep, and at its end.
+    Vec3 mean_spin{Real(0)};
+    Vec3 end_spin{Real(0)};
+    bool free = false; // set by move
+};
+
+FreeFlight begin_flight(Motion &motion, const Body &body, const Vec3 &gravity, Real h, Kick kick,
+                        int gyroscopic_iterations);
+void move(Motion &motion, const Body &body, FreeFlight &flight, Real h);
+void end_flight(Motion &motion, const Body &body, const FreeFlight &flight, Kick kick);
+
+// Whether all three moments are the same, so that a free body's spin is constant.
+inline bool is_isotropic(const Vec3 &inertia) {
+    return inertia.x == inertia.y && inertia.y == inertia.z;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,171 @@
+#include "engine/scene/expect.h"
+
+#include "engine/core/check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace plumb {
+
+namespace {
+
+constexpr std::array all_quantities{
+    QuantityInfo{"position.x", "m", true, "centre of mass, world"},
+    QuantityInfo{"position.y", "m", true, "centre of mass, world"},
+    QuantityInfo{"position.z", "m", true, "centre of mass, world"},
+    QuantityInfo{"velocity.x", "m/s", true, "of the centre of mass, world"},
+    QuantityInfo{"velocity.y", "m/s", true, "of the centre of mass, world"},
+    QuantityInfo{"velocity.z", "m/s", true, "of the centre of mass, world"},
+    QuantityInfo{"speed", "m/s", true, "length of the velocity"},
+    QuantityInfo{"angular_velocity.x", "rad/s", true, "world frame"},
+    QuantityInfo{"angular_velocity.y", "rad/s", true, "world frame"},
+    QuantityInfo{"angular_velocity.z", "rad/s", true, "world frame"},
+    QuantityInfo{"angular_speed", "rad/s", true, "length of the angular velocity"},
+    QuantityInfo{"angular_velocity_local.x", "rad/s", true, "body's frame"},
+    QuantityInfo{"angular_velocity_local.y", "rad/s", true, "body's frame"},
+    QuantityInfo{"angular_velocity_local.z", "rad/s", true, "body's frame"},
+    QuantityInfo{"displacement", "m", true,
+                 "distance of the centre of mass from where it was at t = 0"},
+    QuantityInfo{"tilt", "rad", true,
+                 "angle between the body's y axis and where it pointed at t = 0, 0..pi"},
+    QuantityInfo{"kinetic_energy", "J", false,
+                 "of all dynamic bodies, translation and rotation: sum of m v.v / 2 + w.I w / 2"},
+    QuantityInfo{"potential_energy", "J", false,
+                 "of all dynamic bodies in gravity: sum of -m g.r, r from the world's origin"},
+    QuantityInfo{"energy", "J", false, "kinetic_energy + potential_energy"},
+    QuantityInfo{
+        "energy_error", "1", false,
+        "(E - E0) / (K0 + |U0|); 0 marks t = 0; the difference in J when the divisor is 0"},
+    QuantityInfo{"linear_momentum_error", "1", false,
+                 "|p - p0| / (sum of m |v| at t = 0); the difference in N s when the divisor is 0"},
+    QuantityInfo{"angular_momentum_error", "1", false,
+                 "|L - L0| / (sum of |r x m v| + |I w| at t = 0), about the world's origin; the "
+                 "difference in N m s when the divisor is 0"},
+    QuantityInfo{"penetration", "m", false,
+                 "depth of the deepest contact point of the scene; 0 when nothing overlaps"},
+    QuantityInfo{"mean_penetration", "m", false,
+                 "mean over all contact points of max(depth, 0); 0 without contact points"},
+    QuantityInfo{
+        "joint_drift", "m", false,
+        "largest error of any joint: distance between the anchors (ball), or how far it is "
+        "from `length` (distance)"},
+};
+
+constexpr std::array all_reductions{
+    ReductionInfo{"last", Reduction::last, false, "the value at the end of the window"},
+    ReductionInfo{"min", Reduction::min, false, "smallest value"},
+    ReductionInfo{"max", Reduction::max, false, "largest value"},
+    ReductionInfo{"mean", Reduction::mean, false, "mean over time (trapezoidal rule)"},
+    ReductionInfo{"max_abs", Reduction::max_abs, false, "largest magnitude"},
+    ReductionInfo{"drift", Reduction::drift, false,
+                  "largest distance from the value at the start of the window"},
+    ReductionInfo{"period", Reduction::period, true,
+                  "mean time (s) between successive upward crossings of `level`"},
+    ReductionInfo{"crossings", Reduction::crossings, true,
+                  "how often the value crosses `level`, up or down"},
+};
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double time_mean(std::span<const double> times, std::span<const double> values) {
+    if (values.size() == 1)
+        return values.front();
+    double area = 0;
+    for (std::size_t i = 1; i < values.size(); ++i)
+        area += 0.5 * (values[i - 1] + values[i]) * (times[i] - times[i - 1]);
+    return area / (times.back() - times.front());
+}
+
+double mean_period(std::span<const double> times, std::span<const double> values, double level) {
+    double first = 0;
+    double last = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        const double below = values[i - 1] - level;
+        const double above = values[i] - level;
+        if (!(below < 0 && above >= 0))
+            continue;
+        // Where the chord between the two samples meets the level.
+        const double fraction = below / (below - above);
+        last = times[i - 1] + fraction * (times[i] - times[i - 1]);
+        if (count == 0)
+            first = last;
+        ++count;
+    }
+    return count < 2 ? nan : (last - first) / static_cast<double>(count - 1);
+}
+
+double sign_changes(std::span<const double> values, double level) {
+    int side = 0;
+    std::size_t changes = 0;
+    for (const double value : values) {
+        const int now = value > level ? 1 : value < level ? -1 : 0;
+        if (now == 0)
+            continue;
+        if (side != 0 && now != side)
+            ++changes;
+        side = now;
+    }
+    return static_cast<double>(changes);
+}
+
+} // namespace
+
+std::span<const QuantityInfo> quantities() {
+    return all_quantities;
+}
+
+const QuantityInfo *find_quantity(std::string_view name) {
+    const auto found = std::find_if(all_quantities.begin(), all_quantities.end(),
+                                    [&](const QuantityInfo &info) { return info.name == name; });
+    return found == all_quantities.end() ? nullptr : &*found;
+}
+
+double relative_change(double change, double scale_at_start) {
+    return scale_at_start > 0 ? change / scale_at_start : change;
+}
+
+std::span<const ReductionInfo> reductions() {
+    return all_reductions;
+}
+
+const ReductionInfo *find_reduction(std::string_view name) {
+    const auto found = std::find_if(all_reductions.begin(), all_reductions.end(),
+                                    [&](const ReductionInfo &info) { return info.name == name; });
+    return found == all_reductions.end() ? nullptr : &*found;
+}
+
+double reduce(std::span<const double> times, std::span<const double> values, Reduction reduction,
+              std::optional<double> level) {
+    PLUMB_CHECK(times.size() == values.size(),
+                "got " << times.size() << " times for " << values.size() << " values");
+    if (values.empty() ||
+        std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+        return nan;
+    const auto [min, max] = std::minmax_element(values.begin(), values.end());
+    // Halved first: the sum of two finite values may overflow.
+    const double middle = level.value_or(0.5 * *min + 0.5 * *max);
+    switch (reduction) {
+    case Reduction::last:
+        return values.back();
+    case Reduction::min:
+        return *min;
+    case Reduction::max:
+        return *max;
+    case Reduction::mean:
+        return time_mean(times, values);
+    case Reduction::max_abs:
+        return std::max(std::abs(*min), std::abs(*max));
+    case Reduction::drift:
+        return std::max(*max - values.front(), values.front() - *min);
+    case Reduction::period:
+        return mean_period(times, values, middle);
+    case Reduction::crossings:
+        return sign_changes(values, middle);
+    }
+    return nan;
+}
+
+} // namespace plumb

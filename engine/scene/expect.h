@@ -1,0 +1,63 @@
+// The quantities of motion that a scene can be held to, and how a quantity's course over time is
+// boiled down to one number.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace plumb {
+
+struct QuantityInfo {
+    std::string_view name;
+    std::string_view unit;
+    bool needs_body;
+    std::string_view description;
+};
+
+// All quantities, in the order in which they are to be listed.
+std::span<const QuantityInfo> quantities();
+
+const QuantityInfo *find_quantity(std::string_view name); // null when there is none
+
+// The change of a conserved quantity, made dimensionless by a scale taken at the start. A scale of
+// zero (a scene at rest, say) leaves the change as it is, in its own unit.
+//
+// The scales are sums of magnitudes, so that terms that cancel at the start (two bodies flying
+// apart) do not make the error infinite:
+//   energy_error             change E - E0,      scale K0 + |U0|
+//   linear_momentum_error    change |p - p0|,    scale sum of m |v| at the start
+//   angular_momentum_error   change |L - L0|,    scale sum of |r x m v| + |I w| at the start
+// with E = K + U; K the kinetic energy and U = sum of -m g.r the potential energy of all dynamic
+// bodies; r from the world's origin; p, L their momenta, L about the world's origin; 0 marks t = 0.
+double relative_change(double change, double scale_at_start);
+
+enum class Reduction { last, min, max, mean, max_abs, drift, period, crossings };
+
+struct ReductionInfo {
+    std::string_view name;
+    Reduction reduction;
+    bool uses_level;
+    std::string_view description;
+};
+
+std::span<const ReductionInfo> reductions();
+
+const ReductionInfo *find_reduction(std::string_view name); // null when there is none
+
+// Boils samples down to one number. `times` (s) ascend strictly and are as many as `values`.
+//   last, min, max    as named
+//   mean              over time, by the trapezoidal rule
+//   max_abs           largest |x|
+//   drift             largest |x - x_first|
+//   period            mean time (s) between successive upward crossings of `level`, each placed by
+//                     linear interpolation between two samples; NaN with fewer than two crossings
+//   crossings         how often x - level changes sign; samples that lie exactly on the level count
+//                     for neither side
+// `level` is by default midway between the smallest and the largest value. No samples give NaN, and
+// so does any value that is NaN.
+double reduce(std::span<const double> times, std::span<const double> values, Reduction reduction,
+              std::optional<double> level = std::nullopt);
+
+} // namespace plumb

@@ -1,0 +1,150 @@
+// A scene as plain values, in double precision whatever the world runs in. SI units, radians.
+#pragma once
+
+#include "engine/dynamics/kinds.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+namespace plumb {
+
+// Stated limits: beyond these a scene is refused.
+inline constexpr std::size_t max_scene_bodies = 200'000;
+inline constexpr std::size_t max_scene_joints = 200'000;
+inline constexpr int max_scene_substeps = 10'000; // and iterations
+// Each length, speed, density, mass and so on of a scene is at most this in magnitude, and those
+// that must be positive are at least 1 / this: their products then stay finite in float.
+inline constexpr double max_scene_magnitude = 1e9;
+
+struct SphereDesc {
+    double radius = 0.5;
+};
+struct BoxDesc {
+    glm::dvec3 half_extents{0.5};
+};
+// Along the body's y axis: a cylinder of 2 * half_height with a hemisphere on each end.
+struct CapsuleDesc {
+    double half_height = 0.5;
+    double radius = 0.25;
+};
+// The solid half-space y <= 0 of the body's frame. Never dynamic.
+struct PlaneDesc {};
+
+using ShapeDesc = std::variant<SphereDesc, BoxDesc, CapsuleDesc, PlaneDesc>;
+
+struct MaterialDesc {
+    std::string name;
+    double density = 1000;           // kg/m^3
+    double friction = 0.5;           // Coulomb; a pair uses the geometric mean
+    double restitution = 0;          // Newton; a pair uses the larger
+    std::optional<glm::vec3> colour; // sRGB, 0..1; by default the app's palette chooses
+};
+
+struct BodyDesc {
+    std::string name; // unique
+    BodyKind kind = BodyKind::dynamic;
+    ShapeDesc shape;
+    std::string material;       // a MaterialDesc's name; empty: the default MaterialDesc
+    std::optional<double> mass; // kg; by default density times volume
+    glm::dvec3 position{0};
+    glm::dquat orientation{1, 0, 0, 0};
+    glm::dvec3 velocity{0};         // m/s, world
+    glm::dvec3 angular_velocity{0}; // rad/s, world
+    std::optional<glm::vec3> colour;
+};
+
+// Holds a point of body a to a point of body b: together (ball), or `length` apart (distance, a
+// rigid massless rod). An empty body name means the world; its anchor is then in world coordinates.
+struct JointDesc {
+    std::string name;
+    JointType type = JointType::ball;
+    std::string body_a;
+    std::string body_b;
+    glm::dvec3 anchor_a_local{0};
+    glm::dvec3 anchor_b_local{0};
+    double length = 0;              // metres; distance only
+    bool collide_connected = false; // whether the two bodies also collide with each other
+    glm::dvec3 impulse{0}; // state: what the solver remembers (N s); x alone for a distance joint
+};
+
+struct CameraDesc {
+    glm::dvec3 target{0, 1, 0};
+    double distance = 10;
+    double yaw = 0.6;    // radians about +y; 0 looks from +z
+    double pitch = 0.35; // radians; positive looks down
+    double fov = 0.8;    // radians, vertical
+};
+
+// What this scene can be held to. A quantity of the motion, boiled down over a time window to one
+// number, compared with the truth or a bound.
+struct ExpectDesc {
+    enum class Relation { equals, at_most, at_least };
+    std::string name;            // unique in the scene
+    std::string quantity;        // see scene/expect.h for the list
+    std::string body;            // for quantities of one body
+    std::string reduce = "last"; // see scene/expect.h for the list
+    std::optional<double> level; // for period and crossings; by default midway between min and max
+    double from = 0;             // s
+    double to = 0;               // s; the end of the window, and so of the run
+    Relation relation = Relation::equals;
+    double value = 0; // truth, or the bound
+    double tolerance =
+        0; // absolute, in the quantity's unit; how far the truth may be missed. 0 for bounds
+    std::string source;   // where the truth comes from
+    std::size_t line = 0; // in the scene file
+};
+
+// What the solver remembers of one contact point from the last step.
+struct ContactStateDesc {
+    std::string body_a;
+    std::string body_b;
+    struct Point {
+        std::uint32_t feature = 0;
+        glm::dvec3 impulse{0}; // normal, two tangential (N s)
+    };
+    std::vector<Point> points;
+};
+
+enum class Precision { single, dual }; // "float", "double" in files
+
+// How a method is run. 0 means: the method's own default.
+struct MethodSettings {
+    int substeps = 0;
+    int iterations = 0;
+};
+
+struct WorldDesc {
+    glm::dvec3 gravity{0, -9.81, 0};
+    double dt = 1.0 / 60.0; // s
+    std::string method = "soft_step";
+    MethodSettings settings;
+    // Settings with which the other methods meet this scene's tolerances.
+    std::map<std::string, MethodSettings> other_methods;
+    Precision precision = Precision::single;
+    std::uint64_t seed = 1;
+};
+
+struct SceneDesc {
+    std::string name; // the file's stem
+    std::string title;
+    std::string description;
+    WorldDesc world;
+    std::vector<MaterialDesc> materials;
+    std::vector<BodyDesc> bodies; // repeats expanded
+    std::vector<JointDesc> joints;
+    CameraDesc camera;
+    std::vector<ExpectDesc> expects;
+    // The state a saved scene continues from.
+    std::uint64_t step_count = 0;
+    std::vector<ContactStateDesc> contacts;
+};
+
+} // namespace plumb

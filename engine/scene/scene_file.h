@@ -1,0 +1,47 @@
+// Scene files: TOML in and out. The format is described in scenes/README.md.
+#pragma once
+
+#include "engine/scene/scene_desc.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace plumb {
+
+// One thing to say about a scene file. Lines and columns count from 1.
+struct SceneMessage {
+    enum class Severity { error, warning };
+    Severity severity = Severity::error;
+    std::size_t line = 0;
+    std::size_t column = 0;
+    std::string what;       // what is wrong
+    std::string suggestion; // what would be right; may be empty
+};
+
+struct SceneFileResult {
+    SceneDesc scene;                    // complete only when ok()
+    std::vector<SceneMessage> messages; // in the order of the file
+    bool ok() const;                    // no message is an error
+};
+
+// `path` stands in messages only, and its stem names the scene. Reports every error of the file at
+// once; warnings only when there is no error. A syntax error of TOML hides what comes after it.
+// Method names must be among `known_methods` (empty: not checked).
+SceneFileResult parse_scene(std::string_view text, const std::string &path,
+                            const std::vector<std::string> &known_methods = {});
+
+// A file that cannot be read is one error message at line 0.
+SceneFileResult load_scene(const std::filesystem::path &path,
+                           const std::vector<std::string> &known_methods = {});
+
+// "path:line:column: error: what; what would be right"
+std::string format_message(const std::string &path, const SceneMessage &message);
+
+// The scene as a file that parses to the same values, bit for bit, but for `name` (the file's stem)
+// and the expects' `line`. Repeated bodies and joints come out one by one. `scene` must be one that
+// parse_scene accepts: the text of any other is a file with errors.
+std::string write_scene(const SceneDesc &scene);
+
+} // namespace plumb

@@ -1,0 +1,351 @@
+#include "engine/scene/scene_file_warnings.h"
+
+#include "engine/geometry/manifold.h"
+#include "engine/scene/scene_file_number.h"
+#include "engine/scene/shape_desc.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace plumb {
+
+namespace {
+
+constexpr double overlap_limit = 0.01;   // of the smaller width
+constexpr double anchor_gap_limit = 0.1; // of the smaller width
+constexpr double mass_ratio_limit = 100;
+constexpr std::size_t listed_of_a_kind = 10;
+
+// Three digits are enough to see what is the matter.
+std::string rounded(double value) {
+    std::array<char, 32> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
+    return buffer.data();
+}
+
+std::string in_quotes(const std::string &name) {
+    return '"' + name + '"';
+}
+
+// The warnings of one kind, cut after the first few.
+class Kind {
+  public:
+    explicit Kind(std::string more) : more_(std::move(more)) {}
+
+    void add(const FilePosition &at, std::string what, std::string suggestion) {
+        ++count_;
+        if (count_ <= listed_of_a_kind)
+            messages_.push_back({SceneMessage::Severity::warning, at.line, at.column,
+                                 std::move(what), std::move(suggestion)});
+    }
+
+    void move_into(std::vector<SceneMessage> &all) {
+        if (count_ > listed_of_a_kind)
+            messages_.back().what +=
+                " (and " + std::to_string(count_ - listed_of_a_kind) + " more " + more_ + ")";
+        all.insert(all.end(), messages_.begin(), messages_.end());
+    }
+
+  private:
+    std::string more_;
+    std::size_t count_ = 0;
+    std::vector<SceneMessage> messages_;
+};
+
+// The shape with its origin moved to `origin`, so that float keeps its digits far out.
+struct AsShape {
+    glm::dvec3 position;
+    glm::dquat orientation;
+
+    f32::Shape operator()(const SphereDesc &s) const {
+        return f32::Sphere{f32::Vec3(position), static_cast<float>(s.radius)};
+    }
+    f32::Shape operator()(const BoxDesc &b) const {
+        return f32::Box{f32::Vec3(position), f32::Quat(orientation), f32::Vec3(b.half_extents)};
+    }
+    f32::Shape operator()(const CapsuleDesc &c) const {
+        const glm::dvec3 up = orientation * glm::dvec3(0, c.half_height, 0);
+        return f32::Capsule{f32::Vec3(position - up), f32::Vec3(position + up),
+                            static_cast<float>(c.radius)};
+    }
+    f32::Shape operator()(const PlaneDesc &) const {
+        const glm::dvec3 normal = orientation * glm::dvec3(0, 1, 0);
+        return f32::HalfSpace{f32::Vec3(normal), static_cast<float>(glm::dot(normal, position))};
+    }
+};
+
+class Checker {
+  public:
+    Checker(const SceneDesc &scene, const ScenePositions &positions)
+        : scene_(scene), positions_(positions) {
+        std::map<std::string, double> densities{{"", MaterialDesc{}.density}};
+        for (const MaterialDesc &material : scene.materials)
+            densities[material.name] = material.density;
+        for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+            const BodyDesc &body = scene.bodies[i];
+            indices_[body.name] = i;
+            masses_.push_back(body.mass.value_or(densities[body.material] * volume(body.shape)));
+        }
+    }
+
+    std::vector<SceneMessage> run() {
+        check_joints();
+        check_pairs();
+        check_dt();
+        std::vector<SceneMessage> all;
+        for (Kind *kind : {&overlaps_, &mass_ratios_, &gaps_, &idle_joints_, &fast_, &spinning_,
+                           &falling_, &pendulums_})
+            kind->move_into(all);
+        return all;
+    }
+
+  private:
+    bool is_dynamic(std::size_t body) const {
+        return scene_.bodies[body].kind == BodyKind::dynamic;
+    }
+
+    std::optional<std::size_t> index(const std::string &name) const {
+        return name.empty() ? std::nullopt : std::optional(indices_.at(name));
+    }
+
+    glm::dvec3 to_world(const std::optional<std::size_t> &body, const glm::dvec3 &local) const {
+        if (!body)
+            return local;
+        return scene_.bodies[*body].position + scene_.bodies[*body].orientation * local;
+    }
+
+    bool differ_in_mass(std::size_t a, std::size_t b) const {
+        const double ratio = std::max(masses_[a], masses_[b]) / std::min(masses_[a], masses_[b]);
+        return is_dynamic(a) && is_dynamic(b) && ratio > mass_ratio_limit * (1 + 1e-9);
+    }
+
+    void warn_of_mass_ratio(std::size_t a, std::size_t b, const FilePosition &at, const char *how) {
+        const double ratio = std::max(masses_[a], masses_[b]) / std::min(masses_[a], masses_[b]);
+        mass_ratios_.add(at,
+                         in_quotes(scene_.bodies[a].name) + " and " +
+                             in_quotes(scene_.bodies[b].name) + " " + how +
+                             ", and their masses differ by a factor of " + rounded(ratio),
+                         "iterative solvers converge slowly above 100: bring them nearer, or "
+                         "expect many iterations");
+    }
+
+    void check_joints() {
+        for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
+            const JointDesc &joint = scene_.joints[i];
+            const FilePosition &at = positions_.joints[i];
+            const std::optional<std::size_t> a = index(joint.body_a);
+            const std::optional<std::size_t> b = index(joint.body_b);
+            if (a && b && !joint.collide_connected)
+                exempt_.push_back(std::minmax(*a, *b));
+            if (!(a && is_dynamic(*a)) && !(b && is_dynamic(*b)))
+                idle_joints_.add(at,
+                                 "joint " + in_quotes(joint.name) +
+                                     " moves nothing: neither of its bodies is dynamic",
+                                 "");
+            if (a && b && differ_in_mass(*a, *b))
+                warn_of_mass_ratio(*a, *b, at, "are joined");
+            const double gap =
+                glm::distance(to_world(a, joint.anchor_a_local), to_world(b, joint.anchor_b_local));
+            double width = std::numeric_limits<double>::infinity();
+            for (const std::optional<std::size_t> &body : {a, b})
+                if (body)
+                    width = std::min(width, smallest_width(scene_.bodies[*body].shape));
+            if (joint.type == JointType::ball && gap > anchor_gap_limit * width)
+                gaps_.add(at,
+                          "the two anchors of ball joint " + in_quotes(joint.name) + " start " +
+                              rounded(gap) + " m apart",
+                          "they should be one point, or the first step will jerk them together");
+        }
+        std::sort(exempt_.begin(), exempt_.end());
+    }
+
+    void check_pair(std::size_t a, std::size_t b) {
+        if (a > b)
+            std::swap(a, b);
+        const BodyDesc &body_a = scene_.bodies[a];
+        const BodyDesc &body_b = scene_.bodies[b];
+        if (std::binary_search(exempt_.begin(), exempt_.end(), std::pair(a, b)))
+            return;
+        const double width = std::min(smallest_width(body_a.shape), smallest_width(body_b.shape));
+        const double limit = overlap_limit * width;
+        // Both relative to the first, or to the second when the first is a plane: it may be far
+        // away.
+        const glm::dvec3 origin =
+            std::holds_alternative<PlaneDesc>(body_a.shape) ? body_b.position : body_a.position;
+        const f32::Manifold manifold = f32::collide(
+            std::visit(AsShape{body_a.position - origin, body_a.orientation}, body_a.shape),
+            std::visit(AsShape{body_b.position - origin, body_b.orientation}, body_b.shape),
+            static_cast<float>(limit));
+        if (manifold.count == 0)
+            return;
+        double depth = 0;
+        for (int i = 0; i < manifold.count; ++i)
+            depth = std::max(depth, -static_cast<double>(
+                                        manifold.points[static_cast<std::size_t>(i)].separation));
+        // The one further down in the file is the one to move.
+        const FilePosition &at = positions_.bodies[b];
+        if (depth > limit)
+            overlaps_.add(at,
+                          in_quotes(body_a.name) + " and " + in_quotes(body_b.name) +
+                              " overlap by " + rounded(depth) + " m at the start",
+                          "move them apart, or they will be thrown apart");
+        if (differ_in_mass(a, b))
+            warn_of_mass_ratio(a, b, at, "touch");
+    }
+
+    // Two shapes are no deeper in each other than their bounding boxes are along any axis: a pile
+    // of bodies that merely touch needs no closer look.
+    bool may_overlap(std::size_t a, std::size_t b) const {
+        const BodyDesc &body_a = scene_.bodies[a];
+        const BodyDesc &body_b = scene_.bodies[b];
+        const glm::dvec3 depth = half_bounds(body_a.shape, body_a.orientation) +
+                                 half_bounds(body_b.shape, body_b.orientation) -
+                                 glm::abs(body_a.position - body_b.position);
+        const double limit =
+            overlap_limit * std::min(smallest_width(body_a.shape), smallest_width(body_b.shape));
+        return depth.x > limit && depth.y > limit && depth.z > limit;
+    }
+
+    // Sweep and prune (Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE"), along the one axis on which
+    // the bodies are spread most.
+    void check_pairs() {
+        struct Bounds {
+            glm::dvec3 min;
+            glm::dvec3 max;
+            std::size_t body;
+        };
+        std::vector<Bounds> bounded;
+        std::vector<std::size_t> planes;
+        glm::dvec3 mean{0};
+        for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+            const BodyDesc &body = scene_.bodies[i];
+            if (std::holds_alternative<PlaneDesc>(body.shape)) {
+                planes.push_back(i);
+                continue;
+            }
+            const glm::dvec3 half = half_bounds(body.shape, body.orientation) +
+                                    overlap_limit * smallest_width(body.shape);
+            bounded.push_back({body.position - half, body.position + half, i});
+            mean += body.position;
+        }
+        for (const std::size_t plane : planes)
+            for (const Bounds &other : bounded)
+                if (is_dynamic(other.body))
+                    check_pair(plane, other.body);
+        if (bounded.empty())
+            return;
+
+        mean /= static_cast<double>(bounded.size());
+        glm::dvec3 spread{0};
+        for (const Bounds &b : bounded) {
+            const glm::dvec3 offset = scene_.bodies[b.body].position - mean;
+            spread += offset * offset;
+        }
+        const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0
+                         : spread.y >= spread.z                       ? 1
+                                                                      : 2;
+        std::sort(bounded.begin(), bounded.end(), [axis](const Bounds &a, const Bounds &b) {
+            return a.min[axis] != b.min[axis] ? a.min[axis] < b.min[axis] : a.body < b.body;
+        });
+        const int second = (axis + 1) % 3;
+        const int third = (axis + 2) % 3;
+        for (std::size_t i = 0; i < bounded.size(); ++i) {
+            const Bounds &a = bounded[i];
+            for (std::size_t j = i + 1; j < bounded.size() && bounded[j].min[axis] <= a.max[axis];
+                 ++j) {
+                const Bounds &b = bounded[j];
+                if (a.min[second] <= b.max[second] && b.min[second] <= a.max[second] &&
+                    a.min[third] <= b.max[third] && b.min[third] <= a.max[third] &&
+                    (is_dynamic(a.body) || is_dynamic(b.body)) &&
+                    (may_overlap(a.body, b.body) || differ_in_mass(a.body, b.body)))
+                    check_pair(a.body, b.body);
+            }
+        }
+    }
+
+    void check_dt() {
+        const double dt = scene_.world.dt;
+        const double substep = dt / std::max(1, scene_.world.settings.substeps);
+        const double gravity = glm::length(scene_.world.gravity);
+        double smallest = std::numeric_limits<double>::infinity();
+        const BodyDesc *smallest_body = nullptr;
+        for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+            const BodyDesc &body = scene_.bodies[i];
+            const double width = smallest_width(body.shape);
+            if (is_dynamic(i) && width < smallest) {
+                smallest = width;
+                smallest_body = &body;
+            }
+            const double way = glm::length(body.velocity) * dt;
+            if (body.kind != BodyKind::fixed && way > width)
+                fast_.add(positions_.bodies[i],
+                          in_quotes(body.name) + " moves " + rounded(way) +
+                              " m in one step, more than its width of " + rounded(width) +
+                              " m, and may pass through others (|v| dt > width)",
+                          "world.dt up to " + rounded(width / glm::length(body.velocity)));
+            const double turn = glm::length(body.angular_velocity) * dt;
+            if (body.kind != BodyKind::fixed && turn > std::numbers::pi)
+                spinning_.add(positions_.bodies[i],
+                              in_quotes(body.name) + " turns by " + rounded(turn) +
+                                  " rad in one step, more than half a revolution (|w| dt > pi)",
+                              "world.dt up to " +
+                                  rounded(std::numbers::pi / glm::length(body.angular_velocity)));
+        }
+        // One step from rest covers g dt^2 with semi-implicit Euler.
+        if (smallest_body && gravity * dt * dt > 0.5 * smallest)
+            falling_.add(positions_.dt,
+                         "a body falls " + rounded(gravity * dt * dt) +
+                             " m in its first step, more than half the width of " +
+                             in_quotes(smallest_body->name) + " (g dt^2 > width / 2)",
+                         "dt up to " + rounded(std::sqrt(0.5 * smallest / gravity)));
+        // A small swing on a rod of length L is a spring of omega = sqrt(g / L); semi-implicit
+        // Euler is unstable above omega h = 2 (Hairer, Lubich, Wanner 2003, "Geometric numerical
+        // integration illustrated by the Stormer-Verlet method").
+        for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
+            const JointDesc &joint = scene_.joints[i];
+            if (joint.type != JointType::distance)
+                continue;
+            const double omega = std::sqrt(gravity / joint.length);
+            if (omega * substep > 2)
+                pendulums_.add(positions_.joints[i],
+                               "a pendulum on " + in_quotes(joint.name) +
+                                   " has omega = sqrt(g / length) = " + rounded(omega) +
+                                   " rad/s, and omega h = " + rounded(omega * substep) +
+                                   " > 2 is unstable (h = dt / substeps)",
+                               "a step h up to " + rounded(2 / omega));
+        }
+    }
+
+    const SceneDesc &scene_;
+    const ScenePositions &positions_;
+    std::map<std::string, std::size_t> indices_;
+    std::vector<double> masses_;
+    std::vector<std::pair<std::size_t, std::size_t>> exempt_; // sorted
+
+    Kind overlaps_{"overlaps"};
+    Kind mass_ratios_{"such pairs"};
+    Kind gaps_{"such joints"};
+    Kind idle_joints_{"such joints"};
+    Kind fast_{"such bodies"};
+    Kind spinning_{"such bodies"};
+    Kind falling_{"such bodies"};
+    Kind pendulums_{"such joints"};
+};
+
+} // namespace
+
+std::vector<SceneMessage> scene_warnings(const SceneDesc &scene, const ScenePositions &positions) {
+    return Checker(scene, positions).run();
+}
+
+} // namespace plumb

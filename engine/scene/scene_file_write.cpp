@@ -1,0 +1,271 @@
+#include "engine/scene/scene_file.h"
+#include "engine/scene/scene_file_number.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace plumb {
+
+namespace {
+
+bool same_bits(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same_bits(const glm::dvec3 &a, const glm::dvec3 &b) {
+    return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
+
+template <typename Vector> std::string array3(const Vector &v) {
+    return "[" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + "]";
+}
+
+// A character that a basic string must not hold as it is.
+void append_escaped(std::string &text, char c) {
+    constexpr std::string_view hex = "0123456789ABCDEF";
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\')
+        text += {'\\', c};
+    else if (c == '\n')
+        text += "\\n";
+    else if (c == '\t')
+        text += "\\t";
+    else if (c == '\r')
+        text += "\\r";
+    else if (code < 0x20 || code == 0x7F)
+        text += "\\u00", text += hex[code >> 4], text += hex[code & 0xF];
+    else
+        text += c;
+}
+
+std::string string(std::string_view value) {
+    std::string text = "\"";
+    for (const char c : value)
+        append_escaped(text, c);
+    return text + '"';
+}
+
+// As several lines where it has several.
+std::string paragraph(std::string_view value) {
+    if (value.find('\n') == std::string_view::npos)
+        return string(value);
+    std::string text = "\"\"\"\n";
+    for (const char c : value)
+        if (c == '\n')
+            text += c;
+        else
+            append_escaped(text, c);
+    return text + "\"\"\"";
+}
+
+std::string bare_or_quoted_key(const std::string &key) {
+    const bool is_bare =
+        !key.empty() && key.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                              "0123456789_-") == std::string::npos;
+    return is_bare ? key : string(key);
+}
+
+std::string natural(std::uint64_t value) {
+    const std::string digits = std::to_string(value);
+    const bool fits = value <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+    return fits ? digits : '"' + digits + '"';
+}
+
+// 1/n where that is the very number.
+std::string step_length(double dt) {
+    const double n = std::round(1 / dt);
+    if (n >= 2 && n <= 100'000 && same_bits(1 / n, dt))
+        return "\"1/" + shortest(n) + '"';
+    return shortest(dt);
+}
+
+// In degrees where some number of degrees converts to the very angle, and else in radians.
+std::string angle(const std::string &key, double radians) {
+    constexpr double degree = std::numbers::pi / 180;
+    const double degrees = radians / degree;
+    for (const double candidate :
+         {std::round(degrees * 1e6) / 1e6, std::round(degrees * 1e12) / 1e12, degrees})
+        if (same_bits(candidate * degree, radians))
+            return key + "_deg = " + shortest(candidate) + "\n";
+    return key + " = " + shortest(radians) + "\n";
+}
+
+class SceneWriter {
+  public:
+    std::string write(const SceneDesc &scene) {
+        if (!scene.title.empty())
+            line("title", string(scene.title));
+        if (!scene.description.empty())
+            line("description", paragraph(scene.description));
+        write_world(scene.world);
+        write_camera(scene.camera);
+        for (const MaterialDesc &material : scene.materials)
+            write_material(material);
+        for (const BodyDesc &body : scene.bodies)
+            write_body(body);
+        for (const JointDesc &joint : scene.joints)
+            write_joint(joint);
+        for (const ExpectDesc &expect : scene.expects)
+            write_expect(expect);
+        write_state(scene);
+        return std::move(text_);
+    }
+
+  private:
+    void header(const std::string &brackets) {
+        text_ += (text_.empty() ? "" : "\n") + brackets + "\n";
+    }
+    void line(const std::string &key, const std::string &value) {
+        text_ += key + " = " + value + "\n";
+    }
+
+    void write_settings(const MethodSettings &settings) {
+        if (settings.substeps != 0)
+            line("substeps", std::to_string(settings.substeps));
+        if (settings.iterations != 0)
+            line("iterations", std::to_string(settings.iterations));
+    }
+
+    void write_world(const WorldDesc &world) {
+        header("[world]");
+        line("gravity", array3(world.gravity));
+        line("dt", step_length(world.dt));
+        line("method", string(world.method));
+        write_settings(world.settings);
+        line("precision", world.precision == Precision::single ? "\"float\"" : "\"double\"");
+        line("seed", natural(world.seed));
+        for (const auto &[method, settings] : world.other_methods) {
+            header("[methods." + bare_or_quoted_key(method) + "]");
+            write_settings(settings);
+        }
+    }
+
+    void write_camera(const CameraDesc &camera) {
+        header("[camera]");
+        line("target", array3(camera.target));
+        line("distance", shortest(camera.distance));
+        text_ += angle("yaw", camera.yaw);
+        text_ += angle("pitch", camera.pitch);
+        text_ += angle("fov", camera.fov);
+    }
+
+    void write_material(const MaterialDesc &material) {
+        header("[[material]]");
+        line("name", string(material.name));
+        line("density", shortest(material.density));
+        line("friction", shortest(material.friction));
+        line("restitution", shortest(material.restitution));
+        if (material.colour)
+            line("color", array3(*material.colour));
+    }
+
+    void write_shape(const SphereDesc &sphere) {
+        line("shape", "\"sphere\"");
+        line("radius", shortest(sphere.radius));
+    }
+    void write_shape(const BoxDesc &box) {
+        line("shape", "\"box\"");
+        line("half_extents", array3(box.half_extents));
+    }
+    void write_shape(const CapsuleDesc &capsule) {
+        line("shape", "\"capsule\"");
+        line("half_height", shortest(capsule.half_height));
+        line("radius", shortest(capsule.radius));
+    }
+    void write_shape(const PlaneDesc &) { line("shape", "\"plane\""); }
+
+    void write_body(const BodyDesc &body) {
+        constexpr std::array<const char *, 3> kinds{"\"static\"", "\"kinematic\"", "\"dynamic\""};
+        const bool is_plane = std::holds_alternative<PlaneDesc>(body.shape);
+        header("[[body]]");
+        line("name", string(body.name));
+        if (body.kind != (is_plane ? BodyKind::fixed : BodyKind::dynamic))
+            line("kind", kinds[static_cast<std::size_t>(body.kind)]);
+        std::visit([this](const auto &shape) { write_shape(shape); }, body.shape);
+        if (!body.material.empty())
+            line("material", string(body.material));
+        if (body.mass)
+            line("mass", shortest(*body.mass));
+        line("position", array3(body.position));
+        const glm::dquat &q = body.orientation;
+        if (!same_bits(q.w, 1) || !same_bits({q.x, q.y, q.z}, {0, 0, 0}))
+            line("orientation", "[" + shortest(q.w) + ", " + shortest(q.x) + ", " + shortest(q.y) +
+                                    ", " + shortest(q.z) + "]");
+        if (!same_bits(body.velocity, {0, 0, 0}))
+            line("velocity", array3(body.velocity));
+        if (!same_bits(body.angular_velocity, {0, 0, 0}))
+            line("angular_velocity", array3(body.angular_velocity));
+        if (body.colour)
+            line("color", array3(*body.colour));
+    }
+
+    void write_joint(const JointDesc &joint) {
+        header("[[joint]]");
+        line("name", string(joint.name));
+        line("type", joint.type == JointType::ball ? "\"ball\"" : "\"distance\"");
+        line("body_a", string(joint.body_a.empty() ? "world" : joint.body_a));
+        line("body_b", string(joint.body_b.empty() ? "world" : joint.body_b));
+        line("anchor_a_local", array3(joint.anchor_a_local));
+        line("anchor_b_local", array3(joint.anchor_b_local));
+        if (joint.type == JointType::distance)
+            line("length", shortest(joint.length));
+        if (joint.collide_connected)
+            line("collide_connected", "true");
+        if (!same_bits(joint.impulse, {0, 0, 0}))
+            line("impulse", array3(joint.impulse));
+    }
+
+    void write_expect(const ExpectDesc &expect) {
+        constexpr std::array<const char *, 3> relations{"equals", "at_most", "at_least"};
+        header("[[expect]]");
+        line("name", string(expect.name));
+        line("quantity", string(expect.quantity));
+        if (!expect.body.empty())
+            line("body", string(expect.body));
+        line("reduce", string(expect.reduce));
+        if (expect.level)
+            line("level", shortest(*expect.level));
+        line("from", shortest(expect.from));
+        line("to", shortest(expect.to));
+        line(relations[static_cast<std::size_t>(expect.relation)], shortest(expect.value));
+        if (expect.relation == ExpectDesc::Relation::equals)
+            line("tolerance", shortest(expect.tolerance));
+        line("source", string(expect.source));
+    }
+
+    void write_state(const SceneDesc &scene) {
+        if (scene.step_count == 0 && scene.contacts.empty())
+            return;
+        header("[state]");
+        line("step", natural(scene.step_count));
+        for (const ContactStateDesc &contact : scene.contacts) {
+            std::string features;
+            std::string impulses;
+            for (const ContactStateDesc::Point &point : contact.points) {
+                features += (features.empty() ? "" : ", ") + std::to_string(point.feature);
+                impulses += (impulses.empty() ? "" : ", ") + array3(point.impulse);
+            }
+            header("[[state.contact]]");
+            line("body_a", string(contact.body_a));
+            line("body_b", string(contact.body_b));
+            line("features", "[" + features + "]");
+            line("impulses", "[" + impulses + "]");
+        }
+    }
+
+    std::string text_;
+};
+
+} // namespace
+
+std::string write_scene(const SceneDesc &scene) {
+    return SceneWriter().write(scene);
+}
+
+} // namespace plumb

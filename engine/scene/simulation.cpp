@@ -1,0 +1,100 @@
+#include "engine/scene/simulation.h"
+
+#include "engine/core/check.h"
+#include "engine/dynamics/method.h"
+#include "engine/scene/real/world_simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace plumb {
+
+// The header above declares the one in f32; this is its twin, compiled from the same source.
+namespace f64 {
+std::unique_ptr<Simulation> make_world_simulation(const SceneDesc &, const ResolvedRun &,
+                                                  TaskPool *);
+}
+
+std::span<const MethodInfo> method_infos() {
+    // The registry is the same in both precisions.
+    static const std::vector<MethodInfo> infos = [] {
+        std::vector<MethodInfo> all;
+        for (const Method &method : methods())
+            all.push_back(method.info);
+        return all;
+    }();
+    return infos;
+}
+
+const MethodInfo *find_method_info(std::string_view name) {
+    const auto found = std::ranges::find(method_infos(), name, &MethodInfo::name);
+    return found == method_infos().end() ? nullptr : &*found;
+}
+
+ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {
+    const std::string &name = options.method.empty() ? scene.world.method : options.method;
+    ResolvedRun run;
+    run.method = find_method_info(name);
+    if (run.method == nullptr) {
+        std::ostringstream text;
+        text << "no method is called '" << name << "'; there are";
+        for (const MethodInfo &info : method_infos())
+            text << ' ' << info.name;
+        throw std::invalid_argument(text.str());
+    }
+    MethodSettings chosen;
+    if (name == scene.world.method)
+        chosen = scene.world.settings;
+    else if (const auto other = scene.world.other_methods.find(name);
+             other != scene.world.other_methods.end())
+        chosen = other->second;
+    const auto pick = [](const std::optional<int> &asked, int from_scene, int by_default) {
+        return asked ? *asked : from_scene > 0 ? from_scene : by_default;
+    };
+    run.settings.gravity = scene.world.gravity;
+    run.settings.dt = options.dt.value_or(scene.world.dt);
+    run.settings.substeps = pick(options.substeps, chosen.substeps, run.method->default_substeps);
+    run.settings.iterations =
+        pick(options.iterations, chosen.iterations, run.method->default_iterations);
+    run.precision = options.precision.value_or(scene.world.precision);
+
+    const auto check_count = [](const char *what, int value) {
+        if (value < 1 || value > 10000)
+            throw std::invalid_argument(std::string(what) + " must be 1 to 10000, got " +
+                                        std::to_string(value));
+    };
+    check_count("substeps", run.settings.substeps);
+    check_count("iterations", run.settings.iterations);
+    if (!std::isfinite(run.settings.dt) || run.settings.dt <= 0)
+        throw std::invalid_argument("dt must be positive, got " + std::to_string(run.settings.dt));
+    return run;
+}
+
+std::string why_not(const MethodInfo &method, const SceneDesc &scene) {
+    const std::string name(method.name);
+    if (!method.joints && !scene.joints.empty())
+        return name + " knows no joints, and the scene has " + std::to_string(scene.joints.size());
+    const bool any_dynamic = std::ranges::any_of(
+        scene.bodies, [](const BodyDesc &b) { return b.kind == BodyKind::dynamic; });
+    if (!method.contacts && any_dynamic && scene.bodies.size() > 1)
+        return name + " knows no contacts, and the scene has " +
+               std::to_string(scene.bodies.size()) + " bodies that could touch";
+    return {};
+}
+
+std::unique_ptr<Simulation> Simulation::create(const SceneDesc &scene, const RunOptions &options,
+                                               TaskPool *tasks) {
+    const ResolvedRun run = resolve_run(scene, options);
+    if (const std::string reason = why_not(*run.method, scene); !reason.empty())
+        throw std::invalid_argument(reason);
+    try {
+        return run.precision == Precision::dual ? f64::make_world_simulation(scene, run, tasks)
+                                                : f32::make_world_simulation(scene, run, tasks);
+    } catch (const CheckFailure &failure) {
+        throw std::invalid_argument(failure.what());
+    }
+}
+
+} // namespace plumb

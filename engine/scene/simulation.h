@@ -1,0 +1,150 @@
+// A running scene, in whichever precision it asks for: what the app and the lab work with.
+//
+// All values cross this boundary in double. Bodies are named by index into bodies(), which stays
+// the same for a body as long as it lives.
+#pragma once
+
+#include "engine/core/task_pool.h"
+#include "engine/dynamics/measures.h"
+#include "engine/dynamics/method_info.h"
+#include "engine/dynamics/settings.h"
+#include "engine/dynamics/step_report.h"
+#include "engine/scene/scene_desc.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace plumb {
+
+struct BodyState {
+    glm::dvec3 position{0};
+    glm::dquat orientation{1, 0, 0, 0};
+    glm::dvec3 velocity{0};
+    glm::dvec3 angular_velocity{0}; // world
+};
+
+// What does not change while a body lives.
+struct BodyInfo {
+    bool alive = false; // a removed body leaves a hole
+    std::string name;
+    BodyKind kind = BodyKind::dynamic;
+    ShapeDesc shape;
+    double mass = 0;       // kg; 0 for static and kinematic
+    glm::dvec3 inertia{0}; // kg m^2, principal, body frame
+    std::string material;
+    std::optional<glm::vec3> colour; // body's or material's
+};
+
+struct ContactView {
+    std::size_t body_a = 0;
+    std::size_t body_b = 0;
+    glm::dvec3 position{0};       // world
+    glm::dvec3 normal{0};         // from a to b
+    double separation = 0;        // m
+    double normal_force = 0;      // N, mean over the last substep
+    glm::dvec3 friction_force{0}; // N, world, on b
+};
+
+struct JointView {
+    JointType type = JointType::ball;
+    std::optional<std::size_t> body_a, body_b; // empty: the world
+    glm::dvec3 anchor_a{0}, anchor_b{0};       // world, now
+    double drift = 0;                          // m
+};
+
+struct BoundsView {
+    glm::dvec3 min{0}, max{0};
+};
+
+struct Pick {
+    std::size_t body = 0;
+    double t = 0;
+    glm::dvec3 point{0};
+    glm::dvec3 normal{0};
+};
+
+// How a scene is to be run, where that differs from the file.
+struct RunOptions {
+    std::string method; // empty: the scene's own
+    std::optional<double> dt;
+    std::optional<int> substeps, iterations;
+    std::optional<Precision> precision;
+};
+
+// Method and settings that a scene runs with under these options. Another method than the scene's
+// own takes the scene's settings for that method, else the method's defaults. Throws
+// std::invalid_argument when the method is unknown or a number is out of range.
+struct ResolvedRun {
+    const MethodInfo *method = nullptr;
+    StepSettings settings;
+    Precision precision = Precision::single;
+};
+ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options);
+
+// Empty when the method can run the scene; else why not ("rk4 has no contacts, and ...").
+std::string why_not(const MethodInfo &method, const SceneDesc &scene);
+
+class Simulation {
+  public:
+    virtual ~Simulation() = default;
+
+    // Throws std::invalid_argument as resolve_run does, or when why_not is not empty. `tasks` may
+    // be null (one thread) and must outlive the simulation.
+    static std::unique_ptr<Simulation> create(const SceneDesc &scene, const RunOptions &options,
+                                              TaskPool *tasks);
+
+    virtual void step() = 0;
+    virtual std::uint64_t step_count() const = 0;
+    virtual double time() const = 0;              // s, since the start of the scene
+    virtual const StepReport &report() const = 0; // of the last step
+    virtual Measures measure() const = 0;
+    // Of everything that decides the future: poses, velocities, remembered impulses, settings.
+    virtual std::uint64_t hash() const = 0;
+
+    virtual const MethodInfo &method() const = 0;
+    virtual const StepSettings &settings() const = 0;
+    virtual Precision precision() const = 0;
+    // Takes effect at the next step. Throws std::invalid_argument as create does.
+    virtual void set_method(std::string_view name) = 0;
+    virtual void set_settings(const StepSettings &settings) = 0;
+
+    // A complete copy of the state: restore, and the same bits follow.
+    class Saved {
+      public:
+        virtual ~Saved() = default;
+    };
+    virtual std::unique_ptr<Saved> save() const = 0;
+    virtual void restore(const Saved &saved) = 0; // saved by this simulation
+
+    // The present state as a scene that loads to the same hash.
+    virtual SceneDesc describe() const = 0;
+
+    virtual std::size_t body_count() const = 0; // holes included
+    virtual const BodyInfo &body_info(std::size_t body) const = 0;
+    virtual BodyState body_state(std::size_t body) const = 0;
+    virtual std::optional<std::size_t> find_body(std::string_view name) const = 0;
+
+    virtual std::vector<ContactView> contacts() const = 0; // of the last step
+    virtual std::vector<JointView> joints() const = 0;
+    virtual std::vector<BoundsView> bounds() const = 0; // the broad phase's boxes
+
+    // The nearest body on the ray origin + t * direction, t >= 0.
+    virtual std::optional<Pick> pick(const glm::dvec3 &origin,
+                                     const glm::dvec3 &direction) const = 0;
+    // Changes a dynamic body's velocity at once (N s at a world point). Others ignore it.
+    virtual void apply_impulse(std::size_t body, const glm::dvec3 &impulse,
+                               const glm::dvec3 &point) = 0;
+    // Pulls a body's point to a target during the next step, like a critically damped spring that
+    // is scaled with the body's mass; call it before each step while grabbing.
+    virtual void pull(std::size_t body, const glm::dvec3 &local_point,
+                      const glm::dvec3 &target) = 0;
+    // Adds a body; a name already taken gets a number. Returns its index.
+    virtual std::size_t add_body(const BodyDesc &body) = 0;
+    virtual void remove_body(std::size_t body) = 0;
+};
+
+} // namespace plumb
