@@ -1,0 +1,141 @@
+#include "app/lab/check.h"
+
+#include "app/lab/interrupt.h"
+#include "app/lab/load_scenes.h"
+#include "app/lab/progress.h"
+#include "app/lab/run_text.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <stdexcept>
+
+namespace plumb {
+
+namespace {
+
+std::string demand(const ExpectOutcome &outcome) {
+    const ExpectDesc &desc = outcome.desc;
+    switch (desc.relation) {
+    case ExpectDesc::Relation::equals:
+        return "is " + with_unit(desc.value, outcome.unit) + " within " +
+               with_unit(desc.tolerance, outcome.unit);
+    case ExpectDesc::Relation::at_most:
+        return "at most " + with_unit(desc.value, outcome.unit);
+    case ExpectDesc::Relation::at_least:
+        return "at least " + with_unit(desc.value, outcome.unit);
+    }
+    return "";
+}
+
+} // namespace
+
+CheckOutcome check_scene(const SceneDesc &scene, const RunOptions &options, TaskPool *tasks,
+                         const JudgeOptions &judging) {
+    CheckOutcome outcome;
+    outcome.scene = scene.name;
+    outcome.resolved = resolve_run(scene, options);
+    outcome.why_not = why_not(*outcome.resolved.method, scene);
+    if (!outcome.why_not.empty())
+        return outcome;
+    const auto simulation = Simulation::create(scene, options, tasks);
+    outcome.run = judge_run(*simulation, scene, judging);
+    return outcome;
+}
+
+ExitCode exit_code(const CheckOutcome &outcome) {
+    if (!outcome.why_not.empty())
+        return ExitCode::bad_input;
+    if (outcome.run.divergence)
+        return ExitCode::diverged;
+    return outcome.run.all_passed() ? ExitCode::fine : ExitCode::outside_tolerance;
+}
+
+void print(std::ostream &out, const CheckOutcome &outcome) {
+    if (!outcome.why_not.empty()) {
+        out << "-     " << outcome.scene << ": " << outcome.why_not << '\n';
+        return;
+    }
+    const std::string how = "  [" + run_text(outcome.resolved) + "]\n";
+    for (const ExpectOutcome &expect : outcome.run.outcomes) {
+        const char *verdict = !expect.judged ? "-     " : expect.passed ? "ok    " : "MISSED";
+        out << verdict << (expect.judged && !expect.passed ? " " : "") << outcome.scene << "/"
+            << expect.desc.name << ": ";
+        if (!expect.judged)
+            out << "not measured, should be: ";
+        else
+            out << with_unit(expect.measured, expect.unit) << ", ";
+        out << demand(expect);
+        if (expect.judged && expect.desc.relation == ExpectDesc::Relation::equals)
+            out << ", off by " << with_unit(expect.error, expect.unit);
+        out << how;
+    }
+    if (outcome.run.outcomes.empty() && !outcome.run.divergence)
+        out << "-     " << outcome.scene << ": expects nothing, stayed finite for "
+            << with_unit(outcome.run.time, "s") << how;
+    if (outcome.run.divergence)
+        out << "DIVERGED " << outcome.scene << ": " << describe(*outcome.run.divergence) << how;
+    if (outcome.run.stopped)
+        out << "-     " << outcome.scene << ": interrupted at " << with_unit(outcome.run.time, "s")
+            << how;
+}
+
+ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostream &err) {
+    LoadedScenes loaded = load_scenes(command.scenes, err);
+    ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
+    std::vector<RunOptions> runs;
+    for (const std::string &method : command.methods) {
+        runs.push_back(command.run);
+        runs.back().method = method;
+    }
+    const bool pass_over = !runs.empty();
+    if (runs.empty())
+        runs.push_back(command.run);
+
+    const InterruptGuard interrupt;
+    ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());
+    std::size_t checked = 0, missed = 0;
+    const std::size_t total = loaded.scenes.size() * runs.size();
+    std::size_t done = 0;
+    for (const SceneDesc &scene : loaded.scenes)
+        for (const RunOptions &options : runs) {
+            JudgeOptions judging;
+            judging.stop = InterruptGuard::requested;
+            judging.progress = [&](double fraction) {
+                line.show((static_cast<double>(done) + fraction) / static_cast<double>(total),
+                          scene.name + (options.method.empty() ? "" : ", " + options.method));
+            };
+            try {
+                const CheckOutcome outcome = check_scene(scene, options, command.tasks, judging);
+                line.clear();
+                print(out, outcome);
+                out << std::flush;
+                if (!outcome.why_not.empty() && pass_over) {
+                    ++done;
+                    continue;
+                }
+                code = worse(code, exit_code(outcome));
+                ++checked;
+                if (exit_code(outcome) != ExitCode::fine)
+                    ++missed;
+            } catch (const std::invalid_argument &error) {
+                line.clear();
+                err << scene.name << ": " << error.what() << '\n';
+                code = ExitCode::bad_input;
+            }
+            ++done;
+            if (InterruptGuard::requested()) {
+                err << "interrupted: " << done << " of " << total << " runs were looked at\n";
+                return worse(code, ExitCode::outside_tolerance);
+            }
+        }
+    if (checked == 0)
+        out << "nothing was checked\n";
+    else
+        out << checked << (checked == 1 ? " run, " : " runs, ")
+            << (missed == 0 ? std::string("all within tolerance")
+                            : std::to_string(missed) + " not within tolerance")
+            << '\n';
+    return code;
+}
+
+} // namespace plumb

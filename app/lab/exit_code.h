@@ -1,0 +1,35 @@
+// What the lab's commands tell the shell.
+#pragma once
+
+namespace plumb {
+
+enum class ExitCode {
+    fine = 0,
+    outside_tolerance = 1,
+    bad_input = 2, // a scene or an argument
+    diverged = 3,
+    no_gl_context = 4,
+};
+
+// Of several outcomes, the one to report. What keeps a result from being worth anything comes
+// first: bad input, then no picture, then divergence, then a missed tolerance.
+[[nodiscard]] constexpr ExitCode worse(ExitCode a, ExitCode b) {
+    constexpr auto rank = [](ExitCode code) {
+        switch (code) {
+        case ExitCode::fine:
+            return 0;
+        case ExitCode::outside_tolerance:
+            return 1;
+        case ExitCode::diverged:
+            return 2;
+        case ExitCode::no_gl_context:
+            return 3;
+        case ExitCode::bad_input:
+            return 4;
+        }
+        return 4;
+    };
+    return rank(a) >= rank(b) ? a : b;
+}
+
+} // namespace plumb

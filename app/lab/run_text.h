@@ -1,0 +1,18 @@
+// How runs and numbers are put into words.
+#pragma once
+
+#include "engine/scene/simulation.h"
+
+#include <string>
+
+namespace plumb {
+
+[[nodiscard]] std::string_view precision_name(Precision precision); // "float", "double"
+
+// "soft_step substeps=4 iterations=1 dt=1/60 s float"
+[[nodiscard]] std::string run_text(const ResolvedRun &run);
+
+// Six significant digits and the unit; "1" as a unit is left out.
+[[nodiscard]] std::string with_unit(double value, std::string_view unit);
+
+} // namespace plumb

@@ -1,0 +1,455 @@
+// The command line.
+#include "app/lab/chart.h"
+#include "app/lab/check.h"
+#include "app/lab/load_scenes.h"
+#include "app/lab/measure.h"
+#include "app/lab/run_text.h"
+#include "app/render/compare_images.h"
+#include "app/render/png.h"
+#include "app/sandbox/keys.h"
+#include "app/sandbox/run_sandbox.h"
+#include "app/scene_catalog.h"
+#include "app/snapshot.h"
+#include "engine/scene/scene_file_number.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <thread>
+
+namespace plumb {
+
+namespace {
+
+constexpr const char *default_scene = "wrecking_ball";
+// Where the default scene looks best as a picture: the ball is in the wall.
+constexpr std::uint64_t default_scene_step = 125;
+
+constexpr const char *exit_codes = "Exit codes:\n"
+                                   "  0  fine\n"
+                                   "  1  outside a tolerance, or pictures differ\n"
+                                   "  2  a bad scene or argument\n"
+                                   "  3  the world diverged\n"
+                                   "  4  no GL context\n";
+
+int code_of(ExitCode code) {
+    return static_cast<int>(code);
+}
+
+// What several commands ask for.
+struct Common {
+    std::filesystem::path data = find_data_dir();
+    std::vector<SceneEntry> catalogue = find_scenes(data / "scenes");
+    std::vector<std::string> scenes;
+    std::string method, precision, gl = "auto", size;
+    double dt = 0;
+    int substeps = 0, iterations = 0, threads = 1;
+    std::filesystem::path out;
+
+    std::vector<std::filesystem::path> scene_paths() const {
+        std::vector<std::filesystem::path> paths;
+        for (const std::string &name : scenes)
+            paths.push_back(resolve_scene(name, catalogue));
+        return paths;
+    }
+    RunOptions run() const {
+        RunOptions options;
+        options.method = method;
+        if (dt != 0)
+            options.dt = dt;
+        if (substeps != 0)
+            options.substeps = substeps;
+        if (iterations != 0)
+            options.iterations = iterations;
+        if (!precision.empty())
+            options.precision = precision == "double" ? Precision::dual : Precision::single;
+        return options;
+    }
+    std::filesystem::path shader_dir() const { return data / "shaders"; }
+};
+
+std::string method_names() {
+    std::string names;
+    for (const MethodInfo &info : method_infos())
+        names += (names.empty() ? "" : ", ") + std::string(info.name);
+    return names;
+}
+
+void add_scenes(CLI::App &command, Common &common) {
+    command
+        .add_option("SCENE", common.scenes,
+                    "Scene files, or names from `plumb list`; a folder stands for all in it")
+        ->required();
+}
+
+void add_run_options(CLI::App &command, Common &common, bool with_method = true) {
+    if (with_method)
+        command.add_option("--method", common.method,
+                           "Instead of the scene's own: " + method_names());
+    command.add_option("--dt", common.dt, "Time step (s)")->check(CLI::PositiveNumber);
+    command.add_option("--substeps", common.substeps, "Substeps a step")
+        ->check(CLI::Range(1, 10000));
+    command.add_option("--iterations", common.iterations, "Solver passes a substep")
+        ->check(CLI::Range(1, 10000));
+    command.add_option("--precision", common.precision, "float or double")
+        ->check(CLI::IsMember({"float", "double"}));
+    command
+        .add_option("--threads", common.threads,
+                    "Threads; the results are the same with any number")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+}
+
+void add_gl(CLI::App &command, Common &common) {
+    command
+        .add_option("--gl", common.gl,
+                    "Where to draw: window, osmesa (in memory), or auto, which tries in this order")
+        ->check(CLI::IsMember({"auto", "window", "osmesa"}))
+        ->capture_default_str();
+}
+
+void add_out(CLI::App &command, Common &common, const std::string &by_default) {
+    common.out = by_default;
+    command.add_option("--out", common.out, "Folder for what is made")->capture_default_str();
+}
+
+int run(const Common &common, const std::optional<int> &frames,
+        const std::filesystem::path &screenshot) {
+    TaskPool tasks(common.threads);
+    SandboxOptions options;
+    options.scenes = common.catalogue;
+    options.initial_scene = common.scenes.empty()
+                                ? resolve_scene(default_scene, common.catalogue)
+                                : resolve_scene(common.scenes.front(), common.catalogue);
+    options.gl = gl_choice_from_name(common.gl);
+    if (!common.size.empty())
+        options.size = parse_size(common.size);
+    options.shader_dir = common.shader_dir();
+    options.out_dir = common.out;
+    options.run = common.run();
+    options.tasks = &tasks;
+    options.max_frames = frames;
+    options.screenshot = screenshot;
+    const SandboxResult result = run_sandbox(options);
+    if (result.why_no_window.empty())
+        return result.exit_code;
+
+    std::cerr << "plumb: no window: " << result.why_no_window
+              << "\nplumb: drawing the scene off screen instead\n";
+    SnapshotCommand snapshot;
+    snapshot.scenes = {options.initial_scene};
+    snapshot.run = options.run;
+    snapshot.at = {common.scenes.empty() ? default_scene_step : 0};
+    snapshot.size = common.size.empty() ? glm::ivec2{1280, 720} : options.size;
+    snapshot.out_dir = common.out;
+    snapshot.shader_dir = common.shader_dir();
+    snapshot.numbered = false;
+    snapshot.gl = GlChoice::osmesa;
+    snapshot.tasks = &tasks;
+    return code_of(make_snapshots(snapshot, std::cout, std::cerr));
+}
+
+struct SnapshotArguments {
+    std::vector<std::uint64_t> at;
+    std::uint64_t every = 0, steps = 0;
+    bool panels = false;
+    int samples = 4;
+};
+
+int snapshot(const Common &common, const SnapshotArguments &arguments) {
+    TaskPool tasks(common.threads);
+    SnapshotCommand command;
+    command.scenes = common.scene_paths();
+    command.run = common.run();
+    command.at = arguments.at;
+    if (arguments.every > 0)
+        for (std::uint64_t step = 0; step <= arguments.steps; step += arguments.every)
+            command.at.push_back(step);
+    if (command.at.empty())
+        command.at.push_back(arguments.steps);
+    std::ranges::sort(command.at);
+    command.at.erase(std::ranges::unique(command.at).begin(), command.at.end());
+    if (!common.size.empty())
+        command.size = parse_size(common.size);
+    command.out_dir = common.out;
+    command.shader_dir = common.shader_dir();
+    command.panels = arguments.panels;
+    command.samples = arguments.samples;
+    command.gl = gl_choice_from_name(common.gl);
+    command.tasks = &tasks;
+    return code_of(make_snapshots(command, std::cout, std::cerr));
+}
+
+int hash(const Common &common, std::uint64_t steps) {
+    TaskPool tasks(common.threads);
+    const LoadedScenes loaded = load_scenes(common.scene_paths(), std::cerr);
+    ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
+    for (const SceneDesc &scene : loaded.scenes) {
+        const auto simulation = Simulation::create(scene, common.run(), &tasks);
+        for (std::uint64_t step = 0; step < steps && simulation->report().finite; ++step)
+            simulation->step();
+        std::cout << std::hex << std::setw(16) << std::setfill('0') << simulation->hash()
+                  << std::dec << "  " << scene.name << "  step " << simulation->step_count()
+                  << "\n";
+        if (!simulation->report().finite) {
+            std::cerr << scene.name << ": diverged at step " << simulation->step_count() << '\n';
+            code = worse(code, ExitCode::diverged);
+        }
+    }
+    return code_of(code);
+}
+
+std::string json_string(const std::string &text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            out += '\\';
+        if (static_cast<unsigned char>(c) < 0x20)
+            out += ' ';
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
+int list(const Common &common, bool json, bool keys, bool methods) {
+    if (keys) {
+        std::cout << keys_as_markdown();
+        return 0;
+    }
+    if (methods) {
+        for (const MethodInfo &m : method_infos())
+            std::cout << std::left << std::setw(22) << m.name << std::setw(22) << m.title
+                      << (m.contacts ? "contacts, joints" : "free bodies     ") << "  " << m.source
+                      << '\n';
+        return 0;
+    }
+    if (json) {
+        std::cout << "[";
+        const char *separator = "\n";
+        for (const SceneEntry &s : common.catalogue) {
+            std::cout << separator << "  {\"subject\": " << json_string(s.subject)
+                      << ", \"name\": " << json_string(s.name)
+                      << ", \"title\": " << json_string(s.title)
+                      << ", \"path\": " << json_string(s.path.string()) << "}";
+            separator = ",\n";
+        }
+        std::cout << "\n]\n";
+        return 0;
+    }
+    std::string subject;
+    for (const SceneEntry &s : common.catalogue) {
+        if (s.subject != subject)
+            std::cout << (subject.empty() ? "" : "\n") << s.subject << '\n';
+        subject = s.subject;
+        std::cout << "  " << std::left << std::setw(20) << s.name << s.title << '\n';
+    }
+    return 0;
+}
+
+int compare(const std::filesystem::path &a_path, const std::filesystem::path &b_path, int tolerance,
+            const std::filesystem::path &difference_path) {
+    const Image a = read_png(a_path);
+    const Image b = read_png(b_path);
+    const ImageDifference difference = compare_images(a, b);
+    if (!difference.same_size) {
+        std::cout << "different sizes: " << a.width << "x" << a.height << " and " << b.width << "x"
+                  << b.height << '\n';
+        return code_of(ExitCode::outside_tolerance);
+    }
+    std::cout << "largest difference of a channel  " << difference.max_difference << " of 255\n"
+              << "mean difference                  " << difference.mean_difference << " of 255\n"
+              << "pixels more than 2 off           " << 100 * difference.fraction_beyond << " %\n"
+              << "FLIP, mean                       " << difference.flip_mean << '\n'
+              << "FLIP, 95th percentile            " << difference.flip_percentile << '\n';
+    if (!difference_path.empty()) {
+        write_png(difference_path, difference.picture);
+        std::cout << difference_path.string() << '\n';
+    }
+    return code_of(difference.max_difference <= tolerance ? ExitCode::fine
+                                                          : ExitCode::outside_tolerance);
+}
+
+// The command as it was typed, for a chart's footer.
+std::string command_text(int argc, char **argv) {
+    std::string text = "plumb";
+    for (int i = 1; i < argc; ++i)
+        text += std::string(" ") + argv[i];
+    return text;
+}
+
+int main_with_errors(int argc, char **argv) {
+    CLI::App app(
+        "Plumb: a physics sandbox that charts what a method costs against how true it is.");
+    app.name("plumb");
+    app.footer(exit_codes);
+    app.require_subcommand(0, 1);
+    app.set_version_flag("--version", PLUMB_VERSION);
+    Common common;
+    int result = 0;
+
+    CLI::App *run_command = app.add_subcommand(
+        "run", "Opens the sandbox (the default). Without a display: draws the scene to a PNG");
+    run_command->add_option("SCENE", common.scenes, "A scene file, or a name from `plumb list`")
+        ->expected(0, 1);
+    add_run_options(*run_command, common);
+    add_gl(*run_command, common);
+    add_out(*run_command, common, "out");
+    run_command->add_option("--size", common.size, "Of the window: WIDTHxHEIGHT (1280x800)");
+    std::optional<int> frames;
+    std::filesystem::path screenshot;
+    run_command->add_option("--frames", frames, "Ends after so many frames")
+        ->check(CLI::PositiveNumber);
+    run_command->add_option("--screenshot", screenshot, "Where to write the last frame, a PNG");
+    run_command->callback([&] { result = run(common, frames, screenshot); });
+
+    SnapshotArguments pictures;
+    CLI::App *snapshot_command =
+        app.add_subcommand("snapshot", "Draws scenes at given steps to numbered PNG files");
+    add_scenes(*snapshot_command, common);
+    auto *at = snapshot_command->add_option("--at", pictures.at, "Steps to draw: 0,60,240")
+                   ->delimiter(',');
+    auto *every =
+        snapshot_command->add_option("--every", pictures.every, "Draws every so many steps, from 0")
+            ->check(CLI::PositiveNumber)
+            ->excludes(at);
+    auto *steps = snapshot_command->add_option("--steps", pictures.steps,
+                                               "How far to run; alone: draws that step");
+    every->needs(steps);
+    snapshot_command->add_option("--size", common.size, "WIDTHxHEIGHT (1280x720)");
+    add_out(*snapshot_command, common, "out");
+    snapshot_command->add_flag("--ui", pictures.panels, "With the sandbox's panels");
+    snapshot_command->add_option("--samples", pictures.samples, "Of multisampling; 1: none")
+        ->check(CLI::Range(1, 16))
+        ->capture_default_str();
+    add_run_options(*snapshot_command, common);
+    add_gl(*snapshot_command, common);
+    snapshot_command->callback([&] { result = snapshot(common, pictures); });
+
+    bool all_methods = false;
+    CLI::App *check_command =
+        app.add_subcommand("check", "Runs scenes and holds them to what they expect of themselves");
+    add_scenes(*check_command, common);
+    add_run_options(*check_command, common);
+    check_command->add_flag("--all-methods", all_methods, "Every method that can run the scene");
+    check_command->callback([&] {
+        TaskPool tasks(common.threads);
+        CheckCommand command;
+        command.scenes = common.scene_paths();
+        command.run = common.run();
+        if (all_methods)
+            for (const MethodInfo &info : method_infos())
+                command.methods.emplace_back(info.name);
+        command.tasks = &tasks;
+        result = code_of(check_scenes(command, std::cout, std::cerr));
+    });
+
+    std::uint64_t hash_steps = 0;
+    CLI::App *hash_command =
+        app.add_subcommand("hash", "Prints a hash of the state: the same state, the same hash");
+    add_scenes(*hash_command, common);
+    hash_command->add_option("--steps", hash_steps, "How far to run first")->required();
+    add_run_options(*hash_command, common);
+    hash_command->callback([&] { result = hash(common, hash_steps); });
+
+    bool json = false, keys = false, methods = false;
+    CLI::App *list_command = app.add_subcommand("list", "Lists the scenes");
+    list_command->add_flag("--json", json, "For programs");
+    list_command->add_flag("--keys", keys, "Keys and mouse instead, as a table");
+    list_command->add_flag("--methods", methods, "Methods instead");
+    list_command->callback([&] { result = list(common, json, keys, methods); });
+
+    std::uint64_t measure_steps = 600;
+    std::filesystem::path csv;
+    CLI::App *measure_command = app.add_subcommand(
+        "measure", "Runs a scene and writes energies, momenta, errors and times, step by step");
+    measure_command->add_option("SCENE", common.scenes, "A scene file, or a name from `plumb list`")
+        ->required()
+        ->expected(1);
+    measure_command->add_option("--steps", measure_steps, "How far to run")->capture_default_str();
+    measure_command->add_option("--csv", csv, "Where to write the table (standard output)");
+    add_run_options(*measure_command, common);
+    measure_command->callback([&] {
+        TaskPool tasks(common.threads);
+        MeasureCommand command;
+        command.scene = common.scene_paths().front();
+        command.run = common.run();
+        command.steps = measure_steps;
+        command.out = csv;
+        command.tasks = &tasks;
+        result = code_of(measure_scene(command, std::cout, std::cerr));
+    });
+
+    ChartCommand chart;
+    std::vector<std::string> sweeps;
+    CLI::App *chart_command =
+        app.add_subcommand("chart", "Charts each method's cost against its error, as CSV and PNG");
+    add_scenes(*chart_command, common);
+    chart_command->add_option("--methods", chart.options.methods, "Of " + method_names() + " (all)")
+        ->delimiter(',');
+    chart_command->add_option("--sweep", sweeps,
+                              "What to go through: substeps=1..16 (the default), iterations=1,2,8, "
+                              "dt=1/240..1/30; may be given several times");
+    chart_command->add_option("--expect", chart.options.expect,
+                              "Name of the expectation to chart (the scene's first)");
+    chart_command->add_option("--repeats", chart.options.repeats, "Timings of each run")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    add_out(*chart_command, common, "out");
+    add_run_options(*chart_command, common, false);
+    chart_command->callback([&] {
+        for (const std::string &sweep : sweeps)
+            chart.options.sweep.push_back(parse_sweep(sweep));
+        chart.scenes = common.scene_paths();
+        chart.options.base = common.run();
+        chart.out_dir = common.out;
+        chart.shader_dir = common.shader_dir();
+        chart.command = command_text(argc, argv);
+        result = code_of(chart_scenes(chart, std::cout, std::cerr));
+    });
+
+    std::filesystem::path picture_a, picture_b, difference;
+    int tolerance = 0;
+    CLI::App *compare_command = app.add_subcommand("compare", "Compares two PNG files");
+    compare_command->add_option("A", picture_a)->required();
+    compare_command->add_option("B", picture_b)->required();
+    compare_command
+        ->add_option("--tolerance", tolerance, "Largest difference of a channel that passes")
+        ->check(CLI::Range(0, 255))
+        ->capture_default_str();
+    compare_command->add_option("--difference", difference,
+                                "Where to write a picture of the difference");
+    compare_command->callback(
+        [&] { result = compare(picture_a, picture_b, tolerance, difference); });
+
+    for (CLI::App *command : app.get_subcommands({}))
+        command->footer(exit_codes);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError &error) {
+        return app.exit(error) == 0 ? 0 : code_of(ExitCode::bad_input);
+    }
+    if (app.get_subcommands().empty())
+        result = run(common, frames, screenshot);
+    return result;
+}
+
+} // namespace
+
+} // namespace plumb
+
+int main(int argc, char **argv) {
+    try {
+        return plumb::main_with_errors(argc, argv);
+    } catch (const plumb::ContextError &error) {
+        std::cerr << "plumb: " << error.what() << '\n';
+        return static_cast<int>(plumb::ExitCode::no_gl_context);
+    } catch (const std::exception &error) {
+        std::cerr << "plumb: " << error.what() << '\n';
+        return static_cast<int>(plumb::ExitCode::bad_input);
+    }
+}

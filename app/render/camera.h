@@ -1,0 +1,60 @@
+// The orbit camera: right-handed, Y up, yaw 0 looks from +z, positive pitch looks down.
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace plumb {
+
+// A ray through a pixel: it starts at the camera's eye, and its direction has unit length.
+struct PickRay {
+    glm::vec3 origin{0};
+    glm::vec3 direction{0, 0, -1};
+};
+
+// All positions share one frame with the draw list; metres, radians. Pixels have their origin at
+// the top left, y down; the centre of the first pixel is (0.5, 0.5). A `viewport` is a size in
+// pixels.
+struct Camera {
+    glm::vec3 target{0, 1, 0};
+    float distance = 10; // from the target to the eye, > 0
+    float yaw = 0.6f;    // about +y
+    float pitch = 0.35f; // kept within max_pitch of the horizon, where "up" stays defined
+    float fov = 0.8f;    // the full vertical angle, in (0, pi)
+
+    static constexpr float max_pitch = 1.5533f; // 89 degrees
+
+    [[nodiscard]] glm::vec3 eye() const;
+    [[nodiscard]] glm::vec3 forward() const; // unit, from the eye to the target
+    [[nodiscard]] glm::vec3 right() const;   // unit
+    [[nodiscard]] glm::vec3 up() const;      // unit, the picture's up
+
+    // The near and far planes follow the distance, so that depth stays usable at every scale.
+    [[nodiscard]] float near_plane() const;
+    [[nodiscard]] float far_plane() const;
+
+    [[nodiscard]] glm::mat4 view() const;
+    [[nodiscard]] glm::mat4 projection(float aspect) const; // OpenGL clip space, z in [-1, 1]
+
+    // World to pixel: x and y in pixels, z the window depth in [0, 1]. A point in the plane of the
+    // eye gives infinities; one behind the eye gives a depth above 1.
+    [[nodiscard]] glm::vec3 project(const glm::vec3 &world, const glm::vec2 &viewport) const;
+    // The inverse of `project`.
+    [[nodiscard]] glm::vec3 unproject(const glm::vec3 &pixel_and_depth,
+                                      const glm::vec2 &viewport) const;
+    [[nodiscard]] PickRay pick_ray(const glm::vec2 &pixel, const glm::vec2 &viewport) const;
+
+    // The operations of the mouse. Deltas are in pixels of a viewport `viewport_height` high.
+    // Half a turn for a drag over the viewport's height.
+    void orbit(const glm::vec2 &delta, float viewport_height);
+    // The point at the target's depth stays under the pointer.
+    void pan(const glm::vec2 &delta, float viewport_height);
+    // One notch of a wheel is one; positive comes nearer. The target stays.
+    void zoom(float notches);
+    // Keeps yaw, pitch and fov, and shows the whole sphere in a picture of this aspect (width over
+    // height). A radius of zero is shown as one of a centimetre.
+    void frame(const glm::vec3 &centre, float radius, float aspect);
+};
+
+} // namespace plumb

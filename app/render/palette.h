@@ -1,0 +1,25 @@
+// The program's colours, sRGB 0..1.
+#pragma once
+
+#include <cstddef>
+
+#include <glm/vec3.hpp>
+
+namespace plumb {
+
+// Calm colours for bodies, distinct among neighbours in index; repeats after palette_size.
+inline constexpr std::size_t palette_size = 8;
+[[nodiscard]] glm::vec3 palette_colour(std::size_t index);
+
+namespace colours {
+inline constexpr glm::vec3 fixed{0.66f, 0.67f, 0.69f};     // bodies that never move
+inline constexpr glm::vec3 kinematic{0.50f, 0.55f, 0.60f}; // bodies that move as they are told
+inline constexpr glm::vec3 selected{0.98f, 0.62f, 0.16f};
+inline constexpr glm::vec3 contact{0.85f, 0.26f, 0.22f};
+inline constexpr glm::vec3 joint{0.16f, 0.42f, 0.66f};
+inline constexpr glm::vec3 bounds{0.40f, 0.62f, 0.45f};
+inline constexpr glm::vec3 grab{0.95f, 0.50f, 0.12f};
+inline constexpr glm::vec3 ink{0.16f, 0.18f, 0.21f}; // text and axes on light ground
+} // namespace colours
+
+} // namespace plumb

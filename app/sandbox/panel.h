@@ -1,0 +1,51 @@
+// What a panel is given, and the panels: each draws into the current ImGui window.
+#pragma once
+
+#include "app/sandbox/clock.h"
+#include "app/sandbox/keys.h"
+#include "app/sandbox/session.h"
+#include "app/sandbox/theme.h"
+#include "app/sandbox/view_state.h"
+#include "app/scene_catalog.h"
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+struct PanelContext {
+    Session &session;
+    ViewState &view;
+    const StepClock &clock;
+    std::span<const SceneEntry> scenes;
+    const Fonts &fonts;
+    bool frozen = false; // no text or graph that differs from run to run
+    // What the person asked for.
+    std::vector<Action> actions;
+    std::optional<std::filesystem::path> open_scene;
+    std::optional<double> speed;
+    bool restart_as_written = false;
+};
+
+void scenes_panel(PanelContext &context);
+void settings_panel(PanelContext &context);
+void view_panel(PanelContext &context);
+void transport_panel(PanelContext &context);
+void inspector_panel(PanelContext &context);    // of the selected body
+void expectations_panel(PanelContext &context); // of the scene, with its title and description
+void statistics_panel(PanelContext &context);
+void measures_panel(PanelContext &context);
+void messages_panel(PanelContext &context);
+void help_panel(PanelContext &context);
+
+// The scenes whose path or title contains every word of `search`, in any case; indices.
+[[nodiscard]] std::vector<std::size_t> matching(std::span<const SceneEntry> scenes,
+                                                const std::string &search);
+
+// About how high the messages are in a panel of this width; 0 if there are none.
+[[nodiscard]] float messages_height(const Messages &messages, float width);
+
+} // namespace plumb

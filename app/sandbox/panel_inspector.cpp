@@ -1,0 +1,113 @@
+// The selected body.
+#include "app/sandbox/panel.h"
+#include "app/sandbox/widgets.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <variant>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/trigonometric.hpp>
+#include <imgui/imgui.h>
+
+namespace plumb {
+
+namespace {
+
+std::string triple(const glm::dvec3 &v, const char *format = "%.3f, %.3f, %.3f") {
+    std::array<char, 128> text{};
+    std::snprintf(text.data(), text.size(), format, v.x, v.y, v.z);
+    return text.data();
+}
+
+struct ShapeText {
+    std::string operator()(const SphereDesc &s) const {
+        return "sphere, r " + number(s.radius, "m");
+    }
+    std::string operator()(const BoxDesc &b) const {
+        return "box, " + triple(b.half_extents * 2.0, "%.3g × %.3g × %.3g") + " m";
+    }
+    std::string operator()(const CapsuleDesc &c) const {
+        return "capsule, r " + number(c.radius) + ", h " + number(2 * c.half_height, "m");
+    }
+    std::string operator()(const PlaneDesc &) const { return "plane"; }
+};
+
+const char *text(BodyKind kind) {
+    switch (kind) {
+    case BodyKind::fixed:
+        return "static";
+    case BodyKind::kinematic:
+        return "kinematic";
+    case BodyKind::dynamic:
+        return "dynamic";
+    }
+    return "";
+}
+
+// The rotation's angle in degrees, and its axis.
+std::string turn(const glm::dquat &orientation) {
+    const double angle = glm::degrees(glm::angle(orientation));
+    std::array<char, 128> result{};
+    if (!(std::abs(angle) > 0.05))
+        return "none";
+    const glm::dvec3 axis = glm::axis(orientation);
+    std::snprintf(result.data(), result.size(), "%.1f° about %.2f, %.2f, %.2f", angle, axis.x,
+                  axis.y, axis.z);
+    return result.data();
+}
+
+void contact_rows(const PanelContext &context, std::size_t body) {
+    const Simulation &simulation = *context.session.simulation();
+    std::size_t points = 0;
+    double force = 0;
+    for (const ContactView &contact : simulation.contacts()) {
+        if (contact.body_a == body || contact.body_b == body) {
+            ++points;
+            force += contact.normal_force;
+        }
+    }
+    value_row("Contact points", std::to_string(points));
+    value_row("Normal forces", number(force, "N"));
+}
+
+} // namespace
+
+void inspector_panel(PanelContext &context) {
+    const Simulation *simulation = context.session.simulation();
+    const std::optional<std::size_t> &body = context.view.selected;
+    if (!simulation || !body || *body >= simulation->body_count() ||
+        !simulation->body_info(*body).alive) {
+        ImGui::PushTextWrapPos(0);
+        ImGui::TextDisabled("Click a body to see its name, mass, pose and velocity.");
+        ImGui::Spacing();
+        for (const MouseInfo &gesture : mouse_gestures())
+            value_row(gesture.title, std::string(gesture.gesture));
+        ImGui::PopTextWrapPos();
+        return;
+    }
+    const BodyInfo &info = simulation->body_info(*body);
+    const BodyState state = simulation->body_state(*body);
+    value_row("Name", info.name);
+    value_row("Kind", text(info.kind));
+    value_row("Shape", std::visit(ShapeText{}, info.shape));
+    if (!info.material.empty())
+        value_row("Material", info.material);
+    if (info.kind == BodyKind::dynamic) {
+        value_row("Mass", number(info.mass, "kg"));
+        value_row("Inertia", triple(info.inertia, "%.3g, %.3g, %.3g") + " kg m²");
+    }
+    ImGui::Separator();
+    value_row("Position", triple(state.position) + " m");
+    value_row("Turned", turn(state.orientation));
+    if (info.kind == BodyKind::fixed)
+        return;
+    value_row("Velocity", triple(state.velocity) + " m/s");
+    value_row("Speed", number(glm::length(state.velocity), "m/s"));
+    value_row("Spin", triple(state.angular_velocity) + " 1/s");
+    ImGui::Separator();
+    contact_rows(context, *body);
+}
+
+} // namespace plumb

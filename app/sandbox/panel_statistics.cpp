@@ -1,0 +1,192 @@
+// What a step costs, phase by phase, how the energy goes, and what there is to do.
+#include "app/sandbox/panel.h"
+#include "app/sandbox/widgets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <imgui/imgui.h>
+
+namespace plumb {
+
+namespace {
+
+struct Phase {
+    const char *title;
+    const Graph SessionGraphs::*graph;
+    double StepReport::*time;
+    Colour colour;
+};
+
+constexpr std::array phases{
+    Phase{"Find pairs",
+          &SessionGraphs::find_pairs,
+          &StepReport::find_pairs,
+          {0.42f, 0.68f, 0.90f, 1}},
+    Phase{"Collide", &SessionGraphs::collide, &StepReport::collide, {0.90f, 0.64f, 0.42f, 1}},
+    Phase{"Advance", &SessionGraphs::advance, &StepReport::advance, {0.50f, 0.76f, 0.58f, 1}},
+    Phase{"Finish", &SessionGraphs::finish, &StepReport::finish, {0.72f, 0.62f, 0.86f, 1}},
+};
+
+struct Plot {
+    ImVec2 min, max;
+    [[nodiscard]] float x(std::size_t i, std::size_t count) const {
+        // The newest value is at the right border, whatever there is before it.
+        const auto behind = static_cast<float>(count - 1 - i);
+        return max.x - behind * (max.x - min.x) / static_cast<float>(Graph::capacity - 1);
+    }
+    [[nodiscard]] float y(double fraction) const {
+        return max.y - static_cast<float>(std::clamp(fraction, 0.0, 1.0)) * (max.y - min.y);
+    }
+};
+
+Plot begin_plot(float height) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
+    ImGui::Dummy(size);
+    const Plot plot{at, {at.x + size.x, at.y + size.y}};
+    ImGui::GetWindowDrawList()->AddRectFilled(plot.min, plot.max, packed(theme::field, 0.6f), 3);
+    return plot;
+}
+
+// The next 1, 2 or 5 times a power of ten, so that the scale jumps rarely.
+double round_up(double value) {
+    if (!(value > 0) || !std::isfinite(value))
+        return 1;
+    const double power = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double step : {1.0, 2.0, 5.0})
+        if (value <= step * power)
+            return step * power;
+    return 10 * power;
+}
+
+void label(const Fonts &fonts, const Plot &plot, bool top, const std::string &text) {
+    const float size = fonts.small->FontSize;
+    ImGui::GetWindowDrawList()->AddText(
+        fonts.small, size, {plot.min.x + 4, top ? plot.min.y + 1 : plot.max.y - size - 1},
+        packed(theme::dim), text.c_str());
+}
+
+// Stacked, the first phase at the bottom.
+void time_graph(const PanelContext &context, float height) {
+    const SessionGraphs &graphs = context.session.graphs();
+    const Plot plot = begin_plot(height);
+    const std::size_t count = context.frozen ? 0 : graphs.advance.size();
+    double most = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        double total = 0;
+        for (const Phase &phase : phases)
+            total += (graphs.*phase.graph).at(i);
+        most = std::max(most, total);
+    }
+    const double scale = round_up(most);
+    ImDrawList &list = *ImGui::GetWindowDrawList();
+    list.PushClipRect(plot.min, plot.max, true);
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        double below_a = 0;
+        double below_b = 0;
+        for (const Phase &phase : phases) {
+            const double above_a = below_a + (graphs.*phase.graph).at(i);
+            const double above_b = below_b + (graphs.*phase.graph).at(i + 1);
+            const float xa = plot.x(i, count);
+            const float xb = plot.x(i + 1, count);
+            list.AddQuadFilled({xa, plot.y(above_a / scale)}, {xb, plot.y(above_b / scale)},
+                               {xb, plot.y(below_b / scale)}, {xa, plot.y(below_a / scale)},
+                               packed(phase.colour));
+            below_a = above_a;
+            below_b = above_b;
+        }
+    }
+    list.PopClipRect();
+    label(context.fonts, plot, true, count > 0 ? duration(scale) : "-");
+}
+
+void energy_graph(const PanelContext &context, float height) {
+    const Graph &energy = context.session.graphs().energy;
+    const Plot plot = begin_plot(height);
+    const std::size_t count = energy.size();
+    double low = std::numeric_limits<double>::max();
+    double high = std::numeric_limits<double>::lowest();
+    for (std::size_t i = 0; i < count; ++i) {
+        if (std::isfinite(energy.at(i))) {
+            low = std::min(low, energy.at(i));
+            high = std::max(high, energy.at(i));
+        }
+    }
+    if (low > high) {
+        label(context.fonts, plot, true, "-");
+        return;
+    }
+    // What rounding alone does to the energy is drawn flat, in the middle.
+    const double middle = (low + high) / 2;
+    const double span = std::max((high - low) * 1.1, std::max(std::abs(middle) * 1e-5, 1e-9));
+    ImDrawList &list = *ImGui::GetWindowDrawList();
+    list.PushClipRect(plot.min, plot.max, true);
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        if (!std::isfinite(energy.at(i)) || !std::isfinite(energy.at(i + 1)))
+            continue;
+        list.AddLine({plot.x(i, count), plot.y((energy.at(i) - middle) / span + 0.5)},
+                     {plot.x(i + 1, count), plot.y((energy.at(i + 1) - middle) / span + 0.5)},
+                     packed(theme::accent), 1.5f);
+    }
+    list.PopClipRect();
+    // As many digits as tell the two apart.
+    const double ratio = std::abs(middle) / std::max(high - low, std::abs(middle) * 1e-9);
+    const int digits = std::clamp(2 + static_cast<int>(std::ceil(std::log10(ratio + 1))), 4, 9);
+    label(context.fonts, plot, true, number(high, "J", digits));
+    label(context.fonts, plot, false, number(low, "J", digits));
+}
+
+void legend(const PanelContext &context, const StepReport &report) {
+    const float half = ImGui::GetContentRegionAvail().x / 2;
+    const float left = ImGui::GetCursorPosX();
+    ImGui::PushFont(context.fonts.small);
+    for (std::size_t i = 0; i < phases.size(); ++i) {
+        const Phase &phase = phases[i];
+        const float start = left + (i % 2 == 1 ? half : 0.0f);
+        if (i % 2 == 1)
+            ImGui::SameLine();
+        ImGui::SetCursorPosX(start);
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float side = ImGui::GetFontSize() * 0.6f;
+        const float down = ImGui::GetFontSize() * 0.22f;
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            {at.x, at.y + down}, {at.x + side, at.y + down + side}, packed(phase.colour), 2);
+        ImGui::SetCursorPosX(start + side + 5);
+        ImGui::TextUnformatted(phase.title);
+        const std::string time = context.frozen ? "-" : duration(report.*phase.time);
+        ImGui::SameLine();
+        ImGui::SetCursorPosX(start + half - ImGui::CalcTextSize(time.c_str()).x -
+                             (i % 2 == 0 ? 10.0f : 0.0f));
+        ImGui::TextDisabled("%s", time.c_str());
+    }
+    ImGui::PopFont();
+}
+
+} // namespace
+
+void statistics_panel(PanelContext &context) {
+    heading(context.fonts, "Time of a step", shortcut(Action::toggle_diagnostics));
+    static const StepReport nothing;
+    const Simulation *simulation = context.session.simulation();
+    const StepReport &report = simulation ? simulation->report() : nothing;
+    const float height = ImGui::GetFontSize() * 3.0f;
+    time_graph(context, height);
+    legend(context, report);
+    ImGui::Spacing();
+    heading(context.fonts, "Energy");
+    energy_graph(context, height);
+    ImGui::Spacing();
+    value_row("Moving bodies", std::to_string(report.moving_bodies));
+    value_row("Pairs, contacts, points", std::to_string(report.pairs) + ", " +
+                                             std::to_string(report.contacts) + ", " +
+                                             std::to_string(report.contact_points));
+    value_row("Joints", std::to_string(report.joints));
+    value_row("Impacts, unresolved",
+              std::to_string(report.impacts) + ", " + std::to_string(report.unresolved_impacts),
+              report.unresolved_impacts > 0 ? theme::warning : theme::text);
+}
+
+} // namespace plumb

@@ -1,0 +1,37 @@
+// What is drawn besides the bodies, and the camera.
+#include "app/sandbox/panel.h"
+#include "app/sandbox/widgets.h"
+
+#include <imgui/imgui.h>
+
+namespace plumb {
+
+void view_panel(PanelContext &context) {
+    heading(context.fonts, "View",
+            "Help " + shortcut(Action::toggle_help) + "   Hide " + shortcut(Action::toggle_panels));
+    const ViewState &view = context.view;
+    const float spacing = ImGui::GetStyle().ItemSpacing.x;
+    const float width = ImGui::GetContentRegionAvail().x - spacing;
+    const float half = width / 2;
+    const auto box = [&](Action action, bool checked, float share) {
+        if (action_check_box(context.fonts, action, checked, width * share))
+            context.actions.push_back(action);
+    };
+    // The longer titles stand on the left.
+    constexpr float left = 0.54f;
+    box(Action::toggle_contacts, view.contacts, left);
+    ImGui::SameLine(0, spacing);
+    box(Action::toggle_joints, view.joints, 1 - left);
+    box(Action::toggle_velocities, view.velocities, left);
+    ImGui::SameLine(0, spacing);
+    box(Action::toggle_bounds, view.bounds, 1 - left);
+    box(Action::toggle_wireframe, view.wireframe, 1);
+    box(Action::toggle_diagnostics, view.diagnostics, 1);
+    if (action_button(context.fonts, Action::frame, half))
+        context.actions.push_back(Action::frame);
+    ImGui::SameLine(0, spacing);
+    if (action_button(context.fonts, Action::home, half))
+        context.actions.push_back(Action::home);
+}
+
+} // namespace plumb

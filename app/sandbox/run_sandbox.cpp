@@ -1,0 +1,197 @@
+#include "app/sandbox/run_sandbox.h"
+
+#include "app/lab/exit_code.h"
+#include "app/render/framebuffer.h"
+#include "app/render/imgui_renderer.h"
+#include "app/render/png.h"
+#include "app/render/renderer.h"
+#include "app/sandbox/sandbox.h"
+#include "app/sandbox/ui.h"
+#include "app/sandbox/window_input.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <imgui/backends/imgui_impl_glfw.h>
+
+namespace plumb {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int samples = 4;
+// A paused world is drawn this long after the last event, then only now and then.
+constexpr double awake = 0.5;          // s
+constexpr double drowsy = 0.2;         // s between frames
+constexpr double title_interval = 0.2; // s between changes of the title while running
+
+// ImGui's back end lives as long as this. Made after WindowInput, gone before it.
+class GlfwBackEnd {
+  public:
+    explicit GlfwBackEnd(Window &window) { ImGui_ImplGlfw_InitForOpenGL(window.handle(), true); }
+    ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); }
+    GlfwBackEnd(const GlfwBackEnd &) = delete;
+    GlfwBackEnd &operator=(const GlfwBackEnd &) = delete;
+};
+
+// Everything that both loops draw with.
+struct Stage {
+    Stage(const SandboxOptions &options, float scale, glm::ivec2 pixels)
+        : ui(scale), renderer(options.shader_dir), ui_renderer(options.shader_dir),
+          target(pixels, samples) {}
+
+    void draw(Sandbox &sandbox) {
+        renderer.draw(sandbox.draw_list(), target);
+        PanelContext context = sandbox.panel_context(ui.fonts());
+        const ImDrawData &data = ui.draw(context);
+        ui_renderer.draw(data, target);
+        sandbox.take(context);
+    }
+
+    Ui ui;
+    Renderer renderer;
+    ImguiRenderer ui_renderer;
+    Framebuffer target;
+};
+
+Sandbox make_sandbox(const SandboxOptions &options) {
+    Sandbox sandbox(Session(options.run, options.tasks), options.scenes, options.out_dir);
+    sandbox.clock().set_paused(options.paused);
+    if (!options.initial_scene.empty())
+        sandbox.open(options.initial_scene);
+    else if (!options.scenes.empty())
+        sandbox.open(options.scenes.front().path);
+    return sandbox;
+}
+
+void write_screenshot(Sandbox &sandbox, const Framebuffer &target) {
+    const std::filesystem::path path = sandbox.new_file(".png");
+    try {
+        if (path.has_parent_path())
+            std::filesystem::create_directories(path.parent_path());
+        write_png(path, target.read());
+        sandbox.session().messages().note("Wrote " + path.string());
+    } catch (const std::exception &failure) {
+        sandbox.session().messages().error(std::string("No screenshot: ") + failure.what());
+    }
+}
+
+int finish(const SandboxOptions &options, const Sandbox &sandbox, const Stage &stage) {
+    if (!options.screenshot.empty())
+        write_png(options.screenshot, stage.target.read());
+    if (options.max_frames && !sandbox.session().running()) {
+        for (const Message &message : sandbox.session().messages().all())
+            std::cerr << message.text << '\n';
+        return static_cast<int>(ExitCode::bad_input);
+    }
+    return 0;
+}
+
+int run_off_screen(const SandboxOptions &options) {
+    Sandbox sandbox = make_sandbox(options);
+    Stage stage(options, 1, options.size);
+    for (int frame = 0; frame < *options.max_frames && !sandbox.quit_requested(); ++frame) {
+        sandbox.advance(1'000'000'000 / 60);
+        stage.ui.fill_input(glm::vec2(options.size), 1.0f / 60);
+        stage.ui.begin_frame();
+        stage.draw(sandbox);
+    }
+    return finish(options, sandbox, stage);
+}
+
+void handle_events(Sandbox &sandbox, Ui &ui, const Window &window,
+                   const WindowInput::Events &events) {
+    for (const KeyEvent &key : events.keys)
+        sandbox.handle(key, ui.wants_text());
+    if (sandbox.take_keyboard_release())
+        ui.release_keyboard();
+    for (PointerEvent event : events.pointer) {
+        event.over_panel = ui.over_panel();
+        sandbox.handle(event, glm::vec2(window.size()));
+    }
+    if (!events.dropped.empty())
+        sandbox.open(events.dropped.front());
+}
+
+int run_in_window(const SandboxOptions &options, Window &window) {
+    WindowInput input(window);
+    Sandbox sandbox = make_sandbox(options);
+    // Pixels of the display to a unit of the window's coordinates are the back end's business.
+    const float dense = static_cast<float>(window.framebuffer_size().x) /
+                        static_cast<float>(std::max(window.size().x, 1));
+    Stage stage(options, window.content_scale() / (dense > 0 ? dense : 1),
+                glm::max(window.framebuffer_size(), 1));
+    const GlfwBackEnd back_end(window);
+
+    std::string title;
+    Clock::time_point last = Clock::now();
+    Clock::time_point last_event = last;
+    Clock::time_point last_title = last - std::chrono::hours(1);
+    const auto since = [](Clock::time_point then, Clock::time_point now) {
+        return std::chrono::duration<double>(now - then).count();
+    };
+
+    for (int frame = 0; !window.should_close() && !sandbox.quit_requested(); ++frame) {
+        if (options.max_frames && frame >= *options.max_frames)
+            break;
+        const bool asleep = sandbox.clock().paused() && since(last_event, last) > awake;
+        if (asleep && !options.max_frames)
+            window.wait(drowsy);
+        else
+            window.poll();
+        const Clock::time_point now = Clock::now();
+        const std::int64_t passed =
+            std::chrono::duration_cast<std::chrono::nanoseconds>(now - last).count();
+        last = now;
+        const glm::ivec2 pixels = window.framebuffer_size();
+        if (pixels.x <= 0 || pixels.y <= 0) { // minimised: the world waits
+            window.wait(drowsy);
+            last = Clock::now();
+            continue;
+        }
+        const WindowInput::Events events = input.take();
+        if (!events.empty())
+            last_event = now;
+
+        ImGui_ImplGlfw_NewFrame();
+        stage.ui.begin_frame();
+        handle_events(sandbox, stage.ui, window, events);
+        sandbox.advance(passed);
+        stage.target.resize(pixels);
+        stage.draw(sandbox);
+        if (sandbox.take_screenshot_request())
+            write_screenshot(sandbox, stage.target);
+        stage.target.blit_to_window(pixels);
+        window.swap();
+
+        if (sandbox.title() != title &&
+            (sandbox.clock().paused() || since(last_title, now) > title_interval)) {
+            title = sandbox.title();
+            window.set_title(title);
+            last_title = now;
+        }
+    }
+    return finish(options, sandbox, stage);
+}
+
+} // namespace
+
+SandboxResult run_sandbox(const SandboxOptions &options) {
+    ContextRequest request;
+    request.choice = options.gl;
+    request.size = options.size;
+    const ContextResult made = create_context(request);
+    if (Window *window = made.context->window())
+        return {run_in_window(options, *window), {}};
+    if (options.max_frames)
+        return {run_off_screen(options), {}};
+    return {0, made.why_no_window.empty() ? "drawing in memory was asked for" : made.why_no_window};
+}
+
+} // namespace plumb

@@ -1,0 +1,337 @@
+#include "app/sandbox/sandbox.h"
+
+#include "app/sandbox/world_draw.h"
+#include "engine/dynamics/method_info.h"
+
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+namespace plumb {
+
+Sandbox::Sandbox(Session session, std::vector<SceneEntry> scenes, std::filesystem::path out_dir)
+    : session_(std::move(session)), scenes_(std::move(scenes)), out_dir_(std::move(out_dir)) {}
+
+bool Sandbox::open(const std::filesystem::path &path) {
+    session_.messages().clear();
+    if (!session_.open(path))
+        return false;
+    started(true);
+    return true;
+}
+
+bool Sandbox::open(const SceneDesc &scene) {
+    session_.messages().clear();
+    if (!session_.open(scene))
+        return false;
+    started(true);
+    return true;
+}
+
+void Sandbox::started(bool another_scene) {
+    tools_.let_go(session_);
+    if (another_scene) {
+        view_.selected.reset();
+        view_.camera = camera_of(session_.scene().camera);
+    }
+    view_.hovered.reset();
+    clock_.give_up();
+    follow_simulation();
+}
+
+void Sandbox::follow_simulation() {
+    const Simulation *simulation = session_.simulation();
+    if (!simulation)
+        return;
+    clock_.set_dt(simulation->settings().dt);
+    const auto gone = [&](const std::optional<std::size_t> &body) {
+        return body && (*body >= simulation->body_count() || !simulation->body_info(*body).alive);
+    };
+    if (gone(view_.selected))
+        view_.selected.reset();
+    if (gone(view_.hovered))
+        view_.hovered.reset();
+}
+
+void Sandbox::perform(Action action) {
+    switch (action) {
+    case Action::pause:
+        clock_.set_paused(!clock_.paused());
+        break;
+    case Action::step:
+        take_steps(1);
+        break;
+    case Action::step_5:
+        take_steps(5);
+        break;
+    case Action::step_back:
+        take_steps_back(1);
+        break;
+    case Action::step_back_5:
+        take_steps_back(5);
+        break;
+    case Action::restart:
+        if (session_.restart())
+            started(false);
+        break;
+    case Action::reload:
+        reload();
+        break;
+    case Action::slower:
+        clock_.set_speed(clock_.speed() / 2);
+        break;
+    case Action::faster:
+        clock_.set_speed(clock_.speed() * 2);
+        break;
+    case Action::previous_scene:
+        open_neighbour(-1);
+        break;
+    case Action::next_scene:
+        open_neighbour(1);
+        break;
+    case Action::find_scene:
+        view_.panels = true;
+        view_.focus_search = true;
+        break;
+    case Action::previous_method:
+        choose_neighbour_method(-1);
+        break;
+    case Action::next_method:
+        choose_neighbour_method(1);
+        break;
+    case Action::toggle_contacts:
+        view_.contacts = !view_.contacts;
+        break;
+    case Action::toggle_joints:
+        view_.joints = !view_.joints;
+        break;
+    case Action::toggle_wireframe:
+        view_.wireframe = !view_.wireframe;
+        break;
+    case Action::toggle_bounds:
+        view_.bounds = !view_.bounds;
+        break;
+    case Action::toggle_velocities:
+        view_.velocities = !view_.velocities;
+        break;
+    case Action::frame:
+        frame_selection();
+        break;
+    case Action::home:
+        if (session_.running())
+            view_.camera = camera_of(session_.scene().camera);
+        break;
+    case Action::toggle_panels:
+        view_.panels = !view_.panels;
+        break;
+    case Action::toggle_diagnostics:
+        view_.diagnostics = !view_.diagnostics;
+        break;
+    case Action::toggle_help:
+        view_.help = !view_.help;
+        break;
+    case Action::dismiss:
+        dismiss();
+        break;
+    case Action::screenshot:
+        screenshot_ = true;
+        break;
+    case Action::save_scene:
+        session_.save_scene(new_file(".toml"));
+        break;
+    case Action::quit:
+        quit_ = true;
+        break;
+    }
+}
+
+void Sandbox::handle(const KeyEvent &event, bool in_text_field) {
+    // A text field that takes the keyboard in the next frame has it already.
+    const bool typing = in_text_field || view_.focus_search;
+    if (typing && !event.chord.ctrl && event.chord.key != special_key::escape &&
+        event.chord.key != special_key::f1)
+        return;
+    const ActionInfo *action = find_action(event.chord);
+    if (!action || (event.repeat && !action->repeats))
+        return;
+    if (typing && action->action == Action::dismiss) {
+        view_.search.clear();
+        view_.focus_search = false;
+        release_keyboard_ = true;
+        return;
+    }
+    perform(action->action);
+}
+
+void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
+    viewport_ = viewport;
+    tools_.handle(event, {session_, view_.camera, view_.selected, viewport});
+    if (event.kind != PointerEvent::Kind::move)
+        return;
+    view_.hovered.reset();
+    if (!event.over_panel && tools_.drag() == Tools::Drag::none)
+        if (const auto hit = pick(session_, view_.camera, event.position, viewport))
+            view_.hovered = hit->body;
+}
+
+void Sandbox::advance(std::int64_t nanoseconds) {
+    session_.messages().grow_older(static_cast<double>(nanoseconds) * 1e-9);
+    if (!session_.running() || session_.stopped())
+        return;
+    follow_simulation();
+    const int due = clock_.advance(nanoseconds);
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < due; ++i) {
+        if (!session_.step()) {
+            clock_.set_paused(true);
+            return;
+        }
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+        if (taken.count() > step_budget && i + 1 < due) {
+            clock_.give_up();
+            return;
+        }
+    }
+}
+
+void Sandbox::take_steps(int count) {
+    clock_.set_paused(true);
+    for (int i = 0; i < count; ++i)
+        if (!session_.step())
+            return;
+}
+
+void Sandbox::take_steps_back(int count) {
+    clock_.set_paused(true);
+    for (int i = 0; i < count; ++i)
+        if (!session_.step_back())
+            break;
+    follow_simulation();
+}
+
+void Sandbox::reload() {
+    // The selected body is found again by its name.
+    std::string name;
+    if (view_.selected)
+        name = session_.simulation()->body_info(*view_.selected).name;
+    session_.messages().clear();
+    if (!session_.reload())
+        return;
+    view_.selected = name.empty() ? std::nullopt : session_.simulation()->find_body(name);
+    started(false);
+}
+
+void Sandbox::open_neighbour(int direction) {
+    if (scenes_.empty())
+        return;
+    const auto count = static_cast<int>(scenes_.size());
+    int now = direction > 0 ? -1 : count; // none of the list is open: begin at its end
+    for (int i = 0; i < count; ++i)
+        if (scenes_[static_cast<std::size_t>(i)].path == session_.path())
+            now = i;
+    open(scenes_[static_cast<std::size_t>((now + direction + count) % count)].path);
+}
+
+void Sandbox::choose_neighbour_method(int direction) {
+    if (!session_.running())
+        return;
+    std::vector<std::string_view> able;
+    std::size_t now = 0;
+    for (const MethodInfo &method : method_infos()) {
+        if (!why_not(method, session_.scene()).empty())
+            continue;
+        if (method.name == session_.simulation()->method().name)
+            now = able.size();
+        able.push_back(method.name);
+    }
+    if (able.size() < 2) {
+        session_.messages().note("No other method can run this scene.");
+        return;
+    }
+    session_.set_method(
+        able[direction > 0 ? (now + 1) % able.size() : (now + able.size() - 1) % able.size()]);
+}
+
+void Sandbox::frame_selection() {
+    if (!session_.running())
+        return;
+    const Around sphere = around(*session_.simulation(), view_.selected);
+    view_.camera.frame(sphere.centre, sphere.radius, viewport_.x / viewport_.y);
+}
+
+void Sandbox::dismiss() {
+    if (view_.help)
+        view_.help = false;
+    else if (!view_.search.empty())
+        view_.search.clear();
+    else if (!session_.messages().empty())
+        session_.messages().clear();
+    else
+        view_.selected.reset();
+}
+
+PanelContext Sandbox::panel_context(const Fonts &fonts, bool frozen) {
+    follow_simulation();
+    return PanelContext{session_, view_, clock_, scenes_, fonts, frozen, {}, {}, {}, false};
+}
+
+void Sandbox::take(const PanelContext &context) {
+    for (const Action action : context.actions)
+        perform(action);
+    if (context.speed)
+        clock_.set_speed(*context.speed);
+    if (context.restart_as_written && session_.restart_as_written())
+        started(false);
+    if (context.open_scene)
+        open(*context.open_scene);
+    follow_simulation();
+}
+
+DrawList Sandbox::draw_list() const {
+    if (!session_.running()) {
+        DrawList empty;
+        empty.camera = view_.camera;
+        return empty;
+    }
+    WorldDrawOptions options;
+    options.contacts = view_.contacts;
+    options.joints = view_.joints;
+    options.bounds = view_.bounds;
+    options.velocities = view_.velocities;
+    options.wireframe = view_.wireframe;
+    options.selected = view_.selected;
+    options.hovered = view_.hovered;
+    options.grab = session_.grabbed();
+    return draw_world(*session_.simulation(), view_.camera, options,
+                      blend(session_.previous_poses(), session_.present_poses(), clock_.alpha()));
+}
+
+std::string Sandbox::title() const {
+    if (!session_.running())
+        return "Plumb";
+    return session_.scene().name + " - " +
+           (session_.stopped() ? "stopped"
+            : clock_.paused()  ? "paused"
+                               : "running") +
+           " - step " + std::to_string(session_.simulation()->step_count()) + " - Plumb";
+}
+
+std::filesystem::path Sandbox::new_file(const std::string &extension) const {
+    std::string stem = "plumb";
+    if (session_.running())
+        stem = session_.scene().name + "-" + std::to_string(session_.simulation()->step_count());
+    std::filesystem::path path = out_dir_ / (stem + extension);
+    std::error_code error; // what cannot be looked at counts as absent: writing will say why
+    for (int i = 2; std::filesystem::exists(path, error); ++i)
+        path = out_dir_ / (stem + "-" + std::to_string(i) + extension);
+    return path;
+}
+
+bool Sandbox::take_screenshot_request() {
+    return std::exchange(screenshot_, false);
+}
+bool Sandbox::take_keyboard_release() {
+    return std::exchange(release_keyboard_, false);
+}
+
+} // namespace plumb

@@ -1,0 +1,94 @@
+// The sandbox without its window: scene, view, tools, clock and panels, driven by events and time.
+#pragma once
+
+#include "app/render/draw_list.h"
+#include "app/sandbox/clock.h"
+#include "app/sandbox/keys.h"
+#include "app/sandbox/panel.h"
+#include "app/sandbox/session.h"
+#include "app/sandbox/tools.h"
+#include "app/sandbox/view_state.h"
+#include "app/scene_catalog.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+namespace plumb {
+
+struct KeyEvent {
+    Chord chord;
+    bool repeat = false; // held down
+};
+
+class Sandbox {
+  public:
+    // `scenes` are listed in this order. Saved scenes go to `out_dir`.
+    explicit Sandbox(Session session, std::vector<SceneEntry> scenes = {},
+                     std::filesystem::path out_dir = "out");
+
+    // With the scene's own camera and nothing selected. False, with messages, if it cannot run.
+    bool open(const std::filesystem::path &path);
+    bool open(const SceneDesc &scene);
+
+    void perform(Action action);
+    // `in_text_field`: plain keys are being typed there, and only those with Ctrl, F1 and Esc act.
+    void handle(const KeyEvent &event, bool in_text_field = false);
+    void handle(const PointerEvent &event, glm::vec2 viewport);
+    // Real time goes on: as many steps as are due, but no longer than step_budget.
+    void advance(std::int64_t nanoseconds);
+    static constexpr double step_budget = 0.05; // s of real time a frame
+
+    [[nodiscard]] PanelContext panel_context(const Fonts &fonts, bool frozen = false);
+    // Does what the person asked for in the panels.
+    void take(const PanelContext &context);
+
+    // The present frame.
+    [[nodiscard]] DrawList draw_list() const;
+    // "tower - paused - step 12 - Plumb"
+    [[nodiscard]] std::string title() const;
+
+    // A file of this kind that does not exist yet: out_dir/scene-step.png
+    [[nodiscard]] std::filesystem::path new_file(const std::string &extension) const;
+
+    // Asked for since the last call.
+    [[nodiscard]] bool take_screenshot_request();
+    [[nodiscard]] bool take_keyboard_release();
+    [[nodiscard]] bool quit_requested() const { return quit_; }
+
+    [[nodiscard]] Session &session() { return session_; }
+    [[nodiscard]] const Session &session() const { return session_; }
+    [[nodiscard]] ViewState &view() { return view_; }
+    [[nodiscard]] const ViewState &view() const { return view_; }
+    [[nodiscard]] StepClock &clock() { return clock_; }
+    [[nodiscard]] const StepClock &clock() const { return clock_; }
+    [[nodiscard]] const Tools &tools() const { return tools_; }
+
+  private:
+    void take_steps(int count);
+    void take_steps_back(int count);
+    void reload();
+    void open_neighbour(int direction);
+    void choose_neighbour_method(int direction);
+    void frame_selection();
+    void dismiss();
+    void started(bool another_scene);
+    void follow_simulation(); // the clock's dt, and a selection that may be gone
+
+    Session session_;
+    std::vector<SceneEntry> scenes_;
+    std::filesystem::path out_dir_;
+    ViewState view_;
+    Tools tools_;
+    StepClock clock_{1.0 / 60};
+    glm::vec2 viewport_{1280, 800};
+    bool quit_ = false;
+    bool screenshot_ = false;
+    bool release_keyboard_ = false;
+};
+
+} // namespace plumb

@@ -1,0 +1,240 @@
+#include "app/sandbox/session.h"
+
+#include "engine/scene/scene_file.h"
+
+#include <cmath>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace plumb {
+
+namespace {
+
+bool finite(const glm::dvec3 &v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// "body "a", step 12, 0.2 s": where a motion has blown up.
+std::string where_not_finite(const Simulation &simulation) {
+    std::string where;
+    for (std::size_t body = 0; body < simulation.body_count() && where.empty(); ++body) {
+        if (!simulation.body_info(body).alive)
+            continue;
+        const BodyState state = simulation.body_state(body);
+        if (!finite(state.position) || !finite(state.velocity) || !finite(state.angular_velocity))
+            where = "body \"" + simulation.body_info(body).name + "\", ";
+    }
+    return where + "step " + std::to_string(simulation.step_count());
+}
+
+} // namespace
+
+Session::Session(RunOptions options, TaskPool *tasks, Make make)
+    : options_(std::move(options)), tasks_(tasks), make_(std::move(make)) {}
+
+bool Session::open(const std::filesystem::path &path) {
+    const SceneFileResult file = load_scene(path);
+    for (const SceneMessage &message : file.messages)
+        messages_.say(message.severity == SceneMessage::Severity::error
+                          ? Message::Severity::error
+                          : Message::Severity::warning,
+                      format_message(path.filename().string(), message));
+    return file.ok() && open(file.scene, path);
+}
+
+bool Session::open(const SceneDesc &scene, const std::filesystem::path &path) {
+    if (!start(scene, options_, {}))
+        return false;
+    path_ = path;
+    return true;
+}
+
+bool Session::reload() {
+    if (path_.empty()) {
+        messages_.note("This scene has no file to read again.");
+        return false;
+    }
+    const std::filesystem::path path = path_; // open() assigns it
+    if (!open(path))
+        return false;
+    messages_.note("Read " + path.filename().string() + " again.");
+    return true;
+}
+
+bool Session::restart() {
+    if (!simulation_)
+        return false;
+    RunOptions options = options_;
+    options.method = std::string(simulation_->method().name);
+    return start(SceneDesc(scene_), options, simulation_->settings());
+}
+
+bool Session::restart_as_written() {
+    return simulation_ && start(SceneDesc(scene_), options_, {});
+}
+
+bool Session::start(const SceneDesc &scene, const RunOptions &options,
+                    const std::optional<StepSettings> &settings) {
+    try {
+        std::unique_ptr<Simulation> simulation = make_(scene, options, tasks_);
+        if (settings)
+            simulation->set_settings(*settings);
+        history_.clear(); // before the simulation that made it
+        simulation_ = std::move(simulation);
+    } catch (const std::exception &failure) {
+        messages_.error((scene.name.empty() ? "The scene" : scene.name) +
+                        " cannot run: " + failure.what());
+        return false;
+    }
+    scene_ = scene;
+    stopped_ = false;
+    grab_.reset();
+    graphs_ = {};
+    settle_poses();
+    return true;
+}
+
+bool Session::step() {
+    if (!simulation_ || stopped_)
+        return false;
+    try {
+        history_.remember(*simulation_);
+        if (grab_)
+            simulation_->pull(grab_->body, grab_->local_point, grab_->target);
+        simulation_->step();
+    } catch (const std::exception &failure) {
+        stopped_ = true;
+        messages_.error("The step after " + std::to_string(simulation_->step_count()) +
+                        " failed: " + failure.what());
+        settle_poses();
+        return false;
+    }
+    const StepReport &report = simulation_->report();
+    graphs_.find_pairs.add(report.find_pairs);
+    graphs_.collide.add(report.collide);
+    graphs_.advance.add(report.advance);
+    graphs_.finish.add(report.finish);
+    graphs_.energy.add(report.energy);
+    previous_ = std::move(present_);
+    present_ = poses_of(*simulation_);
+    if (!report.finite) {
+        stopped_ = true;
+        messages_.error("The motion is no longer finite: " + where_not_finite(*simulation_) +
+                        ", method " + std::string(simulation_->method().name) +
+                        ". A shorter step or more substeps may hold it.");
+        return false;
+    }
+    return true;
+}
+
+bool Session::step_back() {
+    if (!simulation_)
+        return false;
+    const std::string method(simulation_->method().name);
+    const StepSettings settings = simulation_->settings();
+    try {
+        if (!history_.recall(*simulation_))
+            return false;
+        if (simulation_->method().name != method)
+            simulation_->set_method(method);
+        simulation_->set_settings(settings);
+    } catch (const std::exception &failure) {
+        messages_.error(std::string("Cannot step back: ") + failure.what());
+        return false;
+    }
+    stopped_ = false;
+    grab_.reset(); // it may hold a body that does not exist yet
+    for (Graph *graph : {&graphs_.find_pairs, &graphs_.collide, &graphs_.advance, &graphs_.finish,
+                         &graphs_.energy})
+        graph->take_back();
+    settle_poses();
+    return true;
+}
+
+bool Session::set_method(std::string_view name) {
+    if (!simulation_)
+        return false;
+    try {
+        RunOptions options = options_;
+        options.method = std::string(name);
+        options.substeps.reset(); // meant for the method of the command line
+        options.iterations.reset();
+        const ResolvedRun run = resolve_run(scene_, options);
+        if (const std::string why = why_not(*run.method, scene_); !why.empty())
+            throw std::invalid_argument(why);
+        StepSettings settings = simulation_->settings();
+        settings.substeps = run.settings.substeps;
+        settings.iterations = run.settings.iterations;
+        simulation_->set_method(name);
+        simulation_->set_settings(settings);
+        return true;
+    } catch (const std::exception &failure) {
+        messages_.error("Cannot change the method to " + std::string(name) + ": " + failure.what());
+        return false;
+    }
+}
+
+bool Session::set_settings(const StepSettings &settings) {
+    if (!simulation_)
+        return false;
+    try {
+        simulation_->set_settings(settings);
+        return true;
+    } catch (const std::exception &failure) {
+        messages_.error(std::string("Cannot change the settings: ") + failure.what());
+        return false;
+    }
+}
+
+std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
+                                          double radius) {
+    if (!simulation_)
+        return {};
+    BodyDesc ball;
+    ball.name = "ball";
+    ball.shape = SphereDesc{radius};
+    ball.position = from;
+    ball.velocity = velocity;
+    try {
+        const std::size_t body = simulation_->add_body(ball);
+        settle_poses();
+        return body;
+    } catch (const std::exception &failure) {
+        messages_.error(std::string("Cannot add a ball: ") + failure.what());
+        return {};
+    }
+}
+
+bool Session::save_scene(const std::filesystem::path &path) {
+    if (!simulation_)
+        return false;
+    try {
+        const std::string text = write_scene(simulation_->describe());
+        if (path.has_parent_path())
+            std::filesystem::create_directories(path.parent_path());
+        std::filesystem::path beside = path;
+        beside += ".part";
+        {
+            std::ofstream file(beside, std::ios::binary);
+            file << text << std::flush;
+            if (!file)
+                throw std::runtime_error("cannot write " + beside.string());
+        }
+        std::filesystem::rename(beside, path);
+        messages_.note("Saved " + path.string());
+        return true;
+    } catch (const std::exception &failure) {
+        messages_.error(std::string("Cannot save the scene: ") + failure.what());
+        return false;
+    }
+}
+
+void Session::settle_poses() {
+    present_ = poses_of(*simulation_);
+    previous_ = present_;
+}
+
+} // namespace plumb

@@ -1,0 +1,115 @@
+// The scene that is running: opened, stepped, taken back, changed and saved.
+#pragma once
+
+#include "app/sandbox/graphs.h"
+#include "app/sandbox/history.h"
+#include "app/sandbox/messages.h"
+#include "app/sandbox/pose_blend.h"
+#include "engine/core/task_pool.h"
+#include "engine/scene/scene_desc.h"
+#include "engine/scene/simulation.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace plumb {
+
+// One value a step.
+struct SessionGraphs {
+    Graph find_pairs, collide, advance, finish; // s of wall time
+    Graph energy;                               // J
+};
+
+// A body's point held to a moving target.
+struct Grab {
+    std::size_t body = 0;
+    glm::dvec3 local_point{0};
+    glm::dvec3 target{0}; // world
+};
+
+// Nothing here throws because of a scene, a file or a setting: what is wrong is said in messages(),
+// and what was running before goes on.
+class Session {
+  public:
+    using Make = std::function<std::unique_ptr<Simulation>(const SceneDesc &, const RunOptions &,
+                                                           TaskPool *)>;
+    // `options` hold for every scene that is opened. `tasks` may be null and must outlive the
+    // session.
+    explicit Session(RunOptions options = {}, TaskPool *tasks = nullptr,
+                     Make make = &Simulation::create);
+
+    // False, with the reasons in messages(), if the file is not a scene that can run.
+    bool open(const std::filesystem::path &path);
+    // A scene from elsewhere; `path` is where reload would look, and may be empty.
+    bool open(const SceneDesc &scene, const std::filesystem::path &path = {});
+    // The file again, as it is now. A file that is broken leaves the running scene as it is.
+    bool reload();
+    // From the start, with the method and settings now chosen.
+    bool restart();
+    // From the start, with the method and settings of the scene and the command line.
+    bool restart_as_written();
+
+    [[nodiscard]] bool running() const { return simulation_ != nullptr; }
+    // Null if there is no scene.
+    [[nodiscard]] Simulation *simulation() { return simulation_.get(); }
+    [[nodiscard]] const Simulation *simulation() const { return simulation_.get(); }
+    [[nodiscard]] const SceneDesc &scene() const { return scene_; }
+    [[nodiscard]] const std::filesystem::path &path() const { return path_; }
+    [[nodiscard]] const RunOptions &options() const { return options_; }
+
+    // One step. False if there is nothing to step, or if the step failed: a message says what and
+    // where, and the session is stopped.
+    bool step();
+    // Back by one remembered step: the state is, bit for bit, what it was, but method and settings
+    // stay as now chosen. False when no more is remembered.
+    bool step_back();
+    [[nodiscard]] std::size_t steps_remembered() const { return history_.size(); }
+    // The last step failed; only going back or starting again helps.
+    [[nodiscard]] bool stopped() const { return stopped_; }
+
+    // The method, with the settings that the scene or else the method has for it.
+    bool set_method(std::string_view name);
+    bool set_settings(const StepSettings &settings);
+
+    void grab(const std::optional<Grab> &grab) { grab_ = grab; }
+    [[nodiscard]] const std::optional<Grab> &grabbed() const { return grab_; }
+    // Adds a ball, kg and m/s, in SI units; its index, or nothing with a message.
+    std::optional<std::size_t> shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
+                                     double radius);
+
+    // Writes the present state as a scene file: beside the file first, then renamed. Makes the
+    // folder.
+    bool save_scene(const std::filesystem::path &path);
+
+    // Before and after the last step; the same after anything but a step.
+    [[nodiscard]] const std::vector<Pose> &previous_poses() const { return previous_; }
+    [[nodiscard]] const std::vector<Pose> &present_poses() const { return present_; }
+    [[nodiscard]] const SessionGraphs &graphs() const { return graphs_; }
+    [[nodiscard]] Messages &messages() { return messages_; }
+    [[nodiscard]] const Messages &messages() const { return messages_; }
+
+  private:
+    bool start(const SceneDesc &scene, const RunOptions &options,
+               const std::optional<StepSettings> &settings);
+    void settle_poses();
+
+    RunOptions options_;
+    TaskPool *tasks_ = nullptr;
+    Make make_;
+    SceneDesc scene_;
+    std::filesystem::path path_;
+    std::unique_ptr<Simulation> simulation_;
+    History history_; // saved by simulation_
+    std::optional<Grab> grab_;
+    bool stopped_ = false;
+    std::vector<Pose> previous_, present_;
+    SessionGraphs graphs_;
+    Messages messages_;
+};
+
+} // namespace plumb

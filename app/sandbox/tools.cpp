@@ -1,0 +1,133 @@
+#include "app/sandbox/tools.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace plumb {
+
+std::optional<Pick> pick(const Session &session, const Camera &camera, const glm::vec2 &pixel,
+                         const glm::vec2 &viewport) {
+    if (!session.running())
+        return {};
+    const PickRay ray = camera.pick_ray(pixel, viewport);
+    return session.simulation()->pick(glm::dvec3(ray.origin), glm::dvec3(ray.direction));
+}
+
+void Tools::handle(const PointerEvent &event, const ToolTargets &targets) {
+    switch (event.kind) {
+    case PointerEvent::Kind::press:
+        if (!event.over_panel && drag_ == Drag::none)
+            press(event, targets);
+        return;
+    case PointerEvent::Kind::move:
+        move(event, targets);
+        return;
+    case PointerEvent::Kind::release:
+        if (drag_ != Drag::none && event.button == button_)
+            release(event, targets);
+        return;
+    case PointerEvent::Kind::wheel:
+        if (!event.over_panel)
+            targets.camera.zoom(event.notches);
+        return;
+    }
+}
+
+void Tools::let_go(Session &session) {
+    session.grab({});
+    drag_ = Drag::none;
+}
+
+void Tools::press(const PointerEvent &event, const ToolTargets &targets) {
+    button_ = event.button;
+    pressed_at_ = last_ = event.position;
+    if (event.button != PointerButton::left)
+        drag_ = Drag::pan;
+    else if (event.ctrl)
+        begin_grab(event, targets);
+    else if (event.shift)
+        shoot(event, targets);
+    else
+        drag_ = Drag::maybe_click;
+}
+
+void Tools::move(const PointerEvent &event, const ToolTargets &targets) {
+    const glm::vec2 delta = event.position - last_;
+    switch (drag_) {
+    case Drag::none:
+        break;
+    case Drag::maybe_click:
+        // The camera waits until it is clear that this is no click, then makes up for the way.
+        if (glm::distance(event.position, pressed_at_) <= click_slack)
+            return;
+        drag_ = Drag::orbit;
+        targets.camera.orbit(delta, targets.viewport.y);
+        break;
+    case Drag::orbit:
+        targets.camera.orbit(delta, targets.viewport.y);
+        break;
+    case Drag::pan:
+        targets.camera.pan(delta, targets.viewport.y);
+        break;
+    case Drag::grab:
+        if (std::optional<Grab> grab = targets.session.grabbed()) {
+            const PickRay ray = targets.camera.pick_ray(event.position, targets.viewport);
+            const glm::dvec3 origin(ray.origin);
+            const glm::dvec3 direction(ray.direction);
+            const double facing = glm::dot(direction, grab_normal_);
+            // The plane faces the camera, so the ray meets it in front unless the view is extreme.
+            if (std::abs(facing) > 1e-3) {
+                const double t = glm::dot(grab_point_ - origin, grab_normal_) / facing;
+                if (t > 0) {
+                    grab->target = origin + direction * t;
+                    targets.session.grab(grab);
+                }
+            }
+        } else {
+            drag_ = Drag::none; // the session let go: a restart, a step back
+        }
+        break;
+    }
+    last_ = event.position;
+}
+
+void Tools::release(const PointerEvent &event, const ToolTargets &targets) {
+    if (drag_ == Drag::grab)
+        targets.session.grab({});
+    // Released over a panel, it is no click on the scene.
+    if (drag_ == Drag::maybe_click && !event.over_panel) {
+        const std::optional<Pick> hit =
+            pick(targets.session, targets.camera, pressed_at_, targets.viewport);
+        targets.selected = hit ? std::optional(hit->body) : std::nullopt;
+    }
+    drag_ = Drag::none;
+}
+
+void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
+    const std::optional<Pick> hit =
+        pick(targets.session, targets.camera, event.position, targets.viewport);
+    if (!hit || targets.session.simulation()->body_info(hit->body).kind != BodyKind::dynamic) {
+        drag_ = Drag::orbit;
+        return;
+    }
+    const BodyState state = targets.session.simulation()->body_state(hit->body);
+    const glm::dvec3 local = glm::conjugate(state.orientation) * (hit->point - state.position);
+    grab_point_ = hit->point;
+    grab_normal_ = -glm::dvec3(targets.camera.forward());
+    targets.session.grab(Grab{hit->body, local, hit->point});
+    targets.selected = hit->body;
+    drag_ = Drag::grab;
+}
+
+void Tools::shoot(const PointerEvent &event, const ToolTargets &targets) {
+    const PickRay ray = targets.camera.pick_ray(event.position, targets.viewport);
+    // As large on the screen at any distance, and started far enough ahead not to fill the view.
+    const double radius =
+        std::clamp(0.02 * static_cast<double>(targets.camera.distance), 0.05, 1.0);
+    const glm::dvec3 from = glm::dvec3(ray.origin) + glm::dvec3(ray.direction) * (4 * radius);
+    targets.session.shoot(from, glm::dvec3(ray.direction) * shot_speed, radius);
+}
+
+} // namespace plumb

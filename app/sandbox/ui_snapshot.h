@@ -1,0 +1,22 @@
+// The sandbox as a picture, panels and all, without a window.
+#pragma once
+
+#include "app/render/image.h"
+#include "app/render/renderer.h"
+#include "app/sandbox/sandbox.h"
+#include "app/sandbox/ui.h"
+
+#include <filesystem>
+
+#include <glm/vec2.hpp>
+
+namespace plumb {
+
+// The present state of the sandbox, which is paused, with its panels; wall times and their graph
+// are left out, so that the same state gives the same picture. A GL context must be current. If
+// `panels` is given, it gets the panels with their places.
+[[nodiscard]] Image ui_snapshot(Sandbox &sandbox, Renderer &renderer,
+                                const std::filesystem::path &shader_dir, glm::ivec2 size,
+                                int samples = 1, std::vector<Ui::Panel> *panels = nullptr);
+
+} // namespace plumb

@@ -1,0 +1,40 @@
+// What the keyboard and the mouse have done in a window, as events. The one file of the sandbox
+// that knows GLFW.
+#pragma once
+
+#include "app/render/context.h"
+#include "app/sandbox/sandbox.h"
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace plumb {
+
+class WindowInput {
+  public:
+    // Make it before ImGui's GLFW back end, which then passes events on to it.
+    explicit WindowInput(Window &window);
+    ~WindowInput();
+    WindowInput(const WindowInput &) = delete;
+    WindowInput &operator=(const WindowInput &) = delete;
+
+    struct Events {
+        std::vector<KeyEvent> keys;
+        std::vector<PointerEvent> pointer; // over_panel is not known here
+        std::vector<std::filesystem::path> dropped;
+        [[nodiscard]] bool empty() const {
+            return keys.empty() && pointer.empty() && dropped.empty();
+        }
+    };
+    // Those since the last call, in order.
+    [[nodiscard]] Events take();
+
+  private:
+    struct Callbacks;
+    GLFWwindow *window_ = nullptr;
+    Events events_;
+    bool repeat_ = false; // the last key event was of a key held down
+};
+
+} // namespace plumb

@@ -1,0 +1,242 @@
+#include "app/sandbox/world_draw.h"
+
+#include "app/render/palette.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <variant>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace plumb {
+
+namespace {
+
+template <typename... Cases> struct Overloaded : Cases... { using Cases::operator()...; };
+template <typename... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
+
+// Of the smallest sphere about the body's origin that holds the shape; 0 for a plane.
+double reach(const ShapeDesc &shape) {
+    return std::visit(Overloaded{[](const SphereDesc &s) { return s.radius; },
+                                 [](const BoxDesc &b) { return glm::length(b.half_extents); },
+                                 [](const CapsuleDesc &c) { return c.half_height + c.radius; },
+                                 [](const PlaneDesc &) { return 0.0; }},
+                      shape);
+}
+
+bool is_plane(const ShapeDesc &shape) {
+    return std::holds_alternative<PlaneDesc>(shape);
+}
+
+glm::vec3 colour_of(const BodyInfo &body, std::size_t index) {
+    if (body.colour)
+        return *body.colour;
+    switch (body.kind) {
+    case BodyKind::fixed:
+        return colours::fixed;
+    case BodyKind::kinematic:
+        return colours::kinematic;
+    case BodyKind::dynamic:
+        break;
+    }
+    return palette_colour(index);
+}
+
+void add_body(DrawList &list, const BodyInfo &body, const Pose &pose, std::size_t index,
+              const WorldDrawOptions &options) {
+    DrawShape shape;
+    shape.position = glm::vec3(pose.position);
+    shape.rotation = glm::quat(pose.orientation);
+    shape.colour = colour_of(body, index);
+    shape.selected = options.selected == index;
+    shape.highlighted = options.hovered == index;
+    std::visit(
+        Overloaded{
+            [&](const SphereDesc &s) {
+                shape.kind = DrawKind::sphere;
+                shape.size = glm::vec3(static_cast<float>(s.radius));
+            },
+            [&](const BoxDesc &b) {
+                shape.kind = DrawKind::box;
+                shape.size = glm::vec3(b.half_extents);
+            },
+            [&](const CapsuleDesc &c) {
+                shape.kind = DrawKind::capsule;
+                shape.size = {static_cast<float>(c.radius), static_cast<float>(c.half_height), 0};
+            },
+            [&](const PlaneDesc &) {
+                list.planes.push_back({shape.position, shape.rotation});
+            }},
+        body.shape);
+    if (!is_plane(body.shape))
+        list.shapes.push_back(shape);
+}
+
+void add_line(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, const glm::vec3 &colour,
+              float width = 2) {
+    list.lines.push_back({glm::vec3(a), glm::vec3(b), colour, width});
+}
+
+// With a small head, as long as an eighth of the arrow.
+void add_arrow(DrawList &list, const glm::dvec3 &from, const glm::dvec3 &vector,
+               const glm::vec3 &colour) {
+    const double length = glm::length(vector);
+    if (!(length > 1e-6) || !std::isfinite(length))
+        return;
+    const glm::dvec3 to = from + vector;
+    add_line(list, from, to, colour);
+    const glm::dvec3 along = vector / length;
+    const glm::dvec3 other = std::abs(along.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 aside = glm::normalize(glm::cross(along, other)) * (0.06 * length);
+    const glm::dvec3 back = to - along * (0.125 * length);
+    add_line(list, to, back + aside, colour);
+    add_line(list, to, back - aside, colour);
+}
+
+void add_contacts(DrawList &list, const Simulation &simulation, double weight) {
+    for (const ContactView &contact : simulation.contacts()) {
+        // The stalk is half a metre for the weight of a middling body, and grows with the square
+        // root of the force, so that light and heavy contacts are both seen.
+        const double force = weight > 0 ? std::max(0.0, contact.normal_force) / weight : 0;
+        const double length = std::min(2.0, 0.08 + 0.3 * std::sqrt(force));
+        DrawPoint point;
+        point.position = glm::vec3(contact.position);
+        point.normal = glm::vec3(contact.normal * length);
+        point.colour =
+            contact.normal_force > 0 ? colours::contact : colours::contact * 0.6f + 0.35f;
+        list.points.push_back(point);
+        const double friction = glm::length(contact.friction_force);
+        if (weight > 0 && friction > 0)
+            add_arrow(list, contact.position,
+                      contact.friction_force / friction *
+                          std::min(2.0, 0.3 * std::sqrt(friction / weight)),
+                      colours::kinematic);
+    }
+}
+
+void add_joints(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses) {
+    for (const JointView &joint : simulation.joints()) {
+        for (const auto &[body, anchor] :
+             {std::pair{joint.body_a, joint.anchor_a}, std::pair{joint.body_b, joint.anchor_b}}) {
+            if (body && *body < poses.size())
+                add_line(list, poses[*body].position, anchor, colours::joint, 1.5f);
+            DrawPoint point;
+            point.position = glm::vec3(anchor);
+            point.colour = colours::joint;
+            list.points.push_back(point);
+        }
+        add_line(list, joint.anchor_a, joint.anchor_b, colours::joint, 3);
+    }
+}
+
+void add_bounds(DrawList &list, const Simulation &simulation) {
+    for (const BoundsView &box : simulation.bounds()) {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int corner = 0; corner < 4; ++corner) {
+                glm::dvec3 a = box.min;
+                const int u = (axis + 1) % 3;
+                const int v = (axis + 2) % 3;
+                a[u] = (corner & 1) != 0 ? box.max[u] : box.min[u];
+                a[v] = (corner & 2) != 0 ? box.max[v] : box.min[v];
+                glm::dvec3 b = a;
+                b[axis] = box.max[axis];
+                add_line(list, a, b, colours::bounds, 1);
+            }
+        }
+    }
+}
+
+// Of the median dynamic body, N; 0 without gravity or bodies.
+double typical_weight(const Simulation &simulation) {
+    std::vector<double> masses;
+    for (std::size_t body = 0; body < simulation.body_count(); ++body) {
+        const BodyInfo &info = simulation.body_info(body);
+        if (info.alive && info.kind == BodyKind::dynamic)
+            masses.push_back(info.mass);
+    }
+    if (masses.empty())
+        return 0;
+    const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
+    std::nth_element(masses.begin(), middle, masses.end());
+    return *middle * glm::length(simulation.settings().gravity);
+}
+
+} // namespace
+
+Camera camera_of(const CameraDesc &camera) {
+    Camera result;
+    result.target = glm::vec3(camera.target);
+    result.distance = static_cast<float>(camera.distance);
+    result.yaw = static_cast<float>(camera.yaw);
+    result.pitch = static_cast<float>(camera.pitch);
+    result.fov = static_cast<float>(camera.fov);
+    return result;
+}
+
+DrawList draw_world(const Simulation &simulation, const Camera &camera,
+                    const WorldDrawOptions &options, const std::vector<Pose> &poses) {
+    DrawList list;
+    list.camera = camera;
+    list.view.wireframe = options.wireframe;
+    list.view.shadows = options.shadows;
+    list.view.grid = options.grid;
+    const std::vector<Pose> shown =
+        poses.size() == simulation.body_count() ? poses : poses_of(simulation);
+    for (std::size_t body = 0; body < shown.size(); ++body)
+        if (simulation.body_info(body).alive)
+            add_body(list, simulation.body_info(body), shown[body], body, options);
+    if (options.contacts)
+        add_contacts(list, simulation, typical_weight(simulation));
+    if (options.joints)
+        add_joints(list, simulation, shown);
+    if (options.bounds)
+        add_bounds(list, simulation);
+    if (options.velocities)
+        for (std::size_t body = 0; body < shown.size(); ++body)
+            if (simulation.body_info(body).alive &&
+                simulation.body_info(body).kind != BodyKind::fixed)
+                // As far as the body goes in a quarter of a second.
+                add_arrow(list, shown[body].position, simulation.body_state(body).velocity * 0.25,
+                          colours::ink);
+    if (options.grab && options.grab->body < shown.size()) {
+        const Pose &pose = shown[options.grab->body];
+        const glm::dvec3 held = pose.position + pose.orientation * options.grab->local_point;
+        add_line(list, held, options.grab->target, colours::grab, 2);
+        DrawPoint point;
+        point.position = glm::vec3(options.grab->target);
+        point.colour = colours::grab;
+        list.points.push_back(point);
+    }
+    return list;
+}
+
+Around around(const Simulation &simulation, std::optional<std::size_t> body) {
+    if (body && *body < simulation.body_count() && simulation.body_info(*body).alive) {
+        const double radius = reach(simulation.body_info(*body).shape);
+        return {glm::vec3(simulation.body_state(*body).position),
+                radius > 0 ? static_cast<float>(radius) : 5.0f};
+    }
+    // A floor may be far larger than what stands on it, so what never moves counts only alone.
+    for (const bool fixed_too : {false, true}) {
+        glm::dvec3 low(std::numeric_limits<double>::max());
+        glm::dvec3 high(std::numeric_limits<double>::lowest());
+        for (std::size_t i = 0; i < simulation.body_count(); ++i) {
+            const BodyInfo &info = simulation.body_info(i);
+            const glm::dvec3 at = simulation.body_state(i).position;
+            if (!info.alive || is_plane(info.shape) || !std::isfinite(at.x + at.y + at.z) ||
+                (info.kind == BodyKind::fixed && !fixed_too))
+                continue;
+            low = glm::min(low, at - reach(info.shape));
+            high = glm::max(high, at + reach(info.shape));
+        }
+        if (low.x <= high.x)
+            return {glm::vec3((low + high) * 0.5),
+                    static_cast<float>(glm::length(high - low) * 0.5)};
+    }
+    return {};
+}
+
+} // namespace plumb

@@ -1,0 +1,45 @@
+// A running scene as a draw list.
+#pragma once
+
+#include "app/render/draw_list.h"
+#include "app/sandbox/pose_blend.h"
+#include "app/sandbox/session.h"
+#include "engine/scene/simulation.h"
+
+#include <optional>
+#include <vector>
+
+namespace plumb {
+
+// What is drawn besides the bodies.
+struct WorldDrawOptions {
+    bool contacts = false; // points, with normals and normal forces
+    bool joints = false;   // anchors, and what lies between them
+    bool bounds = false;   // the boxes of the broad phase
+    bool velocities = false;
+    bool wireframe = false;
+    bool shadows = true;
+    bool grid = true;
+    std::optional<std::size_t> selected;
+    std::optional<std::size_t> hovered;
+    std::optional<Grab> grab;
+};
+
+// The camera that the scene asks for.
+[[nodiscard]] Camera camera_of(const CameraDesc &camera);
+
+// `poses` are those to show, one for each body, or empty for the present ones. Contacts, joints,
+// bounds and velocities are those of the last step.
+[[nodiscard]] DrawList draw_world(const Simulation &simulation, const Camera &camera,
+                                  const WorldDrawOptions &options = {},
+                                  const std::vector<Pose> &poses = {});
+
+// A sphere around a body, or around all that can move, else around all but planes; half a metre at
+// the origin if there is nothing.
+struct Around {
+    glm::vec3 centre{0};
+    float radius = 0.5f;
+};
+[[nodiscard]] Around around(const Simulation &simulation, std::optional<std::size_t> body = {});
+
+} // namespace plumb

@@ -1,0 +1,56 @@
+#version 330 core
+#include "frame.glsl"
+#include "dither.glsl"
+#include "lighting.glsl"
+
+in vec3 position;
+in vec3 local;
+in vec3 local_normal;
+flat in vec4 rotation;
+flat in vec4 scale;
+flat in vec4 colour;
+out vec4 result;
+
+vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+
+void main() {
+    vec3 albedo = mix(colour.rgb, vec3(1.0), 0.35 * colour.a);
+    vec3 bent = normalize(local_normal);
+    vec3 normal = rotate(rotation, bent);
+    vec3 per_pixel = fwidth(local);
+
+    if (range.z > 0.5) {
+        if (scale.w == 1.0) {
+            // Rounded edges: near an edge the normal leans towards the neighbouring face, and a
+            // fine line keeps faces of one colour apart.
+            vec3 across = 1.0 - abs(bent);
+            vec3 pixel = max(per_pixel, 1e-9);
+            vec3 inside = scale.xyz - abs(local);
+            float smallest = min(scale.x, min(scale.y, scale.z));
+            vec3 width = clamp(vec3(0.07 * smallest), 1.3 * pixel, vec3(0.25 * smallest) + 1e-9);
+            vec3 lean = clamp(1.0 - inside / width, 0.0, 1.0) * across;
+            bent = normalize(bent + 0.8 * lean * lean * sign(local));
+            vec3 line = (1.0 - smoothstep(0.6 * pixel, 1.6 * pixel, inside)) * across;
+            // On a box of few pixels the lines would be all there is to see.
+            line *= smoothstep(4.0 * pixel, 16.0 * pixel, scale.xyz);
+            albedo *= 1.0 - 0.30 * max(line.x, max(line.y, line.z));
+        } else {
+            // Quarters, a shade apart, show how what is round turns.
+            vec3 side = clamp(local / max(per_pixel, 1e-9), -1.0, 1.0);
+            albedo *= 1.0 + 0.085 * side.x * side.y * side.z;
+        }
+    }
+
+    vec3 shaded = rotate(rotation, bent);
+    vec3 to_eye = normalize(eye.xyz - position);
+    float facing = max(dot(shaded, to_light.xyz), 0.0);
+    float reaching = facing > 0.0 ? light_reaching(position, normal) : 0.0;
+    vec3 direct = light_colour * (to_light.w * facing * reaching);
+    // A satin surface: a broad, weak gloss, and a little sheen at grazing angles.
+    vec3 halfway = normalize(to_light.xyz + to_eye);
+    float gloss = 0.10 * pow(max(dot(shaded, halfway), 0.0), 32.0);
+    float sheen = 0.10 * pow(1.0 - max(dot(shaded, to_eye), 0.0), 4.0) * (0.5 + 0.5 * shaded.y);
+    vec3 lit = albedo * (ambient_light(shaded) + direct) + direct * gloss +
+               vec3(to_light.w * sheen);
+    result = vec4(dither(lit, gl_FragCoord.xy), 1.0);
+}
