@@ -1,0 +1,104 @@
+#include "engine/core/task_pool.h"
+
+#include "engine/core/check.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+namespace plumb {
+namespace {
+
+TEST(TaskPool, EachItemOnce) {
+    for (const int threads : {1, 2, 3, 8}) {
+        TaskPool tasks(threads);
+        EXPECT_EQ(tasks.threads(), threads);
+        for (const std::size_t count : {0U, 1U, 2U, 7U, 64U, 1000U})
+            for (const std::size_t grain : {0U, 1U, 3U, 64U, 5000U}) {
+                std::vector<int> done(count, 0); // plain ints: a part is one thread's alone
+                tasks.for_parts(count, grain, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i)
+                        ++done[i];
+                });
+                EXPECT_EQ(done, std::vector<int>(count, 1))
+                    << threads << " threads, " << count << " items, grain " << grain;
+            }
+    }
+}
+
+TEST(TaskPool, PartsAreNotEmptyAndNoLargerThanTheGrain) {
+    TaskPool tasks(3);
+    std::atomic<int> bad{0};
+    tasks.for_parts(1001, 10, [&](std::size_t begin, std::size_t end) {
+        if (begin >= end || end - begin > 10 || end > 1001)
+            ++bad;
+    });
+    EXPECT_EQ(bad, 0);
+}
+
+TEST(TaskPool, NothingToDoCallsNothing) {
+    TaskPool tasks(2);
+    int calls = 0;
+    tasks.for_parts(0, 1, [&](std::size_t, std::size_t) { ++calls; });
+    EXPECT_EQ(calls, 0);
+}
+
+// What the caller reads after for_parts is what the parts wrote, round after round: a data race or
+// a round lost shows here, and under ThreadSanitizer at once.
+TEST(TaskPool, ManyRounds) {
+    TaskPool tasks(4);
+    std::vector<std::uint64_t> values(97);
+    std::iota(values.begin(), values.end(), 0U);
+    constexpr std::uint64_t rounds = 5000;
+    for (std::uint64_t round = 0; round < rounds; ++round)
+        tasks.for_parts(values.size(), 5, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                values[i] += i;
+        });
+    for (std::size_t i = 0; i < values.size(); ++i)
+        ASSERT_EQ(values[i], i + rounds * i);
+}
+
+TEST(TaskPool, AnExceptionReachesTheCallerAndThePoolGoesOn) {
+    for (const int threads : {1, 4}) {
+        TaskPool tasks(threads);
+        for (int round = 0; round < 50; ++round) {
+            EXPECT_THROW(tasks.for_parts(200, 1,
+                                         [](std::size_t begin, std::size_t end) {
+                                             if (begin <= 37 && 37 < end)
+                                                 throw std::runtime_error("item 37");
+                                         }),
+                         std::runtime_error);
+            std::atomic<std::size_t> items{0};
+            tasks.for_parts(200, 1,
+                            [&](std::size_t begin, std::size_t end) { items += end - begin; });
+            EXPECT_EQ(items, 200U);
+        }
+    }
+}
+
+TEST(TaskPool, ManyThrowOneArrives) {
+    TaskPool tasks(4);
+    EXPECT_THROW(
+        tasks.for_parts(1000, 1, [](std::size_t, std::size_t) { throw std::out_of_range("all"); }),
+        std::out_of_range);
+}
+
+TEST(TaskPool, UnusedPoolsStop) {
+    for (int i = 0; i < 50; ++i)
+        TaskPool(4);
+}
+
+TEST(TaskPool, RefusesSenselessThreadCounts) {
+    EXPECT_THROW(TaskPool(0), CheckFailure);
+    EXPECT_THROW(TaskPool(-3), CheckFailure);
+    EXPECT_THROW(TaskPool(100'000), CheckFailure);
+}
+
+} // namespace
+} // namespace plumb

@@ -1,0 +1,162 @@
+#include "app/sandbox/tools.h"
+
+#include "app/sandbox/world_draw.h"
+#include "tests/sandbox/fake_simulation.h"
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+using Kind = PointerEvent::Kind;
+
+// Two balls seen from +z, the left one in the middle of a viewport of 800 x 600.
+class ToolsTest : public testing::Test {
+  protected:
+    ToolsTest() : session({}, nullptr, make_fake()) {
+        session.open(two_balls());
+        camera = camera_of(session.scene().camera);
+    }
+    void send(Kind kind, glm::vec2 at, PointerButton button = PointerButton::left,
+              bool ctrl = false, bool shift = false, bool over_panel = false) {
+        PointerEvent event;
+        event.kind = kind;
+        event.button = button;
+        event.position = at;
+        event.ctrl = ctrl;
+        event.shift = shift;
+        event.over_panel = over_panel;
+        tools.handle(event, {session, camera, selected, viewport});
+    }
+    FakeSimulation &fake() { return dynamic_cast<FakeSimulation &>(*session.simulation()); }
+
+    static constexpr glm::vec2 viewport{800, 600};
+    static constexpr glm::vec2 ball{400, 300};
+    static constexpr glm::vec2 sky{100, 40};
+    Session session;
+    Camera camera;
+    std::optional<std::size_t> selected;
+    Tools tools;
+};
+
+TEST_F(ToolsTest, AClickSelectsAndOneBesideLetsGo) {
+    send(Kind::press, ball);
+    send(Kind::release, ball);
+    EXPECT_EQ(selected, 0u);
+    send(Kind::press, sky);
+    send(Kind::release, sky);
+    EXPECT_FALSE(selected.has_value());
+}
+
+TEST_F(ToolsTest, ATremblingHandStillClicks) {
+    const Camera before = camera;
+    send(Kind::press, ball);
+    send(Kind::move, ball + glm::vec2(2, -2));
+    send(Kind::release, ball + glm::vec2(2, -2));
+    EXPECT_EQ(selected, 0u);
+    EXPECT_EQ(camera.yaw, before.yaw);
+}
+
+TEST_F(ToolsTest, ALeftDragOrbitsByTheWholeWayAndSelectsNothing) {
+    Camera expected = camera;
+    expected.orbit({60, 30}, viewport.y);
+    send(Kind::press, sky);
+    send(Kind::move, sky + glm::vec2(3, 0)); // still within a click
+    send(Kind::move, sky + glm::vec2(20, 10));
+    send(Kind::move, sky + glm::vec2(60, 30));
+    send(Kind::release, sky + glm::vec2(60, 30));
+    EXPECT_NEAR(camera.yaw, expected.yaw, 1e-5f);
+    EXPECT_NEAR(camera.pitch, expected.pitch, 1e-5f);
+    EXPECT_FALSE(selected.has_value());
+}
+
+// The camera must not stick to the pointer when the button goes up over a panel.
+TEST_F(ToolsTest, AReleaseOverAPanelEndsTheDrag) {
+    for (const PointerButton button : {PointerButton::left, PointerButton::right}) {
+        send(Kind::press, sky, button);
+        send(Kind::move, sky + glm::vec2(50, 0), button);
+        send(Kind::move, sky + glm::vec2(90, 0), button, false, false, true); // goes on over a panel
+        EXPECT_NE(tools.drag(), Tools::Drag::none);
+        send(Kind::release, sky + glm::vec2(90, 0), button, false, false, true);
+        EXPECT_EQ(tools.drag(), Tools::Drag::none);
+        const Camera let_go = camera;
+        send(Kind::move, sky + glm::vec2(200, 100), button);
+        EXPECT_EQ(camera.yaw, let_go.yaw);
+        EXPECT_EQ(camera.target, let_go.target);
+    }
+}
+
+TEST_F(ToolsTest, PressAndWheelOverAPanelAreThePanels) {
+    const Camera before = camera;
+    send(Kind::press, ball, PointerButton::left, false, false, true);
+    send(Kind::move, ball + glm::vec2(50, 0));
+    send(Kind::release, ball + glm::vec2(50, 0));
+    EXPECT_EQ(camera.yaw, before.yaw);
+    EXPECT_FALSE(selected.has_value());
+    PointerEvent wheel;
+    wheel.kind = Kind::wheel;
+    wheel.notches = 3;
+    wheel.over_panel = true;
+    tools.handle(wheel, {session, camera, selected, viewport});
+    EXPECT_EQ(camera.distance, before.distance);
+    wheel.over_panel = false;
+    tools.handle(wheel, {session, camera, selected, viewport});
+    EXPECT_LT(camera.distance, before.distance);
+}
+
+TEST_F(ToolsTest, AnotherButtonsReleaseDoesNotEndADrag) {
+    send(Kind::press, sky, PointerButton::right);
+    send(Kind::press, sky, PointerButton::left);
+    send(Kind::release, sky, PointerButton::left);
+    EXPECT_EQ(tools.drag(), Tools::Drag::pan);
+    send(Kind::release, sky, PointerButton::right);
+    EXPECT_EQ(tools.drag(), Tools::Drag::none);
+}
+
+// The grabbed point stays in the plane through it that faces the camera: here z = 1, the front of the
+// ball as seen from +z, and follows the pointer there.
+TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
+    send(Kind::press, ball, PointerButton::left, true);
+    EXPECT_EQ(tools.drag(), Tools::Drag::grab);
+    EXPECT_EQ(selected, 0u);
+    ASSERT_TRUE(session.grabbed().has_value());
+    EXPECT_NEAR(session.grabbed()->local_point.z, 1, 1e-5);
+    send(Kind::move, ball + glm::vec2(100, 50), PointerButton::left, true);
+    const glm::dvec3 target = session.grabbed()->target;
+    EXPECT_NEAR(target.z, 1, 1e-5);
+    // Back through the camera, the target lies under the pointer. Pixels in float, of a few hundred.
+    const glm::vec3 pixel = camera.project(glm::vec3(target), viewport);
+    EXPECT_NEAR(pixel.x, 500, 1e-2);
+    EXPECT_NEAR(pixel.y, 350, 1e-2);
+    session.step();
+    session.step();
+    ASSERT_EQ(fake().pulls.size(), 2u);
+    EXPECT_EQ(fake().pulls[1], target);
+    send(Kind::release, ball, PointerButton::left, false);
+    EXPECT_FALSE(session.grabbed().has_value());
+    session.step();
+    EXPECT_EQ(fake().pulls.size(), 2u);
+}
+
+TEST_F(ToolsTest, ShiftClickShootsABallAlongTheRay) {
+    send(Kind::press, ball, PointerButton::left, false, true);
+    ASSERT_EQ(fake().body_count(), 3u);
+    const BodyState shot = fake().body_state(2);
+    EXPECT_NEAR(glm::length(shot.velocity), tools.shot_speed, 1e-4);
+    EXPECT_NEAR(shot.velocity.z, -tools.shot_speed, 1e-4);
+    EXPECT_LT(shot.position.z, static_cast<double>(camera.eye().z));
+    EXPECT_FALSE(selected.has_value());
+}
+
+TEST_F(ToolsTest, AGrabEndsWhenTheSessionLetsGo) {
+    session.step();
+    send(Kind::press, ball, PointerButton::left, true);
+    ASSERT_TRUE(session.step_back());
+    const Camera before = camera;
+    send(Kind::move, ball + glm::vec2(100, 50), PointerButton::left, true);
+    EXPECT_EQ(tools.drag(), Tools::Drag::none);
+    EXPECT_EQ(camera.yaw, before.yaw);
+}
+
+} // namespace
+} // namespace plumb

@@ -1,0 +1,891 @@
+// Each way in which a scene file can be wrong: where the message points, and what it says.
+#include "engine/scene/scene_file.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+// A file with errors, each place that a message must point to marked by an '@' before it, and the
+// messages in the order of the file.
+struct Case {
+    std::string name;
+    std::string marked;
+    std::vector<std::string> messages; // "what; suggestion"
+};
+
+struct Marked {
+    std::string text;
+    std::vector<std::pair<std::size_t, std::size_t>> places; // line, column
+};
+
+Marked take_marks(const std::string &marked) {
+    Marked result;
+    std::size_t line = 1;
+    std::size_t column = 1;
+    for (const char c : marked) {
+        if (c == '@') {
+            result.places.emplace_back(line, column);
+            continue;
+        }
+        result.text += c;
+        // Columns count characters, not bytes: the bytes 10xxxxxx continue one.
+        if (c == '\n')
+            ++line, column = 1;
+        else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U)
+            ++column;
+    }
+    return result;
+}
+
+const std::string ball = "[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 1\n";
+const std::string two = "[[body]]\nname = \"a\"\nshape = \"sphere\"\nradius = 1\n"
+                        "[[body]]\nname = \"b\"\nshape = \"sphere\"\nradius = 1\n"
+                        "position = [5, 0, 0]\n";
+const std::string chain = "[[body]]\nname = \"link\"\nshape = \"sphere\"\nradius = 0.1\n"
+                          "repeat = { kind = \"line\", count = 4, step = [1, 0, 0] }\n";
+const std::string joint = "[[joint]]\nname = \"j\"\ntype = \"ball\"\nbody_a = \"a\"\n"
+                          "body_b = \"b\"\n";
+const std::string expect =
+    "[[expect]]\nname = \"e\"\nquantity = \"energy\"\nsource = \"by hand\"\n";
+
+const std::vector<Case> &cases() {
+    static const std::vector<Case> all{
+        {"Syntax",
+         R"(a = [1, 2
+@b = 3
+)",
+         {"Error while parsing array: expected comma or closing ']', saw 'b'; see https://toml.io "
+          "for how TOML is written"}},
+        {"SyntaxDuplicateKey",
+         R"(title = "a"
+title = @"b"
+)",
+         {"Error while parsing key-value pair: cannot redefine existing string 'title'; see "
+          "https://toml.io for how TOML is written"}},
+        {"SyntaxInvalidUtf8",
+         "title = @\"\xff\"\n",
+         {"Encountered invalid utf-8 sequence; see https://toml.io for how TOML is written"}},
+        {"UnknownTopLevelKey",
+         R"(@titel = "x"
+)",
+         {R"(unknown key "titel" in the top level of a scene; did you mean "title"?)"}},
+        {"UnknownKeyNothingNear",
+         R"([world]
+@zzzzzz = 1
+)",
+         {R"(unknown key "zzzzzz" in [world]; there are gravity, dt, method, substeps, iterations, precision, seed)"}},
+        {"UnknownTable",
+         R"([@lights]
+)",
+         {R"(unknown key "lights" in the top level of a scene; there are title, description, world, methods, camera, material, body, joint, expect, state)"}},
+        {"UnknownKeyAfterWideCharacters",
+         R"(camera = { target = [0, 0, 0], @"ä" = 1 }
+)",
+         {R"(unknown key "ä" in [camera]; there are target, distance, yaw_deg, yaw, pitch_deg, pitch, fov_deg, fov)"}},
+        {"TableWanted",
+         R"(@world = 3
+)",
+         {"world is a number; it must be a table: [world]"}},
+        {"ArrayOfTablesWanted",
+         R"([@body]
+name = "a"
+)",
+         {"body is a table; write [[body]] for each body"}},
+        {"TablesInArrayWanted",
+         R"(body = [@1]
+)",
+         {"body holds a number; write [[body]] for each body"}},
+        {"AllAtOnce",
+         R"(@titel = 1
+[world]
+dt = @-1
+gravity = [0, @"x", 0]
+@[[body]]
+name = "a"
+)",
+         {R"(unknown key "titel" in the top level of a scene; did you mean "title"?)",
+          R"(dt is -1; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")",
+          "gravity[1] is a string; it must be a number between -1e9 and 1e9",
+          R"([[body]] "a" has no shape; shape = "sphere", "box", "capsule" or "plane")"}},
+        {"StringWanted",
+         R"(title = @3
+)",
+         {"title is a number; it must be a string in quotes"}},
+        {"NumberWanted",
+         ball + R"(position = [0, @true, 0]
+)",
+         {"position[1] is true or false; it must be a number between -1e9 and 1e9"}},
+        {"BooleanWanted",
+         two + joint + R"(anchor = [0, 0, 0]
+collide_connected = @1
+)",
+         {"collide_connected is a number; it must be true or false"}},
+        {"ArrayWanted",
+         ball + R"(position = @1
+)",
+         {"position is a number; it must be an array of 3 numbers"}},
+        {"ThreeElementsWanted",
+         ball + R"(position = @[1, 2]
+)",
+         {"position has 2 elements; it must be an array of 3 numbers"}},
+        {"DateIsNoNumber",
+         R"([camera]
+distance = @2020-01-01
+)",
+         {"distance is a date or time; it must be a positive number, from 1e-9 to 1e9"}},
+        {"NotANumber",
+         ball + R"(position = [0, @nan, 0]
+)",
+         {"position[1] is nan; it must be a number between -1e9 and 1e9"}},
+        {"Infinite",
+         ball + R"(velocity = [@-inf, 0, 0]
+)",
+         {"velocity[0] is -inf; it must be a number between -1e9 and 1e9"}},
+        {"TooLarge",
+         ball + R"(position = [@2e9, 0, 0]
+)",
+         {"position[0] is 2e+09; it must be a number between -1e9 and 1e9"}},
+        {"TooLargeForDouble",
+         R"(title = "x"
+[camera]
+distance = 1e400@
+)",
+         {"Error while parsing floating-point: '1e400' is not representable in 64 bits; see "
+          "https://toml.io for how TOML is written"}},
+        {"NegativeMass",
+         ball + R"(mass = @-1
+)",
+         {"mass is -1; it must be a positive number, from 1e-9 to 1e9"}},
+        {"ZeroMass",
+         ball + R"(mass = @0
+)",
+         {"mass is 0; it must be a positive number, from 1e-9 to 1e9"}},
+        {"ZeroDensity",
+         ball + R"(density = @0.0
+)",
+         {"density is 0; it must be a positive number, from 1e-9 to 1e9"}},
+        {"MassBeyondRange",
+         R"([[body]]
+name = "a"
+shape = "box"
+half_extents = [1e6, 1e6, 1e6]
+density = @1e5
+)",
+         {"density times volume makes a mass of 8e+23 kg; it must be a positive number, from 1e-9 "
+          "to 1e9; give a mass"}},
+        {"MassOfMaterialBeyondRange",
+         R"([[body]]
+name = "a"
+shape = @"sphere"
+radius = 1e-7
+)",
+         {"density times volume makes a mass of 4.18879020478639e-18 kg; it must be a positive "
+          "number, from 1e-9 to 1e9; give a mass"}},
+        {"NegativeRadius",
+         R"([[body]]
+name = "a"
+shape = "sphere"
+radius = @-1
+)",
+         {"radius is -1; it must be a positive number, from 1e-9 to 1e9"}},
+        {"ZeroHalfExtent",
+         R"([[body]]
+name = "a"
+shape = "box"
+half_extents = [1, @0, 1]
+)",
+         {"half_extents[1] is 0; it must be a positive number, from 1e-9 to 1e9"}},
+        {"MaterialDensity",
+         R"([[material]]
+name = "m"
+density = @-5
+)",
+         {"density is -5; it must be a positive number, from 1e-9 to 1e9"}},
+        {"MaterialFriction",
+         R"([[material]]
+name = "m"
+friction = @-0.1
+)",
+         {"friction is -0.1; it must be a number from 0 to 1e9"}},
+        {"RestitutionAboveOne",
+         R"([[material]]
+name = "m"
+restitution = @1.5
+)",
+         {"restitution is 1.5; it must be a number from 0 to 1"}},
+        {"RestitutionBelowZero",
+         R"([[material]]
+name = "m"
+restitution = @-0.5
+)",
+         {"restitution is -0.5; it must be a number from 0 to 1"}},
+        {"DtZero",
+         R"([world]
+dt = @0
+)",
+         {R"(dt is 0; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")"}},
+        {"DtBadFraction",
+         R"([world]
+dt = @"1/sixty"
+)",
+         {R"(dt is "1/sixty"; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")"}},
+        {"DtZeroFraction",
+         R"([world]
+dt = @"1/0"
+)",
+         {R"(dt is "1/0"; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")"}},
+        {"UnknownMethod",
+         R"([world]
+method = @"soft_stpe"
+)",
+         {R"(there is no method "soft_stpe"; did you mean "soft_step"?)"}},
+        {"UnknownMethodInMethods",
+         R"([methods.@pgss]
+iterations = 4
+)",
+         {R"(there is no method "pgss"; did you mean "pgs"?)"}},
+        {"MethodsNeedTables",
+         R"([methods]
+@pgs = 4
+)",
+         {"pgs is a number; it must be a table: [methods.pgs]"}},
+        {"UnknownMethodSetting",
+         R"([methods.pgs]
+@iteration = 4
+)",
+         {R"(unknown key "iteration" in [methods.pgs]; did you mean "iterations"?)"}},
+        {"Substeps",
+         R"([world]
+substeps = @-1
+iterations = @1.5
+)",
+         {"substeps is -1; it must be a whole number from 0 to 10000",
+          "iterations is 1.5; it must be a whole number from 0 to 10000"}},
+        {"UnknownPrecision",
+         R"([world]
+precision = @"single"
+)",
+         {R"(unknown precision "single"; there are float, double)"}},
+        {"Seed",
+         R"([world]
+seed = @-4
+)",
+         {"seed is not a natural number; it must be a whole number from 0 to 2^64 - 1 (in quotes "
+          "from 2^63 on)"}},
+        {"SeedText",
+         R"([world]
+seed = @"18446744073709551616"
+)",
+         {"seed is not a natural number; it must be a whole number from 0 to 2^64 - 1 (in quotes "
+          "from 2^63 on)"}},
+        {"CameraPitch",
+         R"([camera]
+pitch_deg = @91
+)",
+         {"pitch_deg is 91; it must be a number from -90 to 90"}},
+        {"CameraPitchRadians",
+         R"([camera]
+pitch = @1.6
+)",
+         {"pitch is 1.6 (radians); in degrees it must be a number from -90 to 90"}},
+        {"CameraFov",
+         R"([camera]
+fov_deg = @0
+)",
+         {"fov_deg is 0; it must be a number from 1 to 170"}},
+        {"CameraDistance",
+         R"([camera]
+distance = @0
+)",
+         {"distance is 0; it must be a positive number, from 1e-9 to 1e9"}},
+        {"CameraYawTwice",
+         R"([camera]
+yaw_deg = 1
+@yaw = 1
+)",
+         {"[camera] has both yaw_deg and yaw; keep one of them"}},
+        {"MissingName",
+         R"(@[[body]]
+shape = "sphere"
+radius = 1
+)",
+         {"[[body]] has no name; each body needs a name of its own"}},
+        {"EmptyName",
+         R"([[body]]
+name = @" "
+shape = "sphere"
+radius = 1
+)",
+         {"the name is empty; each body needs a name of its own"}},
+        {"BodyNamedWorld",
+         R"([[body]]
+name = @"world"
+shape = "sphere"
+radius = 1
+)",
+         {R"("world" cannot be the name of a body; it stands for the world in joints)"}},
+        {"DuplicateBody",
+         ball + R"([[body]]
+name = @"ball"
+shape = "plane"
+)",
+         {R"(another body is named "ball" already, at line 2; each body needs a name of its own)"}},
+        {"DuplicateMaterial",
+         R"([[material]]
+name = "m"
+[[material]]
+name = @"m"
+)",
+         {R"(another material is named "m" already, at line 2; each material needs a name of its own)"}},
+        {"DuplicateExpect",
+         expect + R"(to = 1
+at_most = 1
+[[expect]]
+name = @"e"
+quantity = "energy"
+source = "by hand"
+to = 1
+at_most = 1
+)",
+         {R"(another expect is named "e" already, at line 2; each expect needs a name of its own)"}},
+        {"DuplicateOfRepeated",
+         R"([[body]]
+name = "link_2"
+shape = "sphere"
+radius = 1
+[[body]]
+name = @"link"
+shape = "sphere"
+radius = 0.1
+repeat = { kind = "line", count = 4, step = [1, 0, 0] }
+)",
+         {R"(another body is named "link_2" already, at line 2; each body needs a name of its own)"}},
+        {"UnknownMaterial",
+         R"([[material]]
+name = "steel"
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 1
+material = @"stele"
+)",
+         {R"(there is no material "stele"; did you mean "steel"?)"}},
+        {"UnknownMaterialNoneThere",
+         ball + R"(material = @"steel"
+)",
+         {R"(there is no material "steel")"}},
+        {"MissingShape",
+         R"(@[[body]]
+name = "a"
+)",
+         {R"([[body]] "a" has no shape; shape = "sphere", "box", "capsule" or "plane")"}},
+        {"UnknownShape",
+         R"([[body]]
+name = "a"
+shape = @"spere"
+)",
+         {R"(unknown shape "spere"; did you mean "sphere"?)"}},
+        {"UnknownKind",
+         ball + R"(kind = @"fixed"
+)",
+         {R"(unknown kind "fixed"; there are static, kinematic, dynamic)"}},
+        {"MissingRadius",
+         R"(@[[body]]
+name = "a"
+shape = "sphere"
+)",
+         {R"([[body]] "a" has no radius; radius = metres)"}},
+        {"WrongSizeForShape",
+         R"([[body]]
+name = "a"
+shape = "box"
+@radius = 1
+half_extents = [1, 1, 1]
+)",
+         {"a box has no radius; its size is half_extents"}},
+        {"UnknownBodyKey",
+         ball + R"(@posiiton = [0, 0, 0]
+)",
+         {R"(unknown key "posiiton" in [[body]] "ball"; did you mean "position"?)"}},
+        {"RotationWithoutUnit",
+         ball + R"(@rotation = [0, 0, 0]
+)",
+         {R"(unknown key "rotation" in [[body]] "ball"; did you mean "rotation_deg"?)"}},
+        {"FrictionOnBody",
+         ball + R"(@friction = 0.5
+)",
+         {R"(unknown key "friction" in [[body]] "ball"; friction belongs to a [[material]], which the body then names)"}},
+        {"MassAndDensity",
+         ball + R"(mass = 1
+@density = 1
+)",
+         {R"([[body]] "ball" has both mass and density; keep one of them)"}},
+        {"DynamicPlane",
+         R"([[body]]
+name = "a"
+shape = "plane"
+kind = @"dynamic"
+)",
+         {R"(a plane cannot be dynamic; kind = "static", which is a plane's default, or "kinematic")"}},
+        {"PlaneWithMass",
+         R"([[body]]
+name = "a"
+shape = "plane"
+@mass = 3
+)",
+         {"a plane has no mass; it is infinite and never moves by itself"}},
+        {"TwoRotations",
+         ball + R"(rotation_deg = [0, 0, 0]
+@orientation = [1, 0, 0, 0]
+)",
+         {R"([[body]] "ball" has both rotation_deg and orientation; keep one of them)"}},
+        {"AxisWithoutAngle",
+         R"(@[[body]]
+name = "a"
+shape = "sphere"
+radius = 1
+axis = [0, 1, 0]
+)",
+         {R"([[body]] "a" has no angle_deg; axis needs angle_deg, the angle about it)"}},
+        {"AngleWithoutAxis",
+         ball + R"(@angle_deg = 30
+)",
+         {R"([[body]] "ball" has angle_deg but no axis; axis = [x, y, z] of unit length)"}},
+        {"AxisNotUnit",
+         ball + R"(axis = @[0, 3, 4]
+angle_deg = 30
+)",
+         {"axis has length 5, not 1; normalised it is [0, 0.6, 0.8]"}},
+        {"AxisZero",
+         ball + R"(axis = @[0, 0, 0]
+angle_deg = 30
+)",
+         {"axis has length 0, not 1; it cannot be normalised"}},
+        {"OrientationNotUnit",
+         ball + R"(orientation = @[1, 1, 1, 1]
+)",
+         {"orientation has length 2, not 1; normalised it is [0.5, 0.5, 0.5, 0.5]"}},
+        {"TwoAngularVelocities",
+         ball + R"(angular_velocity = [0, 0, 0]
+@angular_velocity_deg = [0, 0, 0]
+)",
+         {R"([[body]] "ball" has both angular_velocity and angular_velocity_deg; keep one of them)"}},
+        {"StaticVelocity",
+         ball + R"(kind = "static"
+@velocity = [1, 0, 0]
+)",
+         {R"(a static body has no velocity; kind = "kinematic" moves as told, "dynamic" by forces)"}},
+        {"StaticAngularVelocity",
+         ball + R"(kind = "static"
+@angular_velocity_deg = [1, 0, 0]
+)",
+         {R"(a static body has no angular_velocity_deg; kind = "kinematic" moves as told, "dynamic" by forces)"}},
+        {"ColourName",
+         ball + R"(color = @"red"
+)",
+         {R"(color "red" is not a colour; write "#rrggbb", as in "#ff8800", or [r, g, b] with numbers from 0 to 1)"}},
+        {"ColourHex",
+         ball + R"(color = @"#12345g"
+)",
+         {R"(color "#12345g" is not a colour; write "#rrggbb", as in "#ff8800", or [r, g, b] with numbers from 0 to 1)"}},
+        {"ColourRange",
+         ball + R"(color = [0, @2, 0]
+)",
+         {"color[1] is 2; it must be a number from 0 to 1"}},
+        {"RepeatNoTable",
+         ball + R"(@repeat = 5
+)",
+         {R"(repeat is a number; it must be a table: repeat = { kind = "stack", count = 10 })"}},
+        {"RepeatNoKind",
+         ball + R"(repeat = @{ count = 5 }
+)",
+         {R"(repeat of [[body]] "ball" has no kind; kind = "grid", "stack", "line", "pyramid", "ring" or "scatter")"}},
+        {"RepeatUnknownKind",
+         ball + R"(repeat = { kind = @"gird", count = [1, 1, 1], spacing = [1, 1, 1] }
+)",
+         {R"(unknown kind "gird" of repeat; did you mean "grid"?)"}},
+        {"RepeatUnknownKey",
+         ball + R"(repeat = { kind = "ring", count = 3, radius = 2, @face = true }
+)",
+         {R"(unknown key "face" in the ring repeat of [[body]] "ball"; there are kind, count, radius, facing)"}},
+        {"RepeatMissingCount",
+         ball + R"(repeat = @{ kind = "stack" }
+)",
+         {R"(the stack repeat of [[body]] "ball" has no count; how many, a whole number)"}},
+        {"RepeatCountZero",
+         ball + R"(repeat = { kind = "stack", count = @0 }
+)",
+         {"count is 0; it must be a whole number from 1 to 200000"}},
+        {"RepeatCountElement",
+         ball + R"(repeat = { kind = "grid", count = [2, @0, 2], spacing = [1, 1, 1] }
+)",
+         {"count[1] is 0; it must be a whole number from 1 to 200000"}},
+        {"RepeatCountNoArray",
+         ball + R"(repeat = { kind = "grid", count = @3, spacing = [1, 1, 1] }
+)",
+         {"count is a number; it must be an array of 3 whole numbers"}},
+        {"RepeatMissingSpacing",
+         ball + R"(repeat = @{ kind = "pyramid", base = 3 }
+)",
+         {R"(the pyramid repeat of [[body]] "ball" has no spacing; spacing = [sideways, up] in metres)"}},
+        {"RepeatTooManyBodies",
+         ball + R"(repeat = @{ kind = "grid", count = [100, 100, 100], spacing = [1, 1, 1] }
+)",
+         {"too many bodies: 0 before this, and 1000000 here; a scene holds at most 200000"}},
+        {"RepeatTooManyBodiesInAll",
+         chain + ball + R"(repeat = @{ kind = "ring", count = 199997, radius = 1 }
+)",
+         {"too many bodies: 4 before this, and 199997 here; a scene holds at most 200000"}},
+        {"RepeatStackOfPlanes",
+         R"([[body]]
+name = "a"
+shape = "plane"
+repeat = @{ kind = "stack", count = 3 }
+)",
+         {R"(the stack repeat of [[body]] "a" has no spacing; a plane has no height to take it from)"}},
+        {"ScatterDoesNotFit",
+         ball +
+             R"(repeat = @{ kind = "scatter", count = 9, half_extents = [1, 0, 0], min_distance = 1 }
+)",
+         {"only 2 of 9 bodies found a place at least min_distance from the others; fewer bodies, a "
+          "smaller min_distance or larger half_extents"}},
+        {"JointMissingType",
+         two + R"(@[[joint]]
+name = "j"
+body_a = "a"
+body_b = "b"
+anchor = [0, 0, 0]
+)",
+         {R"([[joint]] "j" has no type; type = "ball" or "distance")"}},
+        {"JointUnknownType",
+         two + R"([[joint]]
+name = "j"
+type = @"bal"
+body_a = "a"
+body_b = "b"
+anchor = [0, 0, 0]
+)",
+         {R"(unknown type "bal"; did you mean "ball"?)"}},
+        {"JointUnknownBody",
+         two + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = @"c"
+body_b = @"nowhere"
+anchor = [0, 0, 0]
+)",
+         {R"(there is no body "c"; there are a, b)",
+          R"(there is no body "nowhere"; there are a, b)"}},
+        {"JointNearBody",
+         ball + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = @"bal"
+anchor = [0, 0, 0]
+)",
+         {R"(there is no body "bal"; did you mean "ball"?)"}},
+        {"JointRepeatedBody",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = @"link"
+anchor = [0, 0, 0]
+)",
+         {R"(the body "link" is repeated, so there are many; name one of link_0 to link_3)"}},
+        {"JointWorldToItself",
+         two + R"(@[[joint]]
+name = "j"
+type = "ball"
+body_b = "world"
+anchor = [0, 0, 0]
+)",
+         {R"([[joint]] "j" joins the world to itself; give body_a or body_b the name of a body)"}},
+        {"JointBodyToItself",
+         two + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = "a"
+body_b = @"a"
+anchor = [0, 0, 0]
+)",
+         {R"([[joint]] "j" joins a body to itself; body_a and body_b must differ)"}},
+        {"JointNoAnchor",
+         two + R"(@[[joint]]
+name = "j"
+type = "ball"
+body_a = "a"
+body_b = "b"
+anchor_a = [0, 0, 0]
+)",
+         {R"([[joint]] "j" has no anchor_b; anchor = [x, y, z] is one point of the world for both bodies, anchor_b one for this body, anchor_b_local one in its frame)"}},
+        {"JointTwoAnchors",
+         two + joint + R"(anchor = [0, 0, 0]
+@anchor_b = [0, 0, 0]
+)",
+         {R"([[joint]] "j" has both anchor and anchor_b; keep one of them)"}},
+        {"JointAnchorIsWrong",
+         two + joint + R"(anchor = [0, 0, @nan]
+)",
+         {"anchor[2] is nan; it must be a number between -1e9 and 1e9"}},
+        {"BallJointLength",
+         two + joint + R"(anchor = [0, 0, 0]
+@length = 3
+)",
+         {R"(a ball joint has no length; type = "distance" has a length)"}},
+        {"DistanceJointOfNoLength",
+         two + R"(@[[joint]]
+name = "j"
+type = "distance"
+body_a = "a"
+body_b = "b"
+anchor = [0, 0, 0]
+)",
+         {R"(the anchors of [[joint]] "j" are 0 m apart, which cannot be its length; give a length of its own: a positive number, from 1e-9 to 1e9)"}},
+        {"DuplicateJoint",
+         two + joint + R"(anchor = [0, 0, 0]
+[[joint]]
+name = @"j"
+type = "distance"
+body_a = "a"
+body_b = "b"
+)",
+         {R"(another joint is named "j" already, at line 11; each joint needs a name of its own)"}},
+        {"ChainOfSingle",
+         two + R"([[joint]]
+name = "j"
+type = "ball"
+chain = @"a"
+)",
+         {R"(the body "a" is not repeated; a chain runs through the copies of a body with repeat)"}},
+        {"ChainUnknown",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+chain = @"lnik"
+)",
+         {R"(there is no body "lnik"; did you mean "link"?)"}},
+        {"ChainOfOne",
+         ball + R"(repeat = { kind = "stack", count = 1 }
+[[joint]]
+name = "j"
+type = "ball"
+chain = @"ball"
+)",
+         {R"(there is only one "ball"; a chain needs two bodies at least)"}},
+        {"ChainWithBody",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+chain = "link"
+@body_a = "link_0"
+)",
+         {"a chain has no body_a; its bodies are the copies of a repeated one, its anchors in "
+          "their frames: anchor_a_local, anchor_b_local"}},
+        {"ChainWithOneAnchor",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+chain = "link"
+anchor_a_local = @[1, 0, 0]
+)",
+         {R"([[joint]] "j" has only one of anchor_a_local and anchor_b_local; give both, or neither: then a ball joint sits halfway between the centres, and a distance joint holds the centres)"}},
+        {"ExpectUnknownQuantity",
+         R"([[expect]]
+name = "e"
+quantity = @"enregy"
+to = 1
+at_most = 1
+source = "x"
+)",
+         {R"(unknown quantity "enregy"; did you mean "energy"?)"}},
+        {"ExpectMissingBody",
+         R"(@[[expect]]
+name = "e"
+quantity = "speed"
+to = 1
+at_most = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has no body; speed is of one body: which?)"}},
+        {"ExpectUnwantedBody",
+         ball + expect + R"(@body = "ball"
+to = 1
+at_most = 1
+)",
+         {"energy has no body; it is of the whole scene"}},
+        {"ExpectUnknownBody",
+         ball + R"([[expect]]
+name = "e"
+quantity = "speed"
+body = @"balk"
+to = 1
+at_most = 1
+source = "x"
+)",
+         {R"(there is no body "balk"; did you mean "ball"?)"}},
+        {"ExpectUnknownReduction",
+         expect + R"(reduce = @"maxabs"
+to = 1
+at_most = 1
+)",
+         {R"(unknown reduce "maxabs"; did you mean "max_abs"?)"}},
+        {"ExpectUnwantedLevel",
+         expect + R"(@level = 1
+to = 1
+at_most = 1
+)",
+         {R"(reduce = "last" has no level; period and crossings have one)"}},
+        {"ExpectWindowReversed",
+         expect + R"(from = @2
+to = 1
+at_most = 1
+)",
+         {"the window from 2 to 1 s is empty; from must not be after to"}},
+        {"ExpectWindowEmpty",
+         expect + R"(to = @0
+at_most = 1
+)",
+         {"the window ends at 0 s; to must be later than the start"}},
+        {"ExpectNoEnd",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+at_most = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has no to; to = seconds, the end of the window and of the run)"}},
+        {"ExpectNoRelation",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has none of equals, at_most, at_least; what must the number be?)"}},
+        {"ExpectTwoRelations",
+         expect + R"(to = 1
+at_most = 1
+@at_least = 0
+)",
+         {R"([[expect]] "e" has both at_most and at_least; keep one of them)"}},
+        {"ExpectNoTolerance",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+equals = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has no tolerance; how far the truth may be missed, in the quantity's unit)"}},
+        {"ExpectZeroTolerance",
+         expect + R"(to = 1
+equals = 1
+tolerance = @0
+)",
+         {"tolerance is 0; it must be a number above 0"}},
+        {"ExpectToleranceOfBound",
+         expect + R"(to = 1
+at_most = 1
+@tolerance = 1
+)",
+         {"a bound has no tolerance; put it into the bound itself"}},
+        {"ExpectNoSource",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+at_most = 1
+)",
+         {R"([[expect]] "e" has no source; where does the number come from?)"}},
+        {"ExpectEmptySource",
+         R"([[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+at_most = 1
+source = @""
+)",
+         {"the source is empty; where does the number come from?"}},
+        {"StateStep",
+         R"([state]
+step = @-1
+)",
+         {"step is not a natural number; it must be a whole number from 0 to 2^64 - 1 (in quotes "
+          "from 2^63 on)"}},
+        {"StateUnknownKey",
+         R"([state]
+@steps = 1
+)",
+         {R"(unknown key "steps" in [state]; did you mean "step"?)"}},
+        {"ContactUnknownBody",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = @"d"
+features = []
+impulses = []
+)",
+         {R"(there is no body "d"; there are a, b)"}},
+        {"ContactWithItself",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = @"a"
+features = []
+impulses = []
+)",
+         {"a body is in contact with itself; body_a and body_b must differ"}},
+        {"ContactCounts",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = "b"
+features = [1, 2]
+impulses = @[[0, 0, 0]]
+)",
+         {"there are 2 features and 1 impulses; there must be as many of one as of the other"}},
+        {"ContactFeature",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = "b"
+features = [@4294967296]
+impulses = [[0, @nan, 0]]
+)",
+         {"features[0] is 4294967296; it must be a whole number from 0 to 4294967295",
+          "impulses[0][1] is nan; it must be a finite number"}},
+        {"ContactMissing",
+         two + R"(@[[state.contact]]
+body_a = "a"
+body_b = "b"
+impulses = []
+)",
+         {"[[state.contact]] has no features; an array, one element for each contact point"}},
+    };
+    return all;
+}
+
+class SceneFileErrors : public testing::TestWithParam<Case> {};
+
+TEST_P(SceneFileErrors, PointAndExplain) {
+    const Marked marked = take_marks(GetParam().marked);
+    const SceneFileResult result = parse_scene(marked.text, "s.toml", {"soft_step", "pgs"});
+    EXPECT_FALSE(result.ok());
+    std::vector<std::string> expected;
+    for (std::size_t i = 0; i < GetParam().messages.size(); ++i) {
+        const auto [line, column] = marked.places.at(std::min(i, marked.places.size() - 1));
+        expected.push_back("s.toml:" + std::to_string(line) + ":" + std::to_string(column) +
+                           ": error: " + GetParam().messages[i]);
+    }
+    std::vector<std::string> actual;
+    for (const SceneMessage &message : result.messages)
+        actual.push_back(format_message("s.toml", message));
+    EXPECT_EQ(actual, expected) << marked.text;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SceneFileErrors, testing::ValuesIn(cases()),
+                         [](const auto &each) { return each.param.name; });
+
+} // namespace
+} // namespace plumb

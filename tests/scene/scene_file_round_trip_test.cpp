@@ -1,0 +1,358 @@
+// write_scene gives text that parses to the same values, bit for bit.
+#include "engine/scene/scene_file.h"
+
+#include "engine/core/random.h"
+#include "engine/scene/expect.h"
+#include "engine/scene/scene_file_number.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+// ---- a scene as a list of words, so that equal lists mean equal bits ----
+
+class Words {
+  public:
+    void add(const std::string &value) { words_.push_back('"' + value + '"'); }
+    void add(double value) { number(std::bit_cast<std::uint64_t>(value)); }
+    void add(float value) { number(std::bit_cast<std::uint32_t>(value)); }
+    void number(std::uint64_t value) { words_.push_back(std::to_string(value)); }
+    void add(const glm::dvec3 &v) { add(v.x), add(v.y), add(v.z); }
+    void add(const glm::vec3 &v) { add(v.x), add(v.y), add(v.z); }
+    void add(const glm::dquat &q) { add(q.w), add(q.x), add(q.y), add(q.z); }
+    template <typename T> void add(const std::optional<T> &value) {
+        number(value.has_value());
+        if (value)
+            add(*value);
+    }
+    void add(const SphereDesc &s) { add(s.radius); }
+    void add(const BoxDesc &b) { add(b.half_extents); }
+    void add(const CapsuleDesc &c) { add(c.half_height), add(c.radius); }
+    void add(const PlaneDesc &) {}
+    void add(const MethodSettings &s) {
+        add(static_cast<double>(s.substeps)), add(static_cast<double>(s.iterations));
+    }
+
+    const std::vector<std::string> &get() const { return words_; }
+
+  private:
+    std::vector<std::string> words_;
+};
+
+std::vector<std::string> words(const SceneDesc &scene) {
+    Words w;
+    w.add(scene.title), w.add(scene.description);
+    const WorldDesc &world = scene.world;
+    w.add(world.gravity), w.add(world.dt), w.add(world.method), w.add(world.settings);
+    for (const auto &[method, settings] : world.other_methods)
+        w.add(method), w.add(settings);
+    w.number(static_cast<std::uint64_t>(world.precision)), w.number(world.seed);
+    w.add(scene.camera.target), w.add(scene.camera.distance), w.add(scene.camera.yaw);
+    w.add(scene.camera.pitch), w.add(scene.camera.fov);
+    for (const MaterialDesc &m : scene.materials)
+        w.add(m.name), w.add(m.density), w.add(m.friction), w.add(m.restitution), w.add(m.colour);
+    for (const BodyDesc &b : scene.bodies) {
+        w.add(b.name), w.number(static_cast<std::uint64_t>(b.kind)), w.number(b.shape.index());
+        std::visit([&](const auto &shape) { w.add(shape); }, b.shape);
+        w.add(b.material), w.add(b.mass), w.add(b.position), w.add(b.orientation);
+        w.add(b.velocity), w.add(b.angular_velocity), w.add(b.colour);
+    }
+    for (const JointDesc &j : scene.joints) {
+        w.add(j.name), w.number(static_cast<std::uint64_t>(j.type)), w.add(j.body_a);
+        w.add(j.body_b), w.add(j.anchor_a_local), w.add(j.anchor_b_local), w.add(j.length);
+        w.number(j.collide_connected), w.add(j.impulse);
+    }
+    for (const ExpectDesc &e : scene.expects) {
+        w.add(e.name), w.add(e.quantity), w.add(e.body), w.add(e.reduce), w.add(e.level);
+        w.add(e.from), w.add(e.to), w.number(static_cast<std::uint64_t>(e.relation));
+        w.add(e.value), w.add(e.tolerance), w.add(e.source);
+    }
+    w.number(scene.step_count);
+    for (const ContactStateDesc &c : scene.contacts) {
+        w.add(c.body_a), w.add(c.body_b);
+        for (const ContactStateDesc::Point &p : c.points)
+            w.number(p.feature), w.add(p.impulse);
+    }
+    return w.get();
+}
+
+// ---- random scenes that use everything ----
+
+class Scenes {
+  public:
+    explicit Scenes(std::uint64_t seed) : random_(seed) {}
+
+    SceneDesc next() {
+        SceneDesc scene;
+        scene.title = text();
+        scene.description = text();
+        WorldDesc &world = scene.world;
+        world.gravity = vector();
+        world.dt = one_in(2) ? 1.0 / (2 + random_.next_index(1000)) : random_.next_in(1e-9, 1);
+        world.method = text();
+        world.settings = settings();
+        for (std::uint32_t i = random_.next_index(3); i > 0; --i)
+            world.other_methods[text()] = settings();
+        world.precision = one_in(2) ? Precision::single : Precision::dual;
+        world.seed = one_in(2) ? random_.next_u64() : random_.next_index(10);
+        scene.camera.target = vector();
+        scene.camera.distance = positive();
+        scene.camera.yaw = one_in(2) ? random_.next_in(-7, 7) : degrees(-400, 400);
+        scene.camera.pitch = one_in(2) ? random_.next_in(-1.5, 1.5) : degrees(-90, 90);
+        scene.camera.fov = one_in(2) ? random_.next_in(0.1, 2.5) : degrees(1, 170);
+        for (int i = 0; i < 3; ++i)
+            scene.materials.push_back(
+                {unique(), positive(), random_.next_unit() * 3, random_.next_unit(), colour()});
+        for (int i = 0; i < 8; ++i)
+            scene.bodies.push_back(body(scene));
+        for (int i = 0; i < 4; ++i)
+            scene.joints.push_back(joint(scene));
+        for (int i = 0; i < 3; ++i)
+            scene.expects.push_back(expect(scene));
+        scene.step_count = one_in(3) ? random_.next_u64() : random_.next_index(1000);
+        for (std::uint32_t i = random_.next_index(3); i > 0; --i) {
+            ContactStateDesc contact{scene.bodies[0].name, scene.bodies[i].name, {}};
+            for (std::uint32_t k = random_.next_index(5); k > 0; --k)
+                contact.points.push_back(
+                    {static_cast<std::uint32_t>(random_.next_u64()), vector()});
+            scene.contacts.push_back(contact);
+        }
+        return scene;
+    }
+
+  private:
+    bool one_in(std::uint32_t n) { return random_.next_index(n) == 0; }
+
+    // Up to 1e9 in magnitude, over all orders of it; round numbers, both zeros and subnormals too.
+    double number() {
+        switch (random_.next_index(6)) {
+        case 0:
+            return one_in(2) ? 0.0 : -0.0;
+        case 1:
+            return static_cast<double>(random_.next_index(2001)) - 1000;
+        case 2:
+            return (static_cast<double>(random_.next_index(2001)) - 1000) / 100;
+        case 3:
+            return 3 * std::numeric_limits<double>::denorm_min();
+        default:
+            return (one_in(2) ? -1 : 1) * std::pow(10, random_.next_in(-300, 9));
+        }
+    }
+    double positive() { return std::pow(10, random_.next_in(-2, 2)); }
+    double degrees(double low, double high) {
+        return std::round(random_.next_in(low, high)) * (3.14159265358979323846 / 180);
+    }
+    glm::dvec3 vector() {
+        const double x = number();
+        const double y = number();
+        return {x, y, number()};
+    }
+
+    std::string text() {
+        static const std::vector<std::string> parts{
+            "a", "Z", " ", "\"",   "\\",     "\n",   "\t",   "\r",      "'", "#", "=", "[",
+            "]", "é", "→", "🧱", "\"\"\"", "\x01", "\x7f", "\\u0041", "9", ".", "-", "\r\n"};
+        std::string result = "t";
+        for (std::uint32_t i = random_.next_index(12); i > 0; --i)
+            result += parts[random_.next_index(static_cast<std::uint32_t>(parts.size()))];
+        return result;
+    }
+    std::string unique() { return text() + std::to_string(++names_); }
+
+    std::optional<glm::vec3> colour() {
+        if (one_in(2))
+            return std::nullopt;
+        const auto channel = [&] { return static_cast<float>(random_.next_unit()); };
+        const float r = channel();
+        const float g = channel();
+        return glm::vec3(r, g, channel());
+    }
+
+    MethodSettings settings() {
+        const auto count = [&] { return static_cast<int>(random_.next_index(50)); };
+        const int substeps = count();
+        return {substeps, count()};
+    }
+
+    BodyDesc body(const SceneDesc &scene) {
+        BodyDesc b;
+        b.name = unique();
+        b.kind = static_cast<BodyKind>(random_.next_index(3));
+        switch (random_.next_index(4)) {
+        case 0:
+            b.shape = SphereDesc{positive()};
+            break;
+        case 1: {
+            const double x = positive();
+            const double y = positive();
+            b.shape = BoxDesc{{x, y, positive()}};
+            break;
+        }
+        case 2: {
+            const double h = positive();
+            b.shape = CapsuleDesc{h, positive()};
+            break;
+        }
+        default:
+            b.shape = PlaneDesc{};
+            if (b.kind == BodyKind::dynamic)
+                b.kind = BodyKind::fixed;
+        }
+        // A mass of its own, as the materials' densities may give too much for a scene.
+        if (!std::holds_alternative<PlaneDesc>(b.shape))
+            b.mass = positive();
+        if (!one_in(3))
+            b.material = scene.materials[random_.next_index(3)].name;
+        b.position = vector();
+        if (!one_in(3)) {
+            // Drawn at once: the order of evaluation of arguments is not fixed.
+            double q[4];
+            for (double &part : q)
+                part = random_.next_in(-1, 1);
+            b.orientation = glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
+        }
+        if (b.kind != BodyKind::fixed && one_in(2)) {
+            b.velocity = vector();
+            b.angular_velocity = vector();
+        }
+        b.colour = colour();
+        return b;
+    }
+
+    JointDesc joint(const SceneDesc &scene) {
+        JointDesc j;
+        j.name = unique();
+        j.type = one_in(2) ? JointType::ball : JointType::distance;
+        j.body_a = scene.bodies[random_.next_index(4)].name;
+        j.body_b = one_in(3) ? "" : scene.bodies[4 + random_.next_index(4)].name;
+        if (one_in(2))
+            std::swap(j.body_a, j.body_b);
+        j.anchor_a_local = vector();
+        j.anchor_b_local = vector();
+        if (j.type == JointType::distance)
+            j.length = positive();
+        j.collide_connected = one_in(2);
+        if (one_in(2))
+            j.impulse = vector();
+        return j;
+    }
+
+    ExpectDesc expect(const SceneDesc &scene) {
+        ExpectDesc e;
+        e.name = unique();
+        const QuantityInfo &quantity =
+            quantities()[random_.next_index(static_cast<std::uint32_t>(quantities().size()))];
+        e.quantity = quantity.name;
+        if (quantity.needs_body)
+            e.body = scene.bodies[random_.next_index(8)].name;
+        const ReductionInfo &reduction =
+            reductions()[random_.next_index(static_cast<std::uint32_t>(reductions().size()))];
+        e.reduce = reduction.name;
+        if (reduction.uses_level && one_in(2))
+            e.level = number();
+        e.from = random_.next_unit();
+        e.to = e.from + positive();
+        e.relation = static_cast<ExpectDesc::Relation>(random_.next_index(3));
+        e.value = one_in(4) ? std::numeric_limits<double>::max() : number();
+        if (e.relation == ExpectDesc::Relation::equals)
+            e.tolerance = positive();
+        e.source = text();
+        return e;
+    }
+
+    Random random_;
+    int names_ = 0;
+};
+
+TEST(RoundTrip, KeepsEveryBitOfRandomScenes) {
+    Scenes scenes(1);
+    for (int i = 0; i < 500; ++i) {
+        const SceneDesc scene = scenes.next();
+        const std::string text = write_scene(scene);
+        const SceneFileResult read = parse_scene(text, "s.toml");
+        std::string messages;
+        for (const SceneMessage &message : read.messages)
+            if (message.severity == SceneMessage::Severity::error)
+                messages += format_message("s.toml", message) + "\n";
+        ASSERT_EQ(messages, "") << text;
+        ASSERT_EQ(words(read.scene), words(scene)) << text;
+        ASSERT_EQ(write_scene(read.scene), text);
+    }
+}
+
+TEST(RoundTrip, DefaultSceneAndEmptyNames) {
+    const SceneFileResult read = parse_scene(write_scene({}), "s.toml");
+    EXPECT_TRUE(read.ok());
+    EXPECT_TRUE(read.messages.empty());
+    EXPECT_EQ(words(read.scene), words({}));
+}
+
+TEST(RoundTrip, RepeatsComeOutFlat) {
+    const std::string text = "[[body]]\nname = \"x\"\nshape = \"sphere\"\nradius = 0.1\n"
+                             "repeat = { kind = \"scatter\", count = 5, half_extents = [9, 9, 9], "
+                             "min_distance = 1, random_rotation = true }\n";
+    const SceneDesc scene = parse_scene(text, "s.toml").scene;
+    const std::string flat = write_scene(scene);
+    EXPECT_EQ(flat.find("repeat"), std::string::npos);
+    EXPECT_NE(flat.find("name = \"x_4\""), std::string::npos);
+    EXPECT_EQ(words(parse_scene(flat, "s.toml").scene), words(scene));
+}
+
+TEST(RoundTrip, TextReadsWell) {
+    SceneDesc scene;
+    scene.title = "One ball";
+    scene.world.dt = 1.0 / 120;
+    scene.camera.yaw = 30 * (3.14159265358979323846 / 180);
+    scene.bodies.push_back({"ball",
+                            BodyKind::dynamic,
+                            SphereDesc{0.1},
+                            "",
+                            2.5,
+                            {0, 1, 0},
+                            {1, 0, 0, 0},
+                            {0, 0, 0},
+                            {0, 0, 0},
+                            std::nullopt});
+    const std::string text = write_scene(scene);
+    EXPECT_NE(text.find("dt = \"1/120\"\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("yaw_deg = 30\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.1\nmass = 2.5\n"
+                        "position = [0, 1, 0]\n"),
+              std::string::npos)
+        << text;
+}
+
+TEST(Shortest, ReadsBackToTheSameBits) {
+    Random random(3);
+    for (int i = 0; i < 200'000; ++i) {
+        const double d = std::bit_cast<double>(random.next_u64());
+        if (std::isfinite(d)) {
+            // strtod rounds correctly in every C library in use.
+            ASSERT_EQ(std::bit_cast<std::uint64_t>(std::strtod(shortest(d).c_str(), nullptr)),
+                      std::bit_cast<std::uint64_t>(d));
+        }
+        const float f = std::bit_cast<float>(static_cast<std::uint32_t>(random.next_u64()));
+        if (std::isfinite(f)) {
+            ASSERT_EQ(std::bit_cast<std::uint32_t>(
+                          static_cast<float>(std::strtod(shortest(f).c_str(), nullptr))),
+                      std::bit_cast<std::uint32_t>(f));
+        }
+    }
+    EXPECT_EQ(shortest(0.1), "0.1");
+    EXPECT_EQ(shortest(5.0), "5");
+    EXPECT_EQ(shortest(0.0), "0");
+    EXPECT_EQ(shortest(-0.0), "-0.0");
+    EXPECT_EQ(shortest(0.1F), "0.1");
+}
+
+} // namespace
+} // namespace plumb

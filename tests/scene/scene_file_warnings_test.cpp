@@ -1,0 +1,161 @@
+// What a scene file is warned of, and what it is not.
+#include "engine/scene/scene_file.h"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+std::vector<std::string> warnings(const std::string &text) {
+    const SceneFileResult result = parse_scene(text, "s.toml");
+    std::vector<std::string> all;
+    for (const SceneMessage &message : result.messages)
+        all.push_back(format_message("s.toml", message));
+    EXPECT_TRUE(result.ok());
+    return all;
+}
+
+using None = std::vector<std::string>;
+
+std::string body(const std::string &name, const std::string &rest) {
+    return "[[body]]\nname = \"" + name + "\"\n" + rest + "\n";
+}
+const std::string sphere = "shape = \"sphere\"\nradius = 0.5\n";
+const std::string box = "shape = \"box\"\nhalf_extents = [0.5, 0.5, 0.5]\n";
+const std::string capsule = "shape = \"capsule\"\nhalf_height = 0.5\nradius = 0.5\n";
+
+TEST(SceneWarnings, OverlapHasADepth) {
+    // Spheres 1 m wide, 0.9 m apart; line 6 is where the second begins.
+    const std::string text = body("a", sphere) + body("b", sphere + "position = [0.9, 0, 0]");
+    EXPECT_EQ(warnings(text),
+              (None{"s.toml:6:1: warning: \"a\" and \"b\" overlap by 0.1 m at the start; move them "
+                    "apart, or they will be thrown apart"}));
+}
+
+TEST(SceneWarnings, OverlapOfEveryPairOfShapes) {
+    const std::vector<std::string> shapes{sphere, box, capsule};
+    const std::string ground = body("ground", "shape = \"plane\"");
+    for (const std::string &first : shapes) {
+        for (const std::string &second : shapes) {
+            // All are 1 wide in x: 0.98 apart they overlap by 2 %, 0.995 apart by half a per cent.
+            EXPECT_EQ(
+                warnings(body("a", first) + body("b", second + "position = [0.98, 0, 0]")).size(),
+                1U)
+                << first << second;
+            EXPECT_EQ(warnings(body("a", first) + body("b", second + "position = [0.995, 0, 0]")),
+                      None{});
+            EXPECT_EQ(warnings(body("a", first) + body("b", second + "position = [1.2, 0, 0]")),
+                      None{});
+        }
+        EXPECT_EQ(warnings(ground + body("a", first + "position = [7, 0.3, 0]")).size(), 1U);
+        EXPECT_EQ(warnings(body("a", first + "position = [7, 0.3, 0]") + ground).size(), 1U);
+        EXPECT_EQ(warnings(ground + body("a", first + "position = [7, 1.01, 0]")), None{});
+    }
+}
+
+TEST(SceneWarnings, TouchingStacksAndTurnedBoxesAreFine) {
+    const std::string ground = body("ground", "shape = \"plane\"");
+    EXPECT_EQ(warnings(ground + body("a", box + "position = [0, 0.5, 0]\nrepeat = { kind = "
+                                                "\"stack\", count = 20, turn_deg = 7 }")),
+              None{});
+    EXPECT_EQ(warnings(ground + body("a", box + "position = [0, 0.5, 0]\nrepeat = { kind = "
+                                                "\"pyramid\", base = 12, spacing = [1.1, 1] }")),
+              None{});
+    // Bounding boxes overlap, the boxes do not: corner to corner, turned by 45 degrees.
+    EXPECT_EQ(warnings(body("a", box + "rotation_deg = [0, 45, 0]") +
+                       body("b", box + "rotation_deg = [0, 45, 0]\nposition = [0.8, 0, 0.8]")),
+              None{});
+    // Far away, where float cannot tell millimetres.
+    EXPECT_EQ(warnings(body("a", box + "position = [1e8, 0, 0]") +
+                       body("b", box + "position = [100000001, 0, 0]")),
+              None{});
+}
+
+TEST(SceneWarnings, BodiesThatDoNotCollideMayOverlap) {
+    const std::string a = body("a", sphere);
+    const std::string b = body("b", sphere + "position = [0.5, 0, 0]");
+    const std::string joint = "[[joint]]\nname = \"j\"\ntype = \"ball\"\nbody_a = \"a\"\n"
+                              "body_b = \"b\"\nanchor = [0.25, 0, 0]\n";
+    EXPECT_EQ(warnings(a + b + joint), None{});
+    EXPECT_EQ(warnings(a + b + joint + "collide_connected = true\n").size(), 1U);
+    EXPECT_EQ(
+        warnings(body("a", sphere + "kind = \"static\"") + body("b", sphere + "kind = \"static\"")),
+        None{});
+}
+
+TEST(SceneWarnings, ManyOverlapsAreCountedTogether) {
+    // 30 spheres overlap with their neighbours: 29 pairs, ten of them listed.
+    const std::vector<std::string> all = warnings(
+        body("a", sphere + "repeat = { kind = \"line\", count = 30, step = [0.9, 0, 0] }"));
+    ASSERT_EQ(all.size(), 10U);
+    int counted = 0;
+    for (const std::string &message : all)
+        counted += message.find("(and 19 more overlaps)") != std::string::npos;
+    EXPECT_EQ(counted, 1);
+}
+
+TEST(SceneWarnings, MassRatio) {
+    const auto pair = [](const std::string &mass, const std::string &x) {
+        return body("a", sphere + "mass = 1") +
+               body("b", sphere + "mass = " + mass + "\nposition = [" + x + ", 0, 0]");
+    };
+    EXPECT_EQ(
+        warnings(pair("150", "1")),
+        (None{"s.toml:6:1: warning: \"a\" and \"b\" touch, and their masses differ by a factor "
+              "of 150; iterative solvers converge slowly above 100: bring them nearer, or "
+              "expect many iterations"}));
+    EXPECT_EQ(warnings(pair("100", "1")), None{});
+    EXPECT_EQ(warnings(pair("150", "2")), None{});
+    const std::vector<std::string> joined =
+        warnings(pair("150", "2") + "[[joint]]\nname = \"j\"\ntype = \"distance\"\n"
+                                    "body_a = \"a\"\nbody_b = \"b\"\n");
+    ASSERT_EQ(joined.size(), 1U);
+    EXPECT_NE(joined[0].find("s.toml:12:1: warning: \"a\" and \"b\" are joined"), std::string::npos)
+        << joined[0];
+}
+
+TEST(SceneWarnings, JointsThatMoveNothingOrJerk) {
+    const std::string fixed = body("a", sphere + "kind = \"static\"");
+    EXPECT_EQ(warnings(fixed + "[[joint]]\nname = \"j\"\ntype = \"ball\"\nbody_a = \"a\"\n"
+                               "anchor = [0, 0, 0]\n"),
+              (None{"s.toml:6:1: warning: joint \"j\" moves nothing: neither of its bodies is "
+                    "dynamic"}));
+    EXPECT_EQ(
+        warnings(body("a", sphere) + "[[joint]]\nname = \"j\"\ntype = \"ball\"\n"
+                                     "body_a = \"a\"\nanchor_a = [0, 0, 0]\n"
+                                     "anchor_b = [0, 0.25, 0]\n"),
+        (None{"s.toml:6:1: warning: the two anchors of ball joint \"j\" start 0.25 m apart; they "
+              "should be one point, or the first step will jerk them together"}));
+}
+
+TEST(SceneWarnings, StepTooLong) {
+    // 0.5 m wide and 200 m/s: 1/400 s at most; here 2 m a step.
+    EXPECT_EQ(
+        warnings("[world]\ndt = 0.01\n" +
+                 body("a", "shape = \"sphere\"\nradius = 0.25\nvelocity = [0, 0, 200]")),
+        (None{"s.toml:3:1: warning: \"a\" moves 2 m in one step, more than its width of 0.5 m, "
+              "and may pass through others (|v| dt > width); world.dt up to 0.0025"}));
+    EXPECT_EQ(
+        warnings("[world]\ndt = 0.01\n" + body("a", sphere + "angular_velocity = [0, 400, 0]")),
+        (None{"s.toml:3:1: warning: \"a\" turns by 4 rad in one step, more than half a "
+              "revolution (|w| dt > pi); world.dt up to 0.00785"}));
+    // g dt^2 = 10 * 0.01 = 0.1 m, half the width 0.05 m: up to sqrt(0.05 / 10) = 0.0707 s.
+    EXPECT_EQ(warnings("[world]\ngravity = [0, -10, 0]\ndt = 0.1\n" +
+                       body("a", "shape = \"sphere\"\nradius = 0.05")),
+              (None{"s.toml:3:6: warning: a body falls 0.1 m in its first step, more than half the "
+                    "width of \"a\" (g dt^2 > width / 2); dt up to 0.0707"}));
+    // omega = sqrt(10 / 0.001) = 100 rad/s: 2/100 s at most, and dt / 2 substeps = 0.025 s.
+    const std::string rod = body("a", sphere) + "[[joint]]\nname = \"j\"\ntype = \"distance\"\n"
+                                                "body_a = \"a\"\nanchor_b = [0, 0.001, 0]\n";
+    EXPECT_EQ(
+        warnings("[world]\ngravity = [0, -10, 0]\ndt = 0.05\nsubsteps = 2\n" + rod),
+        (None{"s.toml:10:1: warning: a pendulum on \"j\" has omega = sqrt(g / length) = 100 rad/s, "
+              "and omega h = 2.5 > 2 is unstable (h = dt / substeps); a step h up to 0.02"}));
+    EXPECT_EQ(warnings("[world]\ngravity = [0, -10, 0]\ndt = 0.05\nsubsteps = 3\n" + rod), None{});
+}
+
+} // namespace
+} // namespace plumb
