@@ -8,9 +8,9 @@
 #include "app/render/png.h"
 #include "app/sandbox/keys.h"
 #include "app/sandbox/run_sandbox.h"
-#include "app/scene_catalog.h"
+#include "app/sandbox/scene_catalog.h"
 #include "app/snapshot.h"
-#include "engine/scene/scene_file_number.h"
+#include "engine/scene/scene_file_spelling.h"
 
 #include <CLI/CLI.hpp>
 
@@ -79,6 +79,21 @@ std::string method_names() {
     return names;
 }
 
+CLI::Validator positive() {
+    return {[](const std::string &text) {
+                double value = 0;
+                return CLI::detail::lexical_cast(text, value) && value > 0
+                           ? std::string()
+                           : "must be a positive number, got " + text;
+            },
+            "POSITIVE"};
+}
+
+// Of options that count steps. CLI11 by itself reads -1 as the largest unsigned number.
+CLI::Range step_range() {
+    return {0, 1'000'000'000};
+}
+
 void add_scenes(CLI::App &command, Common &common) {
     command
         .add_option("SCENE", common.scenes,
@@ -90,7 +105,7 @@ void add_run_options(CLI::App &command, Common &common, bool with_method = true)
     if (with_method)
         command.add_option("--method", common.method,
                            "Instead of the scene's own: " + method_names());
-    command.add_option("--dt", common.dt, "Time step (s)")->check(CLI::PositiveNumber);
+    command.add_option("--dt", common.dt, "Time step (s)")->check(positive());
     command.add_option("--substeps", common.substeps, "Substeps a step")
         ->check(CLI::Range(1, 10000));
     command.add_option("--iterations", common.iterations, "Solver passes a substep")
@@ -172,12 +187,13 @@ int snapshot(const Common &common, const SnapshotArguments &arguments) {
     if (command.at.empty())
         command.at.push_back(arguments.steps);
     std::ranges::sort(command.at);
-    command.at.erase(std::ranges::unique(command.at).begin(), command.at.end());
+    command.at.erase(std::unique(command.at.begin(), command.at.end()), command.at.end());
     if (!common.size.empty())
         command.size = parse_size(common.size);
     command.out_dir = common.out;
     command.shader_dir = common.shader_dir();
     command.panels = arguments.panels;
+    command.catalogue = common.catalogue;
     command.samples = arguments.samples;
     command.gl = gl_choice_from_name(common.gl);
     command.tasks = &tasks;
@@ -302,8 +318,7 @@ int main_with_errors(int argc, char **argv) {
     run_command->add_option("--size", common.size, "Of the window: WIDTHxHEIGHT (1280x800)");
     std::optional<int> frames;
     std::filesystem::path screenshot;
-    run_command->add_option("--frames", frames, "Ends after so many frames")
-        ->check(CLI::PositiveNumber);
+    run_command->add_option("--frames", frames, "Ends after so many frames")->check(positive());
     run_command->add_option("--screenshot", screenshot, "Where to write the last frame, a PNG");
     run_command->callback([&] { result = run(common, frames, screenshot); });
 
@@ -312,13 +327,16 @@ int main_with_errors(int argc, char **argv) {
         app.add_subcommand("snapshot", "Draws scenes at given steps to numbered PNG files");
     add_scenes(*snapshot_command, common);
     auto *at = snapshot_command->add_option("--at", pictures.at, "Steps to draw: 0,60,240")
+                   ->check(step_range())
                    ->delimiter(',');
     auto *every =
         snapshot_command->add_option("--every", pictures.every, "Draws every so many steps, from 0")
-            ->check(CLI::PositiveNumber)
+            ->check(positive())
             ->excludes(at);
-    auto *steps = snapshot_command->add_option("--steps", pictures.steps,
-                                               "How far to run; alone: draws that step");
+    auto *steps =
+        snapshot_command
+            ->add_option("--steps", pictures.steps, "How far to run; alone: draws that step")
+            ->check(step_range());
     every->needs(steps);
     snapshot_command->add_option("--size", common.size, "WIDTHxHEIGHT (1280x720)");
     add_out(*snapshot_command, common, "out");
@@ -352,7 +370,9 @@ int main_with_errors(int argc, char **argv) {
     CLI::App *hash_command =
         app.add_subcommand("hash", "Prints a hash of the state: the same state, the same hash");
     add_scenes(*hash_command, common);
-    hash_command->add_option("--steps", hash_steps, "How far to run first")->required();
+    hash_command->add_option("--steps", hash_steps, "How far to run first")
+        ->check(step_range())
+        ->required();
     add_run_options(*hash_command, common);
     hash_command->callback([&] { result = hash(common, hash_steps); });
 
@@ -370,7 +390,9 @@ int main_with_errors(int argc, char **argv) {
     measure_command->add_option("SCENE", common.scenes, "A scene file, or a name from `plumb list`")
         ->required()
         ->expected(1);
-    measure_command->add_option("--steps", measure_steps, "How far to run")->capture_default_str();
+    measure_command->add_option("--steps", measure_steps, "How far to run")
+        ->check(step_range())
+        ->capture_default_str();
     measure_command->add_option("--csv", csv, "Where to write the table (standard output)");
     add_run_options(*measure_command, common);
     measure_command->callback([&] {
@@ -430,6 +452,19 @@ int main_with_errors(int argc, char **argv) {
         command->footer(exit_codes);
     try {
         app.parse(argc, argv);
+    } catch (const CLI::ExtrasError &error) {
+        // A misspelt command comes before anything that it could explain.
+        if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+            std::vector<std::string> names;
+            for (const CLI::App *command : app.get_subcommands({}))
+                names.push_back(command->get_name());
+            const std::vector<std::string_view> candidates(names.begin(), names.end());
+            std::cerr << "plumb: there is no command '" << argv[1] << "'; "
+                      << did_you_mean(argv[1], candidates) << '\n';
+            return code_of(ExitCode::bad_input);
+        }
+        app.exit(error);
+        return code_of(ExitCode::bad_input);
     } catch (const CLI::ParseError &error) {
         return app.exit(error) == 0 ? 0 : code_of(ExitCode::bad_input);
     }

@@ -33,8 +33,12 @@ std::filesystem::path picture_path(const SnapshotCommand &command, const std::st
 // that a person would have.
 ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer &renderer,
                std::ostream &out, std::ostream &err) {
-    Sandbox sandbox(Session(command.run, command.tasks), {}, command.out_dir);
-    if (!sandbox.open(scene)) {
+    Sandbox sandbox(Session(command.run, command.tasks), command.catalogue, command.out_dir);
+    // The panels mark the scene in their list.
+    const auto listed = std::ranges::find(command.catalogue, scene.name, &SceneEntry::name);
+    const std::filesystem::path scene_path =
+        listed == command.catalogue.end() ? std::filesystem::path() : listed->path;
+    if (!sandbox.open(scene, scene_path)) {
         for (const Message &message : sandbox.session().messages().all())
             err << scene.name << ": " << message.text << '\n';
         return ExitCode::bad_input;

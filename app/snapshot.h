@@ -3,6 +3,7 @@
 
 #include "app/lab/exit_code.h"
 #include "app/render/context.h"
+#include "app/sandbox/scene_catalog.h"
 #include "engine/scene/simulation.h"
 
 #include <cstdint>
@@ -21,9 +22,10 @@ struct SnapshotCommand {
     glm::ivec2 size{1280, 720};
     std::filesystem::path out_dir = "out";
     std::filesystem::path shader_dir;
-    bool panels = false;  // the sandbox's, too
-    int samples = 4;      // of multisampling; 1 for pictures that are compared
-    bool numbered = true; // scene-00060.png; else scene.png, for one step alone
+    bool panels = false;               // the sandbox's, too
+    std::vector<SceneEntry> catalogue; // that the panels list
+    int samples = 4;                   // of multisampling; 1 for pictures that are compared
+    bool numbered = true;              // scene-00060.png; else scene.png, for one step alone
     GlChoice gl = GlChoice::automatic;
     TaskPool *tasks = nullptr;
 };

@@ -3,10 +3,10 @@
 
 #include "app/sandbox/clock.h"
 #include "app/sandbox/keys.h"
+#include "app/sandbox/scene_catalog.h"
 #include "app/sandbox/session.h"
 #include "app/sandbox/theme.h"
 #include "app/sandbox/view_state.h"
-#include "app/scene_catalog.h"
 
 #include <filesystem>
 #include <optional>

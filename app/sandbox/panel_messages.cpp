@@ -20,7 +20,10 @@ float messages_height(const Messages &messages, float width) {
 }
 
 void messages_panel(PanelContext &context) {
-    for (const Message &message : context.session.messages().all()) {
+    // The newest on top, where it is seen even if there are many.
+    const std::vector<Message> &messages = context.session.messages().all();
+    for (auto at = messages.rbegin(); at != messages.rend(); ++at) {
+        const Message &message = *at;
         const Colour &colour = message.severity == Message::Severity::error     ? theme::error
                                : message.severity == Message::Severity::warning ? theme::warning
                                                                                 : theme::text;

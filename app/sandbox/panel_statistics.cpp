@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <imgui/imgui.h>
 
@@ -64,9 +65,12 @@ double round_up(double value) {
 
 void label(const Fonts &fonts, const Plot &plot, bool top, const std::string &text) {
     const float size = fonts.small->FontSize;
-    ImGui::GetWindowDrawList()->AddText(
-        fonts.small, size, {plot.min.x + 4, top ? plot.min.y + 1 : plot.max.y - size - 1},
-        packed(theme::dim), text.c_str());
+    const ImVec2 at(plot.min.x + 4, top ? plot.min.y + 1 : plot.max.y - size - 1);
+    const float width = fonts.small->CalcTextSizeA(size, 1e9f, 0, text.c_str()).x;
+    // Legible where the graph runs through it.
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x - 2, at.y}, {at.x + width + 2, at.y + size},
+                                              packed(theme::panel, 0.75f), 2);
+    ImGui::GetWindowDrawList()->AddText(fonts.small, size, at, packed(theme::dim), text.c_str());
 }
 
 // Stacked, the first phase at the bottom.
@@ -74,14 +78,18 @@ void time_graph(const PanelContext &context, float height) {
     const SessionGraphs &graphs = context.session.graphs();
     const Plot plot = begin_plot(height);
     const std::size_t count = context.frozen ? 0 : graphs.advance.size();
-    double most = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        double total = 0;
+    std::vector<double> totals(count);
+    for (std::size_t i = 0; i < count; ++i)
         for (const Phase &phase : phases)
-            total += (graphs.*phase.graph).at(i);
-        most = std::max(most, total);
+            totals[i] += (graphs.*phase.graph).at(i);
+    // A few steps that the machine has held up run off the top, and the others are still seen.
+    double usual = 0;
+    if (count > 0) {
+        const auto at = totals.begin() + static_cast<std::ptrdiff_t>(count * 9 / 10);
+        std::nth_element(totals.begin(), at, totals.end());
+        usual = *at;
     }
-    const double scale = round_up(most);
+    const double scale = round_up(1.25 * usual);
     ImDrawList &list = *ImGui::GetWindowDrawList();
     list.PushClipRect(plot.min, plot.max, true);
     for (std::size_t i = 0; i + 1 < count; ++i) {
@@ -100,7 +108,7 @@ void time_graph(const PanelContext &context, float height) {
         }
     }
     list.PopClipRect();
-    label(context.fonts, plot, true, count > 0 ? duration(scale) : "-");
+    label(context.fonts, plot, true, count > 0 ? number(scale * 1e3, "ms") : "-");
 }
 
 void energy_graph(const PanelContext &context, float height) {
@@ -156,7 +164,7 @@ void legend(const PanelContext &context, const StepReport &report) {
             {at.x, at.y + down}, {at.x + side, at.y + down + side}, packed(phase.colour), 2);
         ImGui::SetCursorPosX(start + side + 5);
         ImGui::TextUnformatted(phase.title);
-        const std::string time = context.frozen ? "-" : duration(report.*phase.time);
+        const std::string time = context.frozen ? "-" : milliseconds(report.*phase.time);
         ImGui::SameLine();
         ImGui::SetCursorPosX(start + half - ImGui::CalcTextSize(time.c_str()).x -
                              (i % 2 == 0 ? 10.0f : 0.0f));
@@ -168,7 +176,7 @@ void legend(const PanelContext &context, const StepReport &report) {
 } // namespace
 
 void statistics_panel(PanelContext &context) {
-    heading(context.fonts, "Time of a step", shortcut(Action::toggle_diagnostics));
+    heading(context.fonts, "Time of a step, ms", shortcut(Action::toggle_diagnostics));
     static const StepReport nothing;
     const Simulation *simulation = context.session.simulation();
     const StepReport &report = simulation ? simulation->report() : nothing;
@@ -180,9 +188,9 @@ void statistics_panel(PanelContext &context) {
     energy_graph(context, height);
     ImGui::Spacing();
     value_row("Moving bodies", std::to_string(report.moving_bodies));
-    value_row("Pairs, contacts, points", std::to_string(report.pairs) + ", " +
-                                             std::to_string(report.contacts) + ", " +
-                                             std::to_string(report.contact_points));
+    value_row("Pairs", std::to_string(report.pairs));
+    value_row("Contacts, points",
+              std::to_string(report.contacts) + ", " + std::to_string(report.contact_points));
     value_row("Joints", std::to_string(report.joints));
     value_row("Impacts, unresolved",
               std::to_string(report.impacts) + ", " + std::to_string(report.unresolved_impacts),

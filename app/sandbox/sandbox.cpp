@@ -20,9 +20,9 @@ bool Sandbox::open(const std::filesystem::path &path) {
     return true;
 }
 
-bool Sandbox::open(const SceneDesc &scene) {
+bool Sandbox::open(const SceneDesc &scene, const std::filesystem::path &path) {
     session_.messages().clear();
-    if (!session_.open(scene))
+    if (!session_.open(scene, path))
         return false;
     started(true);
     return true;

@@ -5,10 +5,10 @@
 #include "app/sandbox/clock.h"
 #include "app/sandbox/keys.h"
 #include "app/sandbox/panel.h"
+#include "app/sandbox/scene_catalog.h"
 #include "app/sandbox/session.h"
 #include "app/sandbox/tools.h"
 #include "app/sandbox/view_state.h"
-#include "app/scene_catalog.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -33,7 +33,7 @@ class Sandbox {
 
     // With the scene's own camera and nothing selected. False, with messages, if it cannot run.
     bool open(const std::filesystem::path &path);
-    bool open(const SceneDesc &scene);
+    bool open(const SceneDesc &scene, const std::filesystem::path &path = {});
 
     void perform(Action action);
     // `in_text_field`: plain keys are being typed there, and only those with Ctrl, F1 and Esc act.

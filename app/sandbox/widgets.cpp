@@ -219,9 +219,9 @@ std::string number(double value, std::string_view unit, int digits) {
     return text;
 }
 
-std::string duration(double seconds) {
+std::string milliseconds(double seconds) {
     std::array<char, 48> digits{};
-    std::snprintf(digits.data(), digits.size(), "%.2f ms", seconds * 1e3);
+    std::snprintf(digits.data(), digits.size(), "%.2f", seconds * 1e3);
     return digits.data();
 }
 

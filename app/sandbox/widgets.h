@@ -35,8 +35,7 @@ void small_text(const Fonts &fonts, std::string_view text);
 
 // With so many significant digits; "-" if it is not finite.
 [[nodiscard]] std::string number(double value, std::string_view unit = {}, int digits = 4);
-// A time for people: "1.25 ms".
-[[nodiscard]] std::string duration(double seconds);
+[[nodiscard]] std::string milliseconds(double seconds); // "1.25"
 
 [[nodiscard]] ImU32 packed(const Colour &colour, float alpha = 1);
 

@@ -1,5 +1,7 @@
 #include "app/sandbox/window_input.h"
 
+#include "app/sandbox/layout.h"
+
 #include <optional>
 #include <utility>
 
@@ -120,6 +122,9 @@ struct WindowInput::Callbacks {
 };
 
 WindowInput::WindowInput(Window &window) : window_(window.handle()) {
+    const glm::vec2 least = smallest_window * window.content_scale();
+    glfwSetWindowSizeLimits(window_, static_cast<int>(least.x), static_cast<int>(least.y),
+                            GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
     glfwSetKeyCallback(window_, Callbacks::key);
     glfwSetCharCallback(window_, Callbacks::character);

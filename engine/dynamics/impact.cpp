@@ -45,12 +45,16 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
         return glm::dot(b.velocity_at(point.r_b) - a.velocity_at(point.r_a), contact.normal);
     };
     std::array<Rebound, 4> rebounds;
+    std::array<Real, 4>
+        normal_mass{}; // at the present poses: a stale one would gain or lose energy
     bool any = false;
     for (int k = 0; k < contact.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         const ContactPointConstraint &point = contact.points[index];
         rebounds[index] = rebound(present_separation(contact, point, a, b), normal_speed(point),
                                   pull, contact.restitution, threshold, h);
+        const Real inverse = inverse_effective_mass(a, b, point.r_a, point.r_b, contact.normal);
+        normal_mass[index] = inverse > Real(0) ? Real(1) / inverse : Real(0);
         any = any || rebounds[index].struck;
     }
     if (!any)
@@ -65,7 +69,7 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             if (!rebounds[index].struck)
                 continue;
             const ContactPointConstraint &point = contact.points[index];
-            const Real change = point.normal_mass * (rebounds[index].speed - normal_speed(point));
+            const Real change = normal_mass[index] * (rebounds[index].speed - normal_speed(point));
             const Real total = std::max(normal_impulse[index] + change, Real(0));
             const Vec3 impulse = (total - normal_impulse[index]) * contact.normal;
             normal_impulse[index] = total;

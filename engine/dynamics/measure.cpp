@@ -17,6 +17,13 @@ void add(StateHash &hash, const Vec3 &v) {
     hash.add(v.z);
 }
 
+void add(StateHash &hash, const Quat &q) {
+    hash.add(q.w);
+    hash.add(q.x);
+    hash.add(q.y);
+    hash.add(q.z);
+}
+
 void add(StateHash &hash, const StepSettings &s) {
     for (const double value :
          {s.gravity.x, s.gravity.y, s.gravity.z, s.dt, s.speculative_distance, s.penetration_slop,
@@ -26,6 +33,26 @@ void add(StateHash &hash, const StepSettings &s) {
     for (const int value :
          {s.substeps, s.iterations, s.impact_sweeps, s.impact_passes, s.gyroscopic_iterations})
         hash.add(static_cast<std::uint64_t>(value));
+}
+
+void add(StateHash &hash, const Shape &shape) {
+    hash.add(std::uint64_t{shape.index()});
+    if (const auto *sphere = std::get_if<Sphere>(&shape)) {
+        add(hash, sphere->center);
+        hash.add(sphere->radius);
+    } else if (const auto *box = std::get_if<Box>(&shape)) {
+        add(hash, box->center);
+        add(hash, box->rotation);
+        add(hash, box->half_extents);
+    } else if (const auto *capsule = std::get_if<Capsule>(&shape)) {
+        add(hash, capsule->a);
+        add(hash, capsule->b);
+        hash.add(capsule->radius);
+    } else {
+        const auto &half_space = std::get<HalfSpace>(shape);
+        add(hash, half_space.normal);
+        hash.add(half_space.offset);
+    }
 }
 
 } // namespace
@@ -137,12 +164,15 @@ std::uint64_t World::hash() const {
         if (!bodies_[i].alive)
             continue;
         rank[i] = alive++;
+        const Body &body = bodies_[i];
+        hash.add(static_cast<std::uint64_t>(body.kind));
+        add(hash, body.shape);
+        hash.add(body.material.friction);
+        hash.add(body.material.restitution);
+        hash.add(body.mass);
         const Motion &motion = motions_[i];
         add(hash, motion.position);
-        hash.add(motion.rotation.w);
-        hash.add(motion.rotation.x);
-        hash.add(motion.rotation.y);
-        hash.add(motion.rotation.z);
+        add(hash, motion.rotation);
         add(hash, motion.velocity);
         add(hash, motion.angular_velocity);
     }
@@ -150,6 +180,11 @@ std::uint64_t World::hash() const {
         if (joint.alive) {
             hash.add(joint.a == Joint::world ? std::uint64_t{Joint::world} : rank[joint.a]);
             hash.add(joint.b == Joint::world ? std::uint64_t{Joint::world} : rank[joint.b]);
+            hash.add(static_cast<std::uint64_t>(joint.type));
+            add(hash, joint.anchor_a_local);
+            add(hash, joint.anchor_b_local);
+            hash.add(joint.length);
+            hash.add(std::uint64_t{joint.collide_connected});
             add(hash, joint.impulse);
         }
     // A point that bears no load is not remembered.

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -60,7 +61,15 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
             (Real(0.5) * h) * (cross_matrix(mid) * inertia_matrix - cross_matrix(inertia * mid));
         change -= glm::inverse(jacobian) * residual;
     }
-    return spin + change;
+    // Turns of more than a radian need more iterations, and from two on Newton's method may run
+    // away from its root; the energy is kept all the same.
+    const Vec3 end = spin + change;
+    const Real before = glm::dot(inertia * spin, spin);
+    const Real after = glm::dot(inertia * end, end);
+    constexpr Real rounding = Real(32) * std::numeric_limits<Real>::epsilon();
+    if (std::abs(after - before) <= rounding * before)
+        return end;
+    return std::isfinite(after) && after > Real(0) ? std::sqrt(before / after) * end : spin;
 }
 
 FreeFlight begin_flight(Motion &motion, const Body &body, const Vec3 &gravity, Real h, Kick kick,

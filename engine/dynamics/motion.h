@@ -19,7 +19,8 @@ Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h);
 // principal axes: Euler's equations I w' = -w x I w by the implicit midpoint rule, which keeps
 // kinetic energy and the length of the angular momentum for any step (quadratic invariants; Hairer,
 // Lubich, Wanner 2006, "Geometric Numerical Integration", thm IV.2.1). Solved by `iterations`
-// Newton steps.
+// Newton steps: three reach rounding up to a third of a radian a step; where they do not, beyond a
+// radian or so, the result is scaled to the energy, and the angular momentum is bounded by it.
 Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iterations);
 
 // When a substep's gravity and gyroscopic torque reach the velocities that a solver works on:

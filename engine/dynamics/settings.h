@@ -24,8 +24,9 @@ struct StepSettings {
     // is under-sampled; 1/8 lets it settle between neighbours (Catto 2024, "Solver2D").
     double contact_frequency_ratio = 0.125;
     double contact_damping_ratio = 10;
-    // Soft joints, likewise. Stiffer keeps a pendulum truer, and tears a chain of ten with a hundredfold
-    // weight at its end apart at four substeps; 0.2 and 5 is the stiffest that holds both.
+    // Soft joints, likewise. Stiffer keeps a pendulum truer, and tears a chain of ten with a
+    // hundredfold weight at its end apart at four substeps; 0.2 and 5 is the stiffest that holds
+    // both.
     double joint_frequency_ratio = 0.2;
     double joint_damping_ratio = 5;
     // The fastest that overlapping bodies are pushed apart (m/s).

@@ -117,8 +117,10 @@ void World::find_pairs() {
         swept_[i] = swept_bounds(i);
         const Aabb &box = swept_[i];
         const Real sum = box.min.x + box.min.y + box.min.z + box.max.x + box.max.y + box.max.z;
-        if (!std::isfinite(sum)) // diverged: the report says so; nothing to collide any more
+        if (!std::isfinite(sum)) { // diverged: the report says so; nothing to collide any more
+            swept_[i] = Aabb{};
             continue;
+        }
         if (body.leaf == DynamicTree::none) {
             body.leaf = tree_.insert(box, i);
             moved_[i] = 1;
@@ -151,11 +153,16 @@ void World::find_pairs() {
         if (touch(swept_[a], swept_[b]))
             candidates_.push_back(key);
     }
-    for (const std::uint32_t plane : half_spaces_)
+    for (const std::uint32_t plane : half_spaces_) {
+        HalfSpace reached = std::get<HalfSpace>(placed_[plane]);
+        if (bodies_[plane].kind != BodyKind::fixed)
+            reached.offset +=
+                glm::length(motions_[plane].velocity) * static_cast<Real>(settings_.dt);
         for (std::uint32_t i = 0; i < count; ++i)
             if (bodies_[i].alive && bodies_[i].kind == BodyKind::dynamic &&
-                touch(swept_[i], std::get<HalfSpace>(placed_[plane])))
+                touch(swept_[i], reached))
                 candidates_.push_back(Contact::pair_key(i, plane));
+    }
     if (!joined_.empty())
         std::erase_if(candidates_,
                       [&](std::uint64_t key) { return std::ranges::binary_search(joined_, key); });
@@ -176,6 +183,8 @@ void World::collide(TaskPool *tasks) {
             const Vec3 approach = motions_[contact.b].velocity - motions_[contact.a].velocity;
             const Real margin =
                 static_cast<Real>(settings_.speculative_distance) + glm::length(approach) * dt;
+            if (!std::isfinite(margin)) // about to diverge: speeds whose square is infinite
+                continue;
             contact.manifold = plumb::collide(placed_[contact.a], placed_[contact.b], margin);
             if (contact.manifold.count == 0)
                 continue;

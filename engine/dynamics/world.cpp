@@ -26,7 +26,30 @@ void check_settings(const StepSettings &s) {
                 "substeps must be 1 to 10000, got " << s.substeps);
     PLUMB_CHECK(s.iterations >= 1 && s.iterations <= 10000,
                 "iterations must be 1 to 10000, got " << s.iterations);
-    PLUMB_CHECK(is_finite(Vec3{s.gravity}), "gravity must be finite");
+    PLUMB_CHECK(is_finite(Vec3{s.gravity}), "gravity must be finite, got " << s.gravity.x << ", "
+                                                                           << s.gravity.y << ", "
+                                                                           << s.gravity.z);
+    const auto check_not_negative = [](const char *name, double value) {
+        PLUMB_CHECK(std::isfinite(value) && value >= 0,
+                    name << " must be finite and not negative, got " << value);
+    };
+    check_not_negative("speculative_distance", s.speculative_distance);
+    check_not_negative("penetration_slop", s.penetration_slop);
+    check_not_negative("baumgarte", s.baumgarte);
+    check_not_negative("contact_damping_ratio", s.contact_damping_ratio);
+    check_not_negative("joint_damping_ratio", s.joint_damping_ratio);
+    check_not_negative("push_velocity", s.push_velocity);
+    check_not_negative("restitution_threshold", s.restitution_threshold);
+    // 0 would divide by zero where damping is 0, too.
+    PLUMB_CHECK(std::isfinite(s.contact_frequency_ratio) && s.contact_frequency_ratio > 0,
+                "contact_frequency_ratio must be positive, got " << s.contact_frequency_ratio);
+    PLUMB_CHECK(std::isfinite(s.joint_frequency_ratio) && s.joint_frequency_ratio > 0,
+                "joint_frequency_ratio must be positive, got " << s.joint_frequency_ratio);
+    PLUMB_CHECK(s.impact_sweeps >= 0,
+                "impact_sweeps must not be negative, got " << s.impact_sweeps);
+    PLUMB_CHECK(s.impact_passes >= 1, "impact_passes must be at least 1, got " << s.impact_passes);
+    PLUMB_CHECK(s.gyroscopic_iterations >= 0,
+                "gyroscopic_iterations must not be negative, got " << s.gyroscopic_iterations);
 }
 
 template <typename Item>
@@ -74,9 +97,15 @@ BodyId World::add_body(const BodyDef &def) {
     const bool dynamic = def.kind == BodyKind::dynamic;
     const bool half_space = std::holds_alternative<HalfSpace>(def.shape);
     PLUMB_CHECK(!(dynamic && half_space), "a half-space cannot be dynamic");
-    if (dynamic)
+    Vec3 inertia{Real(0)};
+    if (dynamic) {
         PLUMB_CHECK(std::isfinite(def.mass) && def.mass > 0,
                     "mass must be positive, got " << def.mass);
+        inertia = principal_inertia(def.shape, def.mass);
+        PLUMB_CHECK(is_finite(Real(1) / inertia) && is_finite(inertia),
+                    "a dynamic body needs an extent: its moments of inertia are "
+                        << inertia.x << ", " << inertia.y << ", " << inertia.z);
+    }
 
     const std::uint32_t slot = take_slot(bodies_, free_bodies_);
     motions_.resize(bodies_.size());
@@ -89,7 +118,7 @@ BodyId World::add_body(const BodyDef &def) {
     motion = Motion{};
     if (dynamic) {
         body.mass = def.mass;
-        body.inertia = principal_inertia(def.shape, def.mass);
+        body.inertia = inertia;
         body.inv_inertia = Real(1) / body.inertia;
         motion.inv_mass = Real(1) / def.mass;
     }
@@ -182,10 +211,6 @@ void World::remove_joint(JointId id) {
 bool World::is_alive(JointId id) const {
     return id.index < joints_.size() && joints_[id.index].alive &&
            joints_[id.index].generation == id.generation;
-}
-
-bool World::is_joined(std::uint32_t a, std::uint32_t b) const {
-    return std::ranges::binary_search(joined_, Contact::pair_key(a, b));
 }
 
 void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,

@@ -31,7 +31,8 @@ class World {
     const Method &method() const { return *method_; }
     const StepSettings &settings() const { return settings_; }
 
-    // Fails a check on NaN, on a mass that is not positive, on a dynamic half-space.
+    // Fails a check on NaN, on a mass that is not positive, on a dynamic half-space, on a dynamic
+    // body without extent (a moment of inertia of 0).
     BodyId add_body(const BodyDef &def);
     // Its contacts and joints go with it. An id no longer alive fails a check.
     void remove_body(BodyId id);
@@ -88,7 +89,6 @@ class World {
 
     bool needs_contacts() const;
     Aabb swept_bounds(std::uint32_t body) const;
-    bool is_joined(std::uint32_t a, std::uint32_t b) const;
     double energy_of(const Body &body, const Motion &motion) const;
 
     const Method *method_;

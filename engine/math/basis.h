@@ -4,6 +4,7 @@
 #include "engine/math/types.h"
 
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -18,16 +19,19 @@ struct TangentBasis {
 // to the basis (Hughes, Moeller 1999, "Building an Orthonormal Basis from a Unit Vector", with the
 // one pole moved from an axis to -p, a direction that no contact on a floor or a wall has).
 // Continuous everywhere else, so that friction impulses kept in this basis stay true when a normal
-// wavers. At n == -p itself: u and v.
+// wavers. At n == -p itself, and closer to it than roundings tell apart: v and u.
 inline TangentBasis tangent_basis(const Vec3 &n) {
     const Vec3 p{Real(0.48), Real(0.6), Real(0.64)};
     const Vec3 u{Real(-0.8), Real(0), Real(0.6)};
     const Vec3 v{Real(0.36), Real(-0.8), Real(0.48)};
-    const Real from_pole = Real(1) + glm::dot(n, p);
-    if (from_pole <= Real(1e-6))
+    // Written in w alone (n . u = w . u), what comes out is a reflection whatever rounding does to
+    // w; with 1 + n . p it would lose its right angles by epsilon / |w|^2 near the pole.
+    const Vec3 w = n + p;
+    const Real squared = glm::dot(w, w);
+    if (squared <= std::numeric_limits<Real>::epsilon())
         return {v, u};
-    const Vec3 w = (n + p) / from_pole;
-    return {u - glm::dot(n, u) * w, v - glm::dot(n, v) * w};
+    const Vec3 scaled = (Real(2) / squared) * w;
+    return {u - glm::dot(w, u) * scaled, v - glm::dot(w, v) * scaled};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

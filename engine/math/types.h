@@ -21,8 +21,9 @@ struct Transform {
     Quat rotation = identity_rotation;
 };
 
-// q v q^-1. Exact in length for a quaternion that is a rounding off unit length, where GLM's product
-// scales the vector: what turns a vector back and forth in every step then loses or gains it.
+// q v q^-1. Exact in length for a quaternion that is a rounding off unit length, where GLM's
+// product scales the vector: what turns a vector back and forth in every step then loses or gains
+// it.
 inline Vec3 rotated(const Quat &q, const Vec3 &v) {
     const Vec3 axis{q.x, q.y, q.z};
     const Real scale = Real(2) / glm::dot(q, q);

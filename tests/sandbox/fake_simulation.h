@@ -14,9 +14,9 @@ namespace plumb {
 
 class FakeSimulation final : public Simulation {
   public:
-    std::optional<std::uint64_t> throws_at;    // the step from this count on fails
-    std::optional<std::uint64_t> diverges_at;  // the step from this count on gives NaN
-    std::vector<glm::dvec3> pulls;             // targets, in order
+    std::optional<std::uint64_t> throws_at;   // the step from this count on fails
+    std::optional<std::uint64_t> diverges_at; // the step from this count on gives NaN
+    std::vector<glm::dvec3> pulls;            // targets, in order
 
     explicit FakeSimulation(const SceneDesc &scene) {
         settings_.gravity = scene.world.gravity;
@@ -102,8 +102,7 @@ class FakeSimulation final : public Simulation {
                 continue;
             const glm::dvec3 to = state_.bodies[i].position - origin;
             const double b = glm::dot(to, direction);
-            const double root =
-                b * b - a * (glm::dot(to, to) - sphere->radius * sphere->radius);
+            const double root = b * b - a * (glm::dot(to, to) - sphere->radius * sphere->radius);
             const double t = root >= 0 ? (b - std::sqrt(root)) / a : -1;
             if (t >= 0 && (!nearest || t < nearest->t))
                 nearest = Pick{i, t, origin + direction * t, {}};
@@ -136,11 +135,12 @@ class FakeSimulation final : public Simulation {
 };
 
 inline Session::Make make_fake() {
-    return [](const SceneDesc &scene, const RunOptions &, TaskPool *) -> std::unique_ptr<Simulation> {
-        if (scene.name == "impossible")
-            throw std::invalid_argument("no method can run it");
-        return std::make_unique<FakeSimulation>(scene);
-    };
+    return
+        [](const SceneDesc &scene, const RunOptions &, TaskPool *) -> std::unique_ptr<Simulation> {
+            if (scene.name == "impossible")
+                throw std::invalid_argument("no method can run it");
+            return std::make_unique<FakeSimulation>(scene);
+        };
 }
 
 // A ball of radius 1 at the origin, weightless, and one beside it.

@@ -12,7 +12,8 @@ namespace {
 TEST(Keys, EveryActionHasOneRowAndAKey) {
     // `quit` is the last of the enumeration.
     for (int i = 0; i <= static_cast<int>(Action::quit); ++i) {
-        const auto rows = std::ranges::count(actions(), static_cast<Action>(i), &ActionInfo::action);
+        const auto rows =
+            std::ranges::count(actions(), static_cast<Action>(i), &ActionInfo::action);
         EXPECT_EQ(rows, 1) << "action " << i;
     }
     for (const ActionInfo &row : actions()) {
@@ -44,33 +45,33 @@ TEST(Keys, AreTheKnownOnes) {
         ASSERT_NE(found, nullptr) << name(chord);
         EXPECT_EQ(found->action, action) << name(chord);
     };
-    for (const auto &[key, action] : std::initializer_list<std::pair<char32_t, Action>>{
-             {'p', Action::pause},
-             {' ', Action::pause},
-             {'.', Action::step},
-             {right, Action::step},
-             {',', Action::step_back},
-             {left, Action::step_back},
-             {'r', Action::restart},
-             {backspace, Action::restart},
-             {'[', Action::previous_scene},
-             {']', Action::next_scene},
-             {tab, Action::toggle_panels},
-             {'m', Action::toggle_diagnostics},
-             {f1, Action::toggle_help},
-             {'?', Action::toggle_help},
-             {escape, Action::dismiss},
-             {'f', Action::frame},
-             {special_key::home, Action::home},
-             {'-', Action::slower},
-             {'=', Action::faster},
-             {'c', Action::toggle_contacts},
-             {'j', Action::toggle_joints},
-             {'w', Action::toggle_wireframe},
-             {'b', Action::toggle_bounds},
-             {'v', Action::toggle_velocities},
-             {'<', Action::previous_method},
-             {'>', Action::next_method}})
+    for (const auto &[key, action] :
+         std::initializer_list<std::pair<char32_t, Action>>{{'p', Action::pause},
+                                                            {' ', Action::pause},
+                                                            {'.', Action::step},
+                                                            {right, Action::step},
+                                                            {',', Action::step_back},
+                                                            {left, Action::step_back},
+                                                            {'r', Action::restart},
+                                                            {backspace, Action::restart},
+                                                            {'[', Action::previous_scene},
+                                                            {']', Action::next_scene},
+                                                            {tab, Action::toggle_panels},
+                                                            {'m', Action::toggle_diagnostics},
+                                                            {f1, Action::toggle_help},
+                                                            {'?', Action::toggle_help},
+                                                            {escape, Action::dismiss},
+                                                            {'f', Action::frame},
+                                                            {special_key::home, Action::home},
+                                                            {'-', Action::slower},
+                                                            {'=', Action::faster},
+                                                            {'c', Action::toggle_contacts},
+                                                            {'j', Action::toggle_joints},
+                                                            {'w', Action::toggle_wireframe},
+                                                            {'b', Action::toggle_bounds},
+                                                            {'v', Action::toggle_velocities},
+                                                            {'<', Action::previous_method},
+                                                            {'>', Action::next_method}})
         expect({key, false, false}, action);
     expect({right, false, true}, Action::step_5);
     expect({left, false, true}, Action::step_back_5);

@@ -23,9 +23,9 @@ TEST(Layout, NothingOverlapsAndAllIsInside) {
                 wishes.messages_height = messages;
                 const Layout layout = lay_out(window, 1, wishes);
                 std::vector<std::pair<std::string, Rect>> all{
-                    {"scenes", layout.scenes},     {"settings", layout.settings},
-                    {"view", layout.view},         {"details", layout.details},
-                    {"messages", layout.messages}, {"help", layout.help},
+                    {"scenes", layout.scenes},      {"settings", layout.settings},
+                    {"view", layout.view},          {"details", layout.details},
+                    {"messages", layout.messages},  {"help", layout.help},
                     {"transport", layout.transport}};
                 if (diagnostics)
                     all.emplace_back("diagnostics", layout.diagnostics);

@@ -75,7 +75,8 @@ TEST_F(ToolsTest, AReleaseOverAPanelEndsTheDrag) {
     for (const PointerButton button : {PointerButton::left, PointerButton::right}) {
         send(Kind::press, sky, button);
         send(Kind::move, sky + glm::vec2(50, 0), button);
-        send(Kind::move, sky + glm::vec2(90, 0), button, false, false, true); // goes on over a panel
+        send(Kind::move, sky + glm::vec2(90, 0), button, false, false,
+             true); // goes on over a panel
         EXPECT_NE(tools.drag(), Tools::Drag::none);
         send(Kind::release, sky + glm::vec2(90, 0), button, false, false, true);
         EXPECT_EQ(tools.drag(), Tools::Drag::none);
@@ -113,8 +114,8 @@ TEST_F(ToolsTest, AnotherButtonsReleaseDoesNotEndADrag) {
     EXPECT_EQ(tools.drag(), Tools::Drag::none);
 }
 
-// The grabbed point stays in the plane through it that faces the camera: here z = 1, the front of the
-// ball as seen from +z, and follows the pointer there.
+// The grabbed point stays in the plane through it that faces the camera: here z = 1, the front of
+// the ball as seen from +z, and follows the pointer there.
 TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
     send(Kind::press, ball, PointerButton::left, true);
     EXPECT_EQ(tools.drag(), Tools::Drag::grab);
@@ -124,7 +125,8 @@ TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
     send(Kind::move, ball + glm::vec2(100, 50), PointerButton::left, true);
     const glm::dvec3 target = session.grabbed()->target;
     EXPECT_NEAR(target.z, 1, 1e-5);
-    // Back through the camera, the target lies under the pointer. Pixels in float, of a few hundred.
+    // Back through the camera, the target lies under the pointer. Pixels in float, of a few
+    // hundred.
     const glm::vec3 pixel = camera.project(glm::vec3(target), viewport);
     EXPECT_NEAR(pixel.x, 500, 1e-2);
     EXPECT_NEAR(pixel.y, 350, 1e-2);

@@ -1,4 +1,4 @@
-#include "app/scene_catalog.h"
+#include "app/sandbox/scene_catalog.h"
 
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_file_spelling.h"

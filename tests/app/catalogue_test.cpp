@@ -1,0 +1,115 @@
+// Every scene of the catalogue with every method that can run it.
+#include "tests/app/program.h"
+
+#include "app/lab/check.h"
+#include "engine/core/task_pool.h"
+#include "engine/dynamics/method_info.h"
+#include "engine/scene/scene_file.h"
+#include "engine/scene/simulation.h"
+
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> scene_files() {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry &file :
+         fs::recursive_directory_iterator(fs::path(PLUMB_SOURCE_DIR) / "scenes"))
+        if (file.path().extension() == ".toml")
+            files.push_back(file.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+SceneDesc loaded(const fs::path &path) {
+    const SceneFileResult result = load_scene(path);
+    EXPECT_TRUE(result.ok()) << path;
+    return result.scene;
+}
+
+class Scene : public testing::TestWithParam<fs::path> {};
+
+TEST_P(Scene, IsWithinItsTolerancesWithEveryMethodThatCanRunIt) {
+    const SceneDesc scene = loaded(GetParam());
+    int runs = 0;
+    for (const MethodInfo &method : method_infos()) {
+        if (!why_not(method, scene).empty())
+            continue;
+        RunOptions options;
+        options.method = method.name;
+        const CheckOutcome outcome = check_scene(scene, options, nullptr);
+        std::ostringstream text;
+        print(text, outcome);
+        EXPECT_EQ(exit_code(outcome), ExitCode::fine) << text.str();
+        ++runs;
+    }
+    EXPECT_GT(runs, 0);
+}
+
+TEST_P(Scene, HasSomethingToHoldItTo) {
+    EXPECT_FALSE(loaded(GetParam()).expects.empty());
+}
+
+// The state, written as a scene and loaded again, hashes the same and goes on the same.
+TEST_P(Scene, GoesOnTheSameFromASavedFile) {
+    const SceneDesc scene = loaded(GetParam());
+    for (const MethodInfo &method : method_infos()) {
+        if (!why_not(method, scene).empty())
+            continue;
+        RunOptions options;
+        options.method = method.name;
+        const auto simulation = Simulation::create(scene, options, nullptr);
+        std::uint64_t step = 0;
+        for (const std::uint64_t saved_at : {0u, 1u, 30u, 100u}) {
+            for (; step < saved_at; ++step)
+                simulation->step();
+            const std::string text = write_scene(simulation->describe());
+            const SceneFileResult again = parse_scene(text, scene.name + ".toml");
+            ASSERT_TRUE(again.ok()) << format_message("saved", again.messages.front());
+            const auto copy = Simulation::create(again.scene, {}, nullptr);
+            const auto original = Simulation::create(scene, options, nullptr);
+            for (std::uint64_t s = 0; s < saved_at; ++s)
+                original->step();
+            ASSERT_EQ(original->hash(), simulation->hash()) << "a second run is another";
+            ASSERT_EQ(copy->hash(), original->hash())
+                << method.name << ", saved at step " << saved_at;
+            for (int s = 0; s < 100; ++s) {
+                original->step();
+                copy->step();
+            }
+            EXPECT_EQ(copy->hash(), original->hash())
+                << method.name << ", 100 steps after saving at step " << saved_at;
+        }
+    }
+}
+
+TEST_P(Scene, IsTheSameWithTwoThreads) {
+    const SceneDesc scene = loaded(GetParam());
+    TaskPool two(2);
+    for (const MethodInfo &method : method_infos()) {
+        if (!why_not(method, scene).empty())
+            continue;
+        RunOptions options;
+        options.method = method.name;
+        const auto alone = Simulation::create(scene, options, nullptr);
+        const auto shared = Simulation::create(scene, options, &two);
+        for (int s = 0; s < 100; ++s) {
+            alone->step();
+            shared->step();
+        }
+        EXPECT_EQ(shared->hash(), alone->hash()) << method.name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, Scene, testing::ValuesIn(scene_files()),
+                         [](const auto &each) { return each.param.stem().string(); });
+
+} // namespace
+} // namespace plumb

@@ -1,0 +1,355 @@
+// Every command and exit code, through the program itself.
+#include "tests/app/program.h"
+
+#include "app/render/image.h"
+#include "app/render/png.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has(const std::string &text, const std::string &part) {
+    return text.find(part) != std::string::npos;
+}
+
+std::set<std::string> files_in(const fs::path &folder) {
+    std::set<std::string> names;
+    for (const fs::directory_entry &file : fs::directory_iterator(folder))
+        names.insert(file.path().filename().string());
+    return names;
+}
+
+// A ball that falls freely, and is asked to be at `height` after one second.
+std::string falling_ball(const std::string &height) {
+    return R"([[body]]
+name = "ball"
+shape = "sphere"
+radius = 1
+position = [0, 10, 0]
+
+[[expect]]
+name = "height"
+quantity = "position.y"
+body = "ball"
+reduce = "last"
+to = 1
+equals = )" +
+           height + R"(
+tolerance = 0.2
+source = "closed form: h - g t^2 / 2"
+)";
+}
+
+// Too fast to turn for the finest step: no longer finite after one.
+constexpr const char *diverging = R"([world]
+dt = 1
+method = "rk4"
+
+[[body]]
+name = "top"
+shape = "box"
+half_extents = [1, 2, 3]
+angular_velocity = [1e9, 1e9, 1e9]
+)";
+
+constexpr const char *with_errors = R"(title = 3
+[world]
+dt = "0"
+[[body]]
+name = "a"
+shape = "sphere"
+radus = 1
+)";
+
+TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
+    const std::vector<std::string> run{"--dt", "--substeps", "--iterations", "--precision",
+                                       "--threads"};
+    struct Command {
+        const char *name;
+        std::vector<std::string> options;
+        bool runs;
+    };
+    const Command commands[]{
+        {"run", {"SCENE", "--method", "--gl", "--out", "--size", "--frames", "--screenshot"}, true},
+        {"snapshot",
+         {"SCENE", "--method", "--at", "--every", "--steps", "--size", "--out", "--ui", "--samples",
+          "--gl"},
+         true},
+        {"check", {"SCENE", "--method", "--all-methods"}, true},
+        {"hash", {"SCENE", "--method", "--steps"}, true},
+        {"list", {"--json", "--keys", "--methods"}, false},
+        {"measure", {"SCENE", "--method", "--steps", "--csv"}, true},
+        {"chart", {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out"}, true},
+        {"compare", {"A", "B", "--tolerance", "--difference"}, false},
+    };
+    const ProgramResult all = run_program("--help");
+    EXPECT_EQ(all.exit_code, 0);
+    for (const Command &command : commands) {
+        EXPECT_TRUE(has(all.out, std::string("  ") + command.name)) << command.name;
+        const ProgramResult help = run_program(command.name + std::string(" --help"));
+        EXPECT_EQ(help.exit_code, 0) << command.name;
+        EXPECT_TRUE(help.err.empty()) << help.err;
+        for (const std::string &option : command.options)
+            EXPECT_TRUE(has(help.out, option)) << command.name << " " << option;
+        for (const std::string &option : command.runs ? run : std::vector<std::string>{})
+            EXPECT_TRUE(has(help.out, option)) << command.name << " " << option;
+        EXPECT_TRUE(has(help.out, "Exit codes:")) << command.name;
+    }
+}
+
+TEST(CommandLine, WrongArgumentsAreExitCode2) {
+    for (const char *arguments : {"nonsense",
+                                  "list --nonsense",
+                                  "check",
+                                  "hash pendulum",
+                                  "snapshot pendulum --every 5",
+                                  "snapshot pendulum --at 3 --every 5 --steps 9",
+                                  "check pendulum --threads 0",
+                                  "check pendulum --substeps 0",
+                                  "check pendulum --dt -1",
+                                  "check pendulum --precision half",
+                                  "snapshot pendulum --gl vulkan",
+                                  "snapshot pendulum --size 10",
+                                  "snapshot pendulum --size 640x400x2",
+                                  "snapshot pendulum --size 15x400",
+                                  "snapshot pendulum --at -1",
+                                  "hash pendulum --steps -1",
+                                  "measure pendulum --steps -1",
+                                  "snapshot pendulum --every 3 --steps -9",
+                                  "compare a.png",
+                                  "chart pendulum --sweep dt"}) {
+        const ProgramResult result = run_program(arguments);
+        EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.out << result.err;
+        EXPECT_FALSE(result.err.empty()) << arguments;
+    }
+}
+
+TEST(CommandLine, AnUnknownMethodIsAnsweredWithThoseThereAre) {
+    for (const char *command : {"hash --steps 1", "check", "measure", "snapshot"}) {
+        const ProgramResult result =
+            run_program(std::string(command) + " pendulum --method soft_stop");
+        EXPECT_EQ(result.exit_code, 2) << command;
+        EXPECT_TRUE(has(result.err, "soft_stop")) << command << ": " << result.err;
+        EXPECT_TRUE(has(result.err, "soft_step")) << command << ": " << result.err;
+    }
+}
+
+TEST(CommandLine, AnUnknownSceneIsAnsweredWithTheNearest) {
+    const ProgramResult result = run_program("check pendulm");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(has(result.err, "did you mean \"pendulum\"?")) << result.err;
+}
+
+TEST(CommandLine, ListNamesScenesMethodsAndKeys) {
+    const ProgramResult scenes = run_program("list");
+    EXPECT_EQ(scenes.exit_code, 0);
+    EXPECT_TRUE(has(scenes.out, "wrecking_ball")) << scenes.out;
+    const ProgramResult methods = run_program("list --methods");
+    EXPECT_EQ(methods.exit_code, 0);
+    EXPECT_TRUE(has(methods.out, "soft_step")) << methods.out;
+    const ProgramResult keys = run_program("list --keys");
+    EXPECT_EQ(keys.exit_code, 0);
+    EXPECT_TRUE(has(keys.out, "Ctrl+Q")) << keys.out;
+}
+
+TEST(CommandLine, ListJsonHoldsEveryScene) {
+    const ProgramResult list = run_program("list --json");
+    ASSERT_EQ(list.exit_code, 0);
+    const TemporaryFolder folder;
+    const fs::path json = folder.write("list.json", list.out);
+    const fs::path checker = folder.write("check.py", R"(import json, os, sys
+listed = json.load(open(sys.argv[1]))
+found = sorted(os.path.join(d, f) for d, _, fs in os.walk(sys.argv[2]) for f in fs if f.endswith(".toml"))
+assert sorted(s["path"] for s in listed) == found, (listed, found)
+for s in listed:
+    assert os.path.basename(s["path"]) == s["name"] + ".toml" and s["title"] and s["subject"], s
+)");
+    EXPECT_EQ(std::system(("python3 '" + checker.string() + "' '" + json.string() +
+                           "' '" PLUMB_SOURCE_DIR "/scenes'")
+                              .c_str()),
+              0)
+        << list.out;
+}
+
+TEST(CommandLine, CheckSaysWhetherASceneMeetsItsExpectations) {
+    const TemporaryFolder folder;
+    folder.write("right.toml", falling_ball("5.095"));
+    folder.write("wrong.toml", falling_ball("7"));
+    const ProgramResult right = run_program("check right.toml", folder.path());
+    EXPECT_EQ(right.exit_code, 0) << right.out << right.err;
+    EXPECT_TRUE(has(right.out, "ok    right/height")) << right.out;
+    const ProgramResult wrong = run_program("check wrong.toml right.toml", folder.path());
+    EXPECT_EQ(wrong.exit_code, 1) << wrong.out << wrong.err;
+    EXPECT_TRUE(has(wrong.out, "MISSED wrong/height")) << wrong.out;
+    EXPECT_TRUE(has(wrong.out, "ok    right/height")) << wrong.out;
+}
+
+TEST(CommandLine, ABadSceneIsExitCode2WithAllItsErrors) {
+    const TemporaryFolder folder;
+    folder.write("bad.toml", with_errors);
+    for (const char *command :
+         {"check", "hash --steps 1", "measure", "snapshot", "run --gl osmesa", "run", "chart"}) {
+        const ProgramResult result = run_program(std::string(command) + " bad.toml", folder.path());
+        EXPECT_EQ(result.exit_code, 2) << command << result.out << result.err;
+        for (const char *place : {"bad.toml:1:9: error: ", "bad.toml:3:6: error: ",
+                                  "bad.toml:4:1: error: ", "bad.toml:7:1: error: "})
+            EXPECT_TRUE(has(result.err, place)) << command << ": " << place << '\n' << result.err;
+    }
+}
+
+TEST(CommandLine, ADivergingWorldIsExitCode3) {
+    const TemporaryFolder folder;
+    folder.write("top.toml", diverging);
+    for (const char *command :
+         {"check top.toml", "hash --steps 9 top.toml", "measure top.toml --steps 9 --csv top.csv",
+          "snapshot top.toml --at 0,9 --size 64x64"}) {
+        const ProgramResult result = run_program(command, folder.path());
+        EXPECT_EQ(result.exit_code, 3) << command << '\n' << result.out << result.err;
+        std::string said = result.out + result.err;
+        std::ranges::transform(said, said.begin(),
+                               [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+        EXPECT_TRUE(has(said, "diverged")) << command << '\n' << said;
+    }
+    // As far as it went.
+    EXPECT_TRUE(fs::exists(folder.path() / "out" / "top-00000.png"));
+    EXPECT_TRUE(fs::exists(folder.path() / "out" / "top-00001.png"));
+    EXPECT_FALSE(fs::exists(folder.path() / "out" / "top-00009.png"));
+}
+
+TEST(CommandLine, WithoutADisplayAWindowIsExitCode4WithTheReason) {
+    const TemporaryFolder folder;
+    for (const char *command :
+         {"run pendulum --gl window", "snapshot pendulum --gl window --size 64x64"}) {
+        const ProgramResult result = run_program(command, folder.path());
+        EXPECT_EQ(result.exit_code, 4) << command << '\n' << result.err;
+        EXPECT_TRUE(has(result.err, "window: ")) << result.err;
+        EXPECT_TRUE(has(result.err, "DISPLAY")) << result.err;
+        EXPECT_FALSE(has(result.err, "osmesa: ")) << result.err;
+    }
+}
+
+TEST(CommandLine, WithoutADisplayRunDrawsAPictureAndSaysWhy) {
+    const TemporaryFolder folder;
+    const ProgramResult result = run_program("run pendulum --size 200x100", folder.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(has(result.err, "no window: ")) << result.err;
+    EXPECT_TRUE(has(result.err, "DISPLAY")) << result.err;
+    const fs::path picture = folder.path() / "out" / "pendulum.png";
+    ASSERT_TRUE(fs::exists(picture));
+    EXPECT_TRUE(has(result.out, "out/pendulum.png")) << result.out;
+    const Image image = read_png(picture);
+    EXPECT_EQ(image.width, 200);
+    EXPECT_EQ(image.height, 100);
+}
+
+TEST(CommandLine, SnapshotsAreNumberedByStep) {
+    const TemporaryFolder folder;
+    const auto shoot = [&](const std::string &how, const std::string &to) {
+        const ProgramResult result = run_program(
+            "snapshot pendulum --size 64x48 --samples 1 --out " + to + " " + how, folder.path());
+        EXPECT_EQ(result.exit_code, 0) << how << '\n' << result.err;
+        return files_in(folder.path() / to);
+    };
+    using Names = std::set<std::string>;
+    EXPECT_EQ(shoot("", "start"), (Names{"pendulum-00000.png"}));
+    EXPECT_EQ(shoot("--at 7,3,7", "at"), (Names{"pendulum-00003.png", "pendulum-00007.png"}));
+    EXPECT_EQ(shoot("--steps 12", "steps"), (Names{"pendulum-00012.png"}));
+    EXPECT_EQ(shoot("--every 5 --steps 12", "every"),
+              (Names{"pendulum-00000.png", "pendulum-00005.png", "pendulum-00010.png"}));
+    EXPECT_EQ(shoot("--ui --at 1", "ui"), (Names{"pendulum-00001.png"}));
+    const Image image = read_png(folder.path() / "at" / "pendulum-00003.png");
+    EXPECT_EQ(image.width, 64);
+    EXPECT_EQ(image.height, 48);
+}
+
+TEST(CommandLine, TheSameSnapshotTwiceIsTheSameFile) {
+    const TemporaryFolder folder;
+    for (const char *to : {"a", "b"})
+        ASSERT_EQ(
+            run_program(std::string("snapshot pyramid --at 4 --size 160x100 --ui --out ") + to,
+                        folder.path())
+                .exit_code,
+            0);
+    const ProgramResult same =
+        run_program("compare a/pyramid-00004.png b/pyramid-00004.png", folder.path());
+    EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+}
+
+TEST(CommandLine, CompareTellsPicturesApart) {
+    const TemporaryFolder folder;
+    const Image grey(32, 24, {100, 100, 100});
+    Image near = grey;
+    near.set(3, 4, {105, 100, 100});
+    write_png(folder.path() / "grey.png", grey);
+    write_png(folder.path() / "near.png", near);
+    write_png(folder.path() / "small.png", Image(16, 24, {100, 100, 100}));
+    const auto compare = [&](const std::string &arguments) {
+        return run_program("compare " + arguments, folder.path());
+    };
+    EXPECT_EQ(compare("grey.png grey.png").exit_code, 0);
+    EXPECT_EQ(compare("grey.png near.png").exit_code, 1);
+    EXPECT_EQ(compare("grey.png near.png --tolerance 4").exit_code, 1);
+    EXPECT_EQ(compare("grey.png near.png --tolerance 5 --difference d.png").exit_code, 0);
+    EXPECT_EQ(read_png(folder.path() / "d.png").width, 32);
+    const ProgramResult sizes = compare("grey.png small.png --tolerance 255");
+    EXPECT_EQ(sizes.exit_code, 1);
+    EXPECT_TRUE(has(sizes.out, "32x24")) << sizes.out;
+    const ProgramResult missing = compare("grey.png none.png");
+    EXPECT_EQ(missing.exit_code, 2);
+    EXPECT_TRUE(has(missing.err, "none.png")) << missing.err;
+}
+
+TEST(CommandLine, ScenesAreFoundFromAnyFolder) {
+    const TemporaryFolder folder;
+    for (const fs::path &from : {fs::path("/"), folder.path(), fs::path(PLUMB_SOURCE_DIR)})
+        for (const char *name : {"pendulum", "joints/pendulum"}) {
+            const ProgramResult result = run_program(std::string("hash --steps 2 ") + name, from);
+            EXPECT_EQ(result.exit_code, 0) << from << ' ' << name << result.err;
+        }
+}
+
+TEST(CommandLine, WhatCannotBeWrittenIsOneMessageAndExitCode2) {
+    const TemporaryFolder folder;
+    folder.write("file", "");
+    for (const char *command : {"snapshot pendulum --size 64x64 --out file/below",
+                                "run pendulum --size 64x64 --out file/below",
+                                "measure pendulum --steps 2 --csv file/x"}) {
+        const ProgramResult result = run_program(command, folder.path());
+        EXPECT_EQ(result.exit_code, 2) << command << '\n' << result.out << result.err;
+        EXPECT_TRUE(has(result.err, "file/")) << command << '\n' << result.err;
+    }
+    EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"file"}));
+}
+
+TEST(CommandLine, NothingIsLeftBesideWhatIsWritten) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_program("measure pendulum --steps 3 --csv table.csv", folder.path()).exit_code,
+              0);
+    ASSERT_EQ(run_program("snapshot pendulum --size 64x64 --out .", folder.path()).exit_code, 0);
+    EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"table.csv", "pendulum-00000.png"}));
+}
+
+TEST(CommandLine, MeasureWritesARowForEachStep) {
+    const ProgramResult result = run_program("measure pendulum --steps 3");
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_EQ(std::ranges::count(result.out, '\n'), 5) << result.out; // header, start, three steps
+}
+
+TEST(CommandLine, TheHashIsTheSameForAnyNumberOfThreadsAndEachRun) {
+    const ProgramResult once = run_program("hash wrecking_ball pyramid --steps 60");
+    ASSERT_EQ(once.exit_code, 0) << once.err;
+    EXPECT_EQ(run_program("hash wrecking_ball pyramid --steps 60").out, once.out);
+    EXPECT_EQ(run_program("hash wrecking_ball pyramid --steps 60 --threads 2").out, once.out);
+    EXPECT_NE(run_program("hash wrecking_ball pyramid --steps 61").out, once.out);
+}
+
+} // namespace
+} // namespace plumb

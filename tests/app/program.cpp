@@ -1,0 +1,60 @@
+#include "tests/app/program.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <sys/wait.h>
+
+namespace plumb {
+
+namespace {
+
+std::string read_all(const std::filesystem::path &path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+} // namespace
+
+ProgramResult run_program(const std::string &arguments, const std::filesystem::path &folder,
+                          const std::string &before) {
+    const TemporaryFolder capture;
+    const std::string out = (capture.path() / "out").string();
+    const std::string err = (capture.path() / "err").string();
+    const std::string command = "cd '" + folder.string() +
+                                "' && env -u DISPLAY -u WAYLAND_DISPLAY " + before +
+                                " timeout 100 '" PLUMB_PROGRAM "' " + arguments + " >'" + out +
+                                "' 2>'" + err + "' </dev/null";
+    const int status = std::system(command.c_str());
+    ProgramResult result;
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    result.out = read_all(out);
+    result.err = read_all(err);
+    return result;
+}
+
+TemporaryFolder::TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "plumb-test-XXXXXX").string();
+    if (!mkdtemp(name.data()))
+        throw std::runtime_error(name + ": " + std::strerror(errno));
+    path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+}
+
+std::filesystem::path TemporaryFolder::write(const std::string &name,
+                                             const std::string &text) const {
+    const std::filesystem::path path = path_ / name;
+    std::ofstream(path) << text;
+    return path;
+}
+
+} // namespace plumb

@@ -1,0 +1,335 @@
+#include "app/sandbox/session.h"
+
+#include "engine/dynamics/method_info.h"
+#include "engine/scene/scene_file.h"
+#include "tests/sandbox/fake_simulation.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+// A stack that is pushed over: contacts, friction and remembered impulses all matter.
+constexpr const char *stack_text = R"(
+title = "stack"
+[[body]]
+name = "ground"
+shape = "plane"
+[[body]]
+name = "crate"
+shape = "box"
+half_extents = [0.5, 0.5, 0.5]
+position = [0, 0.5, 0]
+repeat = { kind = "stack", count = 4 }
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 0.3
+position = [-3, 1.5, 0]
+velocity = [9, 1, 0]
+)";
+
+class SessionTest : public testing::Test {
+  protected:
+    SessionTest()
+        : folder(std::filesystem::temp_directory_path() /
+                 ("plumb-session-" + std::to_string(::getpid()) + "-" +
+                  testing::UnitTest::GetInstance()->current_test_info()->name())) {
+        std::filesystem::create_directories(folder);
+        write("stack.toml", stack_text);
+    }
+    ~SessionTest() override { std::filesystem::remove_all(folder); }
+    void write(const char *name, const std::string &text) const {
+        std::ofstream(folder / name) << text;
+    }
+    std::filesystem::path folder;
+};
+
+std::vector<std::uint64_t> hashes_of_steps(Session &session, int steps) {
+    std::vector<std::uint64_t> hashes{session.simulation()->hash()};
+    for (int i = 0; i < steps; ++i) {
+        EXPECT_TRUE(session.step());
+        hashes.push_back(session.simulation()->hash());
+    }
+    return hashes;
+}
+
+TEST_F(SessionTest, SteppingBackGivesTheVeryStatesBefore) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    const std::vector<std::uint64_t> hashes = hashes_of_steps(session, 60);
+    for (std::size_t step = 60; step-- > 0;) {
+        ASSERT_TRUE(session.step_back());
+        ASSERT_EQ(session.simulation()->step_count(), step);
+        ASSERT_EQ(session.simulation()->hash(), hashes[step]) << "step " << step;
+    }
+    EXPECT_FALSE(session.step_back());               // nothing remembered any more
+    EXPECT_EQ(hashes_of_steps(session, 60), hashes); // and on again, the same way
+}
+
+TEST_F(SessionTest, SteppingBackUndoesAShot) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    hashes_of_steps(session, 3);
+    const std::uint64_t before = session.simulation()->hash();
+    session.step();
+    const std::size_t bodies = session.simulation()->body_count();
+    ASSERT_TRUE(session.shoot({0, 3, 3}, {0, 0, -5}, 0.2));
+    EXPECT_EQ(session.simulation()->body_count(), bodies + 1);
+    session.step();
+    ASSERT_TRUE(session.step_back());
+    ASSERT_TRUE(session.step_back());
+    EXPECT_EQ(session.simulation()->hash(), before);
+    EXPECT_EQ(session.present_poses().size(), session.simulation()->body_count());
+}
+
+TEST_F(SessionTest, RestartIsTheStart) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    const std::vector<std::uint64_t> hashes = hashes_of_steps(session, 20);
+    ASSERT_TRUE(session.restart());
+    EXPECT_EQ(session.steps_remembered(), 0u);
+    EXPECT_EQ(hashes_of_steps(session, 20), hashes);
+}
+
+TEST_F(SessionTest, RestartKeepsMethodAndSettingsAndAsWrittenDoesNot) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    const std::string written(session.simulation()->method().name);
+    ASSERT_TRUE(session.set_method("sequential_impulses"));
+    StepSettings settings = session.simulation()->settings();
+    settings.dt = 1.0 / 120;
+    settings.iterations = 13;
+    settings.gravity = {0, -3, 0};
+    ASSERT_TRUE(session.set_settings(settings));
+    session.step();
+    ASSERT_TRUE(session.restart());
+    EXPECT_EQ(session.simulation()->method().name, "sequential_impulses");
+    EXPECT_EQ(session.simulation()->settings().dt, 1.0 / 120);
+    EXPECT_EQ(session.simulation()->settings().iterations, 13);
+    EXPECT_EQ(session.simulation()->settings().gravity, glm::dvec3(0, -3, 0));
+    ASSERT_TRUE(session.restart_as_written());
+    EXPECT_EQ(session.simulation()->method().name, written);
+    EXPECT_EQ(session.simulation()->settings().dt, 1.0 / 60);
+    EXPECT_EQ(session.simulation()->settings().gravity, glm::dvec3(0, -9.81, 0));
+}
+
+TEST_F(SessionTest, SteppingBackKeepsTheMethodChosen) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    hashes_of_steps(session, 5);
+    ASSERT_TRUE(session.set_method("sequential_impulses"));
+    ASSERT_TRUE(session.step_back());
+    EXPECT_EQ(session.simulation()->method().name, "sequential_impulses");
+    EXPECT_EQ(session.simulation()->step_count(), 4u);
+}
+
+// Another method runs with the settings that the scene, or else the method, has for it.
+TEST_F(SessionTest, EachMethodBringsItsOwnSettings) {
+    write("tuned.toml", std::string(stack_text) +
+                            "[methods.sequential_impulses]\nsubsteps = 3\niterations = 17\n");
+    Session session;
+    ASSERT_TRUE(session.open(folder / "tuned.toml")) << session.messages().all()[0].text;
+    ASSERT_TRUE(session.set_method("sequential_impulses"));
+    EXPECT_EQ(session.simulation()->settings().substeps, 3);
+    EXPECT_EQ(session.simulation()->settings().iterations, 17);
+    ASSERT_TRUE(session.set_method("soft_step"));
+    const MethodInfo &soft = *find_method_info("soft_step");
+    EXPECT_EQ(session.simulation()->settings().substeps, soft.default_substeps);
+    EXPECT_EQ(session.simulation()->settings().iterations, soft.default_iterations);
+}
+
+TEST_F(SessionTest, AMethodThatCannotRunTheSceneIsRefusedWithAReason) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    const std::uint64_t before = session.simulation()->hash();
+    EXPECT_FALSE(session.set_method("rk4")); // has no contacts
+    EXPECT_FALSE(session.set_method("no such method"));
+    EXPECT_EQ(session.simulation()->hash(), before);
+    ASSERT_EQ(session.messages().all().size(), 2u);
+    EXPECT_NE(session.messages().all()[0].text.find("rk4"), std::string::npos);
+    StepSettings settings = session.simulation()->settings();
+    settings.dt = -1;
+    EXPECT_FALSE(session.set_settings(settings));
+    EXPECT_EQ(session.messages().all().size(), 3u);
+}
+
+TEST_F(SessionTest, ASavedStateLoadsToTheSameHashAndGoesOnTheSameWay) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    hashes_of_steps(session, 40);
+    const std::filesystem::path saved = folder / "new folder" / "saved.toml";
+    ASSERT_TRUE(session.save_scene(saved));
+    // Nothing half-written is left beside it.
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(saved.parent_path()), {}), 1);
+    Session again;
+    ASSERT_TRUE(again.open(saved)) << again.messages().all()[0].text;
+    EXPECT_EQ(hashes_of_steps(again, 40), hashes_of_steps(session, 40));
+}
+
+TEST_F(SessionTest, AFolderThatCannotBeMadeIsAMessage) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    EXPECT_FALSE(session.save_scene(folder / "stack.toml" / "saved.toml")); // a file, no folder
+    ASSERT_EQ(session.messages().all().size(), 1u);
+    EXPECT_EQ(session.messages().all()[0].severity, Message::Severity::error);
+}
+
+TEST_F(SessionTest, ReloadReadsTheFileAnewAndABrokenOneChangesNothing) {
+    Session session;
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    const std::size_t bodies = session.simulation()->body_count();
+    write("stack.toml", std::string(stack_text) + "[[body]]\nname = \"more\"\nshape = \"sphere\"\n"
+                                                  "radius = 1\nposition = [9, 9, 9]\n");
+    ASSERT_TRUE(session.reload());
+    EXPECT_EQ(session.simulation()->body_count(), bodies + 1);
+    session.step();
+    const std::uint64_t running = session.simulation()->hash();
+    session.messages().clear();
+    write("stack.toml", "[[body]]\nnaem = \"typo\"\n");
+    EXPECT_FALSE(session.reload());
+    EXPECT_EQ(session.simulation()->hash(), running);
+    ASSERT_FALSE(session.messages().empty());
+    // What is wrong, and the file and line where it is.
+    EXPECT_TRUE(std::ranges::any_of(session.messages().all(), [](const Message &message) {
+        return message.text.find("stack.toml:2:") != std::string::npos &&
+               message.text.find("naem") != std::string::npos;
+    }));
+    std::filesystem::remove(folder / "stack.toml");
+    EXPECT_FALSE(session.reload());
+    EXPECT_TRUE(session.step());
+}
+
+TEST_F(SessionTest, WithoutASceneNothingHappens) {
+    Session session;
+    EXPECT_FALSE(session.open(folder / "absent.toml"));
+    EXPECT_FALSE(session.messages().empty());
+    EXPECT_FALSE(session.running());
+    EXPECT_FALSE(session.step());
+    EXPECT_FALSE(session.step_back());
+    EXPECT_FALSE(session.restart());
+    EXPECT_FALSE(session.reload());
+    EXPECT_FALSE(session.set_method("soft_step"));
+    EXPECT_FALSE(session.save_scene(folder / "x.toml"));
+    EXPECT_FALSE(session.shoot({}, {}, 1).has_value());
+}
+
+TEST(SessionWithFake, ASceneThatCannotRunLeavesTheOldOneRunning) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(two_balls()));
+    session.step();
+    SceneDesc impossible = two_balls();
+    impossible.name = "impossible";
+    EXPECT_FALSE(session.open(impossible));
+    EXPECT_EQ(session.scene().name, "two_balls");
+    EXPECT_TRUE(session.step());
+    ASSERT_EQ(session.messages().all().size(), 1u);
+    EXPECT_NE(session.messages().all()[0].text.find("no method can run it"), std::string::npos);
+}
+
+TEST(SessionWithFake, AFailingStepStopsWithAMessageAndGoesBack) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(two_balls()));
+    auto &fake = dynamic_cast<FakeSimulation &>(*session.simulation());
+    fake.throws_at = 3;
+    for (int i = 0; i < 3; ++i)
+        EXPECT_TRUE(session.step());
+    EXPECT_FALSE(session.step());
+    EXPECT_TRUE(session.stopped());
+    EXPECT_FALSE(session.step()); // stays so
+    ASSERT_EQ(session.messages().all().size(), 1u);
+    EXPECT_NE(session.messages().all()[0].text.find("as told"), std::string::npos);
+    ASSERT_TRUE(session.step_back());
+    EXPECT_FALSE(session.stopped());
+}
+
+TEST(SessionWithFake, AnExplosionSaysWhatWhereAndWhen) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(two_balls()));
+    dynamic_cast<FakeSimulation &>(*session.simulation()).diverges_at = 2;
+    session.step();
+    session.step();
+    EXPECT_FALSE(session.step());
+    EXPECT_TRUE(session.stopped());
+    ASSERT_EQ(session.messages().all().size(), 1u);
+    const std::string &text = session.messages().all()[0].text;
+    EXPECT_NE(text.find("\"right\""), std::string::npos) << text;
+    EXPECT_NE(text.find("step 3"), std::string::npos) << text;
+    ASSERT_TRUE(session.step_back());
+    EXPECT_TRUE(std::isfinite(session.simulation()->body_state(1).position.y));
+}
+
+TEST(SessionWithFake, PosesBeforeAndAfterTheLastStep) {
+    Session session({}, nullptr, make_fake());
+    SceneDesc scene = two_balls();
+    scene.world.dt = 0.5;
+    ASSERT_TRUE(session.open(scene));
+    EXPECT_EQ(session.previous_poses()[0].position, session.present_poses()[0].position);
+    session.step();
+    session.step();
+    // 0.25 m/s, half a second a step.
+    EXPECT_EQ(session.previous_poses()[0].position.y, 0.125);
+    EXPECT_EQ(session.present_poses()[0].position.y, 0.25);
+    session.step_back();
+    EXPECT_EQ(session.previous_poses()[0].position.y, 0.125);
+    EXPECT_EQ(session.present_poses()[0].position.y, 0.125);
+}
+
+TEST(SessionWithFake, GraphsFollowStepsBothWays) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(two_balls()));
+    for (std::size_t i = 0; i < Graph::capacity + 10; ++i)
+        session.step();
+    const Graph &energy = session.graphs().energy;
+    EXPECT_EQ(energy.size(), Graph::capacity);
+    EXPECT_EQ(energy.at(Graph::capacity - 1), static_cast<double>(Graph::capacity + 10));
+    EXPECT_EQ(energy.at(0), 11);
+    session.step_back();
+    EXPECT_EQ(energy.size(), Graph::capacity - 1);
+    EXPECT_EQ(energy.at(energy.size() - 1), static_cast<double>(Graph::capacity + 9));
+}
+
+TEST(History, KeepsTheNewestWithinItsMemory) {
+    EXPECT_EQ(History::capacity(1), History::most_states);
+    EXPECT_EQ(History::capacity(0), History::most_states);
+    EXPECT_EQ(History::capacity(1'000'000'000), 1u);
+    for (const std::size_t bodies : {1u, 100u, 5000u, 200'000u})
+        EXPECT_LE(History::capacity(bodies) * bodies * History::bytes_per_body,
+                  History::memory_limit);
+    FakeSimulation simulation(two_balls());
+    History history;
+    for (std::size_t i = 0; i < History::most_states + 5; ++i) {
+        history.remember(simulation);
+        simulation.step();
+    }
+    EXPECT_EQ(history.size(), History::most_states);
+    ASSERT_TRUE(history.recall(simulation));
+    EXPECT_EQ(simulation.step_count(), History::most_states + 4);
+}
+
+TEST(Messages, NotesGoAndErrorsStay) {
+    Messages messages;
+    messages.note("saved");
+    messages.error("broken");
+    messages.grow_older(Messages::note_lifetime - 0.5);
+    EXPECT_EQ(messages.all().size(), 2u);
+    messages.note("saved"); // said again: new again, and only once
+    EXPECT_EQ(messages.all().size(), 2u);
+    messages.grow_older(1);
+    EXPECT_EQ(messages.all().size(), 2u);
+    messages.grow_older(Messages::note_lifetime);
+    ASSERT_EQ(messages.all().size(), 1u);
+    EXPECT_EQ(messages.all()[0].text, "broken");
+    for (int i = 0; i < 1000; ++i)
+        messages.error(std::to_string(i));
+    EXPECT_EQ(messages.all().size(), Messages::most);
+}
+
+} // namespace
+} // namespace plumb
