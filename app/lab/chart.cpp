@@ -172,7 +172,7 @@ struct Timer {
     int rounds = 1; // in one timing
 
     // CPU seconds per simulated second; nothing when a step failed.
-    std::optional<double> time() {
+    std::optional<double> time() const {
         double used = 0;
         try {
             simulation->restore(*saved);

@@ -351,11 +351,11 @@ ImageDifference compare_images(const Image &a, const Image &b, const CompareOpti
     double flip_foreground = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const bool differs = beyond(a, b, i);
-        beyond_count += differs;
+        beyond_count += differs ? 1 : 0;
         flip_total += static_cast<double>(error[i]);
         if (!background || beyond(a, *background, i) || beyond(b, *background, i)) {
             foreground.push_back(error[i]);
-            foreground_beyond += differs;
+            foreground_beyond += differs ? 1 : 0;
             flip_foreground += static_cast<double>(error[i]);
         }
         const glm::u8vec3 colour = heat(error[i]);

@@ -60,7 +60,7 @@ std::string name_lines(const std::string &log, const std::vector<Source::Line> &
         std::size_t number = 0;
         if (text.starts_with("0:") || text.starts_with("0("))
             for (end = 2; end < std::min<std::size_t>(text.size(), 8) &&
-                          std::isdigit(static_cast<unsigned char>(text[end]));
+                          std::isdigit(static_cast<unsigned char>(text[end])) != 0;
                  ++end)
                 number = 10 * number + static_cast<std::size_t>(text[end] - '0');
         if (number >= 1 && number <= lines.size())

@@ -204,9 +204,9 @@ std::string shortcut(Action action) {
     return name(info(action).chords.front());
 }
 
-std::string shortcuts(const ActionInfo &row) {
+std::string shortcuts(const ActionInfo &info) {
     std::string all;
-    for (const Chord &chord : row.chords)
+    for (const Chord &chord : info.chords)
         all += (all.empty() ? "" : " or ") + name(chord);
     return all;
 }

@@ -13,6 +13,7 @@ struct Fonts {
 // ImVec4, but known at compile time. sRGB, 0..1.
 struct Colour {
     float red, green, blue, alpha;
+    // NOLINTNEXTLINE(google-explicit-constructor): stands wherever ImGui wants its own type
     operator ImVec4() const { return {red, green, blue, alpha}; }
 };
 

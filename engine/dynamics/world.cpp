@@ -65,8 +65,7 @@ std::uint32_t take_slot(std::vector<Item> &items, std::vector<std::uint32_t> &fr
 
 } // namespace
 
-World::World(std::string_view method, const StepSettings &settings)
-    : method_(nullptr), tree_(tree_margin) {
+World::World(std::string_view method, const StepSettings &settings) : tree_(tree_margin) {
     set_method(method);
     set_settings(settings);
 }

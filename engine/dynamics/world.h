@@ -91,7 +91,7 @@ class World {
     Aabb swept_bounds(std::uint32_t body) const;
     double energy_of(const Body &body, const Motion &motion) const;
 
-    const Method *method_;
+    const Method *method_ = nullptr;
     StepSettings settings_;
     std::vector<Body> bodies_;
     std::vector<Motion> motions_;

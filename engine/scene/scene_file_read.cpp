@@ -560,7 +560,7 @@ class SceneReader {
                                          Names &names) {
         if (!table.require("name", "each " + kind + " needs a name of its own"))
             return std::nullopt;
-        const std::optional<std::string> name = table.string("name");
+        std::optional<std::string> name = table.string("name");
         if (!name)
             return std::nullopt;
         if (name->find_first_not_of(" \t\r\n") == std::string::npos) {

@@ -146,7 +146,7 @@ class Checker {
             const std::optional<std::size_t> a = index(joint.body_a);
             const std::optional<std::size_t> b = index(joint.body_b);
             if (a && b && !joint.collide_connected)
-                exempt_.push_back(std::minmax(*a, *b));
+                exempt_.emplace_back(std::minmax(*a, *b));
             if (!(a && is_dynamic(*a)) && !(b && is_dynamic(*b)))
                 idle_joints_.add(at,
                                  "joint " + in_quotes(joint.name) +

@@ -1,0 +1,314 @@
+// The same state, the same future, to the bit.
+#include "tests/dynamics/worlds.h"
+
+#include <cstring>
+#include <functional>
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+class Determinism : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::ValuesIn(all_methods()), name_of);
+
+// Some forty bodies of all shapes in a heap, a chain, a lift. With `holes`, some bodies and joints
+// are added and removed in between: they are placed far away and never touched.
+World random_world(const std::string &method, std::uint64_t seed, bool holes = false) {
+    Random random(seed);
+    World world(method, settings_for(method));
+    std::vector<BodyId> doomed;
+    const auto add_doomed = [&] {
+        if (holes)
+            doomed.push_back(world.add_body(dynamic_body(ball(0.5), 1, V{500, 500, 500})));
+    };
+    world.add_body(ground(0.6, 0));
+    add_doomed();
+    BodyDef lift = fixed_body(block(V{0.5, 0.1, 0.5}), V{1.5, 0.3, 0});
+    lift.kind = BodyKind::kinematic;
+    lift.velocity = narrow(V{0, 0.25, 0});
+    lift.angular_velocity = narrow(V{0, 0.5, 0});
+    world.add_body(lift);
+    for (int i = 0; i < 40; ++i) {
+        BodyDef def =
+            dynamic_body(any_shape(random), random.next_in(0.5, 5),
+                         V{random.next_in(-1, 1), random.next_in(0.3, 4), random.next_in(-1, 1)},
+                         any_vector(random, 1));
+        def.pose.rotation = glm::normalize(narrow(any_rotation(random)));
+        def.angular_velocity = narrow(any_vector(random, 3));
+        world.add_body(with_material(def, random.next_unit(), random.next_unit()));
+        if (i % 7 == 0)
+            add_doomed();
+    }
+    JointDef joint;
+    for (int i = 0; i < 5; ++i) {
+        const BodyId link = world.add_body(dynamic_body(ball(0.1), 1, V{3.25 + 0.25 * i, 3, 0}));
+        joint.type = i % 2 == 0 ? JointType::ball : JointType::distance;
+        joint.b = link;
+        joint.anchor_a_local =
+            joint.a == BodyId{} ? narrow(V{3, 3, 0}) : narrow(V{i % 2 == 0 ? 0.25 : 0.0, 0, 0});
+        if (i == 0)
+            joint.anchor_b_local = narrow(V{-0.25, 0, 0});
+        else
+            joint.anchor_b_local = Vec3{Real(0)};
+        joint.length = Real(0.25);
+        world.add_joint(joint);
+        joint.a = link;
+    }
+    for (const BodyId id : doomed)
+        world.remove_body(id);
+    return world;
+}
+
+bool same_bits(const Motion &a, const Motion &b) {
+    // Motion is made of Reals alone, without padding.
+    static_assert(sizeof(Motion) % sizeof(Real) == 0);
+    return std::memcmp(static_cast<const void *>(&a), static_cast<const void *>(&b),
+                       sizeof(Motion)) == 0;
+}
+
+// The motions of the living, in order.
+std::vector<Motion> living(const World &world) {
+    std::vector<Motion> motions;
+    for (std::size_t i = 0; i < world.bodies().size(); ++i)
+        if (world.bodies()[i].alive)
+            motions.push_back(world.motions()[i]);
+    return motions;
+}
+
+void expect_same(const World &a, const World &b, int step) {
+    const std::vector<Motion> of_a = living(a), of_b = living(b);
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t i = 0; i < of_a.size(); ++i)
+        ASSERT_TRUE(same_bits(of_a[i], of_b[i])) << "body " << i << ", step " << step;
+    ASSERT_EQ(a.hash(), b.hash()) << "step " << step;
+}
+
+// A new world from what can be read of another: poses, velocities, remembered impulses, settings.
+World loaded(const World &from) {
+    World world(from.method().info.name, from.settings());
+    std::vector<BodyId> ids(from.bodies().size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        const Body &body = from.bodies()[i];
+        if (!body.alive)
+            continue;
+        const Motion &motion = from.motions()[i];
+        BodyDef def;
+        def.kind = body.kind;
+        def.shape = body.shape;
+        def.mass = body.mass;
+        def.material = body.material;
+        def.pose = {motion.position, motion.rotation};
+        def.velocity = motion.velocity;
+        def.angular_velocity = motion.angular_velocity;
+        ids[i] = world.add_body(def);
+    }
+    for (const Joint &joint : from.joints()) {
+        if (!joint.alive)
+            continue;
+        const auto end = [&](std::uint32_t body) {
+            return body == Joint::world ? BodyId{} : ids[body];
+        };
+        world.add_joint({joint.type, end(joint.a), end(joint.b), joint.anchor_a_local,
+                         joint.anchor_b_local, joint.length, joint.collide_connected,
+                         joint.impulse});
+    }
+    for (const Contact &contact : from.contacts()) {
+        std::vector<std::uint32_t> features;
+        std::vector<Vec3> impulses;
+        for (std::size_t k = 0; k < std::size_t(contact.manifold.count); ++k) {
+            features.push_back(contact.manifold.points[k].feature);
+            impulses.push_back(contact.impulses[k]);
+        }
+        world.remember_contact(ids[contact.a], ids[contact.b], features, impulses);
+    }
+    world.set_step_count(from.step_count());
+    return world;
+}
+
+TEST_P(Determinism, ACopyContinuesAsTheOriginal) {
+    for (const int at : {0, 1, 7, 40, 100}) {
+        World world = random_world(GetParam(), 1);
+        run(world, at);
+        World copy = world;
+        expect_same(world, copy, at);
+        for (int i = 0; i < 60; ++i) {
+            world.step(nullptr);
+            copy.step(nullptr);
+            expect_same(world, copy, at + i);
+        }
+    }
+}
+
+TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
+    World alone = random_world(GetParam(), 2);
+    std::vector<World> worlds(4, alone);
+    TaskPool one(1), two(2), three(3), eight(8);
+    const std::array<TaskPool *, 4> pools{&one, &two, &three, &eight};
+    for (int i = 0; i < 90; ++i) {
+        alone.step(nullptr);
+        for (std::size_t k = 0; k < worlds.size(); ++k) {
+            worlds[k].step(pools[k]);
+            expect_same(alone, worlds[k], i);
+        }
+    }
+}
+
+// What follows depends on the state, not on the way that led there: the broad phase's tree and the
+// order in which slots were used count for nothing.
+TEST_P(Determinism, AWorldLoadedFromItsStateContinuesTheSame) {
+    for (const bool holes : {false, true})
+        for (const int at : {0, 1, 30, 77, 150}) {
+            World world = random_world(GetParam(), 3, holes);
+            run(world, at);
+            World again = loaded(world);
+            expect_same(world, again, at);
+            for (int i = 0; i < 60; ++i) {
+                world.step(nullptr);
+                again.step(nullptr);
+                expect_same(world, again, at + i);
+            }
+        }
+}
+
+TEST_P(Determinism, HolesDoNotCount) {
+    World with = random_world(GetParam(), 4, true);
+    World without = random_world(GetParam(), 4, false);
+    ASSERT_GT(with.bodies().size(), without.bodies().size());
+    for (int i = 0; i < 60; ++i) {
+        expect_same(with, without, i);
+        with.step(nullptr);
+        without.step(nullptr);
+    }
+}
+
+TEST(Hash, ChangesWithEveryPartOfTheState) {
+    World world = random_world("soft_step", 5);
+    run(world, 60); // so that contacts bear
+    const World before = world;
+    ASSERT_EQ(before.hash(), World(before).hash());
+    const auto next = [](Real &value) {
+        value = std::nextafter(value, std::numeric_limits<Real>::infinity());
+    };
+    int parts = 0;
+    for (std::uint32_t i = 0; i < world.bodies().size(); ++i) {
+        const Motion &m = before.motions()[i];
+        for (int part = 0; part < 13; ++part) {
+            Transform pose{m.position, m.rotation};
+            Vec3 velocity = m.velocity, spin = m.angular_velocity;
+            const int axis = part % 3;
+            if (part < 3)
+                next(pose.position[axis]);
+            else if (part < 6)
+                next(velocity[axis]);
+            else if (part < 9)
+                next(spin[axis]);
+            else
+                next(pose.rotation[part - 9]);
+            World changed = before;
+            changed.set_motion(changed.body_id(i), pose, velocity, spin);
+            EXPECT_NE(changed.hash(), before.hash()) << "body " << i << " part " << part;
+            ++parts;
+        }
+    }
+    EXPECT_GT(parts, 500);
+    // Remembered impulses of contacts.
+    int loaded_points = 0;
+    for (const Contact &contact : before.contacts())
+        for (std::size_t k = 0; k < std::size_t(contact.manifold.count); ++k)
+            for (int axis = 0; axis < 3; ++axis) {
+                std::vector<std::uint32_t> features;
+                std::vector<Vec3> impulses;
+                for (std::size_t j = 0; j < std::size_t(contact.manifold.count); ++j) {
+                    features.push_back(contact.manifold.points[j].feature);
+                    impulses.push_back(contact.impulses[j]);
+                }
+                next(impulses[k][axis]);
+                World changed = before;
+                changed.remember_contact(changed.body_id(contact.a), changed.body_id(contact.b),
+                                         features, impulses);
+                EXPECT_NE(changed.hash(), before.hash());
+                loaded_points += contact.impulses[k].x > 0 ? 1 : 0;
+            }
+    EXPECT_GT(loaded_points, 30);
+    World changed = before;
+    changed.set_step_count(before.step_count() + 1);
+    EXPECT_NE(changed.hash(), before.hash());
+    changed = before;
+    changed.set_method("sequential_impulses");
+    EXPECT_NE(changed.hash(), before.hash());
+}
+
+TEST(Hash, ChangesWithEverySetting) {
+    const World before("soft_step", StepSettings{});
+    const auto differs = [&](const std::function<void(StepSettings &)> &change) {
+        StepSettings settings;
+        change(settings);
+        World changed = before;
+        changed.set_settings(settings);
+        return changed.hash() != before.hash();
+    };
+    const auto up = [](double &value) { value = std::nextafter(value, 1e300); };
+    EXPECT_FALSE(differs([](StepSettings &) {}));
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_TRUE(differs([&](StepSettings &s) { up(s.gravity[axis]); }));
+    for (double StepSettings::*member :
+         {&StepSettings::dt, &StepSettings::speculative_distance, &StepSettings::penetration_slop,
+          &StepSettings::baumgarte, &StepSettings::contact_frequency_ratio,
+          &StepSettings::contact_damping_ratio, &StepSettings::joint_frequency_ratio,
+          &StepSettings::joint_damping_ratio, &StepSettings::push_velocity,
+          &StepSettings::restitution_threshold})
+        EXPECT_TRUE(differs([&](StepSettings &s) { up(s.*member); }));
+    for (int StepSettings::*member :
+         {&StepSettings::substeps, &StepSettings::iterations, &StepSettings::impact_sweeps,
+          &StepSettings::impact_passes, &StepSettings::gyroscopic_iterations})
+        EXPECT_TRUE(differs([&](StepSettings &s) { ++(s.*member); }));
+}
+
+// What bodies and joints are made of decides the future as well.
+TEST(Hash, ChangesWithBodiesAndJoints) {
+    BodyDef body = dynamic_body(block(V{0.1, 0.2, 0.3}), 2, V{0});
+    JointDef joint;
+    joint.type = JointType::distance;
+    joint.length = Real(1);
+    const auto hash_of = [](const BodyDef &b, JointDef j) {
+        World world("soft_step", StepSettings{});
+        j.a = world.add_body(b);
+        j.b = world.add_body(dynamic_body(ball(0.1), 1, V{1, 0, 0}));
+        world.add_joint(j);
+        return world.hash();
+    };
+    const std::uint64_t before = hash_of(body, joint);
+    EXPECT_EQ(hash_of(body, joint), before);
+    const auto next = [](Real value) { return std::nextafter(value, Real(1e30)); };
+    const auto body_differs = [&](const std::function<void(BodyDef &)> &change) {
+        BodyDef changed = body;
+        change(changed);
+        return hash_of(changed, joint) != before;
+    };
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.mass = next(b.mass); }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.material.friction = next(b.material.friction); }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.material.restitution = Real(0.5); }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.kind = BodyKind::kinematic; }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.shape = ball(0.2); }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) {
+        Real &half = std::get<Box>(b.shape).half_extents.y;
+        half = next(half);
+    }));
+    const auto joint_differs = [&](const std::function<void(JointDef &)> &change) {
+        JointDef changed = joint;
+        change(changed);
+        return hash_of(body, changed) != before;
+    };
+    EXPECT_TRUE(joint_differs([&](JointDef &j) { j.type = JointType::ball; }));
+    EXPECT_TRUE(joint_differs([&](JointDef &j) { j.length = next(j.length); }));
+    EXPECT_TRUE(joint_differs([&](JointDef &j) { j.collide_connected = true; }));
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_TRUE(joint_differs([&](JointDef &j) { j.anchor_a_local[axis] = Real(1e-30); }));
+        EXPECT_TRUE(joint_differs([&](JointDef &j) { j.anchor_b_local[axis] = Real(1e-30); }));
+        EXPECT_TRUE(joint_differs([&](JointDef &j) { j.impulse[axis] = Real(1e-30); }));
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION

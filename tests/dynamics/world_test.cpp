@@ -1,0 +1,451 @@
+// The world as a container, and what its step reports.
+#include "engine/core/check.h"
+#include "tests/dynamics/worlds.h"
+
+#include <functional>
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+World plain_world() {
+    return World("soft_step", settings_for("soft_step"));
+}
+
+// The message of the check that `action` fails; empty when it fails none.
+std::string failure_of(const std::function<void()> &action) {
+    try {
+        action();
+    } catch (const CheckFailure &failure) {
+        return failure.what();
+    }
+    return {};
+}
+
+void expect_failure(const std::string &part, const std::function<void()> &action) {
+    const std::string message = failure_of(action);
+    EXPECT_NE(message.find(part), std::string::npos) << "got: '" << message << "'";
+}
+
+TEST(World, IdsOfRemovedBodiesAreRefusedAndSlotsUsedAgain) {
+    World world = plain_world();
+    const BodyId a = world.add_body(dynamic_body(ball(0.5), 1, V{0}));
+    const BodyId b = world.add_body(dynamic_body(ball(0.5), 1, V{5, 0, 0}));
+    world.remove_body(a);
+    EXPECT_FALSE(world.is_alive(a));
+    EXPECT_TRUE(world.is_alive(b));
+    const BodyId c = world.add_body(dynamic_body(ball(0.5), 2, V{9, 0, 0}));
+    EXPECT_EQ(c.index, a.index);
+    EXPECT_NE(c.generation, a.generation);
+    EXPECT_FALSE(world.is_alive(a));
+    EXPECT_TRUE(world.is_alive(c));
+    EXPECT_EQ(world.bodies().size(), 2U);
+    expect_failure("body 0 is not alive", [&] { world.remove_body(a); });
+    expect_failure("body 0 is not alive", [&] { world.set_motion(a, {}, Vec3{}, Vec3{}); });
+    expect_failure("body 0 is not alive", [&] { world.apply_impulse(a, Vec3{}, Vec3{}); });
+    expect_failure("not alive", [&] { world.remember_contact(a, b, {}, {}); });
+    JointDef joint;
+    joint.a = a;
+    joint.b = b;
+    expect_failure("body 0, which is not alive", [&] { world.add_joint(joint); });
+    EXPECT_FALSE(world.is_alive(BodyId{}));
+    EXPECT_FALSE(world.is_alive(BodyId{7, 0}));
+    for (int i = 0; i < 100; ++i) {
+        const BodyId d = world.add_body(dynamic_body(ball(0.5), 1, V{20, 0, 0}));
+        EXPECT_EQ(d.index, 2U);
+        world.remove_body(d);
+        EXPECT_FALSE(world.is_alive(d));
+    }
+}
+
+TEST(World, IdsOfRemovedJoints) {
+    World world = plain_world();
+    JointDef joint;
+    joint.b = world.add_body(dynamic_body(ball(0.5), 1, V{0}));
+    const JointId first = world.add_joint(joint);
+    world.remove_joint(first);
+    EXPECT_FALSE(world.is_alive(first));
+    expect_failure("joint 0 is not alive", [&] { world.remove_joint(first); });
+    const JointId second = world.add_joint(joint);
+    EXPECT_EQ(second.index, first.index);
+    EXPECT_FALSE(world.is_alive(first));
+    EXPECT_TRUE(world.is_alive(second));
+}
+
+TEST(World, ARemovedBodyTakesItsContactsAndJointsAlong) {
+    World world = plain_world();
+    world.add_body(ground(0.5, 0));
+    const BodyId low = world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 0.5, 0}));
+    const BodyId high = world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 1.5, 0}));
+    const BodyId other = world.add_body(dynamic_body(ball(0.2), 1, V{3, 0.2, 0}));
+    JointDef joint;
+    joint.a = low;
+    joint.b = other;
+    joint.anchor_a_local = narrow(V{3, -0.3, 0});
+    const JointId with_low = world.add_joint(joint);
+    joint.a = BodyId{};
+    joint.anchor_a_local = narrow(V{3, 0.2, 0});
+    const JointId without_low = world.add_joint(joint);
+    world.step(nullptr);
+    EXPECT_EQ(world.contacts().size(), 3U);
+    world.remove_body(low);
+    ASSERT_EQ(world.contacts().size(), 1U);
+    EXPECT_EQ(world.contacts()[0].b, other.index);
+    EXPECT_FALSE(world.is_alive(with_low));
+    EXPECT_TRUE(world.is_alive(without_low));
+    run(world, 60);
+    EXPECT_NEAR(position_of(world, high).y, 0.5, 0.01); // it fell to where the other was
+    EXPECT_EQ(world.report().joints, 1U);
+}
+
+TEST(World, MisuseIsNamedWithItsValue) {
+    World world = plain_world();
+    const double nan = std::nan("");
+    const BodyDef good = dynamic_body(ball(0.5), 1, V{0});
+    const auto refused = [&](const std::string &part,
+                             const std::function<void(BodyDef &)> &change) {
+        BodyDef def = good;
+        change(def);
+        expect_failure(part, [&] { world.add_body(def); });
+    };
+    refused("position must be finite", [&](BodyDef &d) { d.pose.position.x = Real(nan); });
+    refused("velocity must be finite", [&](BodyDef &d) { d.velocity.y = Real(nan); });
+    refused("velocity must be finite",
+            [&](BodyDef &d) { d.angular_velocity.z = std::numeric_limits<Real>::infinity(); });
+    refused("unit length, got 2", [&](BodyDef &d) { d.pose.rotation.w = Real(2); });
+    refused("rotation must be of unit length", [&](BodyDef &d) { d.pose.rotation.x = Real(nan); });
+    refused("friction must not be negative, got -0.25",
+            [&](BodyDef &d) { d.material.friction = Real(-0.25); });
+    refused("restitution must be 0 to 1, got 1.5",
+            [&](BodyDef &d) { d.material.restitution = Real(1.5); });
+    refused("restitution must be 0 to 1", [&](BodyDef &d) { d.material.restitution = Real(nan); });
+    refused("mass must be positive, got 0", [&](BodyDef &d) { d.mass = Real(0); });
+    refused("mass must be positive, got -3", [&](BodyDef &d) { d.mass = Real(-3); });
+    refused("half-space cannot be dynamic", [&](BodyDef &d) { d.shape = HalfSpace{}; });
+    refused("-1", [&](BodyDef &d) { d.shape = ball(-1); });
+    refused("a dynamic body needs an extent", [&](BodyDef &d) { d.shape = ball(0); });
+    EXPECT_TRUE(world.bodies().empty()); // nothing is left behind
+
+    const BodyId id = world.add_body(good);
+    BodyDef fixed = good;
+    fixed.kind = BodyKind::fixed;
+    const BodyId wall = world.add_body(fixed);
+    JointDef joint;
+    joint.a = id;
+    joint.b = id;
+    expect_failure("two different bodies", [&] { world.add_joint(joint); });
+    joint.b = BodyId{};
+    joint.a = wall;
+    expect_failure("needs a dynamic body", [&] { world.add_joint(joint); });
+    joint.a = id;
+    joint.type = JointType::distance;
+    joint.length = Real(-0.5);
+    expect_failure("length must be positive, got -0.5", [&] { world.add_joint(joint); });
+    joint.length = Real(1);
+    joint.anchor_a_local.x = Real(nan);
+    expect_failure("anchors must be finite", [&] { world.add_joint(joint); });
+
+    expect_failure("'no_such_method'", [&] { world.set_method("no_such_method"); });
+    const std::array<std::uint32_t, 5> features{};
+    const std::array<Vec3, 5> impulses{};
+    expect_failure("at most 4 points, got 5",
+                   [&] { world.remember_contact(id, wall, features, impulses); });
+}
+
+TEST(World, SettingsOutOfRangeAreNamedWithTheirValue) {
+    World world = plain_world();
+    const auto refused = [&](const std::string &part,
+                             const std::function<void(StepSettings &)> &change) {
+        StepSettings settings;
+        change(settings);
+        expect_failure(part, [&] { world.set_settings(settings); });
+    };
+    refused("dt must be positive and finite, got 0", [](StepSettings &s) { s.dt = 0; });
+    refused("got -1", [](StepSettings &s) { s.dt = -1; });
+    refused("dt must be", [](StepSettings &s) { s.dt = std::nan(""); });
+    refused("got 0", [](StepSettings &s) { s.substeps = 0; });
+    refused("got 10001", [](StepSettings &s) { s.substeps = 10001; });
+    refused("iterations must be 1 to 10000, got 0", [](StepSettings &s) { s.iterations = 0; });
+    refused("gravity must be finite", [](StepSettings &s) { s.gravity.x = std::nan(""); });
+    refused("speculative_distance", [](StepSettings &s) { s.speculative_distance = -1; });
+    refused("penetration_slop", [](StepSettings &s) { s.penetration_slop = std::nan(""); });
+    refused("baumgarte", [](StepSettings &s) { s.baumgarte = -0.1; });
+    refused("contact_frequency_ratio", [](StepSettings &s) { s.contact_frequency_ratio = 0; });
+    refused("contact_damping_ratio", [](StepSettings &s) { s.contact_damping_ratio = -1; });
+    refused("joint_frequency_ratio", [](StepSettings &s) { s.joint_frequency_ratio = 0; });
+    refused("joint_damping_ratio", [](StepSettings &s) { s.joint_damping_ratio = -1; });
+    refused("push_velocity", [](StepSettings &s) { s.push_velocity = -1; });
+    refused("restitution_threshold", [](StepSettings &s) { s.restitution_threshold = -1; });
+    refused("impact_sweeps", [](StepSettings &s) { s.impact_sweeps = -1; });
+    refused("impact_passes", [](StepSettings &s) { s.impact_passes = 0; });
+    refused("gyroscopic_iterations", [](StepSettings &s) { s.gyroscopic_iterations = -1; });
+    EXPECT_EQ(world.settings().dt, StepSettings{}.dt); // as before
+}
+
+TEST(World, JoinedBodiesCollideOnlyWhenAsked) {
+    for (const bool collide : {false, true}) {
+        World world("soft_step", weightless(settings_for("soft_step")));
+        JointDef joint;
+        joint.a = world.add_body(dynamic_body(ball(0.5), 1, V{0}));
+        joint.b = world.add_body(dynamic_body(ball(0.5), 1, V{0.9, 0, 0}));
+        joint.anchor_a_local = narrow(V{0.9, 0, 0});
+        joint.collide_connected = collide;
+        const JointId id = world.add_joint(joint);
+        world.step(nullptr);
+        EXPECT_EQ(world.report().pairs, collide ? 1U : 0U);
+        EXPECT_EQ(world.contacts().size(), collide ? 1U : 0U);
+        // A second joint between the two keeps them apart after the first has gone.
+        const JointId second = world.add_joint(joint);
+        world.remove_joint(id);
+        world.step(nullptr);
+        EXPECT_EQ(world.report().pairs, collide ? 1U : 0U);
+        world.remove_joint(second);
+        world.step(nullptr);
+        EXPECT_EQ(world.report().pairs, 1U);
+    }
+}
+
+TEST(World, MaterialsMix) {
+    World world = plain_world();
+    world.add_body(ground(0.9, 0.25));
+    world.add_body(with_material(dynamic_body(ball(0.5), 1, V{0, 0.5, 0}), 0.4, 0.125));
+    world.add_body(with_material(dynamic_body(ball(0.5), 1, V{3, 0.5, 0}), 0, 0.75));
+    world.step(nullptr);
+    ASSERT_EQ(world.contacts().size(), 2U);
+    EXPECT_NEAR(double(world.contacts()[0].friction), 0.6, 2 * epsilon); // sqrt(0.9 * 0.4)
+    EXPECT_EQ(world.contacts()[0].restitution, Real(0.25));
+    EXPECT_EQ(world.contacts()[1].friction, Real(0));
+    EXPECT_EQ(world.contacts()[1].restitution, Real(0.75));
+}
+
+TEST(World, RaycastFindsTheNearestAndOfTwoTheFirst) {
+    World world = plain_world();
+    const BodyId far = world.add_body(dynamic_body(ball(0.5), 1, V{0, 0, 10}));
+    const BodyId near = world.add_body(fixed_body(block(V{1}), V{0, 0, 5}));
+    const BodyId twin = world.add_body(fixed_body(block(V{1}), V{0, 0, 5}));
+    const BodyId floor = world.add_body(ground(0.5, 0));
+    const Ray ray{Vec3{0, Real(0.5), 0}, Vec3{0, 0, 1}};
+    std::optional<WorldHit> hit = world.raycast(ray);
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->body, near);
+    EXPECT_EQ(hit->hit.t, Real(4));
+    EXPECT_EQ(hit->hit.normal, Vec3(Real(0), Real(0), Real(-1)));
+    world.remove_body(near);
+    hit = world.raycast(ray);
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->body, twin);
+    world.remove_body(twin);
+    hit = world.raycast({Vec3{Real(0)} + Vec3{0, Real(0.25), 0}, Vec3{0, 0, 1}});
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->body, far);
+    hit = world.raycast({Vec3{0, Real(1), 0}, Vec3{0, Real(-2), 0}}); // t in units of direction
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->body, floor);
+    EXPECT_EQ(hit->hit.t, Real(0.5));
+    EXPECT_FALSE(world.raycast({Vec3{0, Real(1), 0}, Vec3{0, Real(-2), 0}, Real(0.25)}));
+    EXPECT_FALSE(world.raycast({Vec3{0, Real(1), 0}, Vec3{0, Real(1), 0}}));
+    // At the present poses, before any step.
+    world.set_motion(far, {Vec3{0, Real(20), 0}, identity_rotation}, Vec3{Real(0)}, Vec3{Real(0)});
+    hit = world.raycast({Vec3{0, Real(1), 0}, Vec3{0, Real(1), 0}});
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->body, far);
+}
+
+TEST(World, ImpulsesOnDynamicBodiesAlone) {
+    World world("soft_step", weightless(settings_for("soft_step")));
+    const BodyId id = world.add_body(dynamic_body(ball(0.5), 4, V{1, 2, 3}));
+    world.apply_impulse(id, narrow(V{8, 0, 0}), narrow(V{1, 2.5, 3}));
+    EXPECT_EQ(velocity_of(world, id), V(2, 0, 0));
+    // r x J / (0.4 m r^2) = -0.5 * 8 / 0.4
+    EXPECT_NEAR(spin_of(world, id).z, -10, 20 * epsilon);
+    BodyDef def = fixed_body(ball(0.5), V{5, 0, 0});
+    const BodyId fixed = world.add_body(def);
+    def.kind = BodyKind::kinematic;
+    def.velocity = narrow(V{1, 0, 0});
+    const BodyId kinematic = world.add_body(def);
+    for (const BodyId other : {fixed, kinematic}) {
+        const V before = velocity_of(world, other);
+        world.apply_impulse(other, narrow(V{8, 0, 0}), narrow(V{1, 2.5, 3}));
+        EXPECT_EQ(velocity_of(world, other), before);
+        EXPECT_EQ(spin_of(world, other), V{0});
+    }
+}
+
+class AnyMethodWorld : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, AnyMethodWorld, testing::ValuesIn(all_methods()), name_of);
+
+TEST_P(AnyMethodWorld, AnEmptyWorldAndOneOfStaticBodies) {
+    World world(GetParam(), settings_for(GetParam()));
+    run(world, 3);
+    EXPECT_EQ(world.step_count(), 3U);
+    EXPECT_EQ(world.report().moving_bodies, 0U);
+    EXPECT_EQ(world.measure().energy(), 0);
+    EXPECT_FALSE(world.raycast({}));
+    world.add_body(ground(0.5, 0));
+    world.add_body(fixed_body(block(V{1})));
+    const BodyId ball_id = world.add_body(fixed_body(ball(1), V{0, 1, 0}));
+    run(world, 3);
+    EXPECT_EQ(world.report().pairs, 0U);
+    EXPECT_EQ(world.report().contacts, 0U);
+    EXPECT_EQ(position_of(world, ball_id), V(0, 1, 0));
+    EXPECT_TRUE(world.report().finite);
+    EXPECT_DOUBLE_EQ(world.measure().time, 6 * world.settings().dt);
+}
+
+TEST_P(AnyMethodWorld, OneBodyLooksForNoPairs) {
+    World world(GetParam(), settings_for(GetParam()));
+    world.add_body(dynamic_body(ball(1), 1, V{0}));
+    world.step(nullptr);
+    EXPECT_EQ(world.report().pairs, 0U);
+    EXPECT_EQ(world.report().moving_bodies, 1U);
+}
+
+// Removed bodies are not advanced, whatever they were.
+TEST_P(AnyMethodWorld, HolesStayWhereTheyAre) {
+    World world(GetParam(), settings_for(GetParam()));
+    const BodyId a = world.add_body(dynamic_body(ball(0.5), 1, V{1, 2, 3}, V{1, 1, 1}));
+    world.add_body(dynamic_body(ball(0.5), 1, V{5, 0, 0}));
+    run(world, 3);
+    world.remove_body(a);
+    run(world, 3);
+    EXPECT_EQ(position_of(world, a), V{0});
+    EXPECT_EQ(velocity_of(world, a), V{0});
+    EXPECT_EQ(world.report().moving_bodies, 1U);
+}
+
+TEST(StepReport, Counts) {
+    World world = plain_world();
+    world.add_body(ground(0.5, 0));
+    world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 0.5, 0}));
+    const BodyId high = world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 1.5, 0}));
+    world.add_body(dynamic_body(ball(0.25), 1, V{3, 0.25, 0}));
+    BodyDef mover = fixed_body(ball(0.25), V{0, 9, 0});
+    mover.kind = BodyKind::kinematic;
+    world.add_body(mover);
+    JointDef joint;
+    joint.b = high;
+    joint.anchor_a_local = narrow(V{0, 1.5, 0});
+    world.add_joint(joint);
+    world.step(nullptr);
+    const StepReport &report = world.report();
+    EXPECT_EQ(report.moving_bodies, 4U);
+    EXPECT_EQ(report.pairs, 3U);
+    EXPECT_EQ(report.contacts, 3U);
+    EXPECT_EQ(report.contact_points, 9U); // two faces of four, and the ball
+    EXPECT_EQ(report.joints, 1U);
+    EXPECT_EQ(report.impacts, 0U);
+    EXPECT_EQ(report.unresolved_impacts, 0U);
+    EXPECT_TRUE(report.finite);
+    EXPECT_GE(report.find_pairs, 0);
+    EXPECT_GE(report.collide, 0);
+    EXPECT_GE(report.advance, 0);
+    EXPECT_GE(report.finish, 0);
+    const Measures measures = world.measure();
+    EXPECT_NEAR(report.energy, measures.energy(), 1e-12 * measures.energy());
+}
+
+// A method without contacts makes none, whatever touches.
+TEST(StepReport, MethodsWithoutContactsLookForNone) {
+    for (const Method &method : methods()) {
+        World world(method.info.name, settings_for(std::string(method.info.name)));
+        world.add_body(ground(0.5, 0));
+        world.add_body(dynamic_body(ball(0.5), 1, V{0, 0.5, 0}));
+        world.step(nullptr);
+        EXPECT_EQ(world.report().contacts, method.info.contacts ? 1U : 0U) << method.info.name;
+    }
+}
+
+TEST(StepReport, ABounceIsCounted) {
+    World world = plain_world();
+    world.add_body(ground(0, 1));
+    world.add_body(dynamic_body(ball(0.5), 1, V{0, 0.501, 0}, V{0, -3, 0}));
+    world.step(nullptr);
+    EXPECT_EQ(world.report().impacts, 1U);
+    EXPECT_EQ(world.report().unresolved_impacts, 0U);
+}
+
+// More sweeps are needed than allowed: the report says so.
+TEST(StepReport, UnresolvedImpactsAreCounted) {
+    StepSettings settings = weightless(settings_for("soft_step"));
+    settings.impact_sweeps = 1;
+    World world("soft_step", settings);
+    // Laid out against the order in which contacts are visited, so that each sweep hands on once.
+    for (int i = 0; i < 6; ++i)
+        world.add_body(with_material(
+            dynamic_body(ball(0.5), 1, V{-1.0 * i, 0, 0}, V{i == 5 ? 1.0 : 0.0, 0, 0}), 0, 1));
+    world.step(nullptr);
+    EXPECT_GT(world.report().unresolved_impacts, 0U);
+}
+
+TEST(StepReport, EnergyGainIsTheDifferenceOverTheStep) {
+    World world("semi_implicit_euler", settings_for("semi_implicit_euler"));
+    world.add_body(dynamic_body(ball(0.5), 2, V{0, 3, 0}, V{1, 2, 0}));
+    for (int i = 0; i < 10; ++i) {
+        const double before = world.measure().energy();
+        world.step(nullptr);
+        EXPECT_NEAR(world.report().energy_gain, world.measure().energy() - before, 1e-11);
+        // Semi-implicit Euler's energy at the velocity's half step: -+ m g^2 h^2 / 2, exactly.
+        const double h = substep_of(world);
+        EXPECT_NEAR(world.report().energy_gain, -0.5 * 2 * gravity * gravity * h * h,
+                    8 * epsilon * 100);
+    }
+}
+
+TEST(StepReport, SaysWhenTheWorldIsNotFinite) {
+    for (const std::string &name : all_methods()) {
+        World world(name, settings_for(name));
+        world.add_body(ground(0.5, 0.5));
+        const BodyId bad = world.add_body(dynamic_body(ball(0.5), 1, V{0, 5, 0}));
+        world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 6, 0}));
+        run(world, 2);
+        EXPECT_TRUE(world.report().finite);
+        world.set_motion(bad, {Vec3{0, Real(5), 0}, identity_rotation},
+                         Vec3{std::numeric_limits<Real>::max()}, Vec3{Real(0)});
+        for (int i = 0; i < 200; ++i)
+            world.step(nullptr);
+        EXPECT_FALSE(world.report().finite) << name;
+        world.measure(); // and neither measuring nor hashing fails
+        world.hash();
+    }
+}
+
+// A lift, and a conveyor belt: a box on a kinematic body goes where that goes.
+class Carried : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Carried, testing::ValuesIn(contact_methods()), name_of);
+
+TEST_P(Carried, AKinematicBodyCarriesABox) {
+    World world(GetParam(), settings_for(GetParam()));
+    BodyDef platform = with_material(fixed_body(block(V{2, 0.1, 2}), V{0, -0.1, 0}), 0.8, 0);
+    platform.kind = BodyKind::kinematic;
+    platform.velocity = narrow(V{0.5, 0.25, 0});
+    const BodyId lift = world.add_body(platform);
+    const BodyId box = world.add_body(
+        with_material(dynamic_body(block(V{0.25}), 3, V{0, 0.25, 0}, V{0, 0.25, 0}), 0.8, 0));
+    run(world, 240);
+    EXPECT_EQ(velocity_of(world, lift), V(0.5, 0.25, 0));
+    EXPECT_LE(glm::distance(position_of(world, lift), V(2, 0.9, 0)), 960 * 2 * epsilon * 2);
+    EXPECT_LE(glm::distance(velocity_of(world, box), V(0.5, 0.25, 0)), 1e-3);
+    // It slips until it has the platform's speed: v^2 / (2 mu g) = 1.6 cm, where velocity and
+    // position of one substep differ by half of it; and rests within the slop.
+    const double lag = 0.5 * substep_of(world) / 2;
+    EXPECT_NEAR(position_of(world, box).x, 2 - 0.25 / (2 * 0.8 * gravity), 1.1 * lag);
+    EXPECT_NEAR(position_of(world, box).y, 1.25, 2e-3);
+}
+
+// A rising floor reaches further in a step than the body above it looks.
+TEST_P(Carried, AKinematicHalfSpacePushes) {
+    World world(GetParam(), settings_for(GetParam()));
+    BodyDef floor = ground(0.5, 0);
+    floor.kind = BodyKind::kinematic;
+    floor.velocity = narrow(V{0, 9, 0});
+    world.add_body(floor);
+    const BodyId id = world.add_body(dynamic_body(ball(0.5), 1, V{0, 1.1, 0}));
+    for (int i = 1; i <= 30; ++i) {
+        world.step(nullptr);
+        EXPECT_GE(position_of(world, id).y - 9 * i / 60.0, 0.5 - 0.005) << "step " << i;
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,161 @@
+// What the dynamics tests share: short ways to say bodies, worlds and random numbers.
+#pragma once
+
+#include "engine/core/random.h"
+#include "engine/dynamics/world.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace trial {
+
+using V = glm::dvec3;
+
+inline constexpr double pi = std::numbers::pi;
+inline constexpr double gravity = 9.81;
+// Of the precision under test.
+inline constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
+inline constexpr bool is_double = sizeof(Real) == sizeof(double);
+
+inline V wide(const Vec3 &v) {
+    return {double(v.x), double(v.y), double(v.z)};
+}
+inline Vec3 narrow(const V &v) {
+    return {Real(v.x), Real(v.y), Real(v.z)};
+}
+inline Quat narrow(const glm::dquat &q) {
+    return {Real(q.w), Real(q.x), Real(q.y), Real(q.z)};
+}
+inline glm::dquat wide(const Quat &q) {
+    return {double(q.w), double(q.x), double(q.y), double(q.z)};
+}
+
+inline V any_vector(Random &random, double reach) {
+    const double x = random.next_in(-reach, reach), y = random.next_in(-reach, reach);
+    const double z = random.next_in(-reach, reach);
+    return {x, y, z};
+}
+inline glm::dquat any_rotation(Random &random) {
+    for (;;) {
+        const double w = random.next_in(-1, 1), x = random.next_in(-1, 1);
+        const double y = random.next_in(-1, 1), z = random.next_in(-1, 1);
+        const double length = std::sqrt(w * w + x * x + y * y + z * z);
+        if (length > 0.1 && length < 1)
+            return glm::dquat(w / length, x / length, y / length, z / length);
+    }
+}
+
+inline Sphere ball(double radius) {
+    return {Vec3{Real(0)}, Real(radius)};
+}
+inline Box block(const V &half_extents) {
+    return {Vec3{Real(0)}, identity_rotation, narrow(half_extents)};
+}
+inline Capsule upright_capsule(double half_length, double radius) {
+    return {Vec3{0, Real(-half_length), 0}, Vec3{0, Real(half_length), 0}, Real(radius)};
+}
+
+// A ball, box or capsule of 0.1 to 0.8 m.
+inline Shape any_shape(Random &random) {
+    const std::uint32_t kind = random.next_index(3);
+    const double a = random.next_in(0.1, 0.3), b = random.next_in(0.1, 0.3);
+    const double c = random.next_in(0.1, 0.3);
+    if (kind == 0)
+        return ball(a);
+    if (kind == 1)
+        return block(V{a, b, c});
+    return upright_capsule(a, 0.6 * b);
+}
+
+inline BodyDef dynamic_body(const Shape &shape, double mass, const V &position,
+                            const V &velocity = V{0}) {
+    BodyDef def;
+    def.shape = shape;
+    def.mass = Real(mass);
+    def.pose.position = narrow(position);
+    def.velocity = narrow(velocity);
+    return def;
+}
+inline BodyDef with_material(BodyDef def, double friction, double restitution) {
+    def.material = {Real(friction), Real(restitution)};
+    return def;
+}
+inline BodyDef fixed_body(const Shape &shape, const V &position = V{0}) {
+    BodyDef def;
+    def.kind = BodyKind::fixed;
+    def.shape = shape;
+    def.pose.position = narrow(position);
+    return def;
+}
+// The solid below the plane through the origin with the given normal.
+inline BodyDef ground(double friction, double restitution, const V &normal = V{0, 1, 0}) {
+    return with_material(fixed_body(HalfSpace{narrow(normal), Real(0)}), friction, restitution);
+}
+
+// Settings with the method's own substeps and iterations.
+inline StepSettings settings_for(const std::string &method) {
+    StepSettings settings;
+    const MethodInfo *info = find_method_info(method);
+    settings.substeps = info->default_substeps;
+    settings.iterations = info->default_iterations;
+    return settings;
+}
+inline StepSettings weightless(StepSettings settings) {
+    settings.gravity = V{0};
+    return settings;
+}
+// The time that one solver pass covers.
+inline double substep_of(const World &world) {
+    return world.settings().dt / world.settings().substeps;
+}
+
+inline void run(World &world, int steps) {
+    for (int i = 0; i < steps; ++i)
+        world.step(nullptr);
+}
+inline const Motion &motion_of(const World &world, BodyId id) {
+    return world.motions()[id.index];
+}
+inline V position_of(const World &world, BodyId id) {
+    return wide(motion_of(world, id).position);
+}
+inline V velocity_of(const World &world, BodyId id) {
+    return wide(motion_of(world, id).velocity);
+}
+inline V spin_of(const World &world, BodyId id) {
+    return wide(motion_of(world, id).angular_velocity);
+}
+
+// The names of the registry's methods that can do what is asked, for parameterised tests.
+inline std::vector<std::string> all_methods() {
+    std::vector<std::string> names;
+    for (const Method &method : methods())
+        names.emplace_back(method.info.name);
+    return names;
+}
+inline std::vector<std::string> contact_methods() {
+    std::vector<std::string> names;
+    for (const Method &method : methods())
+        if (method.info.contacts)
+            names.emplace_back(method.info.name);
+    return names;
+}
+inline std::vector<std::string> joint_methods() {
+    std::vector<std::string> names;
+    for (const Method &method : methods())
+        if (method.info.joints)
+            names.emplace_back(method.info.name);
+    return names;
+}
+inline std::string name_of(const testing::TestParamInfo<std::string> &info) {
+    return info.param;
+}
+
+} // namespace trial
+} // namespace plumb::inline PLUMB_PRECISION
