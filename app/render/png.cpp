@@ -8,11 +8,13 @@
 
 #include "engine/core/check.h"
 
+#define STBI_ONLY_PNG
+#if !defined(__clang_analyzer__) // stb's code is not ours to analyse
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
-#define STBI_ONLY_PNG
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
+#endif
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"

@@ -37,14 +37,35 @@ bool touch(const Aabb &box, const HalfSpace &half_space) {
     return glm::dot(half_space.normal, lowest) <= half_space.offset;
 }
 
-// What the solver remembered of a point made by the same features.
+// What the solver remembered, point by point of the same features. What points bore that are gone
+// is shared out among those that are new, so that a rocking box keeps its load while its corners
+// pass from one edge to the next.
 void carry_over(const Contact &from, Contact &to) {
+    std::array<bool, 4> found{};
+    Vec3 lost{Real(0)};
+    int fresh = to.manifold.count;
+    for (int old = 0; old < from.manifold.count; ++old) {
+        const auto old_index = static_cast<std::size_t>(old);
+        bool gone = true;
+        for (int k = 0; k < to.manifold.count && gone; ++k) {
+            const auto index = static_cast<std::size_t>(k);
+            if (found[index] ||
+                from.manifold.points[old_index].feature != to.manifold.points[index].feature)
+                continue;
+            to.impulses[index] = from.impulses[old_index];
+            found[index] = true;
+            gone = false;
+            --fresh;
+        }
+        if (gone)
+            lost += from.impulses[old_index];
+    }
+    if (fresh == 0)
+        return;
+    const Vec3 share = lost / static_cast<Real>(fresh);
     for (int k = 0; k < to.manifold.count; ++k)
-        for (int old = 0; old < from.manifold.count; ++old)
-            if (from.manifold.points[static_cast<std::size_t>(old)].feature ==
-                to.manifold.points[static_cast<std::size_t>(k)].feature)
-                to.impulses[static_cast<std::size_t>(k)] =
-                    from.impulses[static_cast<std::size_t>(old)];
+        if (!found[static_cast<std::size_t>(k)])
+            to.impulses[static_cast<std::size_t>(k)] = share;
 }
 
 } // namespace

@@ -1162,7 +1162,7 @@ class SceneReader {
 
     static bool is_world(const Table &table, std::string_view key) {
         const toml::node *node = table.node(key);
-        return !node || (node->is_string() && node->as_string()->get() == "world");
+        return node == nullptr || (node->is_string() && node->as_string()->get() == "world");
     }
 
     glm::dvec3 to_local(const std::optional<std::size_t> &index, const glm::dvec3 &world) const {
