@@ -22,8 +22,9 @@ class TaskPool {
 
     int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-    // Calls body(begin, end) for parts of [0, count) of at most `grain` items; returns when all are
-    // done. Not reentrant. An exception from a part reaches the caller.
+    // Calls body(begin, end) for parts of [0, count), of at most `grain` items when there are
+    // several threads and in one part when there is one; returns when all are done. Not reentrant.
+    // An exception from a part reaches the caller.
     void for_parts(std::size_t count, std::size_t grain,
                    const std::function<void(std::size_t, std::size_t)> &body);
 

@@ -1,5 +1,7 @@
 #include "engine/dynamics/motion.h"
 
+#include "engine/core/check.h"
+
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -67,7 +69,8 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
     const Real before = glm::dot(inertia * spin, spin);
     const Real after = glm::dot(inertia * end, end);
     constexpr Real rounding = Real(32) * std::numeric_limits<Real>::epsilon();
-    if (std::abs(after - before) <= rounding * before)
+    if (!PLUMB_RARELY("gyroscopic spin did not converge",
+                      !(std::abs(after - before) <= rounding * before)))
         return end;
     return std::isfinite(after) && after > Real(0) ? std::sqrt(before / after) * end : spin;
 }

@@ -46,6 +46,8 @@ void carry_over(const Contact &from, Contact &to) {
     int fresh = to.manifold.count;
     for (int old = 0; old < from.manifold.count; ++old) {
         const auto old_index = static_cast<std::size_t>(old);
+        if (from.impulses[old_index] == Vec3{Real(0)})
+            continue; // what bore nothing is not remembered, in files either
         bool gone = true;
         for (int k = 0; k < to.manifold.count && gone; ++k) {
             const auto index = static_cast<std::size_t>(k);
