@@ -44,7 +44,7 @@ void main() {
 
     float facing = max(dot(normal.xyz, to_light.xyz), 0.0);
     vec3 all = ambient_light(normal.xyz) + light_colour * (to_light.w * facing);
-    float reaching = facing > 0.0 ? light_reaching(position, normal.xyz) : 0.0;
+    float reaching = facing > 0.0 ? light_reaching(position, normal.xyz, 0.0) : 0.0;
     vec3 some = ambient_light(normal.xyz) + light_colour * (to_light.w * facing * reaching);
     // Far away the plane becomes the backdrop; shadows stay on it a little longer.
     float away = length(position + normal.w * normal.xyz) / eye.w;

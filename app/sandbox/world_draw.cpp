@@ -10,6 +10,8 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#define GLM_ENABLE_EXPERIMENTAL // for glm::rotation, the shortest turn between two directions
+#include <glm/gtx/quaternion.hpp>
 
 namespace plumb {
 
@@ -132,6 +134,31 @@ void add_joints(DrawList &list, const Simulation &simulation, const std::vector<
     }
 }
 
+// A distance joint is a rod: part of the scene, drawn whether or not joints are looked at. Its ends
+// are those of the last step, moved along with the bodies that are shown.
+void add_rods(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses) {
+    const auto shown = [&](const std::optional<std::size_t> &body, const glm::dvec3 &anchor) {
+        return body ? anchor + poses[*body].position - simulation.body_state(*body).position
+                    : anchor;
+    };
+    for (const JointView &joint : simulation.joints()) {
+        if (joint.type != JointType::distance)
+            continue;
+        const glm::vec3 a(shown(joint.body_a, joint.anchor_a));
+        const glm::vec3 b(shown(joint.body_b, joint.anchor_b));
+        const float length = glm::distance(a, b);
+        if (!(length > 0.0f))
+            continue;
+        DrawShape rod;
+        rod.kind = DrawKind::capsule;
+        rod.position = 0.5f * (a + b);
+        rod.rotation = glm::rotation(glm::vec3(0, 1, 0), (b - a) / length);
+        rod.size = glm::vec3(0.006f * length, 0.5f * length, 0.0f);
+        rod.colour = colours::rod;
+        list.shapes.push_back(rod);
+    }
+}
+
 void add_bounds(DrawList &list, const Simulation &simulation) {
     for (const BoundsView &box : simulation.bounds()) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -188,6 +215,7 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
     for (std::size_t body = 0; body < shown.size(); ++body)
         if (simulation.body_info(body).alive)
             add_body(list, simulation.body_info(body), shown[body], body, options);
+    add_rods(list, simulation, shown);
     if (options.contacts)
         add_contacts(list, simulation, typical_weight(simulation));
     if (options.joints)

@@ -118,8 +118,14 @@ Rendering render(const Case &golden, std::optional<std::size_t> without) {
     return result;
 }
 
-std::size_t shape_count(const Case &golden) {
-    return sandbox_of(golden).draw_list().shapes.size();
+std::size_t shaped_body_count(const Case &golden) {
+    const Sandbox sandbox = sandbox_of(golden);
+    const Simulation &simulation = *sandbox.session().simulation();
+    std::size_t count = 0;
+    for (std::size_t body = 0; body < simulation.body_count(); ++body)
+        if (!std::holds_alternative<PlaneDesc>(simulation.body_info(body).shape))
+            ++count;
+    return count;
 }
 
 } // namespace plumb::golden

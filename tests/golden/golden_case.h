@@ -48,6 +48,6 @@ struct Rendering {
 // among those that are drawn as shapes; not for a case with panels.
 Rendering render(const Case &golden, std::optional<std::size_t> without = {});
 // How many bodies are drawn as shapes.
-std::size_t shape_count(const Case &golden);
+std::size_t shaped_body_count(const Case &golden);
 
 } // namespace plumb::golden
