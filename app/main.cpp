@@ -1,9 +1,11 @@
 // The command line.
 #include "app/lab/chart.h"
 #include "app/lab/check.h"
+#include "app/lab/interrupt.h"
 #include "app/lab/load_scenes.h"
 #include "app/lab/measure.h"
 #include "app/lab/run_text.h"
+#include "app/lab/sweep.h"
 #include "app/render/compare_images.h"
 #include "app/render/png.h"
 #include "app/sandbox/keys.h"
@@ -34,7 +36,9 @@ constexpr const char *exit_codes = "Exit codes:\n"
                                    "  1  outside a tolerance, or pictures differ\n"
                                    "  2  a bad scene or argument\n"
                                    "  3  the world diverged\n"
-                                   "  4  no GL context\n";
+                                   "  4  no GL context\n"
+                                   "130  interrupted by Ctrl-C; what was done is kept\n";
+constexpr int interrupted = 130; // 128 and the signal's number, as shells have it
 
 int code_of(ExitCode code) {
     return static_cast<int>(code);
@@ -46,7 +50,7 @@ struct Common {
     std::vector<SceneEntry> catalogue = find_scenes(data / "scenes");
     std::vector<std::string> scenes;
     std::string method, precision, gl = "auto", size;
-    double dt = 0;
+    std::string dt;
     int substeps = 0, iterations = 0, threads = 1;
     std::filesystem::path out;
 
@@ -59,8 +63,8 @@ struct Common {
     RunOptions run() const {
         RunOptions options;
         options.method = method;
-        if (dt != 0)
-            options.dt = dt;
+        if (!dt.empty())
+            options.dt = parse_fraction(dt);
         if (substeps != 0)
             options.substeps = substeps;
         if (iterations != 0)
@@ -89,6 +93,19 @@ CLI::Validator positive() {
             "POSITIVE"};
 }
 
+CLI::Validator time_step() {
+    return {[](std::string &text) {
+                try {
+                    const double dt = parse_fraction(text);
+                    if (dt >= 1e-9 && dt <= 1)
+                        return std::string();
+                } catch (const std::invalid_argument &) { // said below
+                }
+                return "must be 1e-9 to 1 s, like 0.01 or 1/60, got " + text;
+            },
+            ""};
+}
+
 // Of options that count steps. CLI11 by itself reads -1 as the largest unsigned number.
 CLI::Range step_range() {
     return {0, 1'000'000'000};
@@ -101,17 +118,21 @@ void add_scenes(CLI::App &command, Common &common) {
         ->required();
 }
 
-void add_run_options(CLI::App &command, Common &common, bool with_method = true) {
-    if (with_method)
+void add_run_options(CLI::App &command, Common &common, bool chart = false) {
+    if (!chart)
         command.add_option("--method", common.method,
                            "Instead of the scene's own: " + method_names());
-    command.add_option("--dt", common.dt, "Time step (s)")->check(positive());
+    command.add_option("--dt", common.dt, "Time step (s), 1e-9 to 1: 0.01, or 1/60")
+        ->check(time_step())
+        ->type_name("S");
     command.add_option("--substeps", common.substeps, "Substeps a step")
         ->check(CLI::Range(1, 10000));
     command.add_option("--iterations", common.iterations, "Solver passes a substep")
         ->check(CLI::Range(1, 10000));
     command.add_option("--precision", common.precision, "float or double")
         ->check(CLI::IsMember({"float", "double"}));
+    if (chart) // timed on one thread
+        return;
     command
         .add_option("--threads", common.threads,
                     "Threads; the results are the same with any number")
@@ -205,7 +226,14 @@ int hash(const Common &common, std::uint64_t steps) {
     const LoadedScenes loaded = load_scenes(common.scene_paths(), std::cerr);
     ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
     for (const SceneDesc &scene : loaded.scenes) {
-        const auto simulation = Simulation::create(scene, common.run(), &tasks);
+        std::unique_ptr<Simulation> simulation;
+        try {
+            simulation = Simulation::create(scene, common.run(), &tasks);
+        } catch (const std::invalid_argument &error) {
+            std::cerr << scene.name << ": " << error.what() << '\n';
+            code = worse(code, ExitCode::bad_input);
+            continue;
+        }
         for (std::uint64_t step = 0; step < steps && simulation->report().finite; ++step)
             simulation->step();
         std::cout << std::hex << std::setw(16) << std::setfill('0') << simulation->hash()
@@ -327,6 +355,7 @@ int main_with_errors(int argc, char **argv) {
         app.add_subcommand("snapshot", "Draws scenes at given steps to numbered PNG files");
     add_scenes(*snapshot_command, common);
     auto *at = snapshot_command->add_option("--at", pictures.at, "Steps to draw: 0,60,240")
+                   ->allow_extra_args(false)
                    ->check(step_range())
                    ->delimiter(',');
     auto *every =
@@ -412,17 +441,20 @@ int main_with_errors(int argc, char **argv) {
         app.add_subcommand("chart", "Charts each method's cost against its error, as CSV and PNG");
     add_scenes(*chart_command, common);
     chart_command->add_option("--methods", chart.options.methods, "Of " + method_names() + " (all)")
+        ->allow_extra_args(false)
         ->delimiter(',');
-    chart_command->add_option("--sweep", sweeps,
-                              "What to go through: substeps=1..16 (the default), iterations=1,2,8, "
-                              "dt=1/240..1/30; may be given several times");
+    chart_command
+        ->add_option("--sweep", sweeps,
+                     "What to go through: substeps=1..16 (the default), iterations=1,2,8, "
+                     "dt=1/240..1/30; may be given several times")
+        ->allow_extra_args(false);
     chart_command->add_option("--expect", chart.options.expect,
                               "Name of the expectation to chart (the scene's first)");
     chart_command->add_option("--repeats", chart.options.repeats, "Timings of each run")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     add_out(*chart_command, common, "out");
-    add_run_options(*chart_command, common, false);
+    add_run_options(*chart_command, common, true);
     chart_command->callback([&] {
         for (const std::string &sweep : sweeps)
             chart.options.sweep.push_back(parse_sweep(sweep));
@@ -459,8 +491,12 @@ int main_with_errors(int argc, char **argv) {
             for (const CLI::App *command : app.get_subcommands({}))
                 names.push_back(command->get_name());
             const std::vector<std::string_view> candidates(names.begin(), names.end());
+            const auto scene = std::ranges::find(common.catalogue, argv[1], &SceneEntry::name);
             std::cerr << "plumb: there is no command '" << argv[1] << "'; "
-                      << did_you_mean(argv[1], candidates) << '\n';
+                      << (scene != common.catalogue.end()
+                              ? "to open the scene: plumb run " + scene->name
+                              : did_you_mean(argv[1], candidates))
+                      << '\n';
             return code_of(ExitCode::bad_input);
         }
         app.exit(error);
@@ -470,6 +506,8 @@ int main_with_errors(int argc, char **argv) {
     }
     if (app.get_subcommands().empty())
         result = run(common, frames, screenshot);
+    if (InterruptGuard::requested())
+        return interrupted;
     return result;
 }
 

@@ -13,6 +13,7 @@
 #include <charconv>
 #include <cstdio>
 #include <ostream>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -63,6 +64,8 @@ ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer 
         out << path.string() << std::endl;
         if (!arrived || !simulation.report().finite) {
             err << scene.name << ": diverged at step " << simulation.step_count() - start << '\n';
+            for (const Message &message : sandbox.session().messages().all())
+                err << message.text << '\n';
             return ExitCode::diverged;
         }
     }
@@ -91,6 +94,12 @@ ExitCode make_snapshots(const SnapshotCommand &command, std::ostream &out, std::
     ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
     if (loaded.scenes.empty())
         return code;
+    std::set<std::string> names;
+    for (const SceneDesc &scene : loaded.scenes)
+        if (!names.insert(scene.name).second) {
+            err << "two scenes are called " << scene.name << "; draw them into two folders\n";
+            return ExitCode::bad_input;
+        }
     const InterruptGuard interrupt;
     ContextRequest request;
     request.choice = command.gl;
@@ -100,7 +109,12 @@ ExitCode make_snapshots(const SnapshotCommand &command, std::ostream &out, std::
     const ContextResult made = create_context(request);
     made.context->make_current();
     Renderer renderer(command.shader_dir);
-    std::filesystem::create_directories(command.out_dir);
+    std::error_code error;
+    std::filesystem::create_directories(command.out_dir, error);
+    if (error) {
+        err << command.out_dir.string() << ": " << error.message() << '\n';
+        return ExitCode::bad_input;
+    }
     for (const SceneDesc &scene : loaded.scenes) {
         code = worse(code, shoot(command, scene, renderer, out, err));
         if (InterruptGuard::requested()) {

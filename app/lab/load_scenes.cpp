@@ -32,7 +32,10 @@ LoadedScenes load_scenes(const std::vector<std::filesystem::path> &paths, std::o
 
     LoadedScenes loaded;
     if (files.empty()) {
-        err << "no scene files\n";
+        err << "no scene files in";
+        for (const fs::path &path : paths)
+            err << ' ' << path.string();
+        err << '\n';
         loaded.all_fine = false;
     }
     for (const fs::path &file : files) {

@@ -62,6 +62,10 @@ std::string_view sweep_setting_name(SweepSetting setting) {
     return "";
 }
 
+double parse_fraction(std::string_view text) {
+    return parse_number(text, text);
+}
+
 SweepAxis parse_sweep(std::string_view text) {
     const auto equals = text.find('=');
     if (equals == std::string_view::npos)

@@ -24,6 +24,9 @@ struct SweepAxis {
 // Throws std::invalid_argument that says what is wrong and what would be right.
 [[nodiscard]] SweepAxis parse_sweep(std::string_view text);
 
+// "0.01" or "1/60". Throws std::invalid_argument as above.
+[[nodiscard]] double parse_fraction(std::string_view text);
+
 // substeps=1..16
 [[nodiscard]] SweepAxis default_sweep();
 

@@ -1,6 +1,10 @@
 #include "app/render/png.h"
 
+#include <cerrno>
 #include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -34,12 +38,19 @@ void write_png(const std::filesystem::path &path, const Image &image) {
                 "cannot write a picture of " << image.width << " x " << image.height << " pixels");
     std::filesystem::path part = path;
     part += ".part";
-    const int written = stbi_write_png(part.c_str(), image.width, image.height, 3,
-                                       image.pixels.data(), 3 * image.width);
+    int length = 0;
+    const std::unique_ptr<unsigned char, void (*)(void *)> bytes(
+        stbi_write_png_to_mem(image.pixels.data(), 3 * image.width, image.width, image.height, 3,
+                              &length),
+        std::free);
     std::error_code error;
-    if (written == 0) {
+    std::ofstream file(part, std::ios::binary);
+    file.write(reinterpret_cast<const char *>(bytes.get()), length);
+    file.close();
+    if (!file) { // a full disk shows when the file is closed
+        const std::string reason = std::strerror(errno);
         std::filesystem::remove(part, error);
-        throw std::runtime_error(path.string() + ": cannot write the picture");
+        throw std::runtime_error(path.string() + ": cannot write the picture: " + reason);
     }
     std::filesystem::rename(part, path, error);
     if (error) {

@@ -79,7 +79,7 @@ const std::vector<ActionInfo> &table() {
          "Edges instead of surfaces.",
          Place::view, false, {plain('w')}},
         {Action::toggle_bounds, "Bounds",
-         "The boxes of the broad phase.",
+         "The axis-aligned boxes around bodies.",
          Place::view, false, {plain('b')}},
         {Action::toggle_velocities, "Velocities",
          "How far each body goes in a quarter second.",

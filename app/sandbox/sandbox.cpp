@@ -222,9 +222,9 @@ void Sandbox::reload() {
 }
 
 void Sandbox::open_neighbour(int direction) {
-    if (scenes_.empty())
-        return;
     const auto count = static_cast<int>(scenes_.size());
+    if (count == 0)
+        return;
     int now = direction > 0 ? -1 : count; // none of the list is open: begin at its end
     for (int i = 0; i < count; ++i)
         if (scenes_[static_cast<std::size_t>(i)].path == session_.path())
@@ -323,7 +323,7 @@ std::filesystem::path Sandbox::new_file(const std::string &extension) const {
     std::filesystem::path path = out_dir_ / (stem + extension);
     std::error_code error; // what cannot be looked at counts as absent: writing will say why
     for (int i = 2; std::filesystem::exists(path, error); ++i)
-        path = out_dir_ / (stem + "-" + std::to_string(i) + extension);
+        path = out_dir_ / std::string(stem).append("-").append(std::to_string(i)).append(extension);
     return path;
 }
 

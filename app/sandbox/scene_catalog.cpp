@@ -29,12 +29,21 @@ std::string read_title(const fs::path &path) {
     return path.stem().string();
 }
 
+// Whoever names a folder means that one.
+fs::path data_dir_from_environment(const fs::path &dir) {
+    std::error_code error;
+    if (!fs::is_directory(dir / "shaders", error) || !fs::is_directory(dir / "scenes", error))
+        throw std::runtime_error("PLUMB_DATA is " + dir.string() +
+                                 ", which has no folders shaders and scenes");
+    return dir;
+}
+
 } // namespace
 
 fs::path find_data_dir() {
     std::vector<fs::path> places;
     if (const char *from_environment = std::getenv("PLUMB_DATA"))
-        places.emplace_back(from_environment);
+        return data_dir_from_environment(from_environment);
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     if (!error)
@@ -69,12 +78,17 @@ std::vector<SceneEntry> find_scenes(const fs::path &scene_dir) {
 
 fs::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &scenes) {
     std::error_code error;
-    if (fs::exists(name, error))
-        return name;
+    // A bare name is a scene's, whatever else is called so in the working directory.
+    const fs::path path(name);
+    if ((path.has_parent_path() || path.has_extension()) && fs::exists(path, error))
+        return path;
     for (const SceneEntry &entry : scenes)
         if (name == entry.name || name == entry.subject + "/" + entry.name)
             return entry.path;
+    if (fs::exists(path, error))
+        return path;
     std::vector<std::string_view> names;
+    names.reserve(scenes.size());
     for (const SceneEntry &entry : scenes)
         names.emplace_back(entry.name);
     throw std::invalid_argument("there is no file and no scene '" + name + "'; " +

@@ -121,7 +121,7 @@ void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
     drag_ = Drag::grab;
 }
 
-void Tools::shoot(const PointerEvent &event, const ToolTargets &targets) {
+void Tools::shoot(const PointerEvent &event, const ToolTargets &targets) const {
     const PickRay ray = targets.camera.pick_ray(event.position, targets.viewport);
     // As large on the screen at any distance, and started far enough ahead not to fill the view.
     const double radius =

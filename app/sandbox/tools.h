@@ -54,7 +54,7 @@ class Tools {
     void move(const PointerEvent &event, const ToolTargets &targets);
     void release(const PointerEvent &event, const ToolTargets &targets);
     void begin_grab(const PointerEvent &event, const ToolTargets &targets);
-    void shoot(const PointerEvent &event, const ToolTargets &targets);
+    void shoot(const PointerEvent &event, const ToolTargets &targets) const;
 
     Drag drag_ = Drag::none;
     PointerButton button_ = PointerButton::left; // the one that began the drag

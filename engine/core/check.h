@@ -2,9 +2,8 @@
 //
 //   PLUMB_CHECK(condition, message)         always: misuse by the caller (a NaN, a negative radius)
 //   PLUMB_DEBUG_CHECK(condition, message)   debug builds only: our own invariants in hot code
-//   PLUMB_RARELY(name, condition)           counts how often a numerical oddity occurs; a test
-//   fails
-//                                           when it is more frequent than stated
+//   PLUMB_RARELY(name, condition)           counts a numerical oddity; a test fails when it
+//                                           is more frequent than stated
 //
 // `message` is an expression that streams into an ostream, with the offending value in it:
 //   PLUMB_CHECK(radius > 0, "sphere radius must be positive, got " << radius);

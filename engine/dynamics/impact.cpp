@@ -17,10 +17,11 @@ struct Rebound {
     Real speed = Real(0);
 };
 
-Rebound rebound(Real gap, Real speed, Real pull, Real restitution, Real threshold, Real h) {
-    // A tenth early does no harm, as the rebound accounts for the gap; a hair late, and the solver
-    // would have stopped the body first.
-    if (speed >= -threshold || gap + Real(1.1) * h * (speed + h * pull) > Real(0))
+Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSettings &settings,
+                Real h) {
+    const auto threshold = static_cast<Real>(settings.restitution_threshold);
+    const auto lookahead = static_cast<Real>(settings.impact_lookahead);
+    if (speed >= -threshold || gap + lookahead * h * (speed + h * pull) > Real(0))
         return {};
     const Real height = std::max(gap, Real(0));
     // Energy from here to the surface and back: v^2 - 2 a s.
@@ -39,7 +40,6 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
     const Vec3 pull_a = a.inv_mass > Real(0) ? gravity : Vec3{Real(0)};
     const Vec3 pull_b = b.inv_mass > Real(0) ? gravity : Vec3{Real(0)};
     const Real pull = glm::dot(pull_b - pull_a, contact.normal);
-    const auto threshold = static_cast<Real>(context.settings.restitution_threshold);
 
     const auto normal_speed = [&](const ContactPointConstraint &point) {
         return glm::dot(b.velocity_at(point.r_b) - a.velocity_at(point.r_a), contact.normal);
@@ -52,7 +52,7 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
         const auto index = static_cast<std::size_t>(k);
         const ContactPointConstraint &point = contact.points[index];
         rebounds[index] = rebound(present_separation(contact, point, a, b), normal_speed(point),
-                                  pull, contact.restitution, threshold, h);
+                                  pull, contact.restitution, context.settings, h);
         const Real inverse = inverse_effective_mass(a, b, point.r_a, point.r_b, contact.normal);
         normal_mass[index] = inverse > Real(0) ? Real(1) / inverse : Real(0);
         any = any || rebounds[index].struck;
@@ -89,7 +89,7 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
 } // namespace
 
 void resolve_impacts(StepContext &context, std::span<const ContactConstraint> contacts, Real h) {
-    bool any = true;
+    bool any = context.settings.impact_sweeps > 0;
     for (int sweep = 0; any && sweep < context.settings.impact_sweeps; ++sweep) {
         any = false;
         for (const ContactConstraint &contact : contacts)

@@ -9,10 +9,6 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-Mat3 cross_matrix(const Vec3 &a) {
-    return Mat3{Vec3{Real(0), a.z, -a.y}, Vec3{-a.z, Real(0), a.x}, Vec3{a.y, -a.x, Real(0)}};
-}
-
 // K of a point-to-point constraint: (1/ma + 1/mb) 1 - [ra] Ia^-1 [ra] - [rb] Ib^-1 [rb]
 // (Catto 2009, "Modeling and Solving Constraints", slide 52, in 3D).
 Mat3 point_matrix(const Motion &a, const Motion &b, const Vec3 &r_a, const Vec3 &r_b) {

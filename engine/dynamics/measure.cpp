@@ -28,7 +28,7 @@ void add(StateHash &hash, const StepSettings &s) {
     for (const double value :
          {s.gravity.x, s.gravity.y, s.gravity.z, s.dt, s.speculative_distance, s.penetration_slop,
           s.baumgarte, s.contact_frequency_ratio, s.contact_damping_ratio, s.joint_frequency_ratio,
-          s.joint_damping_ratio, s.push_velocity, s.restitution_threshold})
+          s.joint_damping_ratio, s.push_velocity, s.restitution_threshold, s.impact_lookahead})
         hash.add(value);
     for (const int value :
          {s.substeps, s.iterations, s.impact_sweeps, s.impact_passes, s.gyroscopic_iterations})
@@ -71,7 +71,7 @@ double World::energy_of(const Body &body, const Motion &motion) const {
 
 Measures World::measure() const {
     Measures m;
-    m.time = static_cast<double>(step_count_) * settings_.dt;
+    m.time = time();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Body &body = bodies_[i];
         if (!body.alive || body.kind != BodyKind::dynamic)

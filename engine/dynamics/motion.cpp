@@ -12,11 +12,6 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// [a]x, so that cross_matrix(a) * b == cross(a, b).
-Mat3 cross_matrix(const Vec3 &a) {
-    return Mat3{Vec3{Real(0), a.z, -a.y}, Vec3{-a.z, Real(0), a.x}, Vec3{a.y, -a.x, Real(0)}};
-}
-
 // The Cayley map of the turn h * spin: the unit quaternion along (1, h spin / 2). Of all maps it is
 // the one under which the midpoint rule keeps the world angular momentum exactly (Austin,
 // Krishnaprasad, Wang 1993, "Almost Poisson Integration of Rigid Body Systems", sec. 4).

@@ -178,6 +178,7 @@ void World::find_pairs() {
     }
     for (const std::uint32_t plane : half_spaces_) {
         HalfSpace reached = std::get<HalfSpace>(placed_[plane]);
+        reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;
         if (bodies_[plane].kind != BodyKind::fixed)
             reached.offset +=
                 glm::length(motions_[plane].velocity) * static_cast<Real>(settings_.dt);
@@ -198,14 +199,18 @@ void World::collide(TaskPool *tasks) {
     const std::vector<Contact> old = std::move(contacts_);
     contacts_.assign(candidates_.size(), Contact{});
     const auto dt = static_cast<Real>(settings_.dt);
+    const Real gravity = glm::length(Vec3{settings_.gravity});
     const auto collide_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Contact &contact = contacts_[i];
             contact.a = static_cast<std::uint32_t>(candidates_[i] >> 32);
             contact.b = static_cast<std::uint32_t>(candidates_[i] & 0xFFFFFFFFU);
             const Vec3 approach = motions_[contact.b].velocity - motions_[contact.a].velocity;
-            const Real margin =
-                static_cast<Real>(settings_.speculative_distance) + glm::length(approach) * dt;
+            // What gravity adds within the step; two dynamic bodies fall together.
+            const bool both_fall = bodies_[contact.a].kind == bodies_[contact.b].kind;
+            const Real fall = both_fall ? Real(0) : gravity * dt * dt;
+            const Real margin = static_cast<Real>(settings_.speculative_distance) +
+                                glm::length(approach) * dt + fall;
             if (!std::isfinite(margin)) // about to diverge: speeds whose square is infinite
                 continue;
             contact.manifold = plumb::collide(placed_[contact.a], placed_[contact.b], margin);

@@ -18,8 +18,9 @@ struct StepReport {
     std::uint32_t contacts = 0; // shapes touch, or nearly
     std::uint32_t contact_points = 0;
     std::uint32_t joints = 0;
-    std::uint32_t impacts = 0;            // bounces resolved
-    std::uint32_t unresolved_impacts = 0; // bounces still pending after the allowed sweeps
+    std::uint32_t impacts = 0; // bounces resolved
+    std::uint32_t unresolved_impacts =
+        0; // substeps whose last allowed sweep still bounced something
 
     double energy = 0; // kinetic and potential, J
     double energy_gain =

@@ -20,6 +20,20 @@ bool is_finite(const Vec3 &v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+bool is_finite(const Transform &pose) {
+    return is_finite(pose.position) &&
+           std::isfinite(pose.rotation.w + pose.rotation.x + pose.rotation.y + pose.rotation.z);
+}
+
+void check_pose(const Transform &pose) {
+    PLUMB_CHECK(is_finite(pose.position), "body position must be finite, got "
+                                              << pose.position.x << ", " << pose.position.y << ", "
+                                              << pose.position.z);
+    const Real length = glm::length(pose.rotation);
+    PLUMB_CHECK(std::abs(length - Real(1)) < Real(1e-3),
+                "body rotation must be of unit length, got " << length);
+}
+
 void check_settings(const StepSettings &s) {
     PLUMB_CHECK(std::isfinite(s.dt) && s.dt > 0, "dt must be positive and finite, got " << s.dt);
     PLUMB_CHECK(s.substeps >= 1 && s.substeps <= 10000,
@@ -40,6 +54,7 @@ void check_settings(const StepSettings &s) {
     check_not_negative("joint_damping_ratio", s.joint_damping_ratio);
     check_not_negative("push_velocity", s.push_velocity);
     check_not_negative("restitution_threshold", s.restitution_threshold);
+    check_not_negative("impact_lookahead", s.impact_lookahead);
     // 0 would divide by zero where damping is 0, too.
     PLUMB_CHECK(std::isfinite(s.contact_frequency_ratio) && s.contact_frequency_ratio > 0,
                 "contact_frequency_ratio must be positive, got " << s.contact_frequency_ratio);
@@ -78,17 +93,18 @@ void World::set_method(std::string_view method) {
 
 void World::set_settings(const StepSettings &settings) {
     check_settings(settings);
+    if (settings.dt != settings_.dt) {
+        time_before_ = time();
+        steps_before_ = step_count_;
+    }
     settings_ = settings;
 }
 
 BodyId World::add_body(const BodyDef &def) {
     check_valid(def.shape);
-    PLUMB_CHECK(is_finite(def.pose.position), "body position must be finite");
+    check_pose(def.pose);
     PLUMB_CHECK(is_finite(def.velocity) && is_finite(def.angular_velocity),
                 "body velocity must be finite");
-    const Real length = glm::length(def.pose.rotation);
-    PLUMB_CHECK(std::abs(length - Real(1)) < Real(1e-3),
-                "body rotation must be of unit length, got " << length);
     PLUMB_CHECK(def.material.friction >= 0 && std::isfinite(def.material.friction),
                 "friction must not be negative, got " << def.material.friction);
     PLUMB_CHECK(def.material.restitution >= 0 && def.material.restitution <= 1,
@@ -163,13 +179,9 @@ JointId World::add_joint(const JointDef &def) {
         PLUMB_CHECK(is_alive(id), "joint names body " << id.index << ", which is not alive");
         return id.index;
     };
-    const auto is_dynamic = [&](std::uint32_t body) {
-        return body != Joint::world && bodies_[body].kind == BodyKind::dynamic;
-    };
     const std::uint32_t a = index_of(def.a);
     const std::uint32_t b = index_of(def.b);
     PLUMB_CHECK(a != b, "a joint needs two different bodies");
-    PLUMB_CHECK(is_dynamic(a) || is_dynamic(b), "a joint needs a dynamic body");
     PLUMB_CHECK(is_finite(def.anchor_a_local) && is_finite(def.anchor_b_local),
                 "joint anchors must be finite");
     PLUMB_CHECK(def.type != JointType::distance || (def.length > 0 && std::isfinite(def.length)),
@@ -215,6 +227,8 @@ bool World::is_alive(JointId id) const {
 void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
                        const Vec3 &angular_velocity) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
+    PLUMB_CHECK(is_finite(velocity) && is_finite(angular_velocity), "body velocity must be finite");
+    check_pose(pose);
     Motion &motion = motions_[id.index];
     motion.position = pose.position;
     motion.rotation = pose.rotation;
@@ -225,8 +239,15 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
 
 void World::apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
+    PLUMB_CHECK(is_finite(impulse) && is_finite(point), "an impulse must be finite");
     Motion &motion = motions_[id.index];
     motion.apply_impulse(impulse, point - motion.position);
+}
+
+void World::set_step_count(std::uint64_t count) {
+    step_count_ = count;
+    time_before_ = 0;
+    steps_before_ = 0;
 }
 
 void World::remember_contact(BodyId a, BodyId b, std::span<const std::uint32_t> features,
@@ -258,6 +279,8 @@ std::optional<WorldHit> World::raycast(const Ray &ray) const {
         if (!bodies_[i].alive)
             continue;
         const Transform pose{motions_[i].position, motions_[i].rotation};
+        if (!is_finite(pose))
+            continue; // diverged: it is nowhere
         const std::optional<RayHit> hit = plumb::raycast(placed(bodies_[i].shape, pose), shortened);
         if (hit && (!nearest || hit->t < nearest->hit.t)) {
             nearest = WorldHit{body_id(i), *hit};

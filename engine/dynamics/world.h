@@ -38,7 +38,7 @@ class World {
     void remove_body(BodyId id);
     bool is_alive(BodyId id) const;
 
-    // At least one end is a dynamic body; else a check fails.
+    // Between two bodies that are not dynamic it does nothing.
     JointId add_joint(const JointDef &def);
     void remove_joint(JointId id);
     bool is_alive(JointId id) const;
@@ -67,7 +67,13 @@ class World {
     void step(TaskPool *tasks);
     const StepReport &report() const { return report_; }
     std::uint64_t step_count() const { return step_count_; }
-    void set_step_count(std::uint64_t count) { step_count_ = count; }
+    // For a world that continues a saved one; all its steps count as of the present dt.
+    void set_step_count(std::uint64_t count);
+    // Simulated time (s). A product, not a sum, of each dt that was set: step k is where it should
+    // be.
+    double time() const {
+        return time_before_ + static_cast<double>(step_count_ - steps_before_) * settings_.dt;
+    }
 
     // The nearest body; of two at the same t, the one with the lower index.
     std::optional<WorldHit> raycast(const Ray &ray) const;
@@ -78,7 +84,9 @@ class World {
     Vec3 anchor_a(const Joint &joint) const; // world
     Vec3 anchor_b(const Joint &joint) const;
 
-    // Of all that decides the future. Holes do not count: a world saved and loaded has the same.
+    // Of all that decides the future as long as no body is added. Holes do not count: a world saved
+    // and loaded has the same. (A new body fills a hole, and so comes earlier in the solver's
+    // order.)
     std::uint64_t hash() const;
 
   private:
@@ -104,6 +112,8 @@ class World {
     std::vector<std::uint64_t> fat_pairs_; // sorted keys of bodies whose fat boxes touch
     std::vector<Contact> contacts_;        // sorted by key
     std::uint64_t step_count_ = 0;
+    double time_before_ = 0; // s, until dt was last changed
+    std::uint64_t steps_before_ = 0;
     StepReport report_;
 
     // Scratch of one step, kept for its memory.

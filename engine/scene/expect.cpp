@@ -46,7 +46,7 @@ constexpr std::array all_quantities{
     QuantityInfo{"penetration", "m", false,
                  "depth of the deepest contact point of the scene; 0 when nothing overlaps"},
     QuantityInfo{"mean_penetration", "m", false,
-                 "mean over all contact points of max(depth, 0); 0 without contact points"},
+                 "mean depth of the contact points that penetrate; 0 without contact points"},
     QuantityInfo{
         "joint_drift", "m", false,
         "largest error of any joint: distance between the anchors (ball), or how far it is "

@@ -1,5 +1,6 @@
 #include "engine/scene/scene_file_warnings.h"
 
+#include "engine/dynamics/method_info.h"
 #include "engine/geometry/manifold.h"
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/shape_desc.h"
@@ -275,7 +276,11 @@ class Checker {
 
     void check_dt() {
         const double dt = scene_.world.dt;
-        const double substep = dt / std::max(1, scene_.world.settings.substeps);
+        // 0 is the method's own default, which is known for methods that are in the registry.
+        const MethodInfo *method = find_method_info(scene_.world.method);
+        const int by_default = method != nullptr ? method->default_substeps : 1;
+        const int asked = scene_.world.settings.substeps;
+        const double substep = dt / (asked > 0 ? asked : by_default);
         const double gravity = glm::length(scene_.world.gravity);
         double smallest = std::numeric_limits<double>::infinity();
         const BodyDesc *smallest_body = nullptr;

@@ -3,6 +3,7 @@
 #include "engine/core/check.h"
 #include "engine/dynamics/method.h"
 #include "engine/scene/real/world_simulation.h"
+#include "engine/scene/scene_file_spelling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,9 +40,11 @@ ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {
     run.method = find_method_info(name);
     if (run.method == nullptr) {
         std::ostringstream text;
-        text << "no method is called '" << name << "'; there are";
+        text << "no method is called '" << name << "'; ";
+        std::vector<std::string_view> names;
         for (const MethodInfo &info : method_infos())
-            text << ' ' << info.name;
+            names.push_back(info.name);
+        text << did_you_mean(name, names);
         throw std::invalid_argument(text.str());
     }
     MethodSettings chosen;
@@ -67,8 +70,11 @@ ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {
     };
     check_count("substeps", run.settings.substeps);
     check_count("iterations", run.settings.iterations);
-    if (!std::isfinite(run.settings.dt) || run.settings.dt <= 0)
-        throw std::invalid_argument("dt must be positive, got " + std::to_string(run.settings.dt));
+    if (!(run.settings.dt >= 1e-9 && run.settings.dt <= 1)) {
+        std::ostringstream text;
+        text << "dt must be 1e-9 to 1 s, got " << run.settings.dt;
+        throw std::invalid_argument(text.str());
+    }
     return run;
 }
 

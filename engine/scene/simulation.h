@@ -1,7 +1,7 @@
 // A running scene, in whichever precision it asks for: what the app and the lab work with.
 //
-// All values cross this boundary in double. Bodies are named by index into bodies(), which stays
-// the same for a body as long as it lives.
+// All values cross this boundary in double. Bodies are named by an index below body_count(),
+// the same as long as the body lives.
 #pragma once
 
 #include "engine/core/task_pool.h"
@@ -120,7 +120,8 @@ class Simulation {
     virtual std::unique_ptr<Saved> save() const = 0;
     virtual void restore(const Saved &saved) = 0; // saved by this simulation
 
-    // The present state as a scene that loads to the same hash.
+    // The present state as a scene that loads to the same hash, as long as nothing but what a scene
+    // says was changed in the settings: the solver's tolerances have no place in a file.
     virtual SceneDesc describe() const = 0;
 
     virtual std::size_t body_count() const = 0; // holes included
@@ -130,7 +131,7 @@ class Simulation {
 
     virtual std::vector<ContactView> contacts() const = 0; // of the last step
     virtual std::vector<JointView> joints() const = 0;
-    virtual std::vector<BoundsView> bounds() const = 0; // the broad phase's boxes
+    virtual std::vector<BoundsView> bounds() const = 0; // around each body, now; planes have none
 
     // The nearest body on the ray origin + t * direction, t >= 0.
     virtual std::optional<Pick> pick(const glm::dvec3 &origin,
@@ -142,7 +143,8 @@ class Simulation {
     // is scaled with the body's mass; call it before each step while grabbing.
     virtual void pull(std::size_t body, const glm::dvec3 &local_point,
                       const glm::dvec3 &target) = 0;
-    // Adds a body; a name already taken gets a number. Returns its index.
+    // Adds a body; a name already taken gets a number. Returns its index. Throws
+    // std::invalid_argument when the method knows no contacts.
     virtual std::size_t add_body(const BodyDesc &body) = 0;
     virtual void remove_body(std::size_t body) = 0;
 };

@@ -44,12 +44,16 @@ void advance(StepContext &context) {
         for (std::size_t i = 0; i < context.motions.size(); ++i) {
             const Body &body = context.bodies[i];
             Motion &motion = context.motions[i];
-            if (body.kind == BodyKind::fixed)
+            if (body.kind == BodyKind::kinematic) {
+                motion.position += h * motion.velocity;
+                motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
+            }
+            if (body.kind != BodyKind::dynamic)
                 continue;
-            const Vec3 gravity =
-                body.kind == BodyKind::dynamic ? Vec3{settings.gravity} : Vec3{Real(0)};
-            const FreeState start{motion.position, motion.velocity, motion.rotation,
-                                  glm::conjugate(motion.rotation) * motion.angular_velocity};
+            const Vec3 gravity{settings.gravity};
+            const FreeState start{
+                motion.position, motion.velocity, motion.rotation,
+                rotated(glm::conjugate(motion.rotation), motion.angular_velocity)};
             const FreeState k1 = rate_of(start, body, gravity);
             const FreeState k2 = rate_of(start + (h / 2) * k1, body, gravity);
             const FreeState k3 = rate_of(start + (h / 2) * k2, body, gravity);
@@ -58,7 +62,7 @@ void advance(StepContext &context) {
             motion.position = end.position;
             motion.velocity = end.velocity;
             motion.rotation = glm::normalize(end.rotation);
-            motion.angular_velocity = motion.rotation * end.spin;
+            motion.angular_velocity = rotated(motion.rotation, end.spin);
             motion.inv_inertia = world_inverse_inertia(motion.rotation, body.inv_inertia);
         }
 }

@@ -71,7 +71,7 @@ Method soft_step() {
              .default_iterations = 1,
              .body_passes = [](int substeps, int) { return 2 * substeps; },
              .constraint_passes = [](int substeps,
-                                     int iterations) { return substeps * (1 + 2 * iterations); }},
+                                     int iterations) { return substeps * (2 + 2 * iterations); }},
             advance};
 }
 

@@ -54,9 +54,7 @@ class WorldSimulation final : public Simulation {
 
     void step() override { state_.world.step(tasks_); }
     std::uint64_t step_count() const override { return state_.world.step_count(); }
-    double time() const override {
-        return static_cast<double>(step_count()) * state_.world.settings().dt;
-    }
+    double time() const override { return state_.world.time(); }
     const StepReport &report() const override { return state_.world.report(); }
     Measures measure() const override { return state_.world.measure(); }
     std::uint64_t hash() const override { return state_.world.hash(); }
@@ -121,6 +119,9 @@ class WorldSimulation final : public Simulation {
     }
     void pull(std::size_t body, const glm::dvec3 &local_point, const glm::dvec3 &target) override;
     std::size_t add_body(const BodyDesc &body) override {
+        if (!state_.world.method().info.contacts)
+            throw std::invalid_argument(std::string(state_.world.method().info.name) +
+                                        " knows no contacts, so no body can be added");
         BodyDesc named = body;
         for (int number = 2; state_.index_of.contains(named.name); ++number)
             named.name = body.name + "_" + std::to_string(number);
@@ -232,8 +233,16 @@ SceneDesc WorldSimulation::describe() const {
     out.step_count = world.step_count();
     out.world.gravity = world.settings().gravity;
     out.world.dt = world.settings().dt;
-    out.world.method = world.method().info.name;
+    const std::string method(world.method().info.name);
+    if (method != out.world.method) { // the scene's own becomes one of the others
+        out.world.other_methods[out.world.method] = out.world.settings;
+        out.world.other_methods.erase(method);
+    }
+    out.world.method = method;
     out.world.settings = {world.settings().substeps, world.settings().iterations};
+    std::erase_if(out.expects, [this](const ExpectDesc &expect) {
+        return !expect.body.empty() && !state_.index_of.contains(expect.body);
+    });
     out.world.precision = precision_;
     for (std::size_t i = 0; i < state_.infos.size(); ++i) {
         if (!state_.infos[i].alive)
@@ -272,6 +281,8 @@ std::vector<ContactView> WorldSimulation::contacts() const {
     const double rate = world.settings().substeps / world.settings().dt;
     std::vector<ContactView> views;
     for (const Contact &contact : world.contacts()) {
+        if (contact.manifold.normal == Vec3{Real(0)})
+            continue; // remembered from a file; where it is, the next step finds
         const TangentBasis basis = tangent_basis(contact.manifold.normal);
         for (int k = 0; k < contact.manifold.count; ++k) {
             const auto index = static_cast<std::size_t>(k);
