@@ -87,7 +87,10 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
         {"hash", {"SCENE", "--method", "--steps"}, true},
         {"list", {"--json", "--keys", "--methods"}, false},
         {"measure", {"SCENE", "--method", "--steps", "--csv"}, true},
-        {"chart", {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out"}, true},
+        {"chart",
+         {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--dt", "--substeps",
+          "--iterations", "--precision"},
+         false}, // timed on one thread: it has no --threads
         {"compare", {"A", "B", "--tolerance", "--difference"}, false},
     };
     const ProgramResult all = run_program("--help");

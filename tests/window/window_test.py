@@ -181,9 +181,10 @@ def main():
         if shutil.which(tool) is None:
             print(f"skipped: there is no {tool}")
             return SKIPPED
-    # A display of its own; Xvfb picks a number that is free and tells it.
+    # A display of its own; Xvfb picks a number that is free and tells it. It must not start anew when
+    # its last client goes: whoever comes just then is turned away.
     server = subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0",
-                               f"{SCREEN[0]}x{SCREEN[1]}x24", "-nolisten", "tcp"],
+                               f"{SCREEN[0]}x{SCREEN[1]}x24", "-nolisten", "tcp", "-noreset"],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     try:
         os.environ["DISPLAY"] = ":" + server.stdout.readline().decode().strip()
