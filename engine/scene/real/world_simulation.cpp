@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -142,7 +143,7 @@ class WorldSimulation final : public Simulation {
         std::map<std::string, std::size_t, std::less<>> index_of;
     };
     struct SavedState final : Saved {
-        explicit SavedState(const State &s) : state(s) {}
+        explicit SavedState(State s) : state(std::move(s)) {}
         State state;
     };
 
@@ -154,9 +155,9 @@ class WorldSimulation final : public Simulation {
     BodyId id_of(const std::string &name) const {
         return name.empty() ? BodyId{} : id_of(state_.index_of.at(name));
     }
-    std::size_t insert(const BodyDesc &body);
-    void insert(const JointDesc &joint);
-    void remember(const ContactStateDesc &contact);
+    std::size_t insert(const BodyDesc &desc);
+    void insert(const JointDesc &desc);
+    void remember(const ContactStateDesc &desc);
 
     TaskPool *tasks_;
     Precision precision_;
