@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstddef>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -38,16 +37,15 @@ void write_png(const std::filesystem::path &path, const Image &image) {
                 "cannot write a picture of " << image.width << " x " << image.height << " pixels");
     std::filesystem::path part = path;
     part += ".part";
-    int length = 0;
-    const std::unique_ptr<unsigned char, void (*)(void *)> bytes(
-        stbi_write_png_to_mem(image.pixels.data(), 3 * image.width, image.width, image.height, 3,
-                              &length),
-        std::free);
     std::error_code error;
     std::ofstream file(part, std::ios::binary);
-    file.write(reinterpret_cast<const char *>(bytes.get()), length);
+    const auto append = [](void *to, void *bytes, int count) {
+        static_cast<std::ofstream *>(to)->write(static_cast<const char *>(bytes), count);
+    };
+    const int encoded = stbi_write_png_to_func(append, &file, image.width, image.height, 3,
+                                               image.pixels.data(), 3 * image.width);
     file.close();
-    if (!file) { // a full disk shows when the file is closed
+    if (encoded == 0 || !file) { // a full disk shows when the file is closed
         const std::string reason = std::strerror(errno);
         std::filesystem::remove(part, error);
         throw std::runtime_error(path.string() + ": cannot write the picture: " + reason);

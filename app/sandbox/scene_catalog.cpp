@@ -79,7 +79,7 @@ std::vector<SceneEntry> find_scenes(const fs::path &scene_dir) {
 fs::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &scenes) {
     std::error_code error;
     // A bare name is a scene's, whatever else is called so in the working directory.
-    const fs::path path(name);
+    fs::path path(name);
     if ((path.has_parent_path() || path.has_extension()) && fs::exists(path, error))
         return path;
     for (const SceneEntry &entry : scenes)

@@ -184,7 +184,7 @@ std::uint64_t World::hash() const {
             add(hash, joint.anchor_a_local);
             add(hash, joint.anchor_b_local);
             hash.add(joint.length);
-            hash.add(std::uint64_t{joint.collide_connected});
+            hash.add(std::uint64_t{joint.collide_connected ? 1U : 0U});
             add(hash, joint.impulse);
         }
     // A point that bears no load is not remembered.
