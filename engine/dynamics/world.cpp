@@ -16,11 +16,7 @@ namespace {
 // longer before the tree changes, but more pairs are looked at. No result depends on it.
 constexpr Real tree_margin = Real(0.1);
 
-bool is_finite(const Vec3 &v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-bool is_finite(const Transform &pose) {
+bool is_finite_pose(const Transform &pose) {
     return is_finite(pose.position) &&
            std::isfinite(pose.rotation.w + pose.rotation.x + pose.rotation.y + pose.rotation.z);
 }
@@ -279,7 +275,7 @@ std::optional<WorldHit> World::raycast(const Ray &ray) const {
         if (!bodies_[i].alive)
             continue;
         const Transform pose{motions_[i].position, motions_[i].rotation};
-        if (!is_finite(pose))
+        if (!is_finite_pose(pose))
             continue; // diverged: it is nowhere
         const std::optional<RayHit> hit = plumb::raycast(placed(bodies_[i].shape, pose), shortened);
         if (hit && (!nearest || hit->t < nearest->hit.t)) {

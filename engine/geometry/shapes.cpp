@@ -1,69 +1,27 @@
 #include "engine/geometry/shapes.h"
 
 #include "engine/core/check.h"
+#include "engine/math/printed.h"
 
 #include <cmath>
-#include <ostream>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-struct Printed {
-    const Vec3 &v;
-};
-
-std::ostream &operator<<(std::ostream &out, const Printed &p) {
-    return out << '(' << p.v.x << ", " << p.v.y << ", " << p.v.z << ')';
+void check_radius(Real radius, const char *shape) {
+    PLUMB_CHECK(radius >= Real(0) && are_finite(radius),
+                shape << " radius must be finite and not negative, got " << radius);
 }
 
-bool is_finite(Real x) {
-    return std::isfinite(x);
+void check_point(const Vec3 &point, const char *name) {
+    PLUMB_CHECK(is_finite(point), name << " must be finite, got " << Printed{point});
 }
 
-bool is_finite(const Vec3 &v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// How far the squared length of a unit vector or quaternion may be from 1: twice the 1e-3 by which
-// the length itself may be off.
-constexpr Real unit_tolerance = Real(2e-3);
-
-bool is_unit(Real squared_length) {
-    return std::abs(squared_length - Real(1)) <= unit_tolerance;
-}
-
-void check_shape(const Sphere &sphere) {
-    PLUMB_CHECK(is_finite(sphere.center),
-                "sphere centre must be finite, got " << Printed{sphere.center});
-    PLUMB_CHECK(sphere.radius >= Real(0) && is_finite(sphere.radius),
-                "sphere radius must be finite and not negative, got " << sphere.radius);
-}
-
-void check_shape(const Box &box) {
-    PLUMB_CHECK(is_finite(box.center), "box centre must be finite, got " << Printed{box.center});
-    PLUMB_CHECK(is_unit(glm::dot(box.rotation, box.rotation)),
-                "box rotation must have unit length, got (w, x, y, z) = ("
-                    << box.rotation.w << ", " << box.rotation.x << ", " << box.rotation.y << ", "
-                    << box.rotation.z << ')');
-    PLUMB_CHECK(is_finite(box.half_extents) && box.half_extents.x >= Real(0) &&
-                    box.half_extents.y >= Real(0) && box.half_extents.z >= Real(0),
-                "box half extents must be finite and not negative, got "
-                    << Printed{box.half_extents});
-}
-
-void check_shape(const Capsule &capsule) {
-    PLUMB_CHECK(is_finite(capsule.a), "capsule end a must be finite, got " << Printed{capsule.a});
-    PLUMB_CHECK(is_finite(capsule.b), "capsule end b must be finite, got " << Printed{capsule.b});
-    PLUMB_CHECK(capsule.radius >= Real(0) && is_finite(capsule.radius),
-                "capsule radius must be finite and not negative, got " << capsule.radius);
-}
-
-void check_shape(const HalfSpace &half_space) {
-    PLUMB_CHECK(is_unit(glm::dot(half_space.normal, half_space.normal)),
-                "half-space normal must have unit length, got " << Printed{half_space.normal});
-    PLUMB_CHECK(is_finite(half_space.offset),
-                "half-space offset must be finite, got " << half_space.offset);
+void check_plane(const Vec3 &normal, Real offset, const char *shape) {
+    PLUMB_CHECK(is_unit(glm::dot(normal, normal)),
+                shape << " normal must have unit length, got " << Printed{normal});
+    PLUMB_CHECK(are_finite(offset), shape << " offset must be finite, got " << offset);
 }
 
 } // namespace
@@ -78,6 +36,19 @@ Box placed(const Box &local, const Transform &pose) {
 
 Capsule placed(const Capsule &local, const Transform &pose) {
     return {to_world_point(pose, local.a), to_world_point(pose, local.b), local.radius};
+}
+
+Cylinder placed(const Cylinder &local, const Transform &pose) {
+    return {to_world_point(pose, local.a), to_world_point(pose, local.b), local.radius};
+}
+
+Segment placed(const Segment &local, const Transform &pose) {
+    return {to_world_point(pose, local.a), to_world_point(pose, local.b)};
+}
+
+Triangle placed(const Triangle &local, const Transform &pose) {
+    return {to_world_point(pose, local.a), to_world_point(pose, local.b),
+            to_world_point(pose, local.c)};
 }
 
 HalfSpace placed(const HalfSpace &local, const Transform &pose) {
@@ -108,6 +79,20 @@ Aabb bounds(const Capsule &capsule) {
             glm::max(capsule.a, capsule.b) + capsule.radius};
 }
 
+Aabb bounds(const Cylinder &cylinder) {
+    // A disc with the unit normal n reaches r sqrt(1 - n_i^2) along axis i; written without the
+    // difference, which would cancel where the cylinder lies along an axis.
+    const Vec3 axis = glm::normalize(cylinder.b - cylinder.a);
+    const Vec3 reach =
+        cylinder.radius *
+        Vec3{std::hypot(axis.y, axis.z), std::hypot(axis.x, axis.z), std::hypot(axis.x, axis.y)};
+    return {glm::min(cylinder.a, cylinder.b) - reach, glm::max(cylinder.a, cylinder.b) + reach};
+}
+
+Aabb bounds(const Segment &segment) {
+    return {glm::min(segment.a, segment.b), glm::max(segment.a, segment.b)};
+}
+
 Aabb bounds(const Shape &shape) {
     if (const auto *sphere = std::get_if<Sphere>(&shape))
         return bounds(*sphere);
@@ -121,8 +106,63 @@ Aabb bounds(const Shape &shape) {
                            << half_space.offset);
 }
 
+void refuse(const Sphere &sphere) {
+    check_point(sphere.center, "sphere centre");
+    check_radius(sphere.radius, "sphere");
+}
+
+void refuse(const Box &box) {
+    check_point(box.center, "box centre");
+    PLUMB_CHECK(is_unit(glm::dot(box.rotation, box.rotation)),
+                "box rotation must have unit length, got (w, x, y, z) = ("
+                    << box.rotation.w << ", " << box.rotation.x << ", " << box.rotation.y << ", "
+                    << box.rotation.z << ')');
+    PLUMB_CHECK(is_finite(box.half_extents) && box.half_extents.x >= Real(0) &&
+                    box.half_extents.y >= Real(0) && box.half_extents.z >= Real(0),
+                "box half extents must be finite and not negative, got "
+                    << Printed{box.half_extents});
+}
+
+void refuse(const Capsule &capsule) {
+    check_point(capsule.a, "capsule end a");
+    check_point(capsule.b, "capsule end b");
+    check_radius(capsule.radius, "capsule");
+}
+
+void refuse(const HalfSpace &half_space) {
+    check_plane(half_space.normal, half_space.offset, "half-space");
+}
+
+void refuse(const Cylinder &cylinder) {
+    check_point(cylinder.a, "cylinder end a");
+    check_point(cylinder.b, "cylinder end b");
+    PLUMB_CHECK(cylinder.a != cylinder.b,
+                "cylinder ends must differ, got " << Printed{cylinder.a} << " twice");
+    check_radius(cylinder.radius, "cylinder");
+}
+
+void refuse(const Segment &segment) {
+    check_point(segment.a, "segment end a");
+    check_point(segment.b, "segment end b");
+}
+
+void refuse(const Plane &plane) {
+    check_plane(plane.normal, plane.offset, "plane");
+}
+
+void refuse(const Triangle &triangle) {
+    check_point(triangle.a, "triangle corner a");
+    check_point(triangle.b, "triangle corner b");
+    check_point(triangle.c, "triangle corner c");
+}
+
+void refuse(const Aabb &box) {
+    check_point(box.min, "box minimum");
+    check_point(box.max, "box maximum");
+}
+
 void check_valid(const Shape &shape) {
-    std::visit([](const auto &solid) { check_shape(solid); }, shape);
+    std::visit([](const auto &solid) { check_valid(solid); }, shape);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

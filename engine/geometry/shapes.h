@@ -5,8 +5,11 @@
 
 #include "engine/math/types.h"
 
+#include <cmath>
 #include <limits>
 #include <variant>
+
+#include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -35,6 +38,35 @@ struct HalfSpace {
     Real offset = Real(0);
 };
 
+// All points within `radius` of the segment from a to b, cut off flat at both ends. a == b gives a
+// disc without a direction, and is refused.
+struct Cylinder {
+    Vec3 a{Real(0)};
+    Vec3 b{Real(0), Real(1), Real(0)};
+    Real radius = Real(0);
+};
+
+// All points a + s (b - a), 0 <= s <= 1. a == b is a point.
+struct Segment {
+    Vec3 a{Real(0)};
+    Vec3 b{Real(0)};
+};
+
+// The points dot(normal, p) == offset. `normal` has unit length and points to the front.
+struct Plane {
+    Vec3 normal{Real(0), Real(1), Real(0)};
+    Real offset = Real(0);
+};
+
+// A flat piece of surface, counter-clockwise from its front. Corners on one line or in one point
+// leave a segment or a point, which is allowed.
+struct Triangle {
+    Vec3 a{Real(0)};
+    Vec3 b{Real(0)};
+    Vec3 c{Real(0)};
+};
+
+// What dynamics moves.
 using Shape = std::variant<Sphere, Box, Capsule, HalfSpace>;
 
 // An axis-aligned box; empty when min > max in any component.
@@ -56,6 +88,9 @@ Sphere placed(const Sphere &local, const Transform &pose);
 Box placed(const Box &local, const Transform &pose);
 Capsule placed(const Capsule &local, const Transform &pose);
 HalfSpace placed(const HalfSpace &local, const Transform &pose);
+Cylinder placed(const Cylinder &local, const Transform &pose);
+Segment placed(const Segment &local, const Transform &pose);
+Triangle placed(const Triangle &local, const Transform &pose);
 Shape placed(const Shape &local, const Transform &pose);
 
 // The smallest axis-aligned box around a shape. A half-space has no finite one: only its
@@ -63,10 +98,112 @@ Shape placed(const Shape &local, const Transform &pose);
 Aabb bounds(const Sphere &sphere);
 Aabb bounds(const Box &box);
 Aabb bounds(const Capsule &capsule);
+Aabb bounds(const Cylinder &cylinder);
+Aabb bounds(const Segment &segment);
 Aabb bounds(const Shape &shape);
 
-// Fails a check, naming the value, when a member is NaN or infinite, a size is negative, a rotation
-// or normal is not of unit length (within 1e-3).
+// Whether all are numbers, neither NaN nor infinite: only then is nothing times each nothing.
+// Faster than asking one by one, and never wrong by overflow.
+template <typename... Numbers> bool are_finite(Numbers... numbers) {
+    return ((numbers * Real(0)) + ...) == Real(0);
+}
+inline bool is_finite(const Vec3 &v) {
+    return are_finite(v.x, v.y, v.z);
+}
+
+// Whether the squared length is that of a vector or quaternion of unit length, within 1e-3.
+inline bool is_unit(Real squared_length) {
+    return std::abs(squared_length - Real(1)) <= Real(2e-3);
+}
+
+// Whether no member is NaN or infinite, no size negative, rotations and normals of unit length. An
+// empty Aabb is valid.
+inline bool is_valid(const Sphere &sphere) {
+    return sphere.radius >= Real(0) &&
+           are_finite(sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius);
+}
+inline bool is_valid(const Box &box) {
+    const Vec3 &half = box.half_extents;
+    return is_unit(glm::dot(box.rotation, box.rotation)) && half.x >= Real(0) &&
+           half.y >= Real(0) && half.z >= Real(0) &&
+           are_finite(box.center.x, box.center.y, box.center.z, half.x, half.y, half.z);
+}
+inline bool is_valid(const Capsule &capsule) {
+    const Vec3 &a = capsule.a, &b = capsule.b;
+    return capsule.radius >= Real(0) && are_finite(a.x, a.y, a.z, b.x, b.y, b.z, capsule.radius);
+}
+inline bool is_valid(const Cylinder &cylinder) {
+    const Vec3 &a = cylinder.a, &b = cylinder.b;
+    return cylinder.radius >= Real(0) && a != b &&
+           are_finite(a.x, a.y, a.z, b.x, b.y, b.z, cylinder.radius);
+}
+inline bool is_valid(const HalfSpace &half_space) {
+    return is_unit(glm::dot(half_space.normal, half_space.normal)) && are_finite(half_space.offset);
+}
+inline bool is_valid(const Plane &plane) {
+    return is_unit(glm::dot(plane.normal, plane.normal)) && are_finite(plane.offset);
+}
+inline bool is_valid(const Segment &segment) {
+    const Vec3 &a = segment.a, &b = segment.b;
+    return are_finite(a.x, a.y, a.z, b.x, b.y, b.z);
+}
+inline bool is_valid(const Triangle &triangle) {
+    const Vec3 &a = triangle.a, &b = triangle.b, &c = triangle.c;
+    return are_finite(a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z);
+}
+inline bool is_valid(const Aabb &box) {
+    const Vec3 &a = box.min, &b = box.max;
+    return are_finite(a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+// Fails a check with what is not valid about the shape.
+[[gnu::cold]] void refuse(const Sphere &sphere);
+[[gnu::cold]] void refuse(const Box &box);
+[[gnu::cold]] void refuse(const Capsule &capsule);
+[[gnu::cold]] void refuse(const Cylinder &cylinder);
+[[gnu::cold]] void refuse(const HalfSpace &half_space);
+[[gnu::cold]] void refuse(const Plane &plane);
+[[gnu::cold]] void refuse(const Segment &segment);
+[[gnu::cold]] void refuse(const Triangle &triangle);
+[[gnu::cold]] void refuse(const Aabb &box);
+
+// Fails a check, naming the value, when a shape is not valid.
+inline void check_valid(const Sphere &sphere) {
+    if (!is_valid(sphere)) [[unlikely]]
+        refuse(sphere);
+}
+inline void check_valid(const Box &box) {
+    if (!is_valid(box)) [[unlikely]]
+        refuse(box);
+}
+inline void check_valid(const Capsule &capsule) {
+    if (!is_valid(capsule)) [[unlikely]]
+        refuse(capsule);
+}
+inline void check_valid(const Cylinder &cylinder) {
+    if (!is_valid(cylinder)) [[unlikely]]
+        refuse(cylinder);
+}
+inline void check_valid(const HalfSpace &half_space) {
+    if (!is_valid(half_space)) [[unlikely]]
+        refuse(half_space);
+}
+inline void check_valid(const Plane &plane) {
+    if (!is_valid(plane)) [[unlikely]]
+        refuse(plane);
+}
+inline void check_valid(const Segment &segment) {
+    if (!is_valid(segment)) [[unlikely]]
+        refuse(segment);
+}
+inline void check_valid(const Triangle &triangle) {
+    if (!is_valid(triangle)) [[unlikely]]
+        refuse(triangle);
+}
+inline void check_valid(const Aabb &box) {
+    if (!is_valid(box)) [[unlikely]]
+        refuse(box);
+}
 void check_valid(const Shape &shape);
 
 } // namespace plumb::inline PLUMB_PRECISION

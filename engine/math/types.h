@@ -4,13 +4,21 @@
 #include "engine/core/precision.h"
 
 #include <glm/gtc/quaternion.hpp>
+#include <glm/mat2x2.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
+using Vec2 = glm::vec<2, Real, glm::defaultp>;
 using Vec3 = glm::vec<3, Real, glm::defaultp>;
+using Vec4 = glm::vec<4, Real, glm::defaultp>;
+using Mat2 = glm::mat<2, 2, Real, glm::defaultp>;
 using Mat3 = glm::mat<3, 3, Real, glm::defaultp>;
+using Mat4 = glm::mat<4, 4, Real, glm::defaultp>;
 using Quat = glm::qua<Real, glm::defaultp>; // constructor order is (w, x, y, z)
 
 inline constexpr Quat identity_rotation{Real(1), Real(0), Real(0), Real(0)};

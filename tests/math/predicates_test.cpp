@@ -1,0 +1,283 @@
+#include "engine/math/predicates.h"
+
+#include "engine/core/random.h"
+#include "tests/geometry/exact.h"
+#include "tests/trials.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace exact_oracle;
+
+int sign_of(const Rational &value) {
+    return value.sign();
+}
+
+// The oracle for the multitude: a long double whose error cannot reach `value` decides, and only
+// the rest is left to rationals. `size` is a sum of magnitudes that bounds all intermediate ones,
+// and the error is below 2^-64 a rounding, of which there are fewer than 32.
+template <typename Exactly>
+int sign_by(long double value, long double size, const Exactly &exactly) {
+    if (std::abs(value) > 0x1p-59L * size)
+        return value > 0 ? 1 : -1;
+    return sign_of(exactly());
+}
+
+long double wide(Real value) {
+    return static_cast<long double>(value);
+}
+
+int true_cross_sign(const Vec2 &u, const Vec2 &a, const Vec2 &b) {
+    const long double left = wide(u.x) * (wide(b.y) - wide(a.y));
+    const long double right = wide(u.y) * (wide(b.x) - wide(a.x));
+    return sign_by(left - right, std::abs(left) + std::abs(right), [&] {
+        const Rational2 p = rational(u), q = rational(a), r = rational(b);
+        return Rational(p.x * (r.y - q.y) - p.y * (r.x - q.x));
+    });
+}
+
+int true_orient2d(const Vec2 &a, const Vec2 &b, const Vec2 &c) {
+    const long double left = (wide(b.x) - wide(a.x)) * (wide(c.y) - wide(a.y));
+    const long double right = (wide(b.y) - wide(a.y)) * (wide(c.x) - wide(a.x));
+    return sign_by(left - right, std::abs(left) + std::abs(right), [&] {
+        // The area as a sum over the corners, where the engine takes differences first.
+        const Rational2 p = rational(a), q = rational(b), r = rational(c);
+        return Rational(p.x * q.y - p.y * q.x + q.x * r.y - q.y * r.x + r.x * p.y - r.y * p.x);
+    });
+}
+
+struct Wide3 {
+    long double x, y, z;
+    Wide3(const Vec3 &a, const Vec3 &b)
+        : x(wide(a.x) - wide(b.x)), y(wide(a.y) - wide(b.y)), z(wide(a.z) - wide(b.z)) {}
+};
+
+template <typename Exactly>
+int true_triple(const Wide3 &u, const Wide3 &v, const Wide3 &w, const Exactly &exactly) {
+    const long double value = u.x * (v.y * w.z - v.z * w.y) + u.y * (v.z * w.x - v.x * w.z) +
+                              u.z * (v.x * w.y - v.y * w.x);
+    const long double size = std::abs(u.x) * (std::abs(v.y * w.z) + std::abs(v.z * w.y)) +
+                             std::abs(u.y) * (std::abs(v.z * w.x) + std::abs(v.x * w.z)) +
+                             std::abs(u.z) * (std::abs(v.x * w.y) + std::abs(v.y * w.x));
+    return sign_by(value, size, exactly);
+}
+
+int true_triple_sign(const Vec3 &u, const Vec3 &o, const Vec3 &a, const Vec3 &b) {
+    return true_triple({u, Vec3{Real(0)}}, {a, o}, {b, o}, [&] {
+        const Rational3 from = rational(o);
+        return Rational(dot(rational(u), cross(rational(a) - from, rational(b) - from)));
+    });
+}
+
+int true_orient3d(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
+    return true_triple({d, a}, {b, a}, {c, a}, [&] {
+        const Rational3 p = rational(a);
+        return Rational(dot(rational(d) - p, cross(rational(b) - p, rational(c) - p)));
+    });
+}
+
+int true_plane_sign(const Vec3 &n, Real offset, const Vec3 &p) {
+    const long double x = wide(n.x) * wide(p.x), y = wide(n.y) * wide(p.y),
+                      z = wide(n.z) * wide(p.z);
+    return sign_by(x + y + z - wide(offset),
+                   std::abs(x) + std::abs(y) + std::abs(z) + std::abs(wide(offset)),
+                   [&] { return Rational(dot(rational(n), rational(p)) - rational(offset)); });
+}
+
+int true_difference_sign(Real a, Real b, Real c, Real d) {
+    const long double ab = wide(a) * wide(b), cd = wide(c) * wide(d);
+    return sign_by(ab - cd, std::abs(ab) + std::abs(cd),
+                   [&] { return Rational(rational(a) * rational(b) - rational(c) * rational(d)); });
+}
+
+// Coordinates of every kind: small whole numbers, ordinary ones of one size, sizes over many
+// orders, zeros of both signs.
+Real any_coordinate(Random &random, std::uint32_t kind) {
+    switch (kind) {
+    case 0:
+        return Real(int(random.next_index(9)) - 4);
+    case 1:
+        return static_cast<Real>(random.next_in(-1.0, 1.0));
+    case 2:
+        return static_cast<Real>(random.next_in(-1.0, 1.0) *
+                                 std::pow(10.0, random.next_in(-9.0, 6.0)));
+    case 3:
+        return static_cast<Real>(1e5 + random.next_in(-1e-2, 1e-2));
+    default:
+        return random.next_index(3) == 0 ? (random.next_index(2) == 0 ? Real(0) : -Real(0))
+                                         : static_cast<Real>(random.next_in(-100.0, 100.0));
+    }
+}
+
+Vec3 any_point(Random &random, std::uint32_t kind) {
+    return {any_coordinate(random, kind), any_coordinate(random, kind),
+            any_coordinate(random, kind)};
+}
+
+// Up to two steps away; from zero a step within the range.
+Real nudged(Random &random, Real value) {
+    if (value == Real(0))
+        return random.next_index(3) == 0 ? Real(1e-20) : value;
+    for (std::uint32_t steps = random.next_index(3); steps > 0; --steps)
+        value = std::nextafter(value, random.next_index(2) == 0 ? Real(-1e30) : Real(1e30));
+    return value;
+}
+
+Vec3 nudged(Random &random, const Vec3 &v) {
+    return {nudged(random, v.x), nudged(random, v.y), nudged(random, v.z)};
+}
+
+TEST(Predicates, ProductDifference) {
+    Random random(11);
+    int zeros = 0;
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
+        const std::uint32_t kind = random.next_index(5);
+        const Real a = any_coordinate(random, kind), b = any_coordinate(random, kind);
+        Real c = any_coordinate(random, kind), d = any_coordinate(random, kind);
+        if (trial % 2 == 0) { // nearly the same product
+            c = nudged(random, a * Real(2));
+            d = nudged(random, b / Real(2));
+        }
+        const int sign = product_difference_sign(a, b, c, d);
+        ASSERT_EQ(sign, true_difference_sign(a, b, c, d)) << a << ' ' << b << ' ' << c << ' ' << d;
+        zeros += sign == 0;
+    }
+    EXPECT_GT(zeros, trials(1'000'000) / 50);
+}
+
+TEST(Predicates, PlaneSide) {
+    Random random(12);
+    int zeros = 0;
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
+        const std::uint32_t kind = random.next_index(5);
+        const Vec3 normal = any_point(random, random.next_index(5));
+        const Vec3 point = any_point(random, kind);
+        Real offset = any_coordinate(random, kind);
+        if (trial % 2 == 0)
+            offset = nudged(random, normal.x * point.x + normal.y * point.y + normal.z * point.z);
+        const int sign = plane_sign(normal, offset, point);
+        ASSERT_EQ(sign, true_plane_sign(normal, offset, point));
+        zeros += sign == 0;
+    }
+    EXPECT_GT(zeros, trials(1'000'000) / 50);
+}
+
+TEST(Predicates, OrientInThePlane) {
+    Random random(13);
+    int zeros = 0;
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
+        const std::uint32_t kind = random.next_index(5);
+        const auto point = [&] {
+            return Vec2{any_coordinate(random, kind), any_coordinate(random, kind)};
+        };
+        const Vec2 a = point(), b = point();
+        Vec2 c = point();
+        if (trial % 2 == 0) { // on the line, but for rounding
+            const Real s = static_cast<Real>(random.next_in(-1.0, 2.0));
+            c = {nudged(random, a.x + s * (b.x - a.x)), nudged(random, a.y + s * (b.y - a.y))};
+        }
+        const int sign = orient2d(a, b, c);
+        ASSERT_EQ(sign, true_orient2d(a, b, c));
+        ASSERT_EQ(sign, orient2d(b, c, a));
+        ASSERT_EQ(sign, -orient2d(b, a, c));
+        ASSERT_EQ(cross_sign(a, b, c), true_cross_sign(a, b, c));
+        const Vec2 u = random.next_index(2) == 0 ? c - b : Real(0.5) * (b - c);
+        ASSERT_EQ(cross_sign(u, b, c), true_cross_sign(u, b, c));
+        zeros += sign == 0;
+    }
+    EXPECT_GT(zeros, trials(1'000'000) / 50);
+}
+
+TEST(Predicates, OrientInSpace) {
+    Random random(14);
+    int zeros = 0;
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
+        const std::uint32_t kind = random.next_index(5);
+        const Vec3 a = any_point(random, kind), b = any_point(random, kind),
+                   c = any_point(random, kind);
+        Vec3 d = any_point(random, kind);
+        if (trial % 4 == 0) { // in the plane, but for rounding
+            const Real s = static_cast<Real>(random.next_in(-1.0, 2.0));
+            const Real t = static_cast<Real>(random.next_in(-1.0, 2.0));
+            d = nudged(random, a + s * (b - a) + t * (c - a));
+        } else if (trial % 16 == 1) { // a corner of the parallelogram
+            d = a + (b - c);
+        }
+        const int sign = orient3d(a, b, c, d);
+        ASSERT_EQ(sign, true_orient3d(a, b, c, d));
+        if (trial % 8 == 0) {
+            ASSERT_EQ(sign, orient3d(b, c, a, d));
+            ASSERT_EQ(sign, -orient3d(b, a, c, d));
+            ASSERT_EQ(sign, -orient3d(d, b, c, a));
+            const Vec3 u = random.next_index(2) == 0 ? c - b : a;
+            ASSERT_EQ(triple_sign(u, b, c, d), true_triple_sign(u, b, c, d));
+            ASSERT_EQ(triple_sign(u, d, a, b), true_triple_sign(u, d, a, b));
+        }
+        zeros += sign == 0;
+    }
+    EXPECT_GT(zeros, trials(1'000'000) / 100);
+}
+
+// Nearly parallel vectors, whose cross product cancels all its digits.
+TEST(Predicates, AccurateCross) {
+    Random random(16);
+    int zeros = 0, cancelled = 0;
+    for (int trial = 0; trial < trials(200'000); ++trial) {
+        const std::uint32_t kind = random.next_index(5);
+        const Vec3 a = any_point(random, kind), b = any_point(random, kind),
+                   c = any_point(random, kind);
+        const Real s = static_cast<Real>(random.next_in(-2.0, 2.0));
+        const Vec3 d = trial % 2 == 0 ? nudged(random, c + s * (b - a)) : any_point(random, kind);
+        const glm::dvec3 answer = accurate_cross(a, b, c, d);
+        const Rational3 p = rational(b) - rational(a), q = rational(d) - rational(c);
+        const Rational3 truth = cross(p, q);
+        const glm::dvec3 rounded{truth.x.convert_to<double>(), truth.y.convert_to<double>(),
+                                 truth.z.convert_to<double>()};
+        ASSERT_EQ(answer == glm::dvec3(0.0), is_zero(truth)) << "trial " << trial;
+        zeros += is_zero(truth);
+        // Scaled, as the squares of the smallest would vanish.
+        const double size =
+            std::max({std::abs(rounded.x), std::abs(rounded.y), std::abs(rounded.z), 1e-300});
+        ASSERT_LE(glm::length((answer - rounded) / size),
+                  (sizeof(Real) == 4 ? 2e-9 : 4e-15) * glm::length(rounded / size))
+            << "trial " << trial;
+        const double lengths =
+            glm::length(glm::dvec3(b) - glm::dvec3(a)) * glm::length(glm::dvec3(d) - glm::dvec3(c));
+        cancelled += size < 1e-6 * lengths;
+    }
+    EXPECT_GT(zeros, trials(200'000) / 100);
+    EXPECT_GT(cancelled, trials(200'000) / 10);
+}
+
+// Coordinates from one end of the stated range to the other in one determinant.
+TEST(Predicates, TheWholeRange) {
+    Random random(15);
+    const double low = sizeof(Real) == 4 ? -44.0 : -80.0, high = sizeof(Real) == 4 ? 38.0 : 90.0;
+    const auto coordinate = [&] {
+        return static_cast<Real>((random.next_index(2) == 0 ? -1.0 : 1.0) *
+                                 random.next_in(1.0, 3.0) *
+                                 std::pow(10.0, random.next_in(low, high)));
+    };
+    const auto point = [&] { return Vec3{coordinate(), coordinate(), coordinate()}; };
+    for (int trial = 0; trial < trials(40'000); ++trial) {
+        const Vec3 a = point(), b = point(), c = point();
+        Vec3 d = point();
+        if (trial % 2 == 0)
+            d = {b.x, c.y, a.z};
+        const Rational3 p = rational(a), q = rational(b), r = rational(c), s = rational(d);
+        ASSERT_EQ(orient3d(a, b, c, d), sign_of(dot(s - p, cross(q - p, r - p))));
+        ASSERT_EQ(triple_sign(a, b, c, d), sign_of(dot(p, cross(r - q, s - q))));
+        ASSERT_EQ(orient3d(a, b, a, d), 0);
+        ASSERT_EQ(orient2d(Vec2(a), Vec2(b), Vec2(c)),
+                  sign_of((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x)));
+        ASSERT_EQ(plane_sign(a, b.x, c), sign_of(dot(p, r) - q.x));
+        ASSERT_EQ(product_difference_sign(a.x, b.x, c.x, d.x), sign_of(p.x * q.x - r.x * s.x));
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,17 @@
+// How many random inputs a test draws.
+#pragma once
+
+#include <cstdlib>
+
+namespace plumb {
+
+// `full`, divided by PLUMB_TRIALS_DIVISOR (environment) where instrumented builds run slowly; at
+// least 1.
+inline int trials(int full) {
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets it while tests run
+    const char *text = std::getenv("PLUMB_TRIALS_DIVISOR");
+    const int divisor = text == nullptr ? 1 : std::atoi(text);
+    return divisor > 1 && full > divisor ? full / divisor : full;
+}
+
+} // namespace plumb
