@@ -1,8 +1,12 @@
 #include "engine/geometry/mass.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/hull_queries.h"
 
+#include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -27,6 +31,15 @@ Real volume_of(const Capsule &capsule) {
 
 Real volume_of(const HalfSpace &) {
     return std::numeric_limits<Real>::infinity();
+}
+
+Real volume_of(const Cylinder &cylinder) {
+    return pi * cylinder.radius * cylinder.radius * glm::length(cylinder.b - cylinder.a);
+}
+
+void check_mass(Real mass) {
+    PLUMB_CHECK(mass >= Real(0) && std::isfinite(mass),
+                "mass must be finite and not negative, got " << mass);
 }
 
 Vec3 inertia_of(const Sphere &sphere, Real mass) {
@@ -58,6 +71,13 @@ Vec3 inertia_of(const Capsule &capsule, Real mass) {
     return {across, along, across};
 }
 
+Vec3 inertia_of(const Cylinder &cylinder, Real mass) {
+    const Vec3 along = cylinder.b - cylinder.a;
+    const Real squared = cylinder.radius * cylinder.radius;
+    const Real across = mass * (squared / Real(4) + glm::dot(along, along) / Real(12));
+    return {across, mass * squared / Real(2), across};
+}
+
 Vec3 inertia_of(const HalfSpace &half_space, Real mass) {
     PLUMB_CHECK(false, "a half-space has no inertia; its offset is "
                            << half_space.offset << " and the mass asked for " << mass);
@@ -70,11 +90,106 @@ Real volume(const Shape &shape) {
     return std::visit([](const auto &solid) { return volume_of(solid); }, shape);
 }
 
+Real volume(const Cylinder &cylinder) {
+    check_valid(cylinder);
+    return volume_of(cylinder);
+}
+
+Real volume(const ConvexHull &hull) {
+    check_valid(hull);
+    return hull.mesh->volume;
+}
+
 Vec3 principal_inertia(const Shape &shape, Real mass) {
-    PLUMB_CHECK(mass >= Real(0) && std::isfinite(mass),
-                "mass must be finite and not negative, got " << mass);
+    check_mass(mass);
     check_valid(shape);
     return std::visit([&](const auto &solid) { return inertia_of(solid, mass); }, shape);
+}
+
+Vec3 principal_inertia(const Cylinder &cylinder, Real mass) {
+    check_mass(mass);
+    check_valid(cylinder);
+    return inertia_of(cylinder, mass);
+}
+
+Mat3 inertia(const ConvexHull &hull, Real mass) {
+    check_mass(mass);
+    check_valid(hull);
+    return (mass / hull.mesh->volume) * hull.mesh->inertia;
+}
+
+// Jacobi's method (Golub, Van Loan 2013, "Matrix Computations", 8.5): rotations in one coordinate
+// plane after the other make the matrix diagonal. Four rounds do for a 3 x 3 matrix of doubles.
+PrincipalFrame principal_frame(const Mat3 &inertia) {
+    glm::dmat3 m(inertia);
+    PLUMB_CHECK(std::isfinite(m[0][0] + m[1][0] + m[2][0] + m[1][1] + m[2][1] + m[2][2]),
+                "inertia must be finite, got the diagonal (" << m[0][0] << ", " << m[1][1] << ", "
+                                                             << m[2][2] << ')');
+    glm::dmat3 axes(1.0);
+    for (int round = 0; round < 8; ++round)
+        for (const auto &[p, q] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+            const double off = m[q][p];
+            if (off == 0.0)
+                continue;
+            const double theta = (m[q][q] - m[p][p]) / (2.0 * off);
+            const double t =
+                (theta >= 0.0 ? 1.0 : -1.0) / (std::abs(theta) + std::sqrt(theta * theta + 1.0));
+            const double c = 1.0 / std::sqrt(t * t + 1.0);
+            glm::dmat3 turn(1.0);
+            turn[p][p] = turn[q][q] = c;
+            turn[q][p] = t * c;
+            turn[p][q] = -t * c;
+            m = glm::transpose(turn) * m * turn;
+            axes = axes * turn;
+        }
+    for (const auto &[i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}})
+        if (m[i][i] > m[j][j]) {
+            std::swap(m[i][i], m[j][j]);
+            std::swap(axes[i], axes[j]);
+        }
+    if (glm::determinant(axes) < 0.0)
+        axes[2] = -axes[2];
+    PrincipalFrame frame;
+    frame.moments = Vec3(Real(m[0][0]), Real(m[1][1]), Real(m[2][2]));
+    frame.rotation = Quat(glm::normalize(glm::quat_cast(axes)));
+    return frame;
+}
+
+// The sum over the tetrahedra from one point to the triangles, each with its sign. For one with the
+// edges a, b, c from that point: volume v = a . (b x c) / 6, first moment v (a + b + c) / 4, second
+// moments v / 20 (s s^T + a a^T + b b^T + c c^T) with s = a + b + c (Tonon 2004, "Explicit exact
+// formulas for the 3-D tetrahedron inertia tensor").
+MassProperties mass_properties(std::span<const Triangle> surface) {
+    using Wide = glm::dvec3;
+    Wide base{0.0};
+    for (const Triangle &triangle : surface)
+        base += (Wide(triangle.a) + Wide(triangle.b) + Wide(triangle.c)) /
+                (3.0 * double(surface.size()));
+    double six_volumes = 0.0;
+    Wide first{0.0};
+    glm::dmat3 second(0.0);
+    for (const Triangle &triangle : surface) {
+        const Wide a = Wide(triangle.a) - base;
+        const Wide b = Wide(triangle.b) - base;
+        const Wide c = Wide(triangle.c) - base;
+        const Wide sum = a + b + c;
+        const double v = glm::dot(a, glm::cross(b, c));
+        six_volumes += v;
+        first += v * sum;
+        second += v * (glm::outerProduct(sum, sum) + glm::outerProduct(a, a) +
+                       glm::outerProduct(b, b) + glm::outerProduct(c, c));
+    }
+    MassProperties mass;
+    if (six_volumes == 0.0)
+        return mass;
+    const Wide center = first / (4.0 * six_volumes);
+    mass.volume = Real(six_volumes / 6.0);
+    mass.center = Vec3(base + center);
+    // Moments about the centre: those about the base less what its distance adds.
+    second = second / 120.0 - (six_volumes / 6.0) * glm::outerProduct(center, center);
+    const double trace = second[0][0] + second[1][1] + second[2][2];
+    mass.inertia = Mat3(glm::dmat3(trace) - second);
+    return mass;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,11 +1,17 @@
 #include "engine/geometry/raycast.h"
 
-#include "engine/core/check.h"
-#include "engine/geometry/closest.h"
+#include "engine/geometry/check_query.h"
+#include "engine/geometry/contains.h"
 #include "engine/geometry/slab.h"
+#include "engine/geometry/triangle_exact.h"
+#include "engine/math/predicates.h"
+#include "engine/math/rigid.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <type_traits>
 
 #include <glm/geometric.hpp>
 
@@ -13,136 +19,96 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
+using Wide = glm::dvec3;
+template <typename T> using Vector = glm::vec<3, T, glm::defaultp>;
+
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
-void check_ray(const Ray &ray) {
-    for (int i = 0; i < 3; ++i) {
-        PLUMB_CHECK(std::isfinite(ray.origin[i]),
-                    "ray origin must be finite, got " << ray.origin[i] << " on axis " << i);
-        PLUMB_CHECK(std::isfinite(ray.direction[i]),
-                    "ray direction must be finite, got " << ray.direction[i] << " on axis " << i);
-    }
-    PLUMB_CHECK(ray.direction != Vec3{Real(0)}, "ray direction must not be zero, got (0, 0, 0)");
-    PLUMB_CHECK(!std::isnan(ray.max_t), "ray max_t must be a number, got " << ray.max_t);
+// The greatest power of two that is not above |x|, and so divides without rounding; the smallest
+// normal one for less.
+Real power_of_two_in(Real x) {
+    using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+    const Bits exponent = std::bit_cast<Bits>(infinity);
+    return std::max(std::bit_cast<Real>(Bits(std::bit_cast<Bits>(x) & exponent)),
+                    std::numeric_limits<Real>::min());
 }
 
-void check_point(const Vec3 &point) {
-    for (int i = 0; i < 3; ++i)
-        PLUMB_CHECK(!std::isnan(point[i]),
-                    "point must have no NaN, got " << point[i] << " on axis " << i);
-}
-
-// The direction divided by its largest component, so that its square neither overflows nor
-// vanishes. Parameters along it are `scale` times those of the ray.
-struct ScaledDirection {
-    Vec3 direction{Real(0)};
+// A vector divided by the power of two in its largest component, so that its square neither
+// overflows nor vanishes, and nothing is rounded.
+struct Scaled {
+    Vec3 vector{Real(0)};
     Real scale = Real(1);
+
+    explicit Scaled(const Vec3 &v)
+        : scale(power_of_two_in(std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}))) {
+        vector = v * (Real(1) / scale);
+    }
 };
 
-ScaledDirection scaled(const Vec3 &direction) {
-    const Real scale =
-        std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    return {direction / scale, scale};
-}
-
 // A stretch of the whole line, before it is cut to the ray.
-struct Stretch {
-    Real enter = infinity;
-    Real exit = -infinity;
-    Vec3 outward{Real(0)}; // the outward direction at enter, of any length
+template <typename T> struct Stretch {
+    T enter = std::numeric_limits<T>::infinity();
+    T exit = -std::numeric_limits<T>::infinity();
+    Vector<T> outward{T(0)}; // the outward direction at enter, of any length
 
     bool is_empty() const { return !(enter <= exit); }
 };
 
-// The line m -> t * d against a ball, or a cylinder when m and d are perpendicular to its axis; m
-// leads from the line's origin to the centre. From the point of closest approach, so that what is
-// squared is of the size of the radius, not of the distance to the origin.
-Stretch through_round(const Vec3 &m, const Vec3 &d, Real radius) {
-    const Real squared = glm::dot(d, d);
-    const Real middle = glm::dot(m, d) / squared;
-    const Vec3 to_center = m - middle * d;
-    const Real rest = radius * radius - glm::dot(to_center, to_center);
-    if (!(rest >= Real(0)))
+// The line t * d against a ball around m. The discriminant in the form of Lagrange's identity: what
+// is squared is the distance of the line, not that of the ball, and integers stay integers, so that
+// a tangent touches.
+template <typename T> Stretch<T> through_ball(const Vector<T> &m, const Vector<T> &d, T radius) {
+    const T squared = glm::dot(d, d);
+    const Vector<T> moment = glm::cross(m, d);
+    const T rest = radius * radius * squared - glm::dot(moment, moment);
+    if (!(rest >= T(0)))
         return {};
-    const Real half = std::sqrt(rest / squared);
-    Vec3 outward = -to_center - half * d;
-    if (outward == Vec3{Real(0)})
-        outward = -d; // radius zero
-    return {middle - half, middle + half, outward};
+    const T half = std::sqrt(rest);
+    const T middle = glm::dot(m, d);
+    Stretch<T> stretch{(middle - half) / squared, (middle + half) / squared, Vector<T>(T(0))};
+    // From the point closest to the centre, which may be much closer than the origin.
+    stretch.outward = (middle / squared * d - m) - half / squared * d;
+    if (stretch.outward == Vector<T>(T(0)))
+        stretch.outward = -d; // radius zero
+    return stretch;
 }
 
 // Cuts a stretch to the ray. `starts_inside` is decided by the origin alone.
-std::optional<RayInterval> cut(const Stretch &stretch, Real scale, bool starts_inside, Real max_t) {
+template <typename T>
+std::optional<RayInterval> cut(const Stretch<T> &stretch, Real scale, bool starts_inside,
+                               Real max_t) {
     RayInterval interval;
     if (starts_inside) {
         if (!(max_t >= Real(0)))
             return std::nullopt;
-        const Real exit = stretch.is_empty() ? Real(0) : stretch.exit / scale;
+        const Real exit = stretch.is_empty() ? Real(0) : Real(stretch.exit) / scale;
         interval.t_exit = std::clamp(exit, Real(0), max_t);
         return interval;
     }
-    if (stretch.is_empty())
-        return std::nullopt;
-    interval.t_enter = stretch.enter / scale;
-    interval.t_exit = std::min(std::max(stretch.exit / scale, interval.t_enter), max_t);
     // An origin outside cannot have the solid around it: a stretch that seems to begin behind it
     // by rounding and end before it begins at once.
-    if (stretch.exit < Real(0) || !(interval.t_enter <= max_t) || interval.t_enter == infinity)
+    if (stretch.is_empty() || stretch.exit < T(0))
         return std::nullopt;
-    interval.t_enter = std::max(interval.t_enter, Real(0));
-    if (interval.t_exit < interval.t_enter)
+    interval.t_enter = std::max(Real(stretch.enter) / scale, Real(0));
+    if (!(interval.t_enter <= max_t) || interval.t_enter == infinity)
         return std::nullopt;
-    interval.enter_normal = glm::normalize(stretch.outward);
+    interval.t_exit = std::min(std::max(Real(stretch.exit) / scale, interval.t_enter), max_t);
+    interval.enter_normal = Vec3(glm::normalize(stretch.outward));
     return interval;
 }
 
-bool is_inside(const Sphere &sphere, const Vec3 &point) {
-    const Vec3 d = point - sphere.center;
-    return glm::dot(d, d) <= sphere.radius * sphere.radius;
+bool is_rotated(const Box &box) {
+    return box.rotation.x != Real(0) || box.rotation.y != Real(0) || box.rotation.z != Real(0);
 }
 
-bool is_inside(const Capsule &capsule, const Vec3 &point) {
-    const Vec3 along = capsule.b - capsule.a;
-    const Vec3 from_a = point - capsule.a;
-    const Vec3 d = from_a - closest_parameter(Vec3{Real(0)}, along, from_a) * along;
-    return glm::dot(d, d) <= capsule.radius * capsule.radius;
+// A box without rotation, with the faces as the caller would compute them, so that rays in its
+// faces are exact.
+Aabb aligned(const Box &box) {
+    return {box.center - box.half_extents, box.center + box.half_extents};
 }
 
-bool is_inside(const HalfSpace &half_space, const Vec3 &point) {
-    return glm::dot(half_space.normal, point) <= half_space.offset;
-}
-
-bool is_inside(const Aabb &box, const Vec3 &point) {
-    return point.x >= box.min.x && point.x <= box.max.x && point.y >= box.min.y &&
-           point.y <= box.max.y && point.z >= box.min.z && point.z <= box.max.z;
-}
-
-// A box in a frame in which it is axis-aligned. Without rotation that is the world, with the faces
-// at center -+ half_extents as the caller would compute them, so that rays in its faces are exact.
-struct AlignedFrame {
-    Aabb box;
-    Vec3 origin{Real(0)};
-    Quat to_local = identity_rotation;
-    bool is_world = true;
-
-    explicit AlignedFrame(const Box &oriented) {
-        is_world = oriented.rotation.x == Real(0) && oriented.rotation.y == Real(0) &&
-                   oriented.rotation.z == Real(0);
-        if (is_world) {
-            box = {oriented.center - oriented.half_extents,
-                   oriented.center + oriented.half_extents};
-        } else {
-            box = {-oriented.half_extents, oriented.half_extents};
-            origin = oriented.center;
-            to_local = glm::conjugate(oriented.rotation);
-        }
-    }
-    Vec3 point(const Vec3 &world) const { return is_world ? world : to_local * (world - origin); }
-};
-
-bool is_inside(const Box &box, const Vec3 &point) {
-    const AlignedFrame frame(box);
-    return is_inside(frame.box, frame.point(point));
+bool is_empty(const Aabb &box) {
+    return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
 }
 
 std::optional<RayInterval> through_aligned(const Aabb &box, const Ray &ray) {
@@ -156,23 +122,129 @@ std::optional<RayInterval> through_aligned(const Aabb &box, const Ray &ray) {
     return interval;
 }
 
+// An axis, the ray's line relative to its start, and what both have to do with each other. In
+// double, where the products of coordinates and radius have room.
+struct AxisAndLine {
+    Wide axis;
+    Wide m; // from the line's origin to the axis' start
+    Wide d;
+    Wide across; // d x axis
+    double axis_squared;
+    double across_squared; // 0 when they are parallel
+
+    AxisAndLine(const Vec3 &a, const Vec3 &b, const Vec3 &origin, const Scaled &direction)
+        : axis(Wide(b) - Wide(a)), m(Wide(a) - Wide(origin)), d(direction.vector),
+          across(accurate_cross(Vec3{Real(0)}, direction.vector, a, b)),
+          axis_squared(glm::dot(axis, axis)), across_squared(glm::dot(across, across)) {}
+
+    // The line's height over the start along the axis, from 0 to axis_squared between the ends.
+    double height(double t) const { return t * glm::dot(d, axis) - glm::dot(m, axis); }
+
+    // Outward from the axis.
+    Wide outward(double t) const {
+        const Wide from_start = t * d - m;
+        return from_start - glm::dot(from_start, axis) / axis_squared * axis;
+    }
+};
+
+// The line against an endless cylinder; they are not parallel. |(t d - m) x axis| = r |axis|, whose
+// discriminant is axis^2 (r^2 (d x axis)^2 - (m . (d x axis))^2): the distance of two lines is that
+// of their moments, so that nearly parallel ones lose nothing.
+Stretch<double> through_side(const AxisAndLine &line, double radius) {
+    const double volume = glm::dot(line.m, line.across);
+    const double rest = radius * radius * line.across_squared - volume * volume;
+    if (!(rest >= 0.0))
+        return {};
+    const double half = std::sqrt(line.axis_squared * rest);
+    const double middle = glm::dot(glm::cross(line.m, line.axis), line.across);
+    Stretch<double> stretch{(middle - half) / line.across_squared,
+                            (middle + half) / line.across_squared, Wide(0.0)};
+    stretch.outward = line.outward(stretch.enter);
+    if (stretch.outward == Wide(0.0))
+        stretch.outward = -line.d; // radius zero
+    return stretch;
+}
+
+// A capsule is two balls and the cylinder between them. It is convex, so its stretch goes from the
+// first entry to the last exit of the three.
+Stretch<double> through_capsule(const AxisAndLine &line, double radius) {
+    Stretch<double> whole = through_ball(line.m, line.d, radius);
+    const auto enter_at = [&](double t, const Wide &outward) {
+        if (t < whole.enter) {
+            whole.enter = t;
+            whole.outward = outward;
+        }
+    };
+    const Stretch<double> other = through_ball(line.m + line.axis, line.d, radius);
+    enter_at(other.enter, other.outward);
+    whole.exit = std::max(whole.exit, other.exit);
+    // A ray along the axis enters and leaves by the balls.
+    if (!(line.across_squared > 0.0))
+        return whole;
+    const Stretch<double> side = through_side(line, radius);
+    if (side.is_empty())
+        return whole;
+    // Only its ends that lie between the two end planes are ends of the capsule.
+    const auto is_between = [&](double t) {
+        const double height = line.height(t);
+        return height >= 0.0 && height <= line.axis_squared;
+    };
+    if (is_between(side.enter))
+        enter_at(side.enter, side.outward);
+    if (is_between(side.exit)) {
+        whole.exit = std::max(whole.exit, side.exit);
+        enter_at(side.exit, line.outward(side.exit)); // by the very seam, where no ball was met
+    }
+    whole.exit = std::max(whole.exit, whole.enter);
+    return whole;
+}
+
+// The line between the planes of the two ends of a cylinder.
+Stretch<double> between_ends(const AxisAndLine &line) {
+    const double climb = glm::dot(line.d, line.axis);
+    const double start = glm::dot(line.m, line.axis); // the height of the start over the origin
+    if (climb == 0.0) {
+        if (start > 0.0 || start + line.axis_squared < 0.0)
+            return {};
+        return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                Wide(0.0)};
+    }
+    const double to_start = start / climb, to_end = (start + line.axis_squared) / climb;
+    return climb > 0.0 ? Stretch<double>{to_start, to_end, -line.axis}
+                       : Stretch<double>{to_end, to_start, line.axis};
+}
+
+Stretch<double> through_cylinder(const AxisAndLine &line, double radius) {
+    Stretch<double> whole = between_ends(line);
+    if (!(line.across_squared > 0.0)) {
+        const Wide moment = glm::cross(line.m, line.axis);
+        return glm::dot(moment, moment) <= radius * radius * line.axis_squared ? whole
+                                                                               : Stretch<double>{};
+    }
+    const Stretch<double> side = through_side(line, radius);
+    if (side.enter > whole.enter) {
+        whole.enter = side.enter;
+        whole.outward = side.outward;
+    }
+    whole.exit = std::min(whole.exit, side.exit);
+    return whole;
+}
+
 } // namespace
 
 std::optional<RayInterval> ray_interval(const Sphere &sphere, const Ray &ray) {
     check_ray(ray);
     check_valid(sphere);
-    const ScaledDirection d = scaled(ray.direction);
-    return cut(through_round(sphere.center - ray.origin, d.direction, sphere.radius), d.scale,
-               is_inside(sphere, ray.origin), ray.max_t);
+    const Scaled d(ray.direction);
+    const Vec3 to_center = sphere.center - ray.origin;
+    const bool starts_inside = glm::dot(to_center, to_center) <= sphere.radius * sphere.radius;
+    return cut(through_ball(to_center, d.vector, sphere.radius), d.scale, starts_inside, ray.max_t);
 }
 
 std::optional<RayInterval> ray_interval(const Aabb &box, const Ray &ray) {
     check_ray(ray);
-    for (int i = 0; i < 3; ++i)
-        PLUMB_CHECK(!std::isnan(box.min[i]) && !std::isnan(box.max[i]),
-                    "box bounds must be numbers, got [" << box.min[i] << ", " << box.max[i]
-                                                        << "] on axis " << i);
-    if (box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z)
+    check_valid(box);
+    if (is_empty(box))
         return std::nullopt;
     return through_aligned(box, ray);
 }
@@ -180,96 +252,60 @@ std::optional<RayInterval> ray_interval(const Aabb &box, const Ray &ray) {
 std::optional<RayInterval> ray_interval(const Box &box, const Ray &ray) {
     check_ray(ray);
     check_valid(box);
-    const AlignedFrame frame(box);
-    if (frame.is_world)
-        return through_aligned(frame.box, ray);
-    const Ray local{frame.point(ray.origin), frame.to_local * ray.direction, ray.max_t};
-    std::optional<RayInterval> interval = through_aligned(frame.box, local);
+    if (!is_rotated(box))
+        return through_aligned(aligned(box), ray);
+    const Mat3 axes = rotation_matrix(box.rotation);
+    const Ray local{(ray.origin - box.center) * axes, ray.direction * axes, ray.max_t};
+    std::optional<RayInterval> interval =
+        through_aligned({-box.half_extents, box.half_extents}, local);
     if (interval)
-        interval->enter_normal = box.rotation * interval->enter_normal;
+        interval->enter_normal = axes * interval->enter_normal;
     return interval;
 }
 
 std::optional<RayInterval> ray_interval(const Capsule &capsule, const Ray &ray) {
     check_ray(ray);
     check_valid(capsule);
-    const ScaledDirection d = scaled(ray.direction);
-    const Vec3 to_a = capsule.a - ray.origin;
-    const Vec3 to_b = capsule.b - ray.origin;
+    const Scaled d(ray.direction);
+    const AxisAndLine line(capsule.a, capsule.b, ray.origin, d);
+    return cut(through_capsule(line, double(capsule.radius)), d.scale,
+               contains(capsule, ray.origin), ray.max_t);
+}
 
-    // A capsule is two balls and the cylinder between them. It is convex, so its stretch goes from
-    // the first entry to the last exit of the three.
-    Stretch whole = through_round(to_a, d.direction, capsule.radius);
-    const auto join = [&](const Stretch &part) {
-        if (part.is_empty())
-            return;
-        if (part.enter < whole.enter) {
-            whole.enter = part.enter;
-            whole.outward = part.outward;
-        }
-        whole.exit = std::max(whole.exit, part.exit);
-    };
-    join(through_round(to_b, d.direction, capsule.radius));
-
-    const Vec3 along = capsule.b - capsule.a;
-    const Real length = glm::length(along);
-    if (length > Real(0)) {
-        const Vec3 axis = along / length;
-        const Vec3 d_across = d.direction - axis * glm::dot(d.direction, axis);
-        // A ray along the axis enters and leaves by the balls.
-        constexpr Real parallel_sine = Real(8) * std::numeric_limits<Real>::epsilon();
-        if (glm::dot(d_across, d_across) > parallel_sine * parallel_sine) {
-            const Vec3 m_across = to_a - axis * glm::dot(to_a, axis);
-            Stretch side = through_round(m_across, d_across, capsule.radius);
-            if (!side.is_empty()) {
-                // Only its ends that lie between the two end planes are ends of the capsule.
-                const Real m_along = glm::dot(to_a, axis);
-                const Real d_along = glm::dot(d.direction, axis);
-                const auto is_between = [&](Real t) {
-                    const Real height = t * d_along - m_along;
-                    return height >= Real(0) && height <= length;
-                };
-                if (is_between(side.enter) && side.enter < whole.enter) {
-                    whole.enter = side.enter;
-                    whole.outward = side.outward;
-                }
-                if (is_between(side.exit))
-                    whole.exit = std::max(whole.exit, side.exit);
-                // With one end found here and none by the balls (a ray that enters by the side at
-                // the very seam), the stretch is that point.
-                if (whole.enter < infinity && whole.exit < whole.enter)
-                    whole.exit = whole.enter;
-                if (whole.enter == infinity && whole.exit > -infinity) {
-                    whole.enter = whole.exit;
-                    whole.outward = side.outward;
-                }
-            }
-        }
-    }
-    return cut(whole, d.scale, is_inside(capsule, ray.origin), ray.max_t);
+std::optional<RayInterval> ray_interval(const Cylinder &cylinder, const Ray &ray) {
+    check_ray(ray);
+    check_valid(cylinder);
+    const Scaled d(ray.direction);
+    const AxisAndLine line(cylinder.a, cylinder.b, ray.origin, d);
+    return cut(through_cylinder(line, double(cylinder.radius)), d.scale,
+               contains(cylinder, ray.origin), ray.max_t);
 }
 
 std::optional<RayInterval> ray_interval(const HalfSpace &half_space, const Ray &ray) {
     check_ray(ray);
     check_valid(half_space);
-    const Real height = glm::dot(half_space.normal, ray.origin) - half_space.offset;
-    const Real climb = glm::dot(half_space.normal, ray.direction);
+    const Vec3 &normal = half_space.normal;
+    const Real offset = half_space.offset;
+    const int climb = plane_sign(normal, Real(0), ray.direction);
+    const auto to_surface = [&] {
+        const double height = glm::dot(Wide(normal), Wide(ray.origin)) - double(offset);
+        return Real(std::max(0.0, -height / glm::dot(Wide(normal), Wide(ray.direction))));
+    };
     if (!(ray.max_t >= Real(0)))
         return std::nullopt;
     RayInterval interval;
-    if (is_inside(half_space, ray.origin)) {
-        interval.t_exit = ray.max_t;
-        if (climb > Real(0))
-            interval.t_exit = std::clamp(-height / climb, Real(0), ray.max_t);
+    interval.t_exit = ray.max_t;
+    if (plane_sign(normal, offset, ray.origin) <= 0) {
+        if (climb > 0)
+            interval.t_exit = std::min(to_surface(), ray.max_t);
         return interval;
     }
-    if (!(climb < Real(0)))
+    if (climb >= 0)
         return std::nullopt;
-    interval.t_enter = height / -climb;
+    interval.t_enter = to_surface();
     if (!(interval.t_enter <= ray.max_t) || interval.t_enter == infinity)
         return std::nullopt;
-    interval.t_exit = ray.max_t;
-    interval.enter_normal = half_space.normal;
+    interval.enter_normal = normal;
     return interval;
 }
 
@@ -277,19 +313,76 @@ std::optional<RayInterval> ray_interval(const Shape &shape, const Ray &ray) {
     return std::visit([&](const auto &solid) { return ray_interval(solid, ray); }, shape);
 }
 
-bool contains(const Shape &shape, const Vec3 &point) {
-    check_point(point);
-    check_valid(shape);
-    return std::visit([&](const auto &solid) { return is_inside(solid, point); }, shape);
+std::optional<RayHit> raycast(const Plane &plane, const Ray &ray) {
+    check_ray(ray);
+    check_valid(plane);
+    const int side = plane_sign(plane.normal, plane.offset, ray.origin);
+    if (side == 0)
+        return ray.max_t >= Real(0)
+                   ? std::optional(RayHit{Real(0), ray.origin, Vec3{Real(0)}, true})
+                   : std::nullopt;
+    // What is on the other side, or in the plane, is solid to a ray from this one.
+    const Real front = Real(side);
+    return raycast(HalfSpace{front * plane.normal, front * plane.offset}, ray);
+}
+
+namespace {
+
+// The ends are asked for themselves: b as origin + 1 * direction would be rounded.
+template <typename Solid> bool has_point_of(const Solid &solid, const Vec3 &a, const Vec3 &b) {
+    check_point(b);
+    if (contains(solid, a) || contains(solid, b))
+        return true;
+    return a != b && ray_interval(solid, Ray{a, b - a, Real(1)}).has_value();
+}
+
+} // namespace
+
+bool linetest(const Sphere &sphere, const Vec3 &a, const Vec3 &b) {
+    return has_point_of(sphere, a, b);
+}
+
+bool linetest(const Box &box, const Vec3 &a, const Vec3 &b) {
+    check_valid(box);
+    if (!is_rotated(box))
+        return linetest(aligned(box), a, b);
+    check_point(a);
+    check_point(b);
+    const Mat3 axes = rotation_matrix(box.rotation);
+    return segment_meets_box({(a - box.center) * axes, (b - box.center) * axes},
+                             {-box.half_extents, box.half_extents});
+}
+
+bool linetest(const Aabb &box, const Vec3 &a, const Vec3 &b) {
+    check_valid(box);
+    check_point(a);
+    check_point(b);
+    return !is_empty(box) && segment_meets_box({a, b}, box);
+}
+
+bool linetest(const Capsule &capsule, const Vec3 &a, const Vec3 &b) {
+    return has_point_of(capsule, a, b);
+}
+
+bool linetest(const Cylinder &cylinder, const Vec3 &a, const Vec3 &b) {
+    return has_point_of(cylinder, a, b);
+}
+
+bool linetest(const HalfSpace &half_space, const Vec3 &a, const Vec3 &b) {
+    check_point(b);
+    return contains(half_space, a) || contains(half_space, b);
+}
+
+bool linetest(const Plane &plane, const Vec3 &a, const Vec3 &b) {
+    check_valid(plane);
+    check_point(a);
+    check_point(b);
+    return plane_sign(plane.normal, plane.offset, a) * plane_sign(plane.normal, plane.offset, b) <=
+           0;
 }
 
 bool linetest(const Shape &shape, const Vec3 &a, const Vec3 &b) {
-    check_point(a);
-    check_point(b);
-    // The ends are asked for themselves: b as origin + 1 * direction would be rounded.
-    if (contains(shape, a) || contains(shape, b))
-        return true;
-    return a != b && ray_interval(shape, Ray{a, b - a, Real(1)}).has_value();
+    return std::visit([&](const auto &solid) { return linetest(solid, a, b); }, shape);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

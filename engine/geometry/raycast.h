@@ -1,4 +1,4 @@
-// Rays and segments against solid shapes.
+// Rays and segments against solids and surfaces.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -17,10 +17,19 @@ struct RayInterval {
 // Empty when ray and solid have no common point. A ray that touches in one point gives
 // t_enter == t_exit. Starting inside (or on the surface, going in) gives t_enter == 0. A zero or
 // non-finite direction, or a NaN anywhere, fails a check.
+//
+// An Aabb, and a Box without rotation (whose faces are at center -+ half_extents, as rounded), are
+// never missed by a ray that truly meets them, in a face, an edge or a corner, and met wrongly only
+// by rays that pass an edge within 8 epsilon of the distance from the origin. The other answers are
+// those for a solid and a ray moved by at most 16 epsilon times the largest of their coordinates
+// and sizes, but exact for integers of at most 7 (of Cylinders, for those along an axis), so that
+// tangents touch. A HalfSpace is exact in whether there is an interval and whether it starts
+// inside.
 std::optional<RayInterval> ray_interval(const Sphere &sphere, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Box &box, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Aabb &box, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Capsule &capsule, const Ray &ray);
+std::optional<RayInterval> ray_interval(const Cylinder &cylinder, const Ray &ray);
 std::optional<RayInterval> ray_interval(const HalfSpace &half_space, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Shape &shape, const Ray &ray);
 
@@ -40,11 +49,34 @@ template <typename Solid> std::optional<RayHit> raycast(const Solid &solid, cons
                   inside->enter_normal, inside->enter_normal == Vec3{Real(0)}};
 }
 
-// Whether the segment from a to b has a point in the solid. A segment wholly inside does.
-// a == b asks whether that point is inside.
-bool linetest(const Shape &shape, const Vec3 &a, const Vec3 &b);
+// The first point of a surface on the ray, from either side. `normal` is of the side that the ray
+// comes from; it is zero, and `starts_inside` set, when the origin is on the surface.
+//
+// Which side of the plane the ray starts on and whether it comes closer are exact. t is off by at
+// most 8 epsilon times the largest coordinate, of the point that is hit too, over the speed along
+// the normal; its comparison with max_t is rounded.
+std::optional<RayHit> raycast(const Plane &plane, const Ray &ray);
 
-// Whether a point lies in the solid (surface included).
-bool contains(const Shape &shape, const Vec3 &point);
+// Watertight (Woop, Benthin, Wald 2013): whether the line of the ray passes the triangle is decided
+// by exact signs, one for each edge, so a ray between triangles that share an edge or a corner hits
+// one of them at least; and on which side it starts, and whether it comes closer, are exact too.
+// A ray in the plane of the triangle hits the first common point, and so does one that meets a flat
+// triangle; its normal then is that of the side of the triangle's front, or, flat, points against
+// the ray. t is off by at most 8 epsilon times the largest coordinate, over the speed |direction|
+// and the sine of the angle between ray and plane (in the plane, ray and edge). Its comparison with
+// max_t is rounded.
+std::optional<RayHit> raycast(const Triangle &triangle, const Ray &ray);
+
+// Whether the segment from a to b has a point in the shape. A segment wholly inside does.
+// a == b asks whether that point is inside. The ends are asked for themselves, as by `contains`.
+bool linetest(const Sphere &sphere, const Vec3 &a, const Vec3 &b);
+bool linetest(const Box &box, const Vec3 &a, const Vec3 &b);  // exact without rotation
+bool linetest(const Aabb &box, const Vec3 &a, const Vec3 &b); // exact
+bool linetest(const Capsule &capsule, const Vec3 &a, const Vec3 &b);
+bool linetest(const Cylinder &cylinder, const Vec3 &a, const Vec3 &b);
+bool linetest(const HalfSpace &half_space, const Vec3 &a, const Vec3 &b); // exact
+bool linetest(const Plane &plane, const Vec3 &a, const Vec3 &b);          // exact
+bool linetest(const Triangle &triangle, const Vec3 &a, const Vec3 &b);    // exact
+bool linetest(const Shape &shape, const Vec3 &a, const Vec3 &b);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -20,6 +20,12 @@ struct SatResult {
 
 SatResult separating_axis(const Box &a, const Box &b);
 
+// Whether the boxes have a common point, by the same 15 axes: the sign of the separation, but for
+// roundings. True for parallel, nearly parallel and edge-edge separated boxes alike; wrong only for
+// boxes nearer to touching than 32 epsilon times their largest coordinate or size, and never for
+// boxes of small whole numbers that are not turned, or by half or a third of a turn (those
+// quaternions are exact). An empty Aabb overlaps nothing. A box that is not valid fails a check.
 bool overlaps(const Box &a, const Box &b);
+bool overlaps(const Aabb &a, const Box &b);
 
 } // namespace plumb::inline PLUMB_PRECISION

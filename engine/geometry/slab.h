@@ -13,10 +13,10 @@ namespace plumb::inline PLUMB_PRECISION {
 //
 // A component of the direction that is 0 or -0 decides by the origin alone, so a ray that lies in a
 // face is inside. The signs of the quotients, so the comparison with 0, are exact. The quotients
-// carry at most two roundings each, and are allowed that much where enter is compared with exit: a
-// ray through an edge or corner is never missed because of them. And as every operation is
-// monotonic, a box that holds another is met by every ray that meets the other: trees prune without
-// loss.
+// carry at most two roundings each, and are allowed that much, and what underflow takes, where
+// enter is compared with exit and with max_t: a ray through an edge or corner, or one that ends at
+// a face, is never missed because of them. And as every operation is monotonic, a box that holds
+// another is met by every ray that meets the other: trees prune without loss.
 inline bool slab_interval(const Aabb &box, const Ray &ray, Real &enter, Real &exit,
                           int &enter_axis) {
     enter = Real(0);
@@ -27,23 +27,25 @@ inline bool slab_interval(const Aabb &box, const Ray &ray, Real &enter, Real &ex
         const Real direction = ray.direction[i];
         const Real low = box.min[i];
         const Real high = box.max[i];
-        if (direction == Real(0)) {
+        if (direction == Real(0)) [[unlikely]] {
             if (origin < low || origin > high)
                 return false;
             continue;
         }
-        const bool is_forward = direction > Real(0);
-        const Real near = ((is_forward ? low : high) - origin) / direction;
-        const Real far = ((is_forward ? high : low) - origin) / direction;
-        if (near > enter) {
-            enter = near;
-            enter_axis = i;
-        }
-        exit = std::min(exit, far);
+        // The lesser and the greater, not a choice by the sign of the direction, which for rays of
+        // all directions would be a guess.
+        const Real to_low = (low - origin) / direction;
+        const Real to_high = (high - origin) / direction;
+        const Real near = std::min(to_low, to_high);
+        enter_axis = near > enter ? i : enter_axis;
+        enter = std::max(enter, near);
+        exit = std::min(exit, std::max(to_low, to_high));
     }
     constexpr Real slack = Real(1) + Real(4) * std::numeric_limits<Real>::epsilon();
-    if (exit < Real(0) || enter > exit * slack || enter > ray.max_t)
+    constexpr Real least = std::numeric_limits<Real>::min();
+    if (exit < Real(0) || enter > exit * slack + least || enter > ray.max_t * slack)
         return false;
+    enter = std::min(enter, ray.max_t);
     exit = std::min(std::max(exit, enter), ray.max_t);
     return exit >= enter;
 }

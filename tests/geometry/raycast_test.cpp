@@ -1,6 +1,7 @@
 #include "engine/geometry/raycast.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/contains.h"
 #include "tests/geometry/oracle.h"
 
 #include <gtest/gtest.h>

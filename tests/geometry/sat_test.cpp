@@ -68,7 +68,9 @@ TEST(Sat, SeparationIsTrueOfItsAxisAndABoundOfTheDistance) {
         if (trial % 10 == 0 && result.separation > Real(0)) {
             ASSERT_LE(double(result.separation), distance(wide_a, wide_b) + rounding);
         }
-        ASSERT_EQ(overlaps(a, b), result.separation <= Real(0));
+        if (std::abs(double(result.separation)) > rounding) {
+            ASSERT_EQ(overlaps(a, b), result.separation <= Real(0));
+        }
     }
 }
 

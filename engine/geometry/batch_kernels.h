@@ -1,0 +1,38 @@
+// What of batch.h runs on vectors: the part compiled for each instruction set.
+//
+// Nothing is checked here but the numbers: each returns whether all were valid, as far as the
+// scalar function asks (a NaN, an infinity, a negative radius are not).
+#pragma once
+
+#include "engine/geometry/batch.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace kernels {
+
+bool ray_interval(const AabbBatch &boxes, const Ray &ray, const IntervalBatch &out);
+bool ray_interval(const Aabb &box, const RayBatch &rays, const IntervalBatch &out);
+bool ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &out);
+
+bool overlaps(const AabbBatch &a, const AabbBatch &b, std::uint64_t *answers);
+bool overlaps(const Aabb &box, const AabbBatch &boxes, std::uint64_t *answers);
+bool overlaps(const Sphere &sphere, const SphereBatch &spheres, std::uint64_t *answers);
+
+bool contains(const Sphere &sphere, const PointBatch &points, std::uint64_t *answers);
+bool contains(const Aabb &box, const PointBatch &points, std::uint64_t *answers);
+bool contains(const Box &box, const PointBatch &points, std::uint64_t *answers);
+
+// Answers without doubt; where `unsure` is set the scalar function must be asked.
+struct Verdicts {
+    std::uint64_t *not_outside;
+    std::uint64_t *inside;
+    std::uint64_t *unsure;
+};
+bool classify(const Frustum &frustum, const PointBatch &points, const Verdicts &out);
+bool classify(const Frustum &frustum, const SphereBatch &spheres, const Verdicts &out);
+bool classify(const Frustum &frustum, const AabbBatch &boxes, const Verdicts &out);
+
+// Sets the bits of the triangles that the ray's line may meet; the others it passes without doubt.
+bool may_meet(const TriangleBatch &triangles, const Ray &ray, std::uint64_t *answers);
+
+} // namespace kernels
+} // namespace plumb::inline PLUMB_PRECISION

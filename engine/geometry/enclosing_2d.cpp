@@ -1,0 +1,150 @@
+#include "engine/geometry/enclosing_2d.h"
+
+#include "engine/core/check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+constexpr Real infinity = std::numeric_limits<Real>::infinity();
+
+Real squared_distance(const Vec2 &a, const Vec2 &b) {
+    const Vec2 d = b - a;
+    return glm::dot(d, d);
+}
+
+// The centre of the circle through three points. From the corner with the largest angle, which in a
+// triangle that is not obtuse is at least 60 degrees: so however close two of the points are, it is
+// off by some epsilon times the radius only. Obtuse ones are not asked for in the end; what they
+// give may be far off, or not finite.
+Vec2 circumcenter(Vec2 a, Vec2 b, Vec2 c) {
+    const Real opposite_a = squared_distance(b, c);
+    const Real opposite_b = squared_distance(c, a);
+    const Real opposite_c = squared_distance(a, b);
+    if (opposite_b >= opposite_a && opposite_b >= opposite_c)
+        std::swap(a, b);
+    else if (opposite_c >= opposite_a)
+        std::swap(a, c);
+    const Vec2 u = b - a;
+    const Vec2 v = c - a;
+    const Real twice_cross = Real(2) * (u.x * v.y - u.y * v.x);
+    return a + (perpendicular(v) * -glm::dot(u, u) + perpendicular(u) * glm::dot(v, v)) *
+                   (Real(1) / twice_cross);
+}
+
+// Up to three points on the border of the smallest circle around them, and one to be added.
+struct Support {
+    std::array<Vec2, 4> points{};
+    std::size_t count = 0;
+    Vec2 center{Real(0)};
+    Real squared_radius = Real(0);
+
+    // A point outside of the circle is on the border of the next one: with each one or two of the
+    // others it makes a circle, and the smallest that leaves none out is taken. Whether it leaves
+    // none out is not asked: its radius is what it takes to reach them all.
+    void add(const Vec2 &point) {
+        points[count++] = point;
+        squared_radius = infinity;
+        std::array<std::size_t, 3> chosen{};
+        std::size_t chosen_count = 0;
+        const auto consider = [&](const Vec2 &candidate, std::size_t i, std::size_t j) {
+            Real reach = Real(0);
+            for (std::size_t k = 0; k < count; ++k)
+                reach = std::max(reach, squared_distance(candidate, points[k]));
+            if (!(reach < squared_radius))
+                return;
+            center = candidate;
+            squared_radius = reach;
+            chosen = {count - 1, i, j};
+            chosen_count = i == j ? 2 : 3;
+        };
+        for (std::size_t i = 0; i + 1 < count; ++i)
+            consider(point + Real(0.5) * (points[i] - point), i, i);
+        for (std::size_t i = 0; i + 1 < count; ++i)
+            for (std::size_t j = i + 1; j + 1 < count; ++j) {
+                const Vec2 candidate = circumcenter(points[i], points[j], point);
+                if (std::isfinite(candidate.x) && std::isfinite(candidate.y))
+                    consider(candidate, i, j);
+            }
+        const std::array<Vec2, 4> all = points;
+        count = chosen_count;
+        for (std::size_t k = 0; k < count; ++k)
+            points[k] = all[chosen[k]];
+    }
+};
+
+// The least circle around `center` in which `contains` finds every point.
+Circle reaching_all(const Vec2 &center, std::span<const Vec2> points) {
+    Real squared = Real(0);
+    for (const Vec2 &point : points)
+        squared = std::max(squared, squared_distance(center, point));
+    Real radius = std::sqrt(squared);
+    while (radius * radius < squared)
+        radius = std::nextafter(radius, infinity);
+    return {center, radius};
+}
+
+} // namespace
+
+// The smallest circle around the points found so far to matter, then the point furthest outside is
+// added to those, until there is none: Welzl 1991, "Smallest enclosing disks", with the choice of
+// the furthest point of Gaertner 1999, "Fast and robust smallest enclosing balls". A few rounds
+// whatever the number of points, and nothing random.
+Circle containing_circle(std::span<const Vec2> points) {
+    PLUMB_CHECK(!points.empty(), "a circle around no points was asked for, got " << points.size());
+    for (const Vec2 &point : points)
+        check_valid(point);
+
+    // Relative to one of them, so that what is rounded is of the size of the circle.
+    const Vec2 origin = points[0];
+    Support support;
+    support.count = 1;
+    Vec2 best_center{Real(0)};
+    Real best_squared = infinity;
+    // No circle around them all is smaller than that around the support. Each distance carries
+    // some roundings: when the furthest point is not further out than that, it is done.
+    constexpr Real slack = Real(1) + Real(16) * std::numeric_limits<Real>::epsilon();
+    constexpr int most_rounds = 100;
+    for (int round = 0; !PLUMB_RARELY("containing_circle ran out of rounds", round == most_rounds);
+         ++round) {
+        Vec2 furthest{Real(0)};
+        Real squared = Real(-1);
+        for (const Vec2 &point : points) {
+            const Vec2 local = point - origin;
+            const Real candidate = squared_distance(support.center, local);
+            if (candidate > squared) {
+                squared = candidate;
+                furthest = local;
+            }
+        }
+        if (squared < best_squared) {
+            best_squared = squared;
+            best_center = support.center;
+        }
+        if (squared <= support.squared_radius * slack)
+            break;
+        support.add(furthest);
+    }
+    return reaching_all(origin + best_center, points);
+}
+
+Rectangle containing_rectangle(std::span<const Vec2> points) {
+    PLUMB_CHECK(!points.empty(),
+                "a rectangle around no points was asked for, got " << points.size());
+    Rectangle rectangle{points[0], points[0]};
+    for (const Vec2 &point : points) {
+        check_valid(point);
+        rectangle.min = glm::min(rectangle.min, point);
+        rectangle.max = glm::max(rectangle.max, point);
+    }
+    return rectangle;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,215 @@
+#include "engine/geometry/gjk.h"
+
+#include <algorithm>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+const Vec3 &at(const Simplex &simplex, int i) {
+    return simplex.vertices[static_cast<std::size_t>(i)].w;
+}
+
+SimplexPart vertex_part(const Simplex &simplex, int i) {
+    const Vec3 &w = at(simplex, i);
+    return {w, glm::dot(w, w), {Real(1)}, {i}, 1};
+}
+
+SimplexPart edge_part(const Simplex &simplex, int i, int j) {
+    const Vec3 &p = at(simplex, i);
+    const Vec3 &q = at(simplex, j);
+    const Vec3 along = q - p;
+    const Real squared = glm::dot(along, along);
+    const Real from_p = -glm::dot(p, along);
+    const Real from_q = glm::dot(q, along);
+    if (!(from_p > Real(0)))
+        return vertex_part(simplex, i);
+    if (!(from_q > Real(0)))
+        return vertex_part(simplex, j);
+    const Real s = from_p / squared;
+    // Made perpendicular to the edge once more: rounding leaves eps |p| along it, which can be more
+    // than the distance, and the direction to the next support point is only as good as this.
+    Vec3 closest = from_p < from_q ? p + s * along : q - (from_q / squared) * along;
+    closest -= along * (glm::dot(closest, along) / squared);
+    return {closest, glm::dot(closest, closest), {Real(1) - s, s}, {i, j}, 2};
+}
+
+void keep_closer(SimplexPart &best, const SimplexPart &other) {
+    if (other.squared_distance < best.squared_distance)
+        best = other;
+}
+
+// Whether the projection of the origin is on the inner side of the side from `start` along `side`,
+// given its (signed, scaled) area with it. A positive slack lets it be outside by as many roundings
+// of that area.
+bool is_inner(Real area, const Vec3 &start, const Vec3 &side, Real squared_normal, Real slack) {
+    if (area > Real(0))
+        return true;
+    return slack > Real(0) && area * area <= slack * slack * squared_normal *
+                                                 glm::dot(start, start) * glm::dot(side, side);
+}
+
+SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, Real slack) {
+    const Vec3 &p = at(simplex, i);
+    const Vec3 &q = at(simplex, j);
+    const Vec3 &r = at(simplex, k);
+    const Vec3 pq = q - p;
+    const Vec3 pr = r - p;
+    const Vec3 qr = r - q;
+    const Vec3 normal = triangle_normal(pq, pr, qr);
+    const Real squared = glm::dot(normal, normal);
+    // The area of each side with the origin's projection on the plane, times twice the triangle's.
+    // As p x (q - p), not p x q: the error is then in proportion to the side's length.
+    const Real area_p = glm::dot(glm::cross(q, qr), normal);
+    const Real area_q = glm::dot(glm::cross(pr, r), normal);
+    const Real area_r = glm::dot(glm::cross(p, pq), normal);
+    const bool in_p = is_inner(area_p, q, qr, squared, slack);
+    const bool in_q = is_inner(area_q, r, pr, squared, slack);
+    const bool in_r = is_inner(area_r, p, pq, squared, slack);
+    const Real sum =
+        std::max(area_p, Real(0)) + std::max(area_q, Real(0)) + std::max(area_r, Real(0));
+    if (in_p && in_q && in_r && sum > Real(0)) {
+        // Along the normal, so its direction is as good as the plane's however small it is.
+        const Vec3 closest = normal * (glm::dot(p, normal) / squared);
+        return {closest,
+                glm::dot(closest, closest),
+                {std::max(area_p, Real(0)) / sum, std::max(area_q, Real(0)) / sum,
+                 std::max(area_r, Real(0)) / sum},
+                {i, j, k},
+                3};
+    }
+    // The closest point is on a side that the projection is beyond.
+    SimplexPart best;
+    if (!(area_p > Real(0)))
+        keep_closer(best, edge_part(simplex, j, k));
+    if (!(area_q > Real(0)))
+        keep_closer(best, edge_part(simplex, i, k));
+    if (!(area_r > Real(0)))
+        keep_closer(best, edge_part(simplex, i, j));
+    return best;
+}
+
+SimplexPart tetrahedron_part(const Simplex &simplex, const Vec3 &size, Real slack) {
+    constexpr std::size_t newest = 3;
+    const Vec3 &p = at(simplex, newest);
+    // Face i has the newest vertex, vertex i and the next; its opposite vertex is the one after.
+    std::array<Vec3, 3> normals;
+    std::array<Real, 3> heights{};
+    std::array<bool, 3> is_outside{};
+    bool is_flat = false;
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 &q = at(simplex, i);
+        const Vec3 &r = at(simplex, (i + 1) % 3);
+        const auto f = static_cast<std::size_t>(i);
+        normals[f] = triangle_normal(q - p, r - p, r - q);
+        heights[f] = glm::dot(at(simplex, (i + 2) % 3) - p, normals[f]);
+        const Real rounding = rounding_along(normals[f], size);
+        is_flat = is_flat || std::abs(heights[f]) <= rounding;
+        is_outside[f] = !(-glm::dot(p, normals[f]) * heights[f] > Real(0));
+    }
+    SimplexPart best;
+    if (is_flat || is_outside[0] || is_outside[1] || is_outside[2]) {
+        for (int i = 0; i < 3; ++i)
+            if (is_flat || is_outside[static_cast<std::size_t>(i)])
+                keep_closer(best, triangle_part(simplex, newest, i, (i + 1) % 3, slack));
+        return best;
+    }
+    // Inside. The weight of a vertex is the height of the origin above the face opposite of it, in
+    // heights of the vertex. Once more for what rounding left.
+    best = {Vec3{Real(0)}, Real(0), {}, {0, 1, 2, 3}, 4};
+    Vec3 off = p;
+    const auto weighted_sum = [&] {
+        Vec3 sum{Real(0)};
+        for (std::size_t i = 0; i < 4; ++i)
+            sum += best.weights[i] * simplex.vertices[i].w;
+        return sum;
+    };
+    best.weights[newest] = Real(1);
+    for (int pass = 0; pass < 2; ++pass) {
+        for (std::size_t f = 0; f < 3; ++f) {
+            const Real change = glm::dot(off, normals[f]) / heights[f];
+            best.weights[(f + 2) % 3] -= change;
+            best.weights[newest] += change;
+        }
+        off = weighted_sum();
+    }
+    for (Real &weight : best.weights)
+        weight = std::max(weight, Real(0));
+    off = weighted_sum();
+    constexpr Real nothing = Real(8) * std::numeric_limits<Real>::epsilon();
+    if (glm::dot(off, off) > nothing * nothing * glm::dot(size, size)) {
+        // So thin that the volumes are mostly rounding: the nearest face is as good.
+        SimplexPart face = triangle_part(simplex, 0, 1, 2, slack);
+        for (int i = 0; i < 3; ++i)
+            keep_closer(face, triangle_part(simplex, newest, i, (i + 1) % 3, slack));
+        if (face.squared_distance < glm::dot(off, off)) {
+            best.weights = {};
+            for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i)
+                best.weights[static_cast<std::size_t>(face.indices[i])] = face.weights[i];
+        }
+    }
+    return best;
+}
+
+} // namespace
+
+Vec3 triangle_normal(const Vec3 &pq, const Vec3 &pr, const Vec3 &qr) {
+    const Real squared_pq = glm::dot(pq, pq);
+    const Real squared_pr = glm::dot(pr, pr);
+    const Real squared_qr = glm::dot(qr, qr);
+    const auto across = [](const Vec3 &normal, const Vec3 &side, Real squared) {
+        return squared > Real(0) ? normal - side * (glm::dot(normal, side) / squared) : normal;
+    };
+    if (squared_qr >= squared_pq && squared_qr >= squared_pr)
+        return across(glm::cross(pq, pr), qr, squared_qr);
+    return squared_pr >= squared_pq ? across(glm::cross(pq, qr), pr, squared_pr)
+                                    : across(glm::cross(pr, qr), pq, squared_pq);
+}
+
+SimplexPart closest_part(const Simplex &simplex, const Vec3 &size, Real slack) {
+    switch (simplex.count) {
+    case 1:
+        return vertex_part(simplex, 0);
+    case 2:
+        return edge_part(simplex, 1, 0);
+    case 3:
+        return triangle_part(simplex, 2, 0, 1, slack);
+    default:
+        return tetrahedron_part(simplex, size, slack);
+    }
+}
+
+void reduce(Simplex &simplex, const SimplexPart &part) {
+    std::array<SimplexVertex, 4> kept;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(part.count); ++i)
+        kept[i] = simplex.vertices[static_cast<std::size_t>(part.indices[i])];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(part.count); ++i)
+        simplex.vertices[i] = kept[i];
+    simplex.weights = part.weights;
+    simplex.count = part.count;
+}
+
+Witnesses witnesses(const GjkResult &result) {
+    const Simplex &simplex = result.simplex;
+    Vec3 on_a{Real(0)};
+    Vec3 on_b{Real(0)};
+    Real spread_a = Real(0);
+    Real spread_b = Real(0);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.count); ++i) {
+        const SimplexVertex &vertex = simplex.vertices[i];
+        on_a += simplex.weights[i] * vertex.a;
+        on_b += simplex.weights[i] * vertex.b;
+        const Vec3 from_a = glm::abs(vertex.a - simplex.vertices[0].a);
+        const Vec3 from_b = glm::abs(vertex.b - simplex.vertices[0].b);
+        spread_a = std::max(spread_a, from_a.x + from_a.y + from_a.z);
+        spread_b = std::max(spread_b, from_b.x + from_b.y + from_b.z);
+    }
+    // An error of the weights moves the point on the smaller simplex less.
+    if (spread_a <= spread_b)
+        on_b = on_a + result.difference;
+    else
+        on_a = on_b - result.difference;
+    return {on_a, on_b};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

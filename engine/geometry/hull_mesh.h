@@ -1,0 +1,56 @@
+// The convex polyhedron as data, and the solid that places it in the world.
+#pragma once
+
+#include "engine/geometry/shapes.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// A closed convex polyhedron, in its own frame. Made by `convex_hull` (quickhull.h) and not changed
+// afterwards.
+struct HullMesh {
+    // vertices[vertex_indices[first .. first + count)], counter-clockwise from outside; count >= 3.
+    struct Face {
+        std::uint32_t first = 0;
+        std::uint32_t count = 0;
+    };
+    // Each edge once; `a` and `b` are vertices, the faces are those on its left and on its right
+    // for one who goes from a to b on the outside: the left face lists a before b.
+    struct Edge {
+        std::uint32_t a = 0, b = 0;
+        std::uint32_t left_face = 0, right_face = 0;
+    };
+
+    std::vector<Vec3> vertices;
+    std::vector<Face> faces;
+    std::vector<Plane> planes; // of the faces, outward; no vertex is in front of any
+    std::vector<std::uint32_t> vertex_indices;
+    // Three vertices of each face, counter-clockwise, such that exactly no vertex is in front of
+    // the plane through them: what decides where the rounded planes leave doubt.
+    std::vector<std::array<std::uint32_t, 3>> face_corners;
+    std::vector<Edge> edges;
+    // The vertices that share an edge with vertex v:
+    // neighbors[first_neighbor[v] .. first_neighbor[v + 1]).
+    std::vector<std::uint32_t> first_neighbor;
+    std::vector<std::uint32_t> neighbors;
+    Aabb box; // of the vertices, exactly
+    // How much the height of a point in `box` above a plane, as computed in Real, can differ from
+    // its height above the plane of the face's three corners. Metres.
+    Real slack = Real(0);
+    bool has_flat_faces = true; // exactly: all vertices of each face are in one plane
+    Vec3 center{Real(0)};       // of mass, for uniform density
+    Real volume = Real(0);      // m^3
+    Mat3 inertia{Real(0)};      // about the centre, for a density of 1 kg/m^3
+};
+
+// A solid convex polyhedron. `mesh` is borrowed: it must outlive the value.
+struct ConvexHull {
+    const HullMesh *mesh = nullptr;
+    Vec3 position{Real(0)};
+    Quat rotation = identity_rotation;
+};
+
+} // namespace plumb::inline PLUMB_PRECISION

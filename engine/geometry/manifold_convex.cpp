@@ -1,0 +1,533 @@
+#include "engine/geometry/manifold_convex.h"
+
+#include "engine/geometry/epa.h"
+#include "engine/math/basis.h"
+
+#include <algorithm>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+constexpr int corner_limit = 16;
+
+// Names of points, in the lowest bits of a feature: a corner by its number, then the crossings of
+// 16 + 16 sides with 16 planes, then these.
+constexpr std::uint32_t name_support = 1022;
+constexpr std::uint32_t name_closest = 1023;
+
+constexpr std::size_t index(int i) {
+    return static_cast<std::size_t>(i);
+}
+
+// What a shape turns towards the other: one corner, the two ends of a side, or the corners of a
+// face, counter-clockwise around its normal.
+struct Feature {
+    std::array<Vec3, index(corner_limit)> corners;
+    int count = 0;
+    Vec3 normal{Real(0)}; // of a face, unit, outward
+    std::uint32_t number = 0;
+
+    void add(const Vec3 &corner) { corners[index(count++)] = corner; }
+    bool is_face() const { return count > 2; }
+};
+
+Feature feature_of(const PointCore &point, const Vec3 & /*direction*/) {
+    Feature result;
+    result.add(point.point);
+    return result;
+}
+
+Feature feature_of(const SegmentCore &segment, const Vec3 & /*direction*/) {
+    Feature result;
+    result.add(segment.a);
+    if (segment.b != segment.a)
+        result.add(segment.b);
+    return result;
+}
+
+Feature feature_of(const TriangleCore &triangle, const Vec3 &direction) {
+    Feature result;
+    const Vec3 normal =
+        triangle_normal(triangle.b - triangle.a, triangle.c - triangle.a, triangle.c - triangle.b);
+    const Real length = glm::length(normal);
+    const bool is_back = glm::dot(normal, direction) < Real(0);
+    result.add(triangle.a);
+    result.add(is_back ? triangle.c : triangle.b);
+    result.add(is_back ? triangle.b : triangle.c);
+    result.number = is_back ? 1 : 0;
+    if (length >= std::sqrt(std::numeric_limits<Real>::min())) {
+        result.normal = normal / (is_back ? -length : length);
+        return result;
+    }
+    // A needle: its longest side.
+    const std::array<Vec3, 3> corners = {triangle.a, triangle.b, triangle.c};
+    Real longest = Real(-1);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 &next = corners[(i + 1) % 3];
+        if (glm::distance(corners[i], next) > longest) {
+            longest = glm::distance(corners[i], next);
+            result.corners[0] = corners[i];
+            result.corners[1] = next;
+        }
+    }
+    result.count = longest > Real(0) ? 2 : 1;
+    return result;
+}
+
+Feature feature_of(const BoxCore &box, const Vec3 &direction) {
+    int axis = 0;
+    Real steepest = Real(-1);
+    Vec3 lengths{Real(0)};
+    for (int i = 0; i < 3; ++i) {
+        lengths[i] = glm::length(box.half_edges[i]);
+        // The normal of a flat box's face has no length of its own; it is at right angles to the
+        // two others.
+        const Vec3 normal = glm::cross(box.half_edges[(i + 1) % 3], box.half_edges[(i + 2) % 3]);
+        const Real length = glm::length(normal);
+        const Real slope =
+            length > Real(0) ? std::abs(glm::dot(normal, direction)) / length : Real(-1);
+        // Clearly steeper only: with two faces at 45 degrees the choice must not flicker.
+        if (slope > steepest + Real(1e-3)) {
+            steepest = slope;
+            axis = i;
+        }
+    }
+    Feature result;
+    const Vec3 u = box.half_edges[(axis + 1) % 3];
+    const Vec3 v = box.half_edges[(axis + 2) % 3];
+    const Vec3 up = glm::cross(u, v);
+    const Real length = glm::length(up);
+    if (!(length > Real(0))) { // two extents are zero
+        const int longest = lengths.x >= lengths.y && lengths.x >= lengths.z ? 0
+                            : lengths.y >= lengths.z                         ? 1
+                                                                             : 2;
+        result.add(box.center - box.half_edges[longest]);
+        if (lengths[longest] > Real(0))
+            result.add(box.center + box.half_edges[longest]);
+        return result;
+    }
+    const Real sign = glm::dot(up, direction) < Real(0) ? Real(-1) : Real(1);
+    result.normal = sign * up / length;
+    result.number = static_cast<std::uint32_t>(2 * axis + (sign > Real(0) ? 1 : 0));
+    const Vec3 middle = box.center + result.normal * lengths[axis];
+    const Vec3 w = sign * v; // turns the other way around on the other side
+    result.add(middle - u - w);
+    result.add(middle + u - w);
+    result.add(middle + u + w);
+    result.add(middle - u + w);
+    return result;
+}
+
+Feature feature_of(const CylinderCore &cylinder, const Vec3 &direction) {
+    Feature result;
+    const Real along = glm::dot(cylinder.axis, direction);
+    const Vec3 outward = direction - along * cylinder.axis;
+    const Real across = glm::length(outward);
+    if (std::abs(along) < Real(0.7) && across > Real(0)) {
+        // The line of the side that is farthest along the direction.
+        const Vec3 off = outward * (cylinder.side / across);
+        result.add(cylinder.a + off);
+        result.add(cylinder.b + off);
+        return result;
+    }
+    const bool is_end = along > Real(0);
+    result.normal = is_end ? cylinder.axis : -cylinder.axis;
+    result.number = is_end ? 2 : 1;
+    if (!(cylinder.side > Real(0))) {
+        result.add(is_end ? cylinder.b : cylinder.a);
+        return result;
+    }
+    const TangentBasis basis = tangent_basis(result.normal);
+    const Real diagonal = cylinder.side * std::sqrt(Real(0.5));
+    const Vec3 &middle = is_end ? cylinder.b : cylinder.a;
+    const Vec3 u = basis.t1 * cylinder.side;
+    const Vec3 v = basis.t2 * cylinder.side;
+    const Vec3 s = (basis.t1 + basis.t2) * diagonal;
+    const Vec3 t = (basis.t2 - basis.t1) * diagonal;
+    for (const Vec3 &off : {u, s, v, t, -u, -s, -v, -t})
+        result.add(middle + off);
+    return result;
+}
+
+Feature feature_of(const HullCore &hull, const Vec3 &direction) {
+    Feature result;
+    const HullMesh &mesh = *hull.mesh;
+    result.number = supporting_face(mesh, direction * hull.rotation);
+    const HullMesh::Face &face = mesh.faces[result.number];
+    result.normal = glm::normalize(hull.rotation * mesh.planes[result.number].normal);
+    const auto taken = std::min<std::uint32_t>(face.count, corner_limit);
+    for (std::uint32_t i = 0; i < taken; ++i) {
+        const std::uint32_t vertex = mesh.vertex_indices[face.first + i * face.count / taken];
+        result.add(hull.position + hull.rotation * mesh.vertices[vertex]);
+    }
+    return result;
+}
+
+// A contact point before four are chosen.
+struct Candidate {
+    Vec3 position{Real(0)};
+    Real separation = Real(0);
+    std::uint32_t feature = 0;
+};
+struct Candidates {
+    std::array<Candidate, index(2 * corner_limit + 1)> points;
+    int count = 0;
+
+    void add(const Vec3 &position, Real separation, std::uint32_t feature) {
+        if (count < 2 * corner_limit + 1)
+            points[index(count++)] = {position, separation, feature};
+    }
+    Real deepest() const {
+        Real least = std::numeric_limits<Real>::infinity();
+        for (int i = 0; i < count; ++i)
+            least = std::min(least, points[index(i)].separation);
+        return least;
+    }
+};
+
+// A corner of the polygon that is being clipped: `name` as above, `side` the label of the side from
+// here to the next: a side of the incident face, or 16 + the plane that made it.
+struct ClipCorner {
+    Vec3 position;
+    std::uint32_t name;
+    std::uint32_t side;
+};
+struct Polygon {
+    std::array<ClipCorner, index(2 * corner_limit)> corners;
+    int count = 0;
+
+    void add(const ClipCorner &corner) {
+        if (count < 2 * corner_limit)
+            corners[index(count++)] = corner;
+    }
+};
+
+// One plane of Sutherland and Hodgman 1974, "Reentrant polygon clipping". Corners within
+// feature_tolerance of the plane are on it and keep their names. Two corners are a segment, not a
+// polygon of two sides.
+Polygon clipped(const Polygon &in, std::uint32_t plane, const Vec3 &at, const Vec3 &outward) {
+    const auto beyond = [&](const ClipCorner &corner) {
+        const Real distance = glm::dot(corner.position - at, outward);
+        return std::abs(distance) <= feature_tolerance ? Real(0) : distance;
+    };
+    Polygon out;
+    for (int i = 0; i < in.count; ++i) {
+        const ClipCorner &here = in.corners[index(i)];
+        const ClipCorner &next = in.corners[index((i + 1) % in.count)];
+        const Real d0 = beyond(here);
+        const Real d1 = beyond(next);
+        if (d0 <= Real(0)) {
+            ClipCorner kept = here;
+            if (d0 == Real(0) && d1 > Real(0))
+                kept.side = corner_limit + plane; // the polygon goes on along the plane
+            out.add(kept);
+        }
+        const bool is_way_back = in.count == 2 && i == 1;
+        if (!is_way_back && ((d0 < Real(0) && d1 > Real(0)) || (d0 > Real(0) && d1 < Real(0)))) {
+            const Real s = d0 / (d0 - d1);
+            out.add({here.position + s * (next.position - here.position),
+                     corner_limit + corner_limit * here.side + plane,
+                     d0 < Real(0) ? corner_limit + plane : here.side});
+        }
+    }
+    return out;
+}
+
+// Keeps the deepest point and the three that with it span the largest area seen along `normal`.
+void add_best_four(Manifold &manifold, const Candidates &all, const Vec3 &origin) {
+    const Vec3 &normal = manifold.normal;
+    std::array<int, 4> kept{};
+    int kept_count = 0;
+    if (all.count <= 4) {
+        for (; kept_count < all.count; ++kept_count)
+            kept[index(kept_count)] = kept_count;
+    } else {
+        // A later point replaces an earlier one only when it is clearly better, so that equally
+        // good points do not take turns.
+        constexpr Real clearly = Real(1.01);
+        std::array<bool, index(2 * corner_limit + 1)> is_taken{};
+        const auto keep = [&](int i) {
+            kept[index(kept_count++)] = i;
+            is_taken[index(i)] = true;
+        };
+        const auto keep_most = [&](const auto &score) {
+            int best = -1;
+            Real most = Real(0);
+            for (int i = 0; i < all.count; ++i) {
+                if (is_taken[index(i)])
+                    continue;
+                const Real value = score(all.points[index(i)].position);
+                if (best < 0 || value > most * clearly) {
+                    best = i;
+                    most = value;
+                }
+            }
+            keep(best);
+        };
+        const Real deepest = all.deepest();
+        int first = 0;
+        while (all.points[index(first)].separation > deepest + Real(0.1) * feature_tolerance)
+            ++first;
+        keep(first);
+        const Vec3 p = all.points[index(first)].position;
+        keep_most([&](const Vec3 &v) {
+            const Vec3 flat = glm::cross(v - p, normal);
+            return glm::dot(flat, flat);
+        });
+        const Vec3 q = all.points[index(kept[1])].position;
+        keep_most(
+            [&](const Vec3 &v) { return std::abs(glm::dot(glm::cross(q - p, v - p), normal)); });
+        const Vec3 r = all.points[index(kept[2])].position;
+        const Real turn = glm::dot(glm::cross(q - p, r - p), normal) < Real(0) ? Real(-1) : Real(1);
+        // The fourth adds the most area outside of the triangle: beyond one of its three sides.
+        keep_most([&](const Vec3 &v) {
+            const auto beyond = [&](const Vec3 &from, const Vec3 &to) {
+                return -turn * glm::dot(glm::cross(to - from, v - from), normal);
+            };
+            return std::max({beyond(p, q), beyond(q, r), beyond(r, p), Real(0)});
+        });
+        std::sort(kept.begin(), kept.end());
+    }
+    for (int i = 0; i < kept_count; ++i) {
+        const Candidate &point = all.points[index(kept[index(i)])];
+        add_point(manifold, origin + point.position, point.separation, point.feature);
+    }
+}
+
+std::uint32_t pair_name(const Feature &reference, const Feature &incident, bool is_b) {
+    return (is_b ? 1U << 31 : 0U) | (reference.number & 0x3ffU) << 20 |
+           (incident.number & 0x3ffU) << 10;
+}
+
+// The points of the incident feature, with that radius around it, over the reference face.
+Candidates over_face(const Feature &reference, const Feature &incident, Real radius, Real margin,
+                     std::uint32_t feature) {
+    Polygon polygon;
+    for (int i = 0; i < incident.count; ++i)
+        polygon.add({incident.corners[index(i)], static_cast<std::uint32_t>(i),
+                     static_cast<std::uint32_t>(i)});
+    for (int i = 0; i < reference.count && polygon.count > 0; ++i) {
+        const Vec3 &at = reference.corners[index(i)];
+        const Vec3 side = reference.corners[index((i + 1) % reference.count)] - at;
+        const Vec3 outward = glm::cross(side, reference.normal);
+        const Real length = glm::length(outward);
+        if (length > Real(0))
+            polygon = clipped(polygon, static_cast<std::uint32_t>(i), at, outward / length);
+    }
+    Candidates result;
+    for (int i = 0; i < polygon.count; ++i) {
+        const ClipCorner &corner = polygon.corners[index(i)];
+        const Real height = glm::dot(corner.position - reference.corners[0], reference.normal);
+        if (height - radius <= margin)
+            result.add(corner.position - reference.normal * (Real(0.5) * (height + radius)),
+                       height - radius, feature | corner.name);
+    }
+    return result;
+}
+
+// How round a side is: of a contact off its line, see along_sides.
+template <typename Core> Real roundness(const Core &core) {
+    if constexpr (std::same_as<Core, CylinderCore>)
+        return core.side;
+    else
+        return core.radius;
+}
+
+// Two sides that run along each other: the ends of their common stretch. `thinner` is the lesser of
+// their roundnesses: where the lines are e off each other sideways, a point between them is off a
+// surface by (e / 2)^2 / (2 thinner).
+Candidates along_sides(const Feature &a, Real radius_a, const Feature &b, Real radius_b,
+                       const Vec3 &normal, Real thinner, Real margin, std::uint32_t feature) {
+    // As for capsules (manifold_round.cpp): beyond this sine the far end of a metre is 2 cm away.
+    constexpr Real parallel_sine = Real(0.02);
+    Candidates result;
+    const Vec3 along_a = a.corners[1] - a.corners[0];
+    const Vec3 along_b = b.corners[1] - b.corners[0];
+    const Real squared_a = glm::dot(along_a, along_a);
+    const Vec3 cross = glm::cross(along_a, along_b);
+    if (!(glm::dot(cross, cross) <=
+          parallel_sine * parallel_sine * squared_a * glm::dot(along_b, along_b)))
+        return result;
+    const Vec3 offset = b.corners[0] - a.corners[0];
+    const Real start = glm::dot(offset, along_a) / squared_a;
+    const Real step = glm::dot(along_b, along_a) / squared_a;
+    const Real low = std::max(Real(0), std::min(start, start + step));
+    const Real high = std::min(Real(1), std::max(start, start + step));
+    if (!(high > low) || step == Real(0))
+        return result;
+    for (const Real s : {low, high}) {
+        const Vec3 on_a = s * along_a;
+        const Vec3 on_b = offset + ((s - start) / step) * along_b;
+        const Vec3 sideways = on_b - on_a - glm::dot(on_b - on_a, normal) * normal;
+        if (glm::dot(sideways, sideways) > Real(8) * thinner * feature_tolerance)
+            return {};
+        const Real separation = glm::dot(on_b - on_a, normal) - radius_a - radius_b;
+        const Vec3 middle = Real(0.5) * ((on_a + radius_a * normal) + (on_b - radius_b * normal));
+        if (separation <= margin)
+            result.add(a.corners[0] + middle, separation, feature | (s == low ? 0U : 1U));
+    }
+    return result;
+}
+
+// Whether a point is over a face, give or take the tolerance.
+bool is_over(const Feature &face, const Vec3 &point) {
+    for (int i = 0; i < face.count; ++i) {
+        const Vec3 &at = face.corners[index(i)];
+        const Vec3 side = face.corners[index((i + 1) % face.count)] - at;
+        const Vec3 outward = glm::cross(side, face.normal);
+        if (glm::dot(point - at, outward) > feature_tolerance * glm::length(outward))
+            return false;
+    }
+    return true;
+}
+
+template <typename A, typename B>
+Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin) {
+    const Vec3 origin = place_of(shape_a);
+    const auto a = core_of(shape_a, origin);
+    const auto b = core_of(shape_b, origin);
+    const Proximity found = proximity(a, b, margin);
+    Manifold manifold;
+    if (found.is_beyond || found.separation > margin)
+        return manifold;
+
+    const Feature on_a = feature_of(a, found.normal);
+    const Feature on_b = feature_of(b, -found.normal);
+    const auto accept = [&](const Candidates &contacts, const Vec3 &normal) {
+        manifold.normal = normal;
+        add_best_four(manifold, contacts, origin);
+        return manifold;
+    };
+
+    // How far the other shape is above the plane of a face. When that is as good as the best there
+    // is, its normal is the one.
+    constexpr Real none = -std::numeric_limits<Real>::infinity();
+    const Real above_a =
+        on_a.is_face() ? glm::dot(b.support(-on_a.normal) - on_a.corners[0], on_a.normal) - b.radius
+                       : none;
+    const Real above_b =
+        on_b.is_face() ? glm::dot(a.support(-on_b.normal) - on_b.corners[0], on_b.normal) - a.radius
+                       : none;
+    const auto with_face = [&](const Feature &reference, const auto &incident_core, bool is_b) {
+        const Feature incident = feature_of(incident_core, -reference.normal);
+        const std::uint32_t feature = pair_name(reference, incident, is_b);
+        Candidates contacts = over_face(reference, incident, incident_core.radius, margin, feature);
+        // The deepest point of a rim is between the corners.
+        if (contacts.deepest() > found.separation + Real(0.1) * feature_tolerance) {
+            const Vec3 support = incident_core.support(-reference.normal);
+            const Real height = glm::dot(support - reference.corners[0], reference.normal);
+            if (is_over(reference, support) && height - incident_core.radius <= margin)
+                contacts.add(support -
+                                 reference.normal * (Real(0.5) * (height + incident_core.radius)),
+                             height - incident_core.radius, feature | name_support);
+        }
+        return contacts;
+    };
+    // A face that the closest or deepest place is not over is none, however good its plane.
+    const auto is_there = [&](const Candidates &contacts) {
+        return contacts.deepest() <= found.separation + Real(2) * feature_tolerance;
+    };
+    const bool use_a = above_a >= found.separation - feature_tolerance;
+    const bool use_b = above_b >= found.separation - feature_tolerance;
+    const bool b_first = use_b && (!use_a || above_b > above_a + feature_tolerance);
+    for (const bool is_b : {b_first, !b_first}) {
+        if (!(is_b ? use_b : use_a))
+            continue;
+        const Candidates contacts = is_b ? with_face(on_b, a, true) : with_face(on_a, b, false);
+        if (is_there(contacts))
+            return accept(contacts, is_b ? -on_b.normal : on_a.normal);
+    }
+
+    const std::uint32_t feature = pair_name(on_a, on_b, false);
+    if (on_a.count == 2 && on_b.count == 2) {
+        const Candidates sides = along_sides(on_a, a.radius, on_b, b.radius, found.normal,
+                                             std::min(roundness(a), roundness(b)), margin, feature);
+        if (sides.count == 2 && sides.deepest() <= found.separation + feature_tolerance)
+            return accept(sides, found.normal);
+    }
+    Candidates one;
+    one.add(Real(0.5) * (found.on_a + found.on_b), found.separation, feature | name_closest);
+    return accept(one, found.normal);
+}
+
+// The half-space's plane is a face without sides.
+template <typename A>
+Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real margin) {
+    const Vec3 origin = place_of(shape);
+    const auto core = core_of(shape, origin);
+    const Real offset = half_space.offset - glm::dot(half_space.normal, origin);
+    const auto height = [&](const Vec3 &p) { return glm::dot(half_space.normal, p) - offset; };
+    Candidates contacts;
+    const auto add = [&](const Vec3 &p, std::uint32_t feature) {
+        const Real separation = height(p);
+        if (separation <= margin)
+            contacts.add(p - half_space.normal * (Real(0.5) * separation), separation, feature);
+    };
+    const Feature lowest = feature_of(core, -half_space.normal);
+    for (int i = 0; i < lowest.count; ++i)
+        add(lowest.corners[index(i)],
+            pair_name(lowest, Feature{}, false) | static_cast<std::uint32_t>(i));
+    const Vec3 support = core.support(-half_space.normal);
+    if (contacts.deepest() > height(support) + Real(0.1) * feature_tolerance)
+        add(support, pair_name(lowest, Feature{}, false) | name_support);
+    Manifold manifold;
+    if (contacts.count == 0)
+        return manifold;
+    manifold.normal = -half_space.normal;
+    add_best_four(manifold, contacts, origin);
+    return manifold;
+}
+
+} // namespace
+
+Manifold collide_pair(const Sphere &a, const Cylinder &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Sphere &a, const ConvexHull &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Sphere &a, const Triangle &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Box &a, const Cylinder &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Box &a, const ConvexHull &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Box &a, const Triangle &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Capsule &a, const Cylinder &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Capsule &a, const ConvexHull &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Capsule &a, const Triangle &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Cylinder &a, const Cylinder &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Cylinder &a, const ConvexHull &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Cylinder &a, const Triangle &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const ConvexHull &a, const ConvexHull &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const ConvexHull &a, const Triangle &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide_pair(const Cylinder &a, const HalfSpace &b, Real margin) {
+    return collide_half_space(a, b, margin);
+}
+Manifold collide_pair(const ConvexHull &a, const HalfSpace &b, Real margin) {
+    return collide_half_space(a, b, margin);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

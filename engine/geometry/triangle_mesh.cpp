@@ -1,0 +1,64 @@
+#include "engine/geometry/triangle_mesh.h"
+
+#include "engine/core/check.h"
+#include "engine/math/printed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+void check_valid(const TriangleMesh &mesh) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const Vec3 &v = mesh.vertices[i];
+        const bool is_within = std::abs(v.x) <= mesh_reach && std::abs(v.y) <= mesh_reach &&
+                               std::abs(v.z) <= mesh_reach;
+        PLUMB_CHECK(is_within, "mesh vertex " << i << " must be finite and within " << mesh_reach
+                                              << " m, got " << Printed{v});
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (const std::uint32_t corner : mesh.triangles[i])
+            PLUMB_CHECK(corner < mesh.vertices.size(),
+                        "mesh triangle " << i << " must have corners below " << mesh.vertices.size()
+                                         << ", got " << corner);
+}
+
+Aabb bounds(const TriangleMesh &mesh) {
+    Aabb box;
+    for (const std::array<std::uint32_t, 3> &corners : mesh.triangles)
+        for (const std::uint32_t corner : corners) {
+            box.min = glm::min(box.min, mesh.vertices[corner]);
+            box.max = glm::max(box.max, mesh.vertices[corner]);
+        }
+    return box;
+}
+
+bool is_closed(const TriangleMesh &mesh) {
+    // An edge, named from its lower to its higher corner, and the direction in which it is used.
+    struct Use {
+        std::uint64_t edge;
+        int direction;
+    };
+    std::vector<Use> uses;
+    uses.reserve(3 * mesh.triangles.size());
+    for (const std::array<std::uint32_t, 3> &corners : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint64_t from = corners[i];
+            const std::uint64_t to = corners[(i + 1) % 3];
+            uses.push_back({std::min(from, to) << 32 | std::max(from, to), from < to ? 1 : -1});
+        }
+    std::sort(uses.begin(), uses.end(), [](Use a, Use b) { return a.edge < b.edge; });
+    for (std::size_t i = 0; i < uses.size();) {
+        const std::uint64_t edge = uses[i].edge;
+        int sum = 0;
+        for (; i < uses.size() && uses[i].edge == edge; ++i)
+            sum += uses[i].direction;
+        if (sum != 0 && edge >> 32 != (edge & 0xFFFF'FFFFU)) // one from a corner to itself is none
+            return false;
+    }
+    return true;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION
