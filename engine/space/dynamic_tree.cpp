@@ -53,6 +53,21 @@ void DynamicTree::check_ray(const Ray &ray) {
     PLUMB_CHECK(!std::isnan(ray.max_t), "ray max_t must be a number, got " << ray.max_t);
 }
 
+void DynamicTree::check_sphere(const Sphere &sphere) {
+    for (int i = 0; i < 3; ++i)
+        PLUMB_CHECK(std::isfinite(sphere.center[i]),
+                    "sphere centre must be finite, got " << sphere.center[i] << " on axis " << i);
+    PLUMB_CHECK(sphere.radius >= Real(0) && std::isfinite(sphere.radius),
+                "sphere radius must be finite and not negative, got " << sphere.radius);
+}
+
+void DynamicTree::check_segment(const Segment &segment) {
+    for (int i = 0; i < 3; ++i)
+        PLUMB_CHECK(std::isfinite(segment.b[i] - segment.a[i]),
+                    "segment must be finite, got [" << segment.a[i] << ", " << segment.b[i]
+                                                    << "] on axis " << i);
+}
+
 void DynamicTree::check_leaf(Leaf leaf) const {
     PLUMB_CHECK(leaf >= 0 && static_cast<std::size_t>(leaf) < nodes_.size() && node(leaf).is_leaf(),
                 "not a leaf of this tree: " << leaf);
@@ -253,6 +268,34 @@ void DynamicTree::rotate(Index index) {
     node(down).parent = other;
     refit(other);
     refit(index);
+}
+
+// The tree against itself: below every inner node the pairs of its two children, each with the
+// other, and going down the larger box of a pair that touches.
+void DynamicTree::overlapping_pairs(
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> &pairs) const {
+    pairs.clear();
+    std::vector<std::pair<Index, Index>> pending;
+    for (const Node &inner : nodes_) {
+        if (inner.height <= 0)
+            continue;
+        pending.emplace_back(inner.children[0], inner.children[1]);
+        while (!pending.empty()) {
+            auto [a, b] = pending.back();
+            pending.pop_back();
+            if (!touches(node(a).box, node(b).box))
+                continue;
+            if (node(a).is_leaf() && node(b).is_leaf()) {
+                pairs.push_back(std::minmax({node(a).user, node(b).user}));
+                continue;
+            }
+            if (node(a).is_leaf() || (!node(b).is_leaf() && area(node(a).box) < area(node(b).box)))
+                std::swap(a, b);
+            pending.emplace_back(node(a).children[0], b);
+            pending.emplace_back(node(a).children[1], b);
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
 }
 
 void DynamicTree::validate() const {

@@ -1,6 +1,7 @@
 // A binary tree of axis-aligned boxes that change: the broad phase.
 #pragma once
 
+#include "engine/geometry/frustum.h"
 #include "engine/geometry/raycast.h"
 #include "engine/geometry/shapes.h"
 #include "engine/geometry/slab.h"
@@ -8,7 +9,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
+
+#include <glm/common.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -44,6 +49,46 @@ class DynamicTree {
     // first; the answer is the new max_t (return ray.max_t to go on, 0 to stop). The closest-hit
     // search is built on it. A zero or non-finite direction, or a NaN, fails a check.
     template <typename Visit> void raycast(Ray ray, Visit &&visit) const;
+
+    // What the queries below are made of: calls visit(user) for every leaf with meets(fat box), and
+    // stops when that returns false. Whole branches are left out, so where `meets` says yes to a
+    // box it must say yes to every box that holds it, to the last bit.
+    template <typename Meets, typename Visit> void query_if(Meets &&meets, Visit &&visit) const;
+
+    // Every leaf whose fat box touches the sphere: the rounded squared distance of its centre is at
+    // most the rounded squared radius. A wrong answer is possible only where the distance is within
+    // 2 epsilon radius of the radius (a radius whose square underflows is a point's). A NaN, an
+    // infinity or a negative radius fails a check.
+    template <typename Visit> void query(const Sphere &sphere, Visit &&visit) const;
+    // Every leaf whose fat box touches the segment, by the slab test (slab.h); a box that holds an
+    // end of it always does. a == b is a point. A NaN or an infinity fails a check.
+    template <typename Visit> void query(const Segment &segment, Visit &&visit) const;
+    // Every leaf whose fat box is not wholly in front of a plane of the frustum, as `classify`
+    // (frustum.h) has it, by its corner that is farthest behind; off by 4 epsilon times the largest
+    // coordinate at most.
+    template <typename Visit> void query(const Frustum &frustum, Visit &&visit) const;
+
+    struct Hit {
+        std::uint32_t user = 0;
+        Real t = Real(0);
+    };
+    // The first of what the leaves hold on the ray. Calls hit(user, ray) -> optional<Real>: where
+    // the ray, shortened to the nearest hit so far, first meets what `user` stands for. Of hits at
+    // the same t the least user is taken; so where no hit is before its leaf's box, the answer does
+    // not depend on the tree's history.
+    template <typename FirstHit>
+    std::optional<Hit> closest_hit(const Ray &ray, FirstHit &&hit) const;
+    // Whether is_hit(user, ray) -> bool for any leaf whose fat box the ray meets; asks no more
+    // leaves then.
+    template <typename IsHit> bool any_hit(const Ray &ray, IsHit &&is_hit) const;
+
+    // Writes over `pairs` the users (lesser, greater) of all leaves whose fat boxes touch each
+    // other, each pair once, in ascending order. The vector's memory is used again.
+    void overlapping_pairs(std::vector<std::pair<std::uint32_t, std::uint32_t>> &pairs) const;
+
+    // Calls visit(box, depth, is_leaf) for every node, a parent before its children; the root has
+    // depth 0.
+    template <typename Visit> void each_node(Visit &&visit) const;
 
     // Fails a check when links, boxes or heights are not consistent. For tests.
     void validate() const;
@@ -101,6 +146,29 @@ class DynamicTree {
         return !(box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z);
     }
     static void check_ray(const Ray &ray);
+    static void check_sphere(const Sphere &sphere);
+    static void check_segment(const Segment &segment);
+    static bool touches(const Aabb &box, const Sphere &sphere) {
+        // Every operation is monotonic: a box that holds another is not farther.
+        const Vec3 gap =
+            glm::max(glm::max(box.min - sphere.center, sphere.center - box.max), Vec3{Real(0)});
+        return gap.x * gap.x + gap.y * gap.y + gap.z * gap.z <= sphere.radius * sphere.radius;
+    }
+    static bool touches(const Aabb &box, const Frustum &frustum) {
+        // Again monotonic: a larger box has its corner no farther in front.
+        for (const Plane &plane : frustum.planes) {
+            const Vec3 &n = plane.normal;
+            const Real x = n.x * (n.x > Real(0) ? box.min.x : box.max.x);
+            const Real y = n.y * (n.y > Real(0) ? box.min.y : box.max.y);
+            const Real z = n.z * (n.z > Real(0) ? box.min.z : box.max.z);
+            if (x + y + z > plane.offset)
+                return false;
+        }
+        return true;
+    }
+    // Calls visit(user, ray) -> bool for leaves whose fat box the ray meets, the nearer child
+    // first, until it returns false. It may shorten the ray.
+    template <typename Visit> void walk(Ray ray, Visit &&visit) const;
 
     Node &node(Index index) { return nodes_[static_cast<std::size_t>(index)]; }
     const Node &node(Index index) const { return nodes_[static_cast<std::size_t>(index)]; }
@@ -123,14 +191,15 @@ class DynamicTree {
     std::size_t leaf_count_ = 0;
 };
 
-template <typename Visit> void DynamicTree::query(const Aabb &box, Visit &&visit) const {
-    if (root_ == none || is_empty_box(box))
+template <typename Meets, typename Visit>
+void DynamicTree::query_if(Meets &&meets, Visit &&visit) const {
+    if (root_ == none)
         return;
     Pending pending;
     pending.push(root_);
     while (!pending.is_empty()) {
         const Node &here = node(pending.pop().index);
-        if (!touches(here.box, box))
+        if (!meets(here.box))
             continue;
         if (here.is_leaf()) {
             if (!visit(here.user))
@@ -142,7 +211,31 @@ template <typename Visit> void DynamicTree::query(const Aabb &box, Visit &&visit
     }
 }
 
-template <typename Visit> void DynamicTree::raycast(Ray ray, Visit &&visit) const {
+template <typename Visit> void DynamicTree::query(const Aabb &box, Visit &&visit) const {
+    if (is_empty_box(box))
+        return;
+    query_if([&](const Aabb &here) { return touches(here, box); }, visit);
+}
+
+template <typename Visit> void DynamicTree::query(const Sphere &sphere, Visit &&visit) const {
+    check_sphere(sphere);
+    query_if([&](const Aabb &here) { return touches(here, sphere); }, visit);
+}
+
+template <typename Visit> void DynamicTree::query(const Segment &segment, Visit &&visit) const {
+    check_segment(segment);
+    const Ray ray{segment.a, segment.b - segment.a, Real(1)};
+    Real enter = Real(0);
+    Real exit = Real(0);
+    int axis = -1;
+    query_if([&](const Aabb &here) { return slab_interval(here, ray, enter, exit, axis); }, visit);
+}
+
+template <typename Visit> void DynamicTree::query(const Frustum &frustum, Visit &&visit) const {
+    query_if([&](const Aabb &here) { return touches(here, frustum); }, visit);
+}
+
+template <typename Visit> void DynamicTree::walk(Ray ray, Visit &&visit) const {
     check_ray(ray);
     if (root_ == none)
         return;
@@ -159,8 +252,7 @@ template <typename Visit> void DynamicTree::raycast(Ray ray, Visit &&visit) cons
             continue; // a hit since then is nearer
         const Node &here = node(entry.index);
         if (here.is_leaf()) {
-            ray.max_t = visit(here.user, static_cast<const Ray &>(ray));
-            if (!(ray.max_t > Real(0)))
+            if (!visit(here.user, ray))
                 return;
             continue;
         }
@@ -173,6 +265,52 @@ template <typename Visit> void DynamicTree::raycast(Ray ray, Visit &&visit) cons
             pending.push(here.children[far], enters[far]);
         if (is_met[1 - far])
             pending.push(here.children[1 - far], enters[1 - far]);
+    }
+}
+
+template <typename Visit> void DynamicTree::raycast(Ray ray, Visit &&visit) const {
+    walk(ray, [&](std::uint32_t user, Ray &left) {
+        left.max_t = visit(user, static_cast<const Ray &>(left));
+        return left.max_t > Real(0);
+    });
+}
+
+template <typename FirstHit>
+std::optional<DynamicTree::Hit> DynamicTree::closest_hit(const Ray &ray, FirstHit &&hit) const {
+    std::optional<Hit> best;
+    walk(ray, [&](std::uint32_t user, Ray &left) {
+        const std::optional<Real> t = hit(user, static_cast<const Ray &>(left));
+        if (t && (!best || *t < best->t || (*t == best->t && user < best->user))) {
+            best = Hit{user, *t};
+            left.max_t = *t;
+        }
+        return true;
+    });
+    return best;
+}
+
+template <typename IsHit> bool DynamicTree::any_hit(const Ray &ray, IsHit &&is_hit) const {
+    bool any = false;
+    walk(ray, [&](std::uint32_t user, Ray &left) {
+        any = is_hit(user, static_cast<const Ray &>(left));
+        return !any;
+    });
+    return any;
+}
+
+template <typename Visit> void DynamicTree::each_node(Visit &&visit) const {
+    if (root_ == none)
+        return;
+    std::vector<std::pair<Index, int>> pending{{root_, 0}};
+    while (!pending.empty()) {
+        const auto [index, depth] = pending.back();
+        pending.pop_back();
+        const Node &here = node(index);
+        visit(here.box, depth, here.is_leaf());
+        if (!here.is_leaf()) {
+            pending.emplace_back(here.children[1], depth + 1);
+            pending.emplace_back(here.children[0], depth + 1);
+        }
     }
 }
 

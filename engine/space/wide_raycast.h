@@ -1,0 +1,79 @@
+// One ray against all boxes of a node, and all triangles of a leaf, at once.
+//
+// Compiled for each kind of vectors that the processor may have, and chosen among at run time
+// (Highway). Each lane does what plain code would do, nothing is fused: the answers are the same to
+// the last bit at every width.
+#pragma once
+
+#include "engine/geometry/shapes.h"
+#include "engine/space/bvh.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// The triangles of a leaf side by side, so that a ray meets them all at once. Places that are left
+// over have size -infinity, and are met by nothing.
+struct alignas(64) TriangleBlock {
+    Real corners[3][3][Bvh::leaf_size]; // by corner, axis, triangle
+    Real sizes[Bvh::leaf_size];         // the greatest extent along an axis
+    std::uint32_t triangles[Bvh::leaf_size];
+
+    Triangle at(std::size_t lane) const {
+        const auto corner = [this, lane](std::size_t k) {
+            return Vec3{corners[k][0][lane], corners[k][1][lane], corners[k][2][lane]};
+        };
+        return {corner(0), corner(1), corner(2)};
+    }
+};
+
+// A ray with what its tests have in common. `direction` is scaled by a power of two, so that its
+// largest component is 1 to 2; times t are along that.
+struct WideRay {
+    Real origin[3]{};
+    double direction[3]{};
+    double time_scale = 1.0;           // the given ray's t for 1 along `direction`
+    std::array<std::size_t, 3> axes{}; // the last is that of the largest component
+
+    // How far the ray can get in the mesh, along any axis and in time.
+    Real reach = Real(0);
+
+    // For boxes: (bound - origin) * inverse is never too late where the ray enters, never too early
+    // where it leaves.
+    Real enter_origin[3]{}, leave_origin[3]{};
+    Real inverse[3]{};
+    std::size_t enter_side[3]{}; // 0: enters by the lowest bound
+
+    Real max_time = Real(0);
+
+    Ray given;
+};
+
+// A hit, in the ray's scaled time.
+struct WideHit {
+    Real time = Real(0);
+    const TriangleBlock *block = nullptr;
+    std::size_t lane = 0;
+    // In proportion to the weights of the corners, and positive where the line leaves through the
+    // triangle's front; all zero where rounding left the signs open.
+    std::array<double, 3> edges{};
+
+    std::uint32_t triangle() const { return block->triangles[lane]; }
+};
+
+// A valid ray against triangles within `bounds`.
+WideRay wide_ray(const Ray &ray, const Aabb &bounds);
+
+// Whether the ray, taken without end, meets the triangle: exactly, as raycast(triangle, ray) has
+// it; and when, with the edges of WideHit.
+bool meets(const WideRay &ray, const Triangle &triangle, Real &time, std::array<double, 3> &edges);
+
+// The tree's first hit: of several at one time the lowest triangle. Returns whether there is one.
+bool first_hit(std::span<const Bvh::Node> nodes, const TriangleBlock *blocks, const WideRay &ray,
+               WideHit &hit);
+bool any_hit(std::span<const Bvh::Node> nodes, const TriangleBlock *blocks, const WideRay &ray);
+
+} // namespace plumb::inline PLUMB_PRECISION
