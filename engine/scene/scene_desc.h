@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/kinds.h"
+#include "engine/scene/probe_desc.h"
 
 #include <array>
 #include <cstdint>
@@ -140,11 +141,17 @@ struct SceneDesc {
     std::vector<MaterialDesc> materials;
     std::vector<BodyDesc> bodies; // repeats expanded
     std::vector<JointDesc> joints;
+    std::vector<ProbeDesc> probes;
     CameraDesc camera;
     std::vector<ExpectDesc> expects;
     // The state a saved scene continues from.
     std::uint64_t step_count = 0;
     std::vector<ContactStateDesc> contacts;
 };
+
+// Whether there is a world to step: a scene that has only probes has none.
+inline bool has_world(const SceneDesc &scene) {
+    return !scene.bodies.empty() || !scene.joints.empty() || scene.probes.empty();
+}
 
 } // namespace plumb

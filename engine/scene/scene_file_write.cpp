@@ -86,14 +86,17 @@ std::string step_length(double dt) {
 }
 
 // In degrees where some number of degrees converts to the very angle, and else in radians.
-std::string angle(const std::string &key, double radians) {
+std::string angle_in_line(const std::string &key, double radians) {
     constexpr double degree = std::numbers::pi / 180;
     const double degrees = radians / degree;
     for (const double candidate :
          {std::round(degrees * 1e6) / 1e6, std::round(degrees * 1e12) / 1e12, degrees})
         if (same_bits(candidate * degree, radians))
-            return key + "_deg = " + shortest(candidate) + "\n";
-    return key + " = " + shortest(radians) + "\n";
+            return key + "_deg = " + shortest(candidate);
+    return key + " = " + shortest(radians);
+}
+std::string angle(const std::string &key, double radians) {
+    return angle_in_line(key, radians) + "\n";
 }
 
 class SceneWriter {
@@ -111,6 +114,8 @@ class SceneWriter {
             write_body(body);
         for (const JointDesc &joint : scene.joints)
             write_joint(joint);
+        for (const ProbeDesc &probe : scene.probes)
+            write_probe(probe);
         for (const ExpectDesc &expect : scene.expects)
             write_expect(expect);
         write_state(scene);
@@ -219,6 +224,149 @@ class SceneWriter {
             line("collide_connected", "true");
         if (!same_bits(joint.impulse, {0, 0, 0}))
             line("impulse", array3(joint.impulse));
+    }
+
+    // A probe's point: two numbers where it lies in the xy plane.
+    static std::string place(const glm::dvec3 &v, bool flat) {
+        return flat ? "[" + shortest(v.x) + ", " + shortest(v.y) + "]" : array3(v);
+    }
+    static std::string places(const std::vector<glm::dvec3> &points, bool flat) {
+        std::string text;
+        for (const glm::dvec3 &point : points)
+            text += (text.empty() ? "" : ", ") + place(point, flat);
+        return "[" + text + "]";
+    }
+    static std::string rotation(const glm::dquat &q) {
+        return "[" + shortest(q.w) + ", " + shortest(q.x) + ", " + shortest(q.y) + ", " +
+               shortest(q.z) + "]";
+    }
+
+    static std::string probe_shape(const ProbeShapeDesc &shape) {
+        using Kind = ProbeShapeKind;
+        const bool flat = is_flat(shape.kind);
+        std::string text = "{ kind = " + string(probe_shape_name(shape.kind));
+        const auto add = [&](const std::string &key, const std::string &value) {
+            text += ", " + key + " = " + value;
+        };
+        if (!shape.name.empty())
+            add("name", string(shape.name));
+        if (!shape.parent.empty())
+            add("parent", string(shape.parent));
+        if (shape.kind != Kind::segment && shape.kind != Kind::flat_segment &&
+            shape.kind != Kind::triangle)
+            add("position", place(shape.position, flat));
+        switch (shape.kind) {
+        case Kind::sphere:
+        case Kind::circle:
+            add("radius", shortest(shape.radius));
+            break;
+        case Kind::capsule:
+        case Kind::cylinder:
+            add("half_height", shortest(shape.half_height));
+            add("radius", shortest(shape.radius));
+            add("orientation", rotation(shape.orientation));
+            break;
+        case Kind::aabb:
+        case Kind::rectangle:
+            add("half_extents", place(shape.half_extents, flat));
+            break;
+        case Kind::box:
+            add("half_extents", array3(shape.half_extents));
+            add("orientation", rotation(shape.orientation));
+            break;
+        case Kind::oriented_rectangle:
+            add("half_extents", place(shape.half_extents, flat));
+            text += ", " + angle_in_line("angle", shape.angle);
+            break;
+        case Kind::plane:
+            add("orientation", rotation(shape.orientation));
+            break;
+        case Kind::segment:
+        case Kind::flat_segment:
+        case Kind::triangle:
+            add("points", places(shape.points, flat));
+            break;
+        case Kind::hull:
+            add("points", places(shape.points, false));
+            add("orientation", rotation(shape.orientation));
+            break;
+        case Kind::mesh:
+            add("model", string(shape.model));
+            add("half_extents", array3(shape.half_extents));
+            add("detail", std::to_string(shape.detail));
+            add("orientation", rotation(shape.orientation));
+            break;
+        case Kind::height_field:
+            add("half_extents", array3(shape.half_extents));
+            add("detail", std::to_string(shape.detail));
+            break;
+        }
+        return text + " }";
+    }
+
+    static std::string probe_camera(const ProbeCameraDesc &camera) {
+        std::string text =
+            "{ eye = " + array3(camera.eye) + ", target = " + array3(camera.target) + ", ";
+        text += angle_in_line("fov", camera.fov);
+        if (camera.height)
+            text += ", height = " + shortest(*camera.height);
+        text += ", aspect = " + shortest(camera.aspect) + ", near = " + shortest(camera.near) +
+                ", far = " + shortest(camera.far);
+        if (camera.pixel)
+            text +=
+                ", pixel = [" + shortest(camera.pixel->x) + ", " + shortest(camera.pixel->y) + "]";
+        return text + " }";
+    }
+
+    void write_probe(const ProbeDesc &probe) {
+        constexpr std::array<const char *, 3> trees{"\"quadtree\"", "\"octree\"", "\"bvh\""};
+        const ProbeQuestionInfo &info = probe_question(probe.question);
+        const bool flat = is_flat(probe);
+        header("[[probe]]");
+        line("name", string(probe.name));
+        line("ask", string(info.name));
+        if (!probe.shapes.empty()) {
+            text_ += "shapes = [\n";
+            for (const ProbeShapeDesc &shape : probe.shapes)
+                text_ += "    " + probe_shape(shape) + ",\n";
+            text_ += "]\n";
+        }
+        if (!probe.points.empty())
+            line("points", places(probe.points, flat));
+        if (probe.ray && probe.ray->end)
+            line("segment", places({probe.ray->origin, *probe.ray->end}, flat));
+        else if (probe.ray)
+            line("ray", "{ origin = " + place(probe.ray->origin, flat) +
+                            ", direction = " + place(probe.ray->direction, flat) +
+                            (probe.ray->max_t ? ", max_t = " + shortest(*probe.ray->max_t) : "") +
+                            " }");
+        if (probe.camera)
+            line("camera", probe_camera(*probe.camera));
+        if (probe.scatter)
+            line("scatter", "{ count = " + std::to_string(probe.scatter->count) +
+                                ", center = " + place(probe.scatter->center, flat) +
+                                ", half_extents = " + place(probe.scatter->half_extents, flat) +
+                                ", size = " + shortest(probe.scatter->size) +
+                                ", seed = " + natural(probe.scatter->seed) + " }");
+        if (probe.tree)
+            line("tree", trees[static_cast<std::size_t>(*probe.tree)]);
+        if (info.does_take("level"))
+            line("level", std::to_string(probe.level));
+        if (info.does_take("margin"))
+            line("margin", shortest(probe.margin));
+        if (info.does_take("motion"))
+            line("motion", array3(probe.motion));
+        if (info.does_take("scale"))
+            line("scale", array3(probe.scale));
+        if (probe.source.empty())
+            return;
+        std::string expected;
+        for (const ProbeExpectDesc &expect : probe.expects)
+            expected +=
+                (expected.empty() ? " " : ", ") + expect.value + " = " + shortest(expect.is);
+        line("expect", "{" + expected + " }");
+        line("tolerance", shortest(probe.tolerance));
+        line("source", string(probe.source));
     }
 
     void write_expect(const ExpectDesc &expect) {

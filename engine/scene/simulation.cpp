@@ -2,6 +2,7 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/method.h"
+#include "engine/scene/probe_simulation.h"
 #include "engine/scene/real/world_simulation.h"
 #include "engine/scene/scene_file_spelling.h"
 
@@ -95,6 +96,8 @@ std::unique_ptr<Simulation> Simulation::create(const SceneDesc &scene, const Run
     const ResolvedRun run = resolve_run(scene, options);
     if (const std::string reason = why_not(*run.method, scene); !reason.empty())
         throw std::invalid_argument(reason);
+    if (!plumb::has_world(scene))
+        return make_probe_simulation(scene, run);
     try {
         return run.precision == Precision::dual ? f64::make_world_simulation(scene, run, tasks)
                                                 : f32::make_world_simulation(scene, run, tasks);

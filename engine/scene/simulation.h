@@ -97,6 +97,9 @@ class Simulation {
     static std::unique_ptr<Simulation> create(const SceneDesc &scene, const RunOptions &options,
                                               TaskPool *tasks);
 
+    // False when the scene has only probes: then a step does nothing, and the step count stays 0.
+    virtual bool has_world() const { return true; }
+
     virtual void step() = 0;
     virtual std::uint64_t step_count() const = 0;
     virtual double time() const = 0;              // s, since the start of the scene

@@ -82,7 +82,7 @@ title = @"b"
         {"UnknownTable",
          R"([@lights]
 )",
-         {R"(unknown key "lights" in the top level of a scene; there are title, description, world, methods, camera, material, body, joint, expect, state)"}},
+         {R"(unknown key "lights" in the top level of a scene; there are title, description, world, methods, camera, material, body, joint, probe, expect, state)"}},
         {"UnknownKeyAfterWideCharacters",
          R"(camera = { target = [0, 0, 0], @"ä" = 1 }
 )",

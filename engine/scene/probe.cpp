@@ -1,0 +1,46 @@
+#include "engine/scene/probe.h"
+
+#include "engine/core/check.h"
+#include "engine/core/hash.h"
+#include "engine/scene/real/probe_answer.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace plumb {
+
+// The header above declares the one in f32; this is its twin, compiled from the same source.
+namespace f64 {
+ProbeAnswer answer_probe(const ProbeDesc &);
+}
+
+double ProbeAnswer::value(std::string_view name) const {
+    const auto found = std::ranges::find(values, name, &ProbeValue::name);
+    return found == values.end() ? std::numeric_limits<double>::quiet_NaN() : found->value;
+}
+
+ProbeAnswer answer(const ProbeDesc &probe, Precision precision) {
+    try {
+        return precision == Precision::dual ? f64::answer_probe(probe) : f32::answer_probe(probe);
+    } catch (const CheckFailure &failure) {
+        ProbeAnswer refused;
+        refused.refusal = failure.what();
+        return refused;
+    }
+}
+
+std::uint64_t hash_of_answers(std::span<const ProbeDesc> probes, Precision precision) {
+    StateHash hash;
+    for (const ProbeDesc &probe : probes) {
+        const ProbeAnswer found = answer(probe, precision);
+        hash.add(static_cast<std::uint64_t>(found.values.size()));
+        for (const ProbeValue &value : found.values)
+            hash.add(value.value);
+        for (const ProbePoint &point : found.points)
+            for (int i = 0; i < 3; ++i)
+                hash.add(point.position[i]);
+    }
+    return hash.value();
+}
+
+} // namespace plumb

@@ -1,0 +1,88 @@
+// What a probe is answered, as plain values: to be drawn, printed and compared.
+#pragma once
+
+#include "engine/scene/scene_desc.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace plumb {
+
+// What a mark says; the app has a colour for each.
+enum class ProbeTone {
+    plain,  // a shape that was asked, in a colour of its own
+    query,  // what was asked with: a ray, a point
+    yes,    // hit, inside, overlapping, seen
+    partly, // across
+    no,     // missed, outside, culled
+    result, // the points that were found
+    normal,
+    axis,
+    edge,  // of a shape
+    faint, // nodes of a tree, helping lines
+};
+
+struct ProbeValue {
+    enum class Form { number, count, flag };
+    std::string_view name; // one of the question's values
+    double value = 0;
+    Form form = Form::number;
+};
+
+// A sphere, box, aabb, capsule or cylinder.
+struct ProbeSolid {
+    ProbeShapeDesc shape;
+    ProbeTone tone = ProbeTone::plain;
+    std::size_t number = 0; // tells plain ones apart
+    bool is_opaque = false;
+};
+// Triangles, three corners each, counter-clockwise from the front.
+struct ProbeSurface {
+    std::vector<glm::dvec3> corners;
+    ProbeTone tone = ProbeTone::plain;
+    std::size_t number = 0;
+    bool is_opaque = false; // else what is behind shows through
+};
+struct ProbeLine {
+    glm::dvec3 a{0}, b{0};
+    ProbeTone tone = ProbeTone::query;
+    bool is_arrow = false; // with its head at b
+    bool is_thick = false;
+};
+struct ProbePoint {
+    glm::dvec3 position{0};
+    ProbeTone tone = ProbeTone::result;
+    glm::dvec3 normal{0}; // unit, or zero: none
+    bool is_small = false;
+};
+struct ProbeLabel {
+    glm::dvec3 position{0};
+    std::string text;
+};
+
+struct ProbeAnswer {
+    std::vector<ProbeValue> values;
+    std::string refusal; // why there is no answer; empty when there is
+    std::vector<ProbeSolid> solids;
+    std::vector<ProbeSurface> surfaces;
+    std::vector<ProbeLine> lines;
+    std::vector<ProbePoint> points;
+    std::vector<ProbeLabel> labels;
+
+    // NaN when there is none of that name: the t of a ray that hits nothing.
+    [[nodiscard]] double value(std::string_view name) const;
+};
+
+// Asked anew, in the precision given. The same probe gives the same bits. What the geometry refuses
+// to answer (a direction of no length, say) is a refusal.
+ProbeAnswer answer(const ProbeDesc &probe, Precision precision);
+
+// Of the numbers of all answers, bit for bit.
+std::uint64_t hash_of_answers(std::span<const ProbeDesc> probes, Precision precision);
+
+} // namespace plumb

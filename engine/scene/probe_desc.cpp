@@ -1,0 +1,249 @@
+#include "engine/scene/probe_desc.h"
+
+#include <algorithm>
+#include <array>
+
+#include <glm/geometric.hpp>
+
+namespace plumb {
+
+namespace {
+
+constexpr std::array<std::string_view, 15> shape_names{
+    "sphere",       "box",          "aabb",     "capsule",   "cylinder",
+    "plane",        "segment",      "triangle", "hull",      "mesh",
+    "height_field", "flat_segment", "circle",   "rectangle", "oriented_rectangle"};
+
+// The places of the probe that can be moved, in the order of their handles. `visit` is given the
+// present place and a function that moves it; a probe that is const must not be moved.
+template <typename Probe, typename Visit> void for_each_handle(Probe &probe, Visit &&visit) {
+    for (auto &point : probe.points)
+        visit(point, [&](const auto &place) { point = place; });
+    for (auto &shape : probe.shapes) {
+        if (shape.kind == ProbeShapeKind::segment || shape.kind == ProbeShapeKind::flat_segment ||
+            shape.kind == ProbeShapeKind::triangle) {
+            for (auto &point : shape.points)
+                visit(point, [&](const auto &place) { point = place; });
+        } else if (probe.question != ProbeQuestion::models || shape.parent.empty()) {
+            visit(shape.position, [&](const auto &place) { shape.position = place; });
+        }
+    }
+    if (probe.question == ProbeQuestion::cast)
+        visit(probe.shapes.front().position + probe.motion, [&](const auto &place) {
+            if (place != probe.shapes.front().position)
+                probe.motion = place - probe.shapes.front().position;
+        });
+    if (probe.ray) {
+        auto &ray = *probe.ray; // moved as a whole by its origin; a segment by either end
+        visit(ray.origin, [&](const auto &place) { ray.origin = place; });
+        if (ray.end)
+            visit(*ray.end, [&](const auto &place) { ray.end = place; });
+        else
+            visit(ray.origin + ray.direction, [&](const auto &place) {
+                if (place != ray.origin)
+                    ray.direction = place - ray.origin;
+            });
+    }
+    if (probe.camera) {
+        auto &camera = *probe.camera;
+        visit(camera.eye, [&](const auto &place) {
+            if (place != camera.target)
+                camera.eye = place;
+        });
+        visit(camera.target, [&](const auto &place) {
+            if (place != camera.eye)
+                camera.target = place;
+        });
+    }
+}
+
+} // namespace
+
+const std::vector<ProbeQuestionInfo> &probe_questions() {
+    using enum ProbeQuestion;
+    constexpr std::size_t many = max_probe_shapes;
+    constexpr std::size_t cloud = max_probe_points;
+    static const std::vector<ProbeQuestionInfo> all{
+        {vectors,
+         "vectors",
+         "two vectors: their angle, projection, rejection, reflection, product",
+         {0, 0},
+         {3, 3},
+         {},
+         {"dot", "angle_deg", "projection", "rejection", "cross", "reflection_error"}},
+        {basis,
+         "basis",
+         "three directions made orthonormal, of which the first is kept",
+         {0, 0},
+         {4, 4},
+         {},
+         {"determinant", "orthonormal_determinant", "independent"}},
+        {transform,
+         "transform",
+         "a point through a transform and back, and the matrix taken apart",
+         {1, 1},
+         {1, 1},
+         {"scale"},
+         {"x", "y", "z", "determinant", "there_and_back", "yaw_deg", "pitch_deg", "roll_deg",
+          "scale_x", "scale_y", "scale_z"}},
+        {contains,
+         "contains",
+         "which points lie in any of the shapes",
+         {1, many},
+         {1, cloud},
+         {},
+         {"inside"}},
+        {closest,
+         "closest",
+         "the point of each shape that is closest to each point",
+         {1, many},
+         {1, cloud},
+         {},
+         {"distance", "x", "y", "z"}},
+        {overlap,
+         "overlap",
+         "which shapes have a point in common",
+         {2, many},
+         {0, 0},
+         {},
+         {"overlap", "pairs", "separation"}},
+        {classify,
+         "classify",
+         "whether shapes lie in front of a plane, behind it or across it",
+         {2, many},
+         {0, 0},
+         {},
+         {"in_front", "behind", "across", "distance"}},
+        {planes,
+         "planes",
+         "the line that two planes have in common, or the point of three",
+         {2, 3},
+         {0, 0},
+         {},
+         {"meet", "x", "y", "z"}},
+        {raycast,
+         "raycast",
+         "where a ray enters and leaves shapes, and what it hits first",
+         {1, many},
+         {0, 0},
+         {"ray", "segment"},
+         {"hit", "t", "t_exit", "hits", "starts_inside", "x", "y", "z", "normal_x", "normal_y",
+          "normal_z"}},
+        {distance,
+         "distance",
+         "how far apart two convex shapes are, and their closest points",
+         {2, 2},
+         {0, 0},
+         {},
+         {"distance", "overlap", "iterations"}},
+        {penetration,
+         "penetration",
+         "how far one convex shape must move out of another",
+         {2, 2},
+         {0, 0},
+         {},
+         {"depth", "overlap", "normal_x", "normal_y", "normal_z"}},
+        {collide,
+         "collide",
+         "the contact points of two shapes",
+         {2, 2},
+         {0, 0},
+         {"margin"},
+         {"points", "depth", "normal_x", "normal_y", "normal_z"}},
+        {cast,
+         "cast",
+         "how far a shape can move before it touches another",
+         {2, 2},
+         {0, 0},
+         {"motion"},
+         {"hit", "t", "normal_x", "normal_y", "normal_z"}},
+        {enclose,
+         "enclose",
+         "the smallest circle and the smallest rectangle around points",
+         {0, 0},
+         {0, cloud},
+         {"scatter"},
+         {"radius", "x", "y", "width", "height"}},
+        {tree,
+         "tree",
+         "what a tree of boxes finds, and how it divides space",
+         {0, 1},
+         {0, 1},
+         {"ray", "segment", "scatter", "tree", "level"},
+         {"found", "items", "nodes", "tested", "depth", "hit", "t", "distance"}},
+        {models,
+         "models",
+         "models that hang on their parents, and a ray and a ball among them",
+         {1, many},
+         {0, 1},
+         {"ray", "segment", "margin"},
+         {"hit", "t", "models", "found"}},
+        {frustum,
+         "frustum",
+         "which shapes and points a camera's frustum holds",
+         {0, many},
+         {0, cloud},
+         {"camera"},
+         {"inside", "across", "outside"}},
+        {cull,
+         "cull",
+         "what an octree finds in a camera's frustum",
+         {0, 0},
+         {0, 0},
+         {"camera", "scatter"},
+         {"seen", "culled", "tested", "items"}},
+        {pick,
+         "pick",
+         "the ray through a pixel of a camera's picture, and what it hits",
+         {1, many},
+         {0, 0},
+         {"camera"},
+         {"hit", "shape", "distance", "x", "y", "z", "pixel_x", "pixel_y"}},
+    };
+    return all;
+}
+
+bool ProbeQuestionInfo::does_take(std::string_view key) const {
+    return std::ranges::find(takes, key) != takes.end();
+}
+
+const ProbeQuestionInfo &probe_question(ProbeQuestion question) {
+    return probe_questions()[static_cast<std::size_t>(question)];
+}
+
+std::string_view probe_shape_name(ProbeShapeKind kind) {
+    return shape_names[static_cast<std::size_t>(kind)];
+}
+
+std::vector<std::string_view> probe_shape_names() {
+    return {shape_names.begin(), shape_names.end()};
+}
+
+bool is_flat(ProbeShapeKind kind) {
+    return kind >= ProbeShapeKind::flat_segment;
+}
+
+bool is_flat(const ProbeDesc &probe) {
+    return probe.question == ProbeQuestion::enclose ||
+           (probe.tree && *probe.tree == ProbeTree::quadtree) ||
+           std::ranges::any_of(probe.shapes,
+                               [](const ProbeShapeDesc &shape) { return is_flat(shape.kind); });
+}
+
+std::vector<glm::dvec3> probe_handles(const ProbeDesc &probe) {
+    std::vector<glm::dvec3> handles;
+    for_each_handle(probe,
+                    [&](const glm::dvec3 &place, const auto &) { handles.push_back(place); });
+    return handles;
+}
+
+void move_probe_handle(ProbeDesc &probe, std::size_t handle, const glm::dvec3 &place) {
+    std::size_t index = 0;
+    const glm::dvec3 to = is_flat(probe) ? glm::dvec3(place.x, place.y, 0) : place;
+    for_each_handle(probe, [&](const glm::dvec3 &, const auto &move) {
+        if (index++ == handle)
+            move(to);
+    });
+}
+
+} // namespace plumb

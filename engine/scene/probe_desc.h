@@ -1,0 +1,165 @@
+// Probes: questions that a scene puts to the geometry, as plain values in double precision. What
+// they are answered is probe.h's business. SI units, radians.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace plumb {
+
+// Stated limits: beyond these a scene is refused.
+inline constexpr std::size_t max_scene_probes = 1000;
+inline constexpr std::size_t max_probe_shapes = 1000;
+inline constexpr std::size_t max_probe_points = 10'000;
+inline constexpr int max_probe_items = 20'000; // scattered
+
+enum class ProbeShapeKind {
+    sphere,
+    box,
+    aabb,
+    capsule,
+    cylinder,
+    plane,
+    segment,
+    triangle,
+    hull,
+    mesh,
+    height_field,
+    flat_segment, // from here on in the xy plane
+    circle,
+    rectangle,
+    oriented_rectangle,
+};
+
+// Each kind reads what concerns it.
+struct ProbeShapeDesc {
+    ProbeShapeKind kind = ProbeShapeKind::sphere;
+    glm::dvec3 position{0}; // the centre; of a plane: a point of it
+    glm::dquat orientation{1, 0, 0, 0};
+    double angle = 0; // oriented_rectangle: counter-clockwise
+    double radius = 0.5;
+    double half_height = 0.5;       // along the own y axis, without the round ends
+    glm::dvec3 half_extents{0.5};   // of the whole model for a mesh or a height field
+    std::vector<glm::dvec3> points; // segments: 2, triangle: 3, world; hull: 4 or more, own frame
+    std::string model;              // mesh: "ball", "torus", "knot" or "bowl"
+    int detail = 8;                 // mesh, height_field: how finely it is cut
+    std::string name, parent;       // in "models": parents come before their children
+};
+
+// origin + t * direction, 0 <= t <= max_t; or, with an end, the segment to it.
+struct ProbeRayDesc {
+    glm::dvec3 origin{0};
+    glm::dvec3 direction{0, 0, -1}; // of a segment: not read
+    std::optional<double> max_t;    // likewise
+    std::optional<glm::dvec3> end;
+};
+
+// A second camera, which stays where it is.
+struct ProbeCameraDesc {
+    glm::dvec3 eye{0, 1, 5};
+    glm::dvec3 target{0};
+    double fov = 0.8;             // vertical
+    std::optional<double> height; // of the view, metres: orthographic, and fov is not read
+    double aspect = 16.0 / 9.0;
+    double near = 0.5;
+    double far = 20;
+    std::optional<glm::dvec2> pixel; // picked: from the top left of a picture 100 high
+};
+
+// Many at once: uniform in a box, from a seed of its own. Boxes for trees, points to be enclosed.
+struct ProbeScatterDesc {
+    int count = 0;
+    glm::dvec3 center{0};
+    glm::dvec3 half_extents{5};
+    double size = 0.2; // half the side of the largest item; the smallest is a quarter of it
+    std::uint64_t seed = 1;
+};
+
+// What the question is; the table probe_questions() says what each needs and answers.
+enum class ProbeQuestion {
+    vectors,
+    basis,
+    transform,
+    contains,
+    closest,
+    overlap,
+    classify,
+    planes,
+    raycast,
+    distance,
+    penetration,
+    collide,
+    cast,
+    enclose,
+    tree,
+    models,
+    frustum,
+    cull,
+    pick,
+};
+
+enum class ProbeTree { quadtree, octree, bvh };
+
+struct ProbeExpectDesc {
+    std::string value; // one of the question's values
+    double is = 0;     // 1 and 0 for true and false
+};
+
+struct ProbeDesc {
+    std::string name; // unique in the scene
+    ProbeQuestion question = ProbeQuestion::raycast;
+    std::vector<ProbeShapeDesc> shapes;
+    std::vector<glm::dvec3> points;
+    std::optional<ProbeRayDesc> ray;
+    std::optional<ProbeCameraDesc> camera;
+    std::optional<ProbeScatterDesc> scatter;
+    std::optional<ProbeTree> tree;
+    int level = -1;       // of a tree, to be drawn; -1: all
+    double margin = 0;    // collide, metres
+    glm::dvec3 motion{0}; // cast, metres: of the first shape
+    glm::dvec3 scale{1};  // transform
+    std::vector<ProbeExpectDesc> expects;
+    double tolerance = 0; // of the expects that are no yes or no, absolute
+    std::string source;   // where what is expected comes from
+};
+
+struct ProbeQuestionInfo {
+    struct Range {
+        std::size_t min = 0;
+        std::size_t max = 0;
+    };
+    ProbeQuestion question;
+    std::string_view name;
+    std::string_view about;
+    Range shapes;
+    Range points;
+    std::vector<std::string_view> takes;  // keys besides those
+    std::vector<std::string_view> values; // that the answer can have
+    [[nodiscard]] bool does_take(std::string_view key) const;
+};
+const std::vector<ProbeQuestionInfo> &probe_questions(); // in the order of the enumeration
+const ProbeQuestionInfo &probe_question(ProbeQuestion question);
+
+// The name in files.
+std::string_view probe_shape_name(ProbeShapeKind kind);
+std::vector<std::string_view> probe_shape_names(); // in the order of the enumeration
+bool is_flat(ProbeShapeKind kind);                 // in the xy plane
+
+// Whether all of the probe lies in the xy plane.
+bool is_flat(const ProbeDesc &probe);
+
+// What a person can take hold of: points, shapes, ends of rays, a camera's eye and target.
+std::vector<glm::dvec3> probe_handles(const ProbeDesc &probe);
+// Moves a handle, counted as above, to a place. What lies in the xy plane stays there; an end that
+// would leave a ray without direction stays where it is.
+void move_probe_handle(ProbeDesc &probe, std::size_t handle, const glm::dvec3 &place);
+
+} // namespace plumb

@@ -1,0 +1,83 @@
+#include "engine/scene/probe_simulation.h"
+
+#include "engine/core/check.h"
+#include "engine/scene/probe.h"
+
+#include <stdexcept>
+
+namespace plumb {
+
+namespace {
+
+class ProbeSimulation final : public Simulation {
+  public:
+    ProbeSimulation(const SceneDesc &scene, const ResolvedRun &run) : scene_(scene), run_(run) {}
+
+    bool has_world() const override { return false; }
+    void step() override {}
+    std::uint64_t step_count() const override { return 0; }
+    double time() const override { return 0; }
+    const StepReport &report() const override { return report_; }
+    Measures measure() const override { return {}; }
+    // Nothing moves: what could differ is what the probes are answered.
+    std::uint64_t hash() const override { return hash_of_answers(scene_.probes, run_.precision); }
+
+    const MethodInfo &method() const override { return *run_.method; }
+    const StepSettings &settings() const override { return run_.settings; }
+    Precision precision() const override { return run_.precision; }
+    void set_method(std::string_view name) override {
+        RunOptions options;
+        options.method = name;
+        run_.method = resolve_run(scene_, options).method;
+    }
+    void set_settings(const StepSettings &settings) override { run_.settings = settings; }
+
+    std::unique_ptr<Saved> save() const override { return std::make_unique<Saved>(); }
+    void restore(const Saved &) override {}
+
+    SceneDesc describe() const override {
+        SceneDesc out = scene_;
+        out.world.method = run_.method->name;
+        out.world.dt = run_.settings.dt;
+        out.world.gravity = run_.settings.gravity;
+        out.world.settings = {run_.settings.substeps, run_.settings.iterations};
+        out.world.other_methods.erase(out.world.method);
+        out.world.precision = run_.precision;
+        return out;
+    }
+
+    std::size_t body_count() const override { return 0; }
+    const BodyInfo &body_info(std::size_t body) const override { no_body(body); }
+    BodyState body_state(std::size_t body) const override { no_body(body); }
+    std::optional<std::size_t> find_body(std::string_view) const override { return {}; }
+    std::vector<ContactView> contacts() const override { return {}; }
+    std::vector<JointView> joints() const override { return {}; }
+    std::vector<BoundsView> bounds() const override { return {}; }
+    std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override { return {}; }
+    void apply_impulse(std::size_t body, const glm::dvec3 &, const glm::dvec3 &) override {
+        no_body(body);
+    }
+    void pull(std::size_t body, const glm::dvec3 &, const glm::dvec3 &) override { no_body(body); }
+    std::size_t add_body(const BodyDesc &) override {
+        throw std::invalid_argument(
+            "this scene has only probes, and no world that a body could be in");
+    }
+    void remove_body(std::size_t body) override { no_body(body); }
+
+  private:
+    [[noreturn]] static void no_body(std::size_t body) {
+        PLUMB_CHECK(false, "there is no body " << body << ", as there is no world");
+    }
+
+    SceneDesc scene_;
+    ResolvedRun run_;
+    StepReport report_;
+};
+
+} // namespace
+
+std::unique_ptr<Simulation> make_probe_simulation(const SceneDesc &scene, const ResolvedRun &run) {
+    return std::make_unique<ProbeSimulation>(scene, run);
+}
+
+} // namespace plumb

@@ -1,0 +1,12 @@
+// Answers probes in one precision; `answer` of probe.h chooses between the two.
+#pragma once
+
+#include "engine/core/precision.h"
+#include "engine/scene/probe.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Throws CheckFailure where the geometry refuses.
+ProbeAnswer answer_probe(const ProbeDesc &probe);
+
+} // namespace plumb::inline PLUMB_PRECISION

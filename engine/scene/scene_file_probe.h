@@ -1,0 +1,19 @@
+// The probes of a scene file.
+#pragma once
+
+#include "engine/scene/scene_desc.h"
+
+#include <vector>
+
+namespace plumb {
+
+namespace scene_file {
+class Report;
+class Table;
+} // namespace scene_file
+
+// Reports every error. A probe that the geometry refuses to answer in that precision is one.
+std::vector<ProbeDesc> read_probes(scene_file::Report &report, const scene_file::Table &top,
+                                   Precision precision);
+
+} // namespace plumb

@@ -1,0 +1,319 @@
+// Probes: the file format, the handles, and the answers of trees and frustums against brute force.
+// What the single geometric functions answer is tested with them; that probes ask them right is
+// held by the expects of scenes/geometry, which the catalogue tests check.
+#include "engine/scene/probe.h"
+
+#include "engine/scene/scene_file.h"
+#include "engine/scene/simulation.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<SceneDesc> geometry_scenes() {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry &file :
+         fs::directory_iterator(fs::path(PLUMB_SOURCE_DIR) / "scenes/geometry"))
+        if (file.path().extension() == ".toml")
+            files.push_back(file.path());
+    std::ranges::sort(files);
+    std::vector<SceneDesc> scenes;
+    for (const fs::path &file : files) {
+        const SceneFileResult result = load_scene(file);
+        for (const SceneMessage &message : result.messages)
+            ADD_FAILURE() << format_message(file.string(), message);
+        scenes.push_back(result.scene);
+    }
+    return scenes;
+}
+
+SceneDesc parsed(const std::string &text) {
+    const SceneFileResult result = parse_scene(text, "probes.toml");
+    for (const SceneMessage &message : result.messages)
+        ADD_FAILURE() << format_message("probes.toml", message);
+    return result.scene;
+}
+
+// All messages, one a line.
+std::string said(const std::string &text) {
+    std::string all;
+    for (const SceneMessage &message : parse_scene(text, "p.toml").messages)
+        all += format_message("p.toml", message) + "\n";
+    return all;
+}
+
+bool has(const std::string &text, const std::string &part) {
+    return text.find(part) != std::string::npos;
+}
+
+constexpr const char *ray_and_sphere = R"([[probe]]
+name = "ray"
+ask = "raycast"
+ray = { origin = [-3, 0, 0], direction = [2, 0, 0] }
+shapes = [{ kind = "sphere", position = [0, 0, 0], radius = 1 }]
+)";
+
+// ---- answers ----
+
+TEST(Probe, ARayThroughASphereIsAnsweredInBothPrecisions) {
+    const SceneDesc scene = parsed(ray_and_sphere);
+    for (const Precision precision : {Precision::single, Precision::dual}) {
+        const ProbeAnswer found = answer(scene.probes.front(), precision);
+        EXPECT_TRUE(found.refusal.empty());
+        EXPECT_EQ(found.value("hit"), 1);
+        EXPECT_EQ(found.value("t"), 1); // (3 - 1) / 2
+        EXPECT_EQ(found.value("t_exit"), 2);
+        EXPECT_EQ(found.value("normal_x"), -1);
+        EXPECT_TRUE(std::isnan(found.value("nothing of that name")));
+    }
+}
+
+TEST(Probe, WhatIsAnsweredIsListed) {
+    std::set<ProbeQuestion> asked;
+    for (const SceneDesc &scene : geometry_scenes())
+        for (const ProbeDesc &probe : scene.probes) {
+            const ProbeQuestionInfo &info = probe_question(probe.question);
+            EXPECT_EQ(info.question, probe.question);
+            asked.insert(probe.question);
+            const ProbeAnswer found = answer(probe, Precision::single);
+            EXPECT_EQ(found.refusal, "") << scene.name << ": " << probe.name;
+            std::set<std::string_view> names;
+            for (const ProbeValue &value : found.values) {
+                EXPECT_TRUE(names.insert(value.name).second) << probe.name << " " << value.name;
+                EXPECT_NE(std::ranges::find(info.values, value.name), info.values.end())
+                    << info.name << " has no value " << value.name;
+            }
+        }
+    EXPECT_EQ(asked.size(), probe_questions().size()) << "a question that no scene shows";
+}
+
+TEST(Probe, TheSameQuestionGivesTheSameBits) {
+    for (const SceneDesc &scene : geometry_scenes())
+        for (const Precision precision : {Precision::single, Precision::dual})
+            EXPECT_EQ(hash_of_answers(scene.probes, precision),
+                      hash_of_answers(scene.probes, precision))
+                << scene.name;
+}
+
+// The items of a tree, as drawn, each with its verdict: no tree is needed to check them.
+TEST(Probe, AnOctreeFindsWhatLookingAtEachFinds) {
+    const SceneDesc scene = parsed(R"([[probe]]
+name = "tree"
+ask = "tree"
+tree = "octree"
+scatter = { count = 300, half_extents = [4, 3, 2], size = 0.3, seed = 9 }
+shapes = [{ kind = "sphere", position = [0.5, 0.25, 0], radius = 1.5 }]
+)");
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::dual);
+    const glm::dvec3 center(0.5, 0.25, 0);
+    std::size_t items = 0;
+    std::size_t touched = 0;
+    for (const ProbeSolid &solid : found.solids) {
+        if (solid.tone == ProbeTone::query)
+            continue; // the ball itself
+        ++items;
+        const glm::dvec3 near = glm::clamp(center, solid.shape.position - solid.shape.half_extents,
+                                           solid.shape.position + solid.shape.half_extents);
+        const bool touches = glm::distance(near, center) <= 1.5;
+        touched += touches ? 1 : 0;
+        EXPECT_EQ(solid.tone == ProbeTone::yes, touches);
+    }
+    EXPECT_EQ(items, 300U);
+    EXPECT_EQ(found.value("found"), static_cast<double>(touched));
+    EXPECT_GT(touched, 5U);
+}
+
+// Without a matrix: by the angles under which a box's corners are seen from the eye.
+TEST(Probe, CullingKeepsEachBoxWithACornerInTheView) {
+    const SceneDesc scene = parsed(R"([[probe]]
+name = "culling"
+ask = "cull"
+camera = { eye = [0, 0, 8], target = [0, 0, 0], fov_deg = 60, aspect = 1, near = 1, far = 11 }
+scatter = { count = 500, half_extents = [6, 6, 6], size = 0.3, seed = 4 }
+)");
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::dual);
+    const double slope = std::tan(0.5 * 60 * 3.14159265358979323846 / 180);
+    std::size_t inside = 0;
+    for (const ProbeSolid &solid : found.solids) {
+        int corners_in = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            glm::dvec3 at = solid.shape.position;
+            for (int axis = 0; axis < 3; ++axis)
+                at[axis] += ((corner >> axis & 1) != 0 ? 1 : -1) * solid.shape.half_extents[axis];
+            const double depth = 8 - at.z;
+            if (depth > 1 && depth < 11 && std::abs(at.x) < slope * depth &&
+                std::abs(at.y) < slope * depth)
+                ++corners_in;
+        }
+        if (corners_in > 0) {
+            EXPECT_NE(solid.tone, ProbeTone::no);
+        }
+        EXPECT_EQ(solid.tone == ProbeTone::yes, corners_in == 8);
+        inside += corners_in > 0 ? 1 : 0;
+    }
+    EXPECT_GE(found.value("seen"), static_cast<double>(inside));
+    EXPECT_EQ(found.value("seen") + found.value("culled"), 500);
+    EXPECT_GT(inside, 50U);
+}
+
+TEST(Probe, WhatTheGeometryRefusesIsSaidAndNotThrown) {
+    SceneDesc scene = parsed(ray_and_sphere);
+    scene.probes.front().ray->direction = glm::dvec3(0);
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::single);
+    EXPECT_NE(found.refusal, "");
+    EXPECT_TRUE(found.values.empty());
+}
+
+// ---- files ----
+
+TEST(ProbeFile, WritesWhatReadsTheSame) {
+    for (const SceneDesc &scene : geometry_scenes()) {
+        const std::string text = write_scene(scene);
+        const SceneDesc again = parsed(text);
+        ASSERT_EQ(again.probes.size(), scene.probes.size()) << text;
+        EXPECT_EQ(write_scene(again), text) << scene.name;
+        for (const Precision precision : {Precision::single, Precision::dual})
+            EXPECT_EQ(hash_of_answers(again.probes, precision),
+                      hash_of_answers(scene.probes, precision))
+                << scene.name;
+    }
+}
+
+TEST(ProbeFile, SaysAllThatIsWrongAtOnce) {
+    const std::string all = said(R"([[probe]]
+name = "a"
+ask = "raycst"
+
+[[probe]]
+name = "b"
+ask = "raycast"
+shapes = [{ kind = "spere", radius = 1 }]
+
+[[probe]]
+name = "b"
+ask = "contains"
+shapes = [{ kind = "sphere", radius = -1 }]
+ray = { origin = [0, 0, 0], direction = [1, 0, 0] }
+points = []
+
+[[probe]]
+name = "c"
+ask = "overlap"
+shapes = [{ kind = "circle", radius = 1, position = [1, 2, 3] }]
+expect = { overlaps = true }
+
+[[probe]]
+name = "d"
+ask = "pick"
+shapes = [{ kind = "box", radius = 1 }]
+camera = { eye = [1, 1, 1], target = [1, 1, 1], near = 2, far = 1 }
+)");
+    EXPECT_TRUE(has(all, R"(p.toml:3:7: error: unknown ask "raycst"; did you mean "raycast"?)"));
+    EXPECT_TRUE(has(all, R"(p.toml:8:20: error: unknown kind "spere" of shape; did you mean)"));
+    EXPECT_TRUE(has(all, "has none of ray and segment") || has(all, "ray = {")) << all;
+    EXPECT_TRUE(has(all, R"(another probe is named "b" already, at line 6)"));
+    EXPECT_TRUE(has(all, "radius is -1; it must be a positive number"));
+    EXPECT_TRUE(has(all, R"(ask = "contains" has no ray)"));
+    EXPECT_TRUE(has(all, "has 0 good points"));
+    EXPECT_TRUE(has(all, R"([[probe]] "c" has 1 shape; ask = "overlap" takes 2 to)"));
+    EXPECT_TRUE(has(all, R"(ask = "overlap" has no value "overlaps"; did you mean "overlap"?)"));
+    EXPECT_TRUE(has(all, "has no source"));
+    EXPECT_TRUE(has(all, R"(unknown key "radius" in the box of [[probe]] "d")"));
+    EXPECT_TRUE(has(all, "the camera looks at its own eye"));
+    EXPECT_TRUE(has(all, "far must lie beyond near"));
+    EXPECT_TRUE(has(all, "has no pixel"));
+}
+
+TEST(ProbeFile, AQuestionWithoutAnAnswerIsAnError) {
+    const std::string all = said(R"([[probe]]
+name = "flat and solid"
+ask = "distance"
+shapes = [{ kind = "plane", position = [0, 0, 0] }, { kind = "sphere", radius = 1 }]
+)");
+    EXPECT_TRUE(has(all, "has no answer: ")) << all;
+    EXPECT_TRUE(has(all, "both shapes must be convex")) << all;
+}
+
+// ---- handles ----
+
+TEST(ProbeHandles, EachMovesToItsPlaceAndFlatOnesStayFlat) {
+    for (const SceneDesc &scene : geometry_scenes())
+        for (const ProbeDesc &probe : scene.probes) {
+            const std::vector<glm::dvec3> before = probe_handles(probe);
+            EXPECT_FALSE(before.empty() && probe.question != ProbeQuestion::enclose)
+                << scene.name << ": " << probe.name;
+            for (std::size_t h = 0; h < before.size(); ++h) {
+                ProbeDesc moved = probe;
+                const glm::dvec3 place = before[h] + glm::dvec3(0.25, -0.5, 0.75);
+                move_probe_handle(moved, h, place);
+                const glm::dvec3 wanted = is_flat(probe) ? glm::dvec3(place.x, place.y, 0) : place;
+                EXPECT_LT(glm::distance(probe_handles(moved)[h], wanted), 1e-12)
+                    << scene.name << ": " << probe.name << ", " << h;
+            }
+        }
+}
+
+TEST(ProbeHandles, ARayKeepsADirection) {
+    SceneDesc scene = parsed(ray_and_sphere);
+    ProbeDesc &probe = scene.probes.front();
+    const std::vector<glm::dvec3> handles = probe_handles(probe); // sphere, origin, tip
+    ASSERT_EQ(handles.size(), 3U);
+    move_probe_handle(probe, 2, handles[1]);
+    EXPECT_EQ(probe.ray->direction, glm::dvec3(2, 0, 0));
+    move_probe_handle(probe, 1, {0, 5, 0}); // the whole ray moves
+    EXPECT_EQ(probe.ray->direction, glm::dvec3(2, 0, 0));
+    EXPECT_EQ(probe_handles(probe)[2], glm::dvec3(2, 5, 0));
+}
+
+// ---- a scene without a world ----
+
+TEST(ProbeSimulation, HasNoWorldAndCostsNoStep) {
+    const SceneDesc scene = parsed(ray_and_sphere);
+    EXPECT_FALSE(has_world(scene));
+    const auto simulation = Simulation::create(scene, {}, nullptr);
+    EXPECT_FALSE(simulation->has_world());
+    const std::uint64_t before = simulation->hash();
+    simulation->step();
+    EXPECT_EQ(simulation->step_count(), 0U);
+    EXPECT_EQ(simulation->time(), 0);
+    EXPECT_EQ(simulation->report().total(), 0);
+    EXPECT_EQ(simulation->hash(), before);
+    EXPECT_EQ(simulation->body_count(), 0U);
+    EXPECT_FALSE(simulation->pick({0, 0, 5}, {0, 0, -1}).has_value());
+    EXPECT_THROW(simulation->add_body({}), std::invalid_argument);
+    const auto again = Simulation::create(simulation->describe(), {}, nullptr);
+    EXPECT_EQ(again->hash(), before);
+}
+
+TEST(ProbeSimulation, AnotherAnswerIsAnotherHash) {
+    SceneDesc scene = parsed(ray_and_sphere);
+    const std::uint64_t before = Simulation::create(scene, {}, nullptr)->hash();
+    scene.probes.front().shapes.front().radius = 1.25;
+    EXPECT_NE(Simulation::create(scene, {}, nullptr)->hash(), before);
+}
+
+TEST(ProbeSimulation, AWorldWithProbesIsStillAWorld) {
+    const SceneDesc scene = parsed(std::string(ray_and_sphere) +
+                                   "[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 1\n");
+    EXPECT_TRUE(has_world(scene));
+    const auto simulation = Simulation::create(scene, {}, nullptr);
+    simulation->step();
+    EXPECT_EQ(simulation->step_count(), 1U);
+    EXPECT_EQ(simulation->describe().probes.size(), 1U);
+}
+
+} // namespace
+} // namespace plumb
