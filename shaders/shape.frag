@@ -9,6 +9,7 @@ in vec3 local_normal;
 flat in vec4 rotation;
 flat in vec4 scale;
 flat in vec4 colour;
+uniform float glass; // 1: what is behind shows through
 out vec4 result;
 
 vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
@@ -16,6 +17,9 @@ vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.
 void main() {
     vec3 albedo = mix(colour.rgb, vec3(1.0), 0.35 * colour.a);
     vec3 bent = normalize(local_normal);
+    // Flat triangles are seen from both sides.
+    if (scale.w == 4.0 && !gl_FrontFacing)
+        bent = -bent;
     vec3 normal = rotate(rotation, bent);
     vec3 per_pixel = fwidth(local);
 
@@ -34,7 +38,7 @@ void main() {
             // On a box of few pixels the lines would be all there is to see.
             line *= smoothstep(4.0 * pixel, 16.0 * pixel, scale.xyz);
             albedo *= 1.0 - 0.30 * max(line.x, max(line.y, line.z));
-        } else {
+        } else if (scale.w != 4.0) {
             // Quarters, a shade apart, show how what is round turns.
             vec3 side = clamp(local / max(per_pixel, 1e-9), -1.0, 1.0);
             albedo *= 1.0 + 0.085 * side.x * side.y * side.z;
@@ -45,7 +49,7 @@ void main() {
     vec3 to_eye = normalize(eye.xyz - position);
     float facing = max(dot(shaded, to_light.xyz), 0.0);
     // The facets of a round mesh, as seen and as in the shadow map, lie up to 1.2 % of the radius apart.
-    float flatness = scale.w == 1.0 ? 0.0 : 0.012 * scale.x;
+    float flatness = scale.w == 1.0 || scale.w == 4.0 ? 0.0 : 0.012 * scale.x;
     float reaching = facing > 0.0 ? light_reaching(position, normal, flatness) : 0.0;
     vec3 direct = light_colour * (to_light.w * facing * reaching);
     // A satin surface: a broad, weak gloss, and a little sheen at grazing angles.
@@ -54,5 +58,8 @@ void main() {
     float sheen = 0.10 * pow(1.0 - max(dot(shaded, to_eye), 0.0), 4.0) * (0.5 + 0.5 * shaded.y);
     vec3 lit = albedo * (ambient_light(shaded) + direct) + direct * gloss +
                vec3(to_light.w * sheen);
-    result = vec4(dither(lit, gl_FragCoord.xy), 1.0);
+    // Glass is thicker where one looks along it.
+    float along = 1.0 - abs(dot(shaded, to_eye));
+    float opacity = glass > 0.5 ? mix(0.42, 0.85, along * along) : 1.0;
+    result = vec4(dither(lit, gl_FragCoord.xy), opacity);
 }

@@ -11,18 +11,26 @@
 
 namespace plumb {
 
-enum class DrawKind : std::uint8_t { sphere, box, capsule };
+enum class DrawKind : std::uint8_t { sphere, box, capsule, cylinder };
 
 struct DrawShape {
     DrawKind kind = DrawKind::sphere;
     glm::vec3 position{0};
     glm::quat rotation{1, 0, 0, 0}; // unit
-    // sphere: x is the radius. box: half extents. capsule: x is the radius, y the half height of
-    // its cylinder, along the shape's y axis. The other components are not read.
+    // sphere: x is the radius. box: half extents. capsule and cylinder: x is the radius, y the half
+    // height of the cylinder, along the shape's y axis. The other components are not read.
     glm::vec3 size{0.5f};
     glm::vec3 colour{0.7f};
     bool selected = false;    // a ring in the accent colour, also when hidden
     bool highlighted = false; // brightened: what the pointer is over
+    bool glass = false;       // what is behind or inside shows through
+};
+
+// Flat triangles, each three corners, seen from both sides.
+struct DrawMesh {
+    std::vector<glm::vec3> corners;
+    glm::vec3 colour{0.7f};
+    bool glass = false;
 };
 
 // The solid half-space y <= 0 of its own frame, seen from above; its top carries the grid.
@@ -64,6 +72,7 @@ struct ViewOptions {
 
 struct DrawList {
     std::vector<DrawShape> shapes;
+    std::vector<DrawMesh> meshes;
     std::vector<DrawPlane> planes;
     std::vector<DrawLine> lines;
     std::vector<DrawPoint> points;

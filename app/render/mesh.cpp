@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -97,6 +99,39 @@ Mesh capsule_mesh(int segments, int rings) {
             for (const int i : {a, a + 1, b + 1, a, b + 1, b})
                 mesh.indices.push_back(static_cast<std::uint16_t>(i));
         }
+    }
+    return mesh;
+}
+
+Mesh cylinder_mesh(int segments) {
+    PLUMB_CHECK(segments >= 3 && 4 * segments + 6 < 65536,
+                "no cylinder of " << segments << " segments");
+    Mesh mesh;
+    const auto rim = [&](int segment) {
+        const float around = 2 * std::numbers::pi_v<float> * static_cast<float>(segment) /
+                             static_cast<float>(segments);
+        return glm::vec3(std::sin(around), 0, std::cos(around));
+    };
+    const auto add = [&](std::initializer_list<std::size_t> corners) {
+        for (const std::size_t corner : corners)
+            mesh.indices.push_back(static_cast<std::uint16_t>(corner));
+    };
+    for (const float end : {-1.0f, 1.0f})
+        for (int segment = 0; segment <= segments; ++segment)
+            mesh.vertices.push_back({rim(segment), rim(segment), end});
+    const std::size_t row = static_cast<std::size_t>(segments) + 1;
+    for (std::size_t a = 0; a + 1 < row; ++a)
+        add({a, a + 1, a + row + 1, a, a + row + 1, a + row});
+    for (const float end : {-1.0f, 1.0f}) {
+        const std::size_t middle = mesh.vertices.size();
+        mesh.vertices.push_back({{0, 0, 0}, {0, end, 0}, end});
+        for (int segment = 0; segment <= segments; ++segment)
+            mesh.vertices.push_back({rim(segment), {0, end, 0}, end});
+        for (std::size_t a = middle + 1; a + 1 <= middle + row; ++a)
+            if (end > 0)
+                add({middle, a, a + 1});
+            else
+                add({middle, a + 1, a});
     }
     return mesh;
 }

@@ -11,8 +11,8 @@ namespace plumb {
 struct MeshVertex {
     glm::vec3 position{0};
     glm::vec3 normal{0};
-    // -1, 0 or 1: which end of a capsule the vertex moves with, so that one mesh serves every
-    // height.
+    // -1, 0 or 1: which end of a capsule or cylinder the vertex moves with, so that one mesh serves
+    // every height.
     float end = 0;
 };
 
@@ -28,5 +28,7 @@ struct Mesh {
 // Two unit hemispheres about y of `rings` rings (>= 1) and `segments` sides (>= 3); the band
 // between them has no height until the ends are moved apart.
 [[nodiscard]] Mesh capsule_mesh(int segments, int rings);
+// Two unit discs across y of `segments` sides (>= 3), and the band between them; no height either.
+[[nodiscard]] Mesh cylinder_mesh(int segments);
 
 } // namespace plumb

@@ -5,17 +5,20 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
+#include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <glad/gl.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/mat4x4.hpp>
 
+#include "app/render/culling.h"
 #include "app/render/mesh.h"
 #include "app/render/palette.h"
 #include "app/render/shader_program.h"
@@ -50,7 +53,7 @@ struct FrameBlock {
 
 struct Instance {
     glm::vec3 position; // relative to the camera's target
-    float end;          // a capsule's half height
+    float end;          // a capsule's or cylinder's half height
     glm::vec4 rotation; // x, y, z, w
     glm::vec3 scale;
     float kind;
@@ -81,6 +84,9 @@ enum MeshName : std::size_t {
     capsule_0,
     capsule_1,
     capsule_2,
+    cylinder_0,
+    cylinder_1,
+    cylinder_2,
     mesh_count
 };
 
@@ -108,20 +114,13 @@ bool finite(const DrawShape &shape) {
            std::isfinite(q.w);
 }
 
-glm::vec3 scale_of(const DrawShape &shape) {
-    return shape.kind == DrawKind::box ? shape.size : glm::vec3(shape.size.x);
+// Their meshes have two ends, which are moved apart.
+bool has_ends(DrawKind kind) {
+    return kind == DrawKind::capsule || kind == DrawKind::cylinder;
 }
 
-float bounding_radius(const DrawShape &shape) {
-    switch (shape.kind) {
-    case DrawKind::sphere:
-        return shape.size.x;
-    case DrawKind::box:
-        return glm::length(shape.size);
-    case DrawKind::capsule:
-        return shape.size.x + shape.size.y;
-    }
-    PLUMB_CHECK(false, "unknown kind of shape " << static_cast<int>(shape.kind));
+glm::vec3 scale_of(const DrawShape &shape) {
+    return shape.kind == DrawKind::box ? shape.size : glm::vec3(shape.size.x);
 }
 
 MeshName mesh_for(const DrawShape &shape, float pixels) {
@@ -136,6 +135,8 @@ MeshName mesh_for(const DrawShape &shape, float pixels) {
         return box;
     case DrawKind::capsule:
         return static_cast<MeshName>(capsule_0 + step(capsule_steps));
+    case DrawKind::cylinder:
+        return static_cast<MeshName>(cylinder_0 + step(capsule_steps));
     }
     PLUMB_CHECK(false, "unknown kind of shape " << static_cast<int>(shape.kind));
 }
@@ -157,6 +158,58 @@ template <class T> void upload(GLuint buffer, const std::vector<T> &values) {
     glBindBuffer(GL_ARRAY_BUFFER, buffer);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data(),
                  GL_STREAM_DRAW);
+}
+
+// What shaders take flat triangles for, beside the kinds of shapes.
+constexpr float mesh_kind = 4;
+
+// All meshes that are glass, or all that are not: their triangles one after the other.
+struct MeshBatch {
+    std::vector<MeshVertex> vertices; // relative to the camera's target
+    struct Part {
+        GLint first = 0;
+        GLsizei count = 0;
+        glm::vec3 colour{0}; // linear
+    };
+    std::vector<Part> parts;
+};
+
+MeshBatch mesh_batch(const std::vector<DrawMesh> &meshes, const glm::vec3 &origin, bool glass) {
+    MeshBatch batch;
+    for (const DrawMesh &mesh : meshes) {
+        if (mesh.glass != glass)
+            continue;
+        const std::size_t first = batch.vertices.size();
+        for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
+            const std::array corners{mesh.corners[i], mesh.corners[i + 1], mesh.corners[i + 2]};
+            const glm::vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+            const float twice_area = glm::length(across);
+            if (!(twice_area > 0) || !std::isfinite(twice_area))
+                continue;
+            for (const glm::vec3 &corner : corners)
+                batch.vertices.push_back({corner - origin, across / twice_area, 0});
+        }
+        const std::size_t count = batch.vertices.size() - first;
+        if (count > 0)
+            batch.parts.push_back({static_cast<GLint>(first), static_cast<GLsizei>(count),
+                                   linear_from_srgb(mesh.colour)});
+    }
+    return batch;
+}
+
+// The box around a mesh, for whoever asks how far things reach.
+DrawShape box_around(const DrawMesh &mesh) {
+    glm::vec3 low(std::numeric_limits<float>::max());
+    glm::vec3 high(std::numeric_limits<float>::lowest());
+    for (const glm::vec3 &corner : mesh.corners) {
+        low = glm::min(low, corner);
+        high = glm::max(high, corner);
+    }
+    DrawShape box;
+    box.kind = DrawKind::box;
+    box.position = 0.5f * (low + high);
+    box.size = 0.5f * (high - low);
+    return box;
 }
 
 // The shapes of one pass, sorted by mesh.
@@ -189,6 +242,8 @@ struct Renderer::Parts {
     GLuint mesh_indices = 0;
     GLuint instances = 0;
     GLuint shape_array = 0;
+    GLuint mesh_array = 0;
+    GLuint mesh_stream = 0;
     GLuint line_array = 0;
     GLuint point_array = 0;
     GLuint empty_array = 0;
@@ -201,6 +256,7 @@ struct Renderer::Parts {
     GLuint depth_target = 0;
     std::array<GLuint, 2> occlusion_textures{};
     std::array<GLuint, 2> occlusion_targets{};
+    Culling culling;
 
     explicit Parts(const std::filesystem::path &dir)
         : shape_program(dir, "shape.vert", "shape.frag"),
@@ -223,7 +279,9 @@ struct Renderer::Parts {
         }
         make_meshes();
         glGenBuffers(1, &instances);
+        glGenBuffers(1, &mesh_stream);
         glGenBuffers(1, &frame_buffer);
+        glGenVertexArrays(1, &mesh_array);
         glGenVertexArrays(1, &line_array);
         glGenVertexArrays(1, &point_array);
         glGenVertexArrays(1, &empty_array);
@@ -233,9 +291,9 @@ struct Renderer::Parts {
     }
 
     ~Parts() {
-        const std::array buffers{mesh_vertices, mesh_indices, instances, frame_buffer};
+        const std::array buffers{mesh_vertices, mesh_indices, instances, mesh_stream, frame_buffer};
         glDeleteBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
-        const std::array arrays{shape_array, line_array, point_array, empty_array};
+        const std::array arrays{shape_array, mesh_array, line_array, point_array, empty_array};
         glDeleteVertexArrays(static_cast<GLsizei>(arrays.size()), arrays.data());
         glDeleteFramebuffers(1, &shadow_target);
         glDeleteTextures(1, &shadow_texture);
@@ -246,8 +304,9 @@ struct Renderer::Parts {
 
     void make_meshes() {
         const std::array<Mesh, mesh_count> made{
-            box_mesh(),     sphere_mesh(1),      sphere_mesh(2),      sphere_mesh(3),
-            sphere_mesh(4), capsule_mesh(12, 3), capsule_mesh(28, 7), capsule_mesh(64, 16)};
+            box_mesh(),        sphere_mesh(1),      sphere_mesh(2),      sphere_mesh(3),
+            sphere_mesh(4),    capsule_mesh(12, 3), capsule_mesh(28, 7), capsule_mesh(64, 16),
+            cylinder_mesh(12), cylinder_mesh(28),   cylinder_mesh(64)};
         std::vector<MeshVertex> vertices;
         std::vector<std::uint16_t> indices;
         for (std::size_t i = 0; i < mesh_count; ++i) {
@@ -356,7 +415,7 @@ struct Renderer::Parts {
             const DrawShape &shape = shapes[i];
             const glm::quat &q = shape.rotation;
             batch.instances[next[names[i]]++] = {
-                shape.position - origin,        shape.kind == DrawKind::capsule ? shape.size.y : 0,
+                shape.position - origin,        has_ends(shape.kind) ? shape.size.y : 0,
                 {q.x, q.y, q.z, q.w},           scale_of(shape),
                 static_cast<float>(shape.kind), linear_from_srgb(shape.colour),
                 shape.highlighted ? 1.0f : 0.0f};
@@ -386,13 +445,44 @@ struct Renderer::Parts {
         }
     }
 
+    void keep_in_view(std::vector<DrawShape> &shapes, const Camera &camera, float aspect) {
+        culling.update(shapes);
+        const std::span<const std::uint8_t> in_view =
+            culling.in_view(frustum_of(camera.projection(aspect) * camera.view()));
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < shapes.size(); ++i)
+            if (in_view[i] != 0)
+                shapes[kept++] = shapes[i];
+        shapes.resize(kept);
+    }
+
+    // The program in use reads the same attributes as for shapes: those of an instance are
+    // constant.
+    void draw_meshes(const MeshBatch &batch) const {
+        if (batch.parts.empty())
+            return;
+        glBindVertexArray(mesh_array);
+        upload(mesh_stream, batch.vertices);
+        attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position), 0);
+        attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal), 0);
+        attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, end), 0);
+        glVertexAttrib4f(3, 0, 0, 0, 0);
+        glVertexAttrib4f(4, 0, 0, 0, 1);
+        glVertexAttrib4f(5, 1, 1, 1, mesh_kind);
+        for (const MeshBatch::Part &part : batch.parts) {
+            glVertexAttrib4f(6, part.colour.r, part.colour.g, part.colour.b, 0);
+            glDrawArrays(GL_TRIANGLES, part.first, part.count);
+        }
+    }
+
     void draw_screen(const ShaderProgram &program) const {
         program.use();
         glBindVertexArray(empty_array);
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    void draw_shadows(const std::vector<DrawShape> &shapes, const DrawList &list,
+    void draw_shadows(const std::vector<DrawShape> &shapes,
+                      const std::array<const MeshBatch *, 2> &flat_triangles, const DrawList &list,
                       const ShadowFit &fit) const {
         glBindFramebuffer(GL_FRAMEBUFFER, shadow_target);
         glViewport(0, 0, shadow_map_size, shadow_map_size);
@@ -412,6 +502,10 @@ struct Renderer::Parts {
             // A quarter of the texels: a shadow's edge is soft.
             return outside ? std::nullopt : std::optional<float>(0.25f * shape.size.x / fit.texel);
         }));
+        glDisable(GL_CULL_FACE);
+        for (const MeshBatch *batch : flat_triangles)
+            draw_meshes(*batch);
+        glEnable(GL_CULL_FACE);
         glDisable(GL_DEPTH_CLAMP);
         glDisable(GL_POLYGON_OFFSET_FILL);
     }
@@ -571,9 +665,30 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
                 "the light has no direction");
 
     std::vector<DrawShape> shapes;
-    shapes.reserve(list.shapes.size());
-    std::copy_if(list.shapes.begin(), list.shapes.end(), std::back_inserter(shapes),
-                 [](const DrawShape &shape) { return finite(shape); });
+    std::vector<DrawShape> glass;
+    for (const DrawShape &shape : list.shapes)
+        if (finite(shape))
+            (shape.glass ? glass : shapes).push_back(shape);
+    const MeshBatch meshes = mesh_batch(list.meshes, camera.target, false);
+    const MeshBatch glass_meshes = mesh_batch(list.meshes, camera.target, true);
+    const bool any_solid = !shapes.empty() || !meshes.parts.empty();
+    const bool any_glass = !glass.empty() || !glass_meshes.parts.empty();
+
+    std::optional<ShadowFit> shadow;
+    std::vector<DrawShape> casters;
+    if (list.view.shadows && list.light.intensity > 0 && (any_solid || any_glass)) {
+        casters = shapes;
+        casters.insert(casters.end(), glass.begin(), glass.end());
+        std::vector<DrawShape> reaching = casters;
+        for (const DrawMesh &mesh : list.meshes)
+            if (const DrawShape box = box_around(mesh); finite(box))
+                reaching.push_back(box);
+        shadow = fit_shadow(reaching, camera, aspect, list.light.direction, camera.target,
+                            shadow_map_size);
+    }
+    // What is out of view throws shadows, but need not be sorted or looked at again.
+    if (shapes.size() >= least_shapes_to_cull)
+        parts.keep_in_view(shapes, camera, aspect);
 
     // Near before far, so that what is hidden is not shaded.
     const glm::vec3 forward = camera.forward();
@@ -582,10 +697,11 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
                glm::dot(b.position - camera.target, forward);
     });
 
-    std::optional<ShadowFit> shadow;
-    if (list.view.shadows && list.light.intensity > 0 && !shapes.empty())
-        shadow = fit_shadow(shapes, camera, aspect, list.light.direction, camera.target,
-                            shadow_map_size);
+    // What is hidden by glass is seen: far before near.
+    std::stable_sort(glass.begin(), glass.end(), [&](const DrawShape &a, const DrawShape &b) {
+        return glm::dot(a.position - camera.target, forward) >
+               glm::dot(b.position - camera.target, forward);
+    });
 
     Camera relative = camera;
     relative.target = glm::vec3(0);
@@ -615,7 +731,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     if (shadow)
-        parts.draw_shadows(shapes, list, *shadow);
+        parts.draw_shadows(casters, {&meshes, &glass_meshes}, list, *shadow);
 
     target.bind();
     glEnable(GL_FRAMEBUFFER_SRGB);
@@ -641,18 +757,39 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     };
     parts.shape_program.use();
     glPolygonMode(GL_FRONT_AND_BACK, list.view.wireframe ? GL_LINE : GL_FILL);
+    glUniform1f(parts.shape_program.uniform("glass"), 0);
     parts.draw_batch(Parts::make_batch(shapes, camera.target, pixels_of));
+    glDisable(GL_CULL_FACE);
+    parts.draw_meshes(meshes);
+    glEnable(GL_CULL_FACE);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 
     parts.draw_planes(list);
     glDisable(GL_CULL_FACE);
     parts.draw_screen(parts.backdrop_program);
-    if (list.view.occlusion && !list.view.wireframe && !shapes.empty())
+    if (list.view.occlusion && !list.view.wireframe && any_solid)
         parts.draw_occlusion(target);
+
+    if (any_glass) {
+        glEnable(GL_BLEND);
+        glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        glDepthMask(GL_FALSE);
+        parts.shape_program.use();
+        glUniform1f(parts.shape_program.uniform("glass"), 1);
+        glPolygonMode(GL_FRONT_AND_BACK, list.view.wireframe ? GL_LINE : GL_FILL);
+        parts.draw_meshes(glass_meshes);
+        glEnable(GL_CULL_FACE);
+        parts.draw_batch(Parts::make_batch(glass, camera.target, pixels_of));
+        glDisable(GL_CULL_FACE);
+        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+        glDepthMask(GL_TRUE);
+        glDisable(GL_BLEND);
+    }
 
     const auto selected = [&](const DrawShape &shape) {
         return shape.selected ? pixels_of(shape) : std::nullopt;
     };
+    shapes.insert(shapes.end(), glass.begin(), glass.end());
     const Batch outlined = Parts::make_batch(shapes, camera.target, selected);
     if (!outlined.instances.empty())
         parts.draw_outlines(outlined);

@@ -43,6 +43,11 @@ float half_extent_along(const DrawShape &shape, const glm::vec3 &direction) {
         const glm::vec3 axis = shape.rotation * glm::vec3(0, 1, 0);
         return shape.size.x + shape.size.y * std::abs(glm::dot(axis, direction));
     }
+    case DrawKind::cylinder: {
+        const float along = std::abs(glm::dot(shape.rotation * glm::vec3(0, 1, 0), direction));
+        const float across = std::sqrt(std::max(0.0f, 1 - along * along));
+        return shape.size.x * across + shape.size.y * along;
+    }
     }
     PLUMB_CHECK(false, "unknown kind of shape " << static_cast<int>(shape.kind));
 }

@@ -112,6 +112,7 @@ Rendering render(const Case &golden, std::optional<std::size_t> without) {
         result.picture = render_image(renderer, list, golden.size, 1);
     }
     list.shapes.clear();
+    list.meshes.clear();
     list.lines.clear();
     list.points.clear();
     result.background = render_image(renderer, list, golden.size, 1);

@@ -85,11 +85,23 @@ TEST(Mesh, CapsuleStretchesToAnyHeight) {
     }
 }
 
+TEST(Mesh, CylinderStretchesToAnyHeight) {
+    const Mesh mesh = cylinder_mesh(64);
+    const double section = 32 * std::sin(2 * std::numbers::pi / 64);
+    for (const float half_height : {0.3f, 4.0f}) {
+        EXPECT_TRUE(closed(mesh, half_height));
+        EXPECT_NEAR(volume(mesh, half_height), 2 * static_cast<double>(half_height) * section,
+                    1e-4);
+    }
+}
+
 TEST(Mesh, NormalsAreUnitAndPointOutward) {
-    for (const Mesh &mesh : {box_mesh(), sphere_mesh(2), capsule_mesh(12, 3)}) {
+    for (const Mesh &mesh : {box_mesh(), sphere_mesh(2), capsule_mesh(12, 3), cylinder_mesh(12)}) {
         for (const MeshVertex &vertex : mesh.vertices) {
             EXPECT_NEAR(glm::length(vertex.normal), 1, 1e-5f);
-            EXPECT_GT(glm::dot(vertex.normal, vertex.position), 0);
+            // Of a height of 2, so that ends are told apart.
+            const glm::vec3 place = vertex.position + glm::vec3(0, vertex.end, 0);
+            EXPECT_GT(glm::dot(vertex.normal, place), 0);
         }
     }
 }
