@@ -47,21 +47,26 @@ ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer 
     const Simulation &simulation = *sandbox.session().simulation();
     const std::uint64_t start = simulation.step_count();
     for (const std::uint64_t step : command.at) {
-        while (simulation.step_count() - start < step && sandbox.session().step() &&
+        const bool steps = simulation.has_world();
+        while (steps && simulation.step_count() - start < step && sandbox.session().step() &&
                !InterruptGuard::requested()) {
         }
-        const bool arrived = simulation.step_count() - start == step;
+        const bool arrived = !steps || simulation.step_count() - start == step;
         if (InterruptGuard::requested() && !arrived)
             return ExitCode::fine;
         const std::filesystem::path path =
             picture_path(command, scene.name, simulation.step_count() - start);
-        if (command.panels)
+        // Labels of probes are drawn as panels are.
+        sandbox.view().panels = command.panels;
+        if (command.panels || !scene.probes.empty())
             write_png(path, ui_snapshot(sandbox, renderer, command.shader_dir, command.size,
                                         command.samples));
         else
             write_png(path, render_image(renderer, draw_world(simulation, camera_of(scene.camera)),
                                          command.size, command.samples));
         out << path.string() << std::endl;
+        if (!steps)
+            break; // every step looks the same
         if (!arrived || !simulation.report().finite) {
             err << scene.name << ": diverged at step " << simulation.step_count() - start << '\n';
             for (const Message &message : sandbox.session().messages().all())

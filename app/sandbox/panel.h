@@ -36,6 +36,8 @@ void view_panel(PanelContext &context);
 void transport_panel(PanelContext &context);
 void inspector_panel(PanelContext &context);    // of the selected body
 void expectations_panel(PanelContext &context); // of the scene, with its title and description
+void probes_panel(PanelContext &context);
+void probe_labels(const PanelContext &context); // over the scene, under the panels
 void statistics_panel(PanelContext &context);
 void measures_panel(PanelContext &context);
 void messages_panel(PanelContext &context);

@@ -59,6 +59,12 @@ void expectations_panel(PanelContext &context) {
         ImGui::PopStyleColor();
     }
     ImGui::Spacing();
+    if (!scene.probes.empty()) {
+        heading(context.fonts, "Probes");
+        probes_panel(context);
+    }
+    if (!context.session.simulation()->has_world())
+        return;
     heading(context.fonts, "Expected");
     if (scene.expects.empty())
         ImGui::TextDisabled("This scene states no truth.");

@@ -93,6 +93,10 @@ void settings_panel(PanelContext &context) {
         ImGui::TextDisabled("No scene is running.");
         return;
     }
+    if (!simulation->has_world()) {
+        ImGui::TextDisabled("There is no world to step.");
+        return;
+    }
     method_row(context, *simulation);
     StepSettings settings = simulation->settings();
     bool changed = step_row(settings);

@@ -29,6 +29,14 @@ void status(const PanelContext &context) {
         ImGui::TextDisabled("No scene is running.");
         return;
     }
+    if (!session.simulation()->has_world()) {
+        ImGui::TextColored(theme::accent, "probes");
+        ImGui::SameLine();
+        ImGui::Text("%s", session.scene().name.c_str());
+        ImGui::SameLine();
+        ImGui::TextDisabled("no world to step; drag the handles");
+        return;
+    }
     const char *state = session.stopped()        ? "stopped"
                         : context.clock.paused() ? "paused"
                                                  : "running";
@@ -64,14 +72,15 @@ void transport_panel(PanelContext &context) {
         ImGui::SameLine();
     };
     const bool running = context.session.running();
-    const bool can_step = running && !context.session.stopped();
+    const bool can_step =
+        running && !context.session.stopped() && context.session.simulation()->has_world();
     button(Icon::restart, Action::restart, running);
     button(Icon::step_back, Action::step_back, context.session.steps_remembered() > 0);
     button(context.clock.paused() ? Icon::play : Icon::pause, Action::pause, can_step);
     button(Icon::step, Action::step, can_step);
     ImGui::Dummy({width * 0.5f, 0});
     ImGui::SameLine();
-    button(Icon::slower, Action::slower, context.clock.speed() > StepClock::min_speed);
+    button(Icon::slower, Action::slower, can_step && context.clock.speed() > StepClock::min_speed);
     ImGui::BeginGroup();
     if (ImGui::Button((speed_text(context.clock.speed()) + "##speed").c_str(),
                       {width * 1.5f, ImGui::GetFrameHeight() * 1.15f}))
@@ -84,7 +93,7 @@ void transport_panel(PanelContext &context) {
     small_text(context.fonts, "speed");
     ImGui::EndGroup();
     ImGui::SameLine();
-    button(Icon::faster, Action::faster, context.clock.speed() < StepClock::max_speed);
+    button(Icon::faster, Action::faster, can_step && context.clock.speed() < StepClock::max_speed);
     ImGui::NewLine();
 }
 

@@ -1,5 +1,6 @@
 #include "app/sandbox/sandbox.h"
 
+#include "app/sandbox/probe_draw.h"
 #include "app/sandbox/world_draw.h"
 #include "engine/dynamics/method_info.h"
 
@@ -8,6 +9,28 @@
 #include <utility>
 
 namespace plumb {
+
+namespace {
+
+// What the pointer's ray hits first of the shapes that a probe picks among.
+std::optional<ProbePoint> point_at(const Session &session, const PickRay &ray) {
+    for (const ProbeDesc &probe : session.probes()) {
+        if (probe.question != ProbeQuestion::pick)
+            continue;
+        ProbeDesc asked;
+        asked.shapes = probe.shapes;
+        asked.ray = ProbeRayDesc{glm::dvec3(ray.origin), glm::dvec3(ray.direction), {}, {}};
+        const ProbeAnswer found = answer(asked, session.simulation()->precision());
+        if (found.value("hit") == 1)
+            return ProbePoint{
+                {found.value("x"), found.value("y"), found.value("z")},
+                ProbeTone::axis,
+                {found.value("normal_x"), found.value("normal_y"), found.value("normal_z")}};
+    }
+    return {};
+}
+
+} // namespace
 
 Sandbox::Sandbox(Session session, std::vector<SceneEntry> scenes, std::filesystem::path out_dir)
     : session_(std::move(session)), scenes_(std::move(scenes)), out_dir_(std::move(out_dir)) {}
@@ -35,6 +58,8 @@ void Sandbox::started(bool another_scene) {
         view_.camera = camera_of(session_.scene().camera);
     }
     view_.hovered.reset();
+    view_.hovered_handle.reset();
+    view_.pointed_at.reset();
     clock_.give_up();
     follow_simulation();
 }
@@ -169,14 +194,22 @@ void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
     if (event.kind != PointerEvent::Kind::move)
         return;
     view_.hovered.reset();
-    if (!event.over_panel && tools_.drag() == Tools::Drag::none)
+    if (tools_.drag() != Tools::Drag::probe)
+        view_.hovered_handle =
+            event.over_panel || tools_.drag() != Tools::Drag::none
+                ? std::nullopt
+                : handle_at(session_.probes(), view_.camera, event.position, viewport);
+    view_.pointed_at.reset();
+    if (!event.over_panel)
+        view_.pointed_at = point_at(session_, view_.camera.pick_ray(event.position, viewport));
+    if (!event.over_panel && !view_.hovered_handle && tools_.drag() == Tools::Drag::none)
         if (const auto hit = pick(session_, view_.camera, event.position, viewport))
             view_.hovered = hit->body;
 }
 
 void Sandbox::advance(std::int64_t nanoseconds) {
     session_.messages().grow_older(static_cast<double>(nanoseconds) * 1e-9);
-    if (!session_.running() || session_.stopped())
+    if (!session_.running() || session_.stopped() || !session_.simulation()->has_world())
         return;
     follow_simulation();
     const int due = clock_.advance(nanoseconds);
@@ -195,6 +228,10 @@ void Sandbox::advance(std::int64_t nanoseconds) {
 }
 
 void Sandbox::take_steps(int count) {
+    if (session_.running() && !session_.simulation()->has_world()) {
+        session_.messages().note("This scene has only probes: there is no world to step.");
+        return;
+    }
     clock_.set_paused(true);
     for (int i = 0; i < count; ++i)
         if (!session_.step())
@@ -255,7 +292,9 @@ void Sandbox::choose_neighbour_method(int direction) {
 void Sandbox::frame_selection() {
     if (!session_.running())
         return;
-    const Around sphere = around(*session_.simulation(), view_.selected);
+    const Around sphere = session_.simulation()->has_world()
+                              ? around(*session_.simulation(), view_.selected)
+                              : around(session_.answers());
     view_.camera.frame(sphere.centre, sphere.radius, viewport_.x / viewport_.y);
 }
 
@@ -302,13 +341,21 @@ DrawList Sandbox::draw_list() const {
     options.selected = view_.selected;
     options.hovered = view_.hovered;
     options.grab = session_.grabbed();
-    return draw_world(*session_.simulation(), view_.camera, options,
-                      blend(session_.previous_poses(), session_.present_poses(), clock_.alpha()));
+    DrawList list =
+        draw_world(*session_.simulation(), view_.camera, options,
+                   blend(session_.previous_poses(), session_.present_poses(), clock_.alpha()));
+    draw_probes(list, session_.probes(), session_.answers(), view_.hovered_handle,
+                !session_.simulation()->has_world());
+    if (view_.pointed_at)
+        draw_point(list, *view_.pointed_at);
+    return list;
 }
 
 std::string Sandbox::title() const {
     if (!session_.running())
         return "Plumb";
+    if (!session_.simulation()->has_world())
+        return session_.scene().name + " - probes - Plumb";
     return session_.scene().name + " - " +
            (session_.stopped() ? "stopped"
             : clock_.paused()  ? "paused"

@@ -90,6 +90,10 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
         return false;
     }
     scene_ = scene;
+    probes_ = scene.probes;
+    answers_.clear();
+    for (const ProbeDesc &probe : probes_)
+        answers_.push_back(answer(probe, simulation_->precision()));
     stopped_ = false;
     grab_.reset();
     graphs_ = {};
@@ -98,7 +102,7 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
 }
 
 bool Session::step() {
-    if (!simulation_ || stopped_)
+    if (!simulation_ || stopped_ || !simulation_->has_world())
         return false;
     try {
         history_.remember(*simulation_);
@@ -208,11 +212,18 @@ std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dve
     }
 }
 
+void Session::move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place) {
+    move_probe_handle(probes_.at(probe), handle, place);
+    answers_[probe] = answer(probes_[probe], simulation_->precision());
+}
+
 bool Session::save_scene(const std::filesystem::path &path) {
     if (!simulation_)
         return false;
     try {
-        const std::string text = write_scene(simulation_->describe());
+        SceneDesc present = simulation_->describe();
+        present.probes = probes_;
+        const std::string text = write_scene(present);
         if (path.has_parent_path())
             std::filesystem::create_directories(path.parent_path());
         std::filesystem::path beside = path;

@@ -6,6 +6,7 @@
 #include "app/sandbox/messages.h"
 #include "app/sandbox/pose_blend.h"
 #include "engine/core/task_pool.h"
+#include "engine/scene/probe.h"
 #include "engine/scene/scene_desc.h"
 #include "engine/scene/simulation.h"
 
@@ -82,6 +83,12 @@ class Session {
     std::optional<std::size_t> shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
                                      double radius);
 
+    // The scene's probes as they have been moved, and what they are answered.
+    [[nodiscard]] const std::vector<ProbeDesc> &probes() const { return probes_; }
+    [[nodiscard]] const std::vector<ProbeAnswer> &answers() const { return answers_; }
+    // See probe_handles. A restart brings the scene's own places back.
+    void move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place);
+
     // Writes the present state as a scene file: beside the file first, then renamed. Makes the
     // folder.
     bool save_scene(const std::filesystem::path &path);
@@ -106,6 +113,8 @@ class Session {
     std::unique_ptr<Simulation> simulation_;
     History history_; // saved by simulation_
     std::optional<Grab> grab_;
+    std::vector<ProbeDesc> probes_;
+    std::vector<ProbeAnswer> answers_;
     bool stopped_ = false;
     std::vector<Pose> previous_, present_;
     SessionGraphs graphs_;

@@ -1,5 +1,7 @@
 #include "app/sandbox/tools.h"
 
+#include "app/sandbox/probe_draw.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -49,8 +51,35 @@ void Tools::press(const PointerEvent &event, const ToolTargets &targets) {
         begin_grab(event, targets);
     else if (event.shift)
         shoot(event, targets);
-    else
+    else if (!begin_probe(event, targets))
         drag_ = Drag::maybe_click;
+}
+
+std::optional<glm::dvec3> Tools::place_in_plane(const glm::vec2 &pixel,
+                                                const ToolTargets &targets) const {
+    const PickRay ray = targets.camera.pick_ray(pixel, targets.viewport);
+    const glm::dvec3 origin(ray.origin);
+    const glm::dvec3 direction(ray.direction);
+    const double facing = glm::dot(direction, grab_normal_);
+    // The plane faces the camera, so the ray meets it in front unless the view is extreme.
+    if (std::abs(facing) <= 1e-3)
+        return {};
+    const double t = glm::dot(grab_point_ - origin, grab_normal_) / facing;
+    return t > 0 ? std::optional(origin + direction * t) : std::nullopt;
+}
+
+bool Tools::begin_probe(const PointerEvent &event, const ToolTargets &targets) {
+    const std::vector<ProbeDesc> &probes = targets.session.probes();
+    const std::optional<ProbeHandle> handle =
+        handle_at(probes, targets.camera, event.position, targets.viewport);
+    if (!handle)
+        return false;
+    const ProbeDesc &probe = probes[handle->probe];
+    handle_ = *handle;
+    grab_point_ = probe_handles(probe)[handle->handle];
+    grab_normal_ = is_flat(probe) ? glm::dvec3(0, 0, 1) : -glm::dvec3(targets.camera.forward());
+    drag_ = Drag::probe;
+    return true;
 }
 
 void Tools::move(const PointerEvent &event, const ToolTargets &targets) {
@@ -73,21 +102,17 @@ void Tools::move(const PointerEvent &event, const ToolTargets &targets) {
         break;
     case Drag::grab:
         if (std::optional<Grab> grab = targets.session.grabbed()) {
-            const PickRay ray = targets.camera.pick_ray(event.position, targets.viewport);
-            const glm::dvec3 origin(ray.origin);
-            const glm::dvec3 direction(ray.direction);
-            const double facing = glm::dot(direction, grab_normal_);
-            // The plane faces the camera, so the ray meets it in front unless the view is extreme.
-            if (std::abs(facing) > 1e-3) {
-                const double t = glm::dot(grab_point_ - origin, grab_normal_) / facing;
-                if (t > 0) {
-                    grab->target = origin + direction * t;
-                    targets.session.grab(grab);
-                }
+            if (const std::optional<glm::dvec3> place = place_in_plane(event.position, targets)) {
+                grab->target = *place;
+                targets.session.grab(grab);
             }
         } else {
             drag_ = Drag::none; // the session let go: a restart, a step back
         }
+        break;
+    case Drag::probe:
+        if (const std::optional<glm::dvec3> place = place_in_plane(event.position, targets))
+            targets.session.move_probe(handle_.probe, handle_.handle, *place);
         break;
     }
     last_ = event.position;

@@ -3,6 +3,7 @@
 
 #include "app/render/camera.h"
 #include "app/sandbox/session.h"
+#include "app/sandbox/view_state.h"
 
 #include <optional>
 
@@ -41,7 +42,7 @@ class Tools {
     void handle(const PointerEvent &event, const ToolTargets &targets);
 
     // What the left button is at, or nothing.
-    enum class Drag { none, maybe_click, orbit, pan, grab };
+    enum class Drag { none, maybe_click, orbit, pan, grab, probe };
     [[nodiscard]] Drag drag() const { return drag_; }
     // Forgets a drag whose body or scene is gone.
     void let_go(Session &session);
@@ -54,14 +55,19 @@ class Tools {
     void move(const PointerEvent &event, const ToolTargets &targets);
     void release(const PointerEvent &event, const ToolTargets &targets);
     void begin_grab(const PointerEvent &event, const ToolTargets &targets);
+    [[nodiscard]] bool begin_probe(const PointerEvent &event, const ToolTargets &targets);
+    // Where the pointer's ray meets the plane of the drag, if it does in front of the eye.
+    [[nodiscard]] std::optional<glm::dvec3> place_in_plane(const glm::vec2 &pixel,
+                                                           const ToolTargets &targets) const;
     void shoot(const PointerEvent &event, const ToolTargets &targets) const;
 
     Drag drag_ = Drag::none;
     PointerButton button_ = PointerButton::left; // the one that began the drag
     glm::vec2 pressed_at_{0};
     glm::vec2 last_{0};
-    glm::dvec3 grab_point_{0};  // the plane of the grab: through here
+    glm::dvec3 grab_point_{0};  // the plane of the drag: through here
     glm::dvec3 grab_normal_{0}; // facing the camera
+    ProbeHandle handle_;        // that is dragged
 };
 
 // The body under a pixel.

@@ -39,19 +39,22 @@ const ImDrawData &Ui::draw(PanelContext &context) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const glm::vec2 window(size.x, size.y);
     LayoutWishes wishes;
-    wishes.diagnostics = context.view.diagnostics;
+    // Of a world that is stepped.
+    const Simulation *simulation = context.session.simulation();
+    wishes.diagnostics = context.view.diagnostics && (!simulation || simulation->has_world());
     // The width of the messages does not depend on their height.
     const float width = lay_out(window, scale_, wishes).messages.size.x;
     wishes.messages_height = messages_height(context.session.messages(), width);
     const Layout layout = lay_out(window, scale_, wishes);
 
+    probe_labels(context);
     if (context.view.panels) {
         panel(context, "scenes", layout.scenes, scenes_panel);
         panel(context, "settings", layout.settings, settings_panel);
         panel(context, "view", layout.view, view_panel);
         panel(context, "transport", layout.transport, transport_panel);
         panel(context, "details", layout.details, nullptr);
-        if (context.view.diagnostics)
+        if (wishes.diagnostics)
             panel(context, "diagnostics", layout.diagnostics, [](PanelContext &c) {
                 statistics_panel(c);
                 measures_panel(c);

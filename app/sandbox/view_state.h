@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/render/camera.h"
+#include "engine/scene/probe.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -10,10 +11,19 @@
 
 namespace plumb {
 
+// One of the places by which a probe can be moved.
+struct ProbeHandle {
+    std::size_t probe = 0;
+    std::size_t handle = 0;
+    friend bool operator==(const ProbeHandle &, const ProbeHandle &) = default;
+};
+
 struct ViewState {
     Camera camera;
     std::optional<std::size_t> selected;
     std::optional<std::size_t> hovered;
+    std::optional<ProbeHandle> hovered_handle;
+    std::optional<ProbePoint> pointed_at; // of a picking probe's shapes, by the pointer's ray
     bool contacts = false;
     bool joints = false;
     bool wireframe = false;

@@ -1,0 +1,134 @@
+// Probes in the sandbox: drawn, dragged, put back, saved.
+#include "app/sandbox/probe_draw.h"
+#include "app/sandbox/sandbox.h"
+#include "engine/scene/scene_file.h"
+
+#include <filesystem>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+// A ray along x at a ball, seen from +z; the ball is in the middle of a viewport of 800 x 600.
+SceneDesc ray_at_ball() {
+    SceneDesc scene;
+    scene.name = "ray_at_ball";
+    ProbeDesc probe;
+    probe.name = "ray";
+    probe.question = ProbeQuestion::raycast;
+    probe.ray = ProbeRayDesc{{-2, 0, 0}, {1, 0, 0}, {}, {}};
+    ProbeShapeDesc ball;
+    ball.radius = 1;
+    probe.shapes.push_back(ball);
+    scene.probes.push_back(probe);
+    scene.camera.target = glm::dvec3(0);
+    scene.camera.yaw = 0;
+    scene.camera.pitch = 0;
+    return scene;
+}
+
+class ProbeTest : public testing::Test {
+  protected:
+    ProbeTest() : sandbox(Session()) { sandbox.open(ray_at_ball()); }
+    void send(PointerEvent::Kind kind, glm::vec2 at) {
+        PointerEvent event;
+        event.kind = kind;
+        event.position = at;
+        sandbox.handle(event, viewport);
+    }
+    double t() const { return sandbox.session().answers().front().value("t"); }
+
+    static constexpr glm::vec2 viewport{800, 600};
+    static constexpr glm::vec2 ball{400, 300};
+    Sandbox sandbox;
+};
+
+TEST_F(ProbeTest, AnswersAreThereFromTheStartAndNothingSteps) {
+    EXPECT_EQ(t(), 1);
+    EXPECT_FALSE(sandbox.session().step());
+    sandbox.advance(1'000'000'000);
+    sandbox.perform(Action::step);
+    EXPECT_EQ(sandbox.session().simulation()->step_count(), 0U);
+    EXPECT_EQ(sandbox.title(), "ray_at_ball - probes - Plumb");
+}
+
+TEST_F(ProbeTest, ADragOnADiscMovesTheProbeAndNotTheCamera) {
+    const float yaw = sandbox.view().camera.yaw;
+    send(PointerEvent::Kind::move, ball);
+    ASSERT_TRUE(sandbox.view().hovered_handle.has_value());
+    EXPECT_EQ(*sandbox.view().hovered_handle, (ProbeHandle{0, 0}));
+    send(PointerEvent::Kind::press, ball);
+    // As far to the right as half a metre is at the ball.
+    const glm::vec2 there(sandbox.view().camera.project({0.5f, 0, 0}, viewport));
+    send(PointerEvent::Kind::move, there);
+    EXPECT_NEAR(t(), 1.5, 1e-4); // the answer follows at once
+    send(PointerEvent::Kind::release, there);
+    EXPECT_EQ(sandbox.view().camera.yaw, yaw);
+    EXPECT_EQ(sandbox.tools().drag(), Tools::Drag::none);
+
+    sandbox.perform(Action::restart);
+    EXPECT_EQ(t(), 1);
+}
+
+TEST_F(ProbeTest, BesideTheDiscsTheCameraTurns) {
+    const float yaw = sandbox.view().camera.yaw;
+    send(PointerEvent::Kind::press, {100, 500});
+    send(PointerEvent::Kind::move, {200, 500});
+    send(PointerEvent::Kind::release, {200, 500});
+    EXPECT_NE(sandbox.view().camera.yaw, yaw);
+    EXPECT_EQ(t(), 1);
+}
+
+TEST_F(ProbeTest, ASavedSceneHasTheMovedProbe) {
+    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "moved.toml";
+    sandbox.session().move_probe(0, 0, {0.25, 0, 0});
+    ASSERT_TRUE(sandbox.session().save_scene(file));
+    const SceneFileResult again = load_scene(file);
+    ASSERT_TRUE(again.ok());
+    EXPECT_EQ(again.scene.probes.front().shapes.front().position, glm::dvec3(0.25, 0, 0));
+    std::filesystem::remove(file);
+}
+
+TEST_F(ProbeTest, ProbesAreDrawnOverALevelFloorUnlessTheyAreFlat) {
+    const DrawList list = sandbox.draw_list();
+    ASSERT_EQ(list.shapes.size(), 1U);
+    EXPECT_EQ(list.shapes.front().kind, DrawKind::sphere);
+    EXPECT_TRUE(list.shapes.front().glass);
+    EXPECT_FALSE(list.lines.empty());
+    ASSERT_EQ(list.planes.size(), 1U);
+    EXPECT_LE(list.planes.front().position.y, -1.0f); // under the ball
+
+    SceneDesc flat = ray_at_ball();
+    flat.probes.front().shapes.front().kind = ProbeShapeKind::circle;
+    ASSERT_TRUE(sandbox.open(flat));
+    EXPECT_TRUE(sandbox.draw_list().planes.empty());
+    EXPECT_EQ(sandbox.draw_list().meshes.size(), 1U);
+}
+
+TEST_F(ProbeTest, WhereAPickingProbeIsThePointerPicksToo) {
+    SceneDesc scene = ray_at_ball();
+    ProbeDesc &probe = scene.probes.front();
+    probe.question = ProbeQuestion::pick;
+    probe.ray.reset();
+    probe.camera = ProbeCameraDesc{};
+    probe.camera->pixel = glm::dvec2(80, 50);
+    ASSERT_TRUE(sandbox.open(scene));
+    send(PointerEvent::Kind::move, ball);
+    ASSERT_TRUE(sandbox.view().pointed_at.has_value());
+    EXPECT_LT(glm::distance(sandbox.view().pointed_at->position, glm::dvec3(0, 0, 1)), 1e-4);
+    send(PointerEvent::Kind::move, {5, 5});
+    EXPECT_FALSE(sandbox.view().pointed_at.has_value());
+}
+
+TEST_F(ProbeTest, AllIsFramed) {
+    const Around all = around(sandbox.session().answers());
+    EXPECT_GT(all.radius, 1);
+    EXPECT_LT(glm::length(all.centre), 3);
+    sandbox.perform(Action::frame);
+    EXPECT_GT(sandbox.view().camera.distance, all.radius);
+}
+
+} // namespace
+} // namespace plumb
