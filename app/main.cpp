@@ -4,6 +4,7 @@
 #include "app/lab/interrupt.h"
 #include "app/lab/load_scenes.h"
 #include "app/lab/measure.h"
+#include "app/lab/query_chart.h"
 #include "app/lab/run_text.h"
 #include "app/lab/sweep.h"
 #include "app/render/compare_images.h"
@@ -17,11 +18,15 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <system_error>
 #include <thread>
+
+#include <unistd.h>
 
 namespace plumb {
 
@@ -234,7 +239,9 @@ int hash(const Common &common, std::uint64_t steps) {
             code = worse(code, ExitCode::bad_input);
             continue;
         }
-        for (std::uint64_t step = 0; step < steps && simulation->report().finite; ++step)
+        const bool has_world = simulation->has_world();
+        for (std::uint64_t step = 0; has_world && step < steps && simulation->report().finite;
+             ++step)
             simulation->step();
         std::cout << std::hex << std::setw(16) << std::setfill('0') << simulation->hash()
                   << std::dec << "  " << scene.name << "  step " << simulation->step_count()
@@ -316,6 +323,29 @@ int compare(const std::filesystem::path &a_path, const std::filesystem::path &b_
     }
     return code_of(difference.max_difference <= tolerance ? ExitCode::fine
                                                           : ExitCode::outside_tolerance);
+}
+
+struct BenchArguments {
+    std::string what;
+    int rounds = 5;
+};
+
+// The other libraries are linked into a program of its own beside this one, which few people need.
+int bench(const BenchArguments &arguments, const std::filesystem::path &out) {
+    const std::filesystem::path program =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plumb-bench";
+    if (!std::filesystem::exists(program)) {
+        std::cerr << "plumb: there is no " << program.string()
+                  << "; `./plumb bench geometry` in the source folder installs the libraries to "
+                     "compare with, and builds it\n";
+        return code_of(ExitCode::bad_input);
+    }
+    const std::string rounds = std::to_string(arguments.rounds);
+    execl(program.c_str(), program.c_str(), arguments.what.c_str(), rounds.c_str(), out.c_str(),
+          static_cast<char *>(nullptr));
+    std::cerr << "plumb: cannot run " << program.string() << ": "
+              << std::generic_category().message(errno) << '\n';
+    return code_of(ExitCode::bad_input);
 }
 
 // The command as it was typed, for a chart's footer.
@@ -437,8 +467,9 @@ int main_with_errors(int argc, char **argv) {
 
     ChartCommand chart;
     std::vector<std::string> sweeps;
-    CLI::App *chart_command =
-        app.add_subcommand("chart", "Charts each method's cost against its error, as CSV and PNG");
+    CLI::App *chart_command = app.add_subcommand(
+        "chart", "Charts each method's cost against its error, as CSV and PNG: of scenes, or of "
+                 "geometric queries (`plumb chart geometry`)");
     add_scenes(*chart_command, common);
     chart_command->add_option("--methods", chart.options.methods, "Of " + method_names() + " (all)")
         ->allow_extra_args(false)
@@ -456,6 +487,15 @@ int main_with_errors(int argc, char **argv) {
     add_out(*chart_command, common, "out");
     add_run_options(*chart_command, common, true);
     chart_command->callback([&] {
+        if (common.scenes == std::vector<std::string>{"geometry"}) {
+            QueryChartCommand command;
+            command.options.repeats = chart.options.repeats;
+            command.out_dir = common.out;
+            command.shader_dir = common.shader_dir();
+            command.command = command_text(argc, argv);
+            result = code_of(chart_geometry(command, std::cout, std::cerr));
+            return;
+        }
         for (const std::string &sweep : sweeps)
             chart.options.sweep.push_back(parse_sweep(sweep));
         chart.scenes = common.scene_paths();
@@ -465,6 +505,16 @@ int main_with_errors(int argc, char **argv) {
         chart.command = command_text(argc, argv);
         result = code_of(chart_scenes(chart, std::cout, std::cerr));
     });
+
+    BenchArguments bench_arguments;
+    CLI::App *bench_command = app.add_subcommand(
+        "bench", "Times the engine beside other libraries (run it as ./plumb bench geometry)");
+    bench_command->add_option("WHAT", bench_arguments.what, "Only: geometry")->required();
+    bench_command->add_option("--rounds", bench_arguments.rounds, "Of timings; their median counts")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    add_out(*bench_command, common, "out");
+    bench_command->callback([&] { result = bench(bench_arguments, common.out); });
 
     std::filesystem::path picture_a, picture_b, difference;
     int tolerance = 0;

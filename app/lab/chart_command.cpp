@@ -64,6 +64,10 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
     for (const SceneDesc &scene : loaded.scenes) {
         if (InterruptGuard::requested())
             break;
+        if (!has_world(scene)) {
+            out << "-     " << scene.name << ": only probes, and no motion to chart\n";
+            continue;
+        }
         try {
             ChartOptions options = command.options;
             options.stop = InterruptGuard::requested;

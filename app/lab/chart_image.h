@@ -5,9 +5,13 @@
 #include "app/render/image.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 namespace plumb {
+
+class ChartPen;
+struct PanelChart;
 
 // Holds a GL context and a typeface for as many charts as one likes. Leaves ImGui's current context
 // as it was, but not the thread's GL context: whoever has one makes it current again afterwards.
@@ -21,8 +25,11 @@ class ChartPainter {
 
     // 1200 x 800 pixels.
     [[nodiscard]] Image paint(const ChartContent &content);
+    [[nodiscard]] Image paint(const PanelChart &chart);
 
   private:
+    [[nodiscard]] Image paint(const std::function<void(ChartPen &)> &draw);
+
     struct Parts;
     std::unique_ptr<Parts> parts_;
 };

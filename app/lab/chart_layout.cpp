@@ -12,7 +12,7 @@ namespace {
 constexpr float strip = 40; // height of the strips for failed runs and for zero error
 
 // The length of the part of a segment inside a box (Liang and Barsky 1984).
-float length_inside(const std::pair<glm::vec2, glm::vec2> &segment, const Box &box) {
+float length_inside(const std::pair<glm::vec2, glm::vec2> &segment, const PixelBox &box) {
     const glm::vec2 d = segment.second - segment.first;
     float enter = 0, leave = 1;
     for (int axis = 0; axis < 2; ++axis) {
@@ -34,8 +34,8 @@ float length_inside(const std::pair<glm::vec2, glm::vec2> &segment, const Box &b
 std::vector<PlacedLabel> place_labels(const std::vector<glm::vec2> &points,
                                       const std::vector<glm::vec2> &sizes,
                                       const std::vector<float> &radii,
-                                      const std::vector<std::size_t> &order, const Box &bounds,
-                                      const std::vector<Box> &obstacles,
+                                      const std::vector<std::size_t> &order, const PixelBox &bounds,
+                                      const std::vector<PixelBox> &obstacles,
                                       const std::vector<std::pair<glm::vec2, glm::vec2>> &lines) {
     // Directions in order of preference: above, to the right, below, to the left, then the corners.
     constexpr std::array<glm::vec2, 8> directions{
@@ -49,7 +49,7 @@ std::vector<PlacedLabel> place_labels(const std::vector<glm::vec2> &points,
         if (half.x <= 0)
             continue;
         float best_score = std::numeric_limits<float>::infinity();
-        Box best;
+        PixelBox best;
         for (std::size_t g = 0; g < gaps.size(); ++g)
             for (std::size_t k = 0; k < directions.size(); ++k) {
                 const glm::vec2 direction = directions[k];
@@ -59,10 +59,10 @@ std::vector<PlacedLabel> place_labels(const std::vector<glm::vec2> &points,
                 const glm::vec2 offset =
                     direction * (half + glm::vec2(corner ? 0.75f * reach : reach));
                 const glm::vec2 centre = points[index] + offset;
-                const Box box{centre - half, centre + half};
+                const PixelBox box{centre - half, centre + half};
                 if (!bounds.contains(box))
                     continue;
-                const auto hits = [&](const Box &other) { return box.overlaps(other); };
+                const auto hits = [&](const PixelBox &other) { return box.overlaps(other); };
                 bool blocked = std::any_of(obstacles.begin(), obstacles.end(), hits) ||
                                std::any_of(placed.begin(), placed.end(),
                                            [&](const PlacedLabel &p) { return hits(p.box); });
@@ -116,7 +116,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         layout.field.max.y -= strip;
     }
 
-    const Box &field = layout.field;
+    const PixelBox &field = layout.field;
     const auto x_of = [&](double cost) {
         return static_cast<float>(field.min.x + log_position(layout.cost_range, cost) *
                                                     (field.max.x - field.min.x));
@@ -137,7 +137,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
                                                        : y_of(mark.error));
     }
 
-    std::vector<Box> obstacles;
+    std::vector<PixelBox> obstacles;
     if (content.limit && *content.limit > 0) {
         layout.limit_line = y_of(*content.limit);
         const glm::vec2 text = text_size(content.limit_label, label_text);
@@ -147,7 +147,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
             for (const bool left : {false, true}) {
                 const float x = left ? field.min.x + 10 : field.max.x - 10 - text.x;
                 const float y = below ? *layout.limit_line + 4 : *layout.limit_line - 4 - text.y;
-                const Box box{{x, y}, {x + text.x, y + text.y}};
+                const PixelBox box{{x, y}, {x + text.x, y + text.y}};
                 float score = (left ? 1.0f : 0.0f) + (below ? 0.5f : 0.0f);
                 if (!layout.plot.contains(box))
                     score += 1000;

@@ -46,13 +46,13 @@ struct ChartContent {
     std::vector<std::string> footer;
 };
 
-struct Box {
+struct PixelBox {
     glm::vec2 min{0}, max{0};
-    [[nodiscard]] bool overlaps(const Box &other) const {
+    [[nodiscard]] bool overlaps(const PixelBox &other) const {
         return min.x < other.max.x && other.min.x < max.x && min.y < other.max.y &&
                other.min.y < max.y;
     }
-    [[nodiscard]] bool contains(const Box &other) const {
+    [[nodiscard]] bool contains(const PixelBox &other) const {
         return min.x <= other.min.x && min.y <= other.min.y && max.x >= other.max.x &&
                max.y >= other.max.y;
     }
@@ -69,13 +69,13 @@ struct PlacedTick {
 
 struct PlacedLabel {
     std::size_t mark = 0;
-    Box box;
+    PixelBox box;
 };
 
 struct ChartLayout {
     glm::vec2 size{0};
-    Box plot;                         // the frame, strips included
-    Box field;                        // where the logarithmic scales hold
+    PixelBox plot;                    // the frame, strips included
+    PixelBox field;                   // where the logarithmic scales hold
     std::optional<float> failed_line; // y of the failed runs' strip, above the field
     std::optional<float> zero_line;   // y of the strip for errors of exactly zero, below the field
     LogRange cost_range, error_range;
@@ -84,7 +84,7 @@ struct ChartLayout {
     std::vector<PlacedLabel> labels; // never over each other, a mark or the frame; some marks may
                                      // go without where there is no room
     std::optional<float> limit_line; // y
-    Box limit_text;
+    PixelBox limit_text;
     std::vector<glm::vec2> pareto_steps; // a staircase through the front, in pixels
 };
 
@@ -98,7 +98,7 @@ inline constexpr float axis_text = 14;
 inline constexpr float label_text = 13;
 inline constexpr float footer_text = 12;
 inline constexpr float label_margin = 2; // on both sides of a label, within its box
-inline constexpr Box plot{{96, 132}, {932, 668}};
+inline constexpr PixelBox plot{{96, 132}, {932, 668}};
 } // namespace chart_style
 
 [[nodiscard]] ChartLayout lay_out(const ChartContent &content, const TextSize &text_size);
@@ -110,7 +110,7 @@ inline constexpr Box plot{{96, 132}, {932, 668}};
 [[nodiscard]] std::vector<PlacedLabel>
 place_labels(const std::vector<glm::vec2> &points, const std::vector<glm::vec2> &sizes,
              const std::vector<float> &radii, const std::vector<std::size_t> &order,
-             const Box &bounds, const std::vector<Box> &obstacles,
+             const PixelBox &bounds, const std::vector<PixelBox> &obstacles,
              const std::vector<std::pair<glm::vec2, glm::vec2>> &lines);
 
 } // namespace plumb

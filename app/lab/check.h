@@ -17,11 +17,16 @@ class TaskPool;
 struct CheckOutcome {
     std::string scene;
     ResolvedRun resolved;
-    std::string why_not; // why the method cannot run the scene; empty when it can
+    std::string why_not;   // why the method cannot run the scene; empty when it can
+    bool has_world = true; // not when the scene has only probes: then nothing is run
     JudgedRun run;
 };
 
-// Throws std::invalid_argument as resolve_run does. `tasks` may be null.
+// Asks the probe, and adds what came of each of its expects.
+void judge_probe(const ProbeDesc &probe, Precision precision, std::vector<ExpectOutcome> &outcomes);
+
+// Throws std::invalid_argument as resolve_run does. `tasks` may be null. The expects of probes come
+// after the scene's own; a scene without a world is not run.
 [[nodiscard]] CheckOutcome check_scene(const SceneDesc &scene, const RunOptions &options,
                                        TaskPool *tasks, const JudgeOptions &judging = {});
 

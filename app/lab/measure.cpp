@@ -8,6 +8,7 @@
 #include "app/lab/run_text.h"
 #include "engine/core/check.h"
 #include "engine/scene/expect.h"
+#include "engine/scene/probe.h"
 
 #include <algorithm>
 #include <cmath>
@@ -163,6 +164,17 @@ MeasureSummary measure_run(Simulation &simulation, const MeasureOptions &options
     return summary;
 }
 
+void measure_probes(std::span<const ProbeDesc> probes, Precision precision, std::ostream &csv_out) {
+    CsvWriter csv(csv_out);
+    csv.cell("probe").cell("value").cell("is");
+    csv.end_row();
+    for (const ProbeDesc &probe : probes)
+        for (const ProbeValue &value : answer(probe, precision).values) {
+            csv.cell(probe.name).cell(std::string(value.name)).cell(value.value);
+            csv.end_row();
+        }
+}
+
 void print(std::ostream &out, const MeasureSummary &s) {
     char line[256];
     std::snprintf(line, sizeof line, "%llu steps, %.6g s simulated\n",
@@ -208,6 +220,17 @@ ExitCode measure_scene(const MeasureCommand &command, std::ostream &out, std::os
     const SceneDesc &scene = loaded.scenes.front();
     try {
         const ResolvedRun resolved = resolve_run(scene, command.run);
+        if (!has_world(scene)) {
+            std::optional<PartialFile> file;
+            if (!command.out.empty())
+                file.emplace(command.out);
+            measure_probes(scene.probes, resolved.precision, file ? file->stream() : out);
+            if (file)
+                file->finish();
+            (file ? out : err) << scene.name
+                               << ": only probes, and no world to step; wrote their values\n";
+            return ExitCode::fine;
+        }
         const auto simulation = Simulation::create(scene, command.run, command.tasks);
         const InterruptGuard interrupt;
         ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());

@@ -10,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <ostream>
+#include <span>
 
 namespace plumb {
 
@@ -43,6 +44,9 @@ struct MeasureSummary {
                                          std::ostream &csv);
 
 void print(std::ostream &out, const MeasureSummary &summary);
+
+// A table of what probes are answered: the probe, the value's name, the number (yes is 1, no 0).
+void measure_probes(std::span<const ProbeDesc> probes, Precision precision, std::ostream &csv);
 
 struct MeasureCommand {
     std::filesystem::path scene;

@@ -1,0 +1,52 @@
+#include "app/lab/query_chart.h"
+
+#include "app/lab/chart_image.h"
+#include "app/lab/interrupt.h"
+#include "app/lab/partial_file.h"
+#include "app/render/context.h"
+#include "app/render/png.h"
+
+#include <iostream>
+#include <system_error>
+
+namespace plumb {
+
+ExitCode chart_geometry(const QueryChartCommand &command, std::ostream &out, std::ostream &err) {
+    std::error_code error;
+    std::filesystem::create_directories(command.out_dir, error);
+    if (error) {
+        err << command.out_dir.string() << ": " << error.message() << '\n';
+        return ExitCode::bad_input;
+    }
+    const InterruptGuard interrupt;
+    ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());
+    QueryChartOptions options = command.options;
+    options.stop = InterruptGuard::requested;
+    options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
+
+    PartialFile csv(command.out_dir / "geometry.csv");
+    const QueryChart chart = chart_queries(options);
+    line.clear();
+    write_query_csv(csv.stream(), chart);
+    print(out, chart);
+    out << std::flush;
+    if (chart.interrupted) {
+        csv.flush();
+        err << "interrupted; rows so far: " << csv.partial_path().string() << '\n';
+        return ExitCode::fine;
+    }
+    csv.finish();
+    err << "wrote " << csv.path().string() << '\n';
+    try {
+        const std::filesystem::path picture = command.out_dir / "geometry.png";
+        write_png(picture,
+                  ChartPainter(command.shader_dir).paint(panel_chart(chart, command.command)));
+        err << "wrote " << picture.string() << '\n';
+    } catch (const ContextError &failure) {
+        err << "no picture: " << failure.what() << '\n';
+        return ExitCode::no_gl_context;
+    }
+    return ExitCode::fine;
+}
+
+} // namespace plumb

@@ -1,0 +1,30 @@
+// Bullet's answers, to be timed beside ours.
+#pragma once
+
+#include "engine/geometry/hull_mesh.h"
+#include "engine/geometry/shapes.h"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace plumb::bullet {
+
+using Work = std::function<std::uint64_t()>;
+
+// btRayAabb2, the test in the inner loop of Bullet's trees: it wants the inverse direction, which
+// is part of the work, as it is of ours.
+Work rays_aabbs(std::span<const Ray> rays, std::span<const Aabb> boxes);
+
+// btCollisionWorld::rayTestSingle: ray i against shape i.
+template <typename Solid> Work rays(std::span<const Ray> rays, std::span<const Solid> solids);
+
+// The collision algorithm that Bullet's dispatcher has for the pair, as in its step: a manifold.
+// "Yes" is a contact that is not apart.
+template <typename A, typename B> Work contacts(std::span<const A> a, std::span<const B> b);
+
+// btGjkPairDetector with btGjkEpaPenetrationDepthSolver: distance, or depth, and closest points.
+template <typename A, typename B> Work closest(std::span<const A> a, std::span<const B> b);
+
+} // namespace plumb::bullet

@@ -1,0 +1,99 @@
+// libFuzzer target: any stream of changes leaves the trees sound, and all of them find the same.
+#include "engine/space/bvh.h"
+#include "engine/space/dynamic_tree.h"
+#include "engine/space/orthtree.h"
+#include "tests/fuzz/input.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace plumb {
+namespace {
+
+struct Item {
+    Aabb box;
+    DynamicTree::Leaf leaf = DynamicTree::none;
+    Octree::Item item = Octree::none;
+    std::uint32_t user = 0;
+};
+
+bool touch(const Aabb &a, const Aabb &b) {
+    for (int i = 0; i < 3; ++i)
+        if (a.min[i] > b.max[i] || b.min[i] > a.max[i])
+            return false;
+    return true;
+}
+
+// What each tree finds in a box, beside what there is.
+void compare(const std::vector<Item> &items, const DynamicTree &tree, const Octree &octree,
+             const Aabb &box) {
+    std::vector<std::uint32_t> expected, found;
+    for (const Item &item : items)
+        if (touch(item.box, box))
+            expected.push_back(item.user);
+    std::sort(expected.begin(), expected.end());
+    const auto take = [&](std::uint32_t user) {
+        found.push_back(user);
+        return true;
+    };
+    const auto is_as_expected = [&] {
+        std::sort(found.begin(), found.end());
+        const bool same = found == expected;
+        found.clear();
+        return same;
+    };
+    tree.query(box, take);
+    FUZZ_ASSERT(is_as_expected());
+    octree.query(box, take);
+    FUZZ_ASSERT(is_as_expected());
+    std::vector<Aabb> boxes;
+    for (const Item &item : items)
+        boxes.push_back(item.box);
+    // Its leaves hold several items: some of what it visits may be beside the box.
+    Bvh(boxes).query(box, [&](std::uint32_t index) {
+        if (touch(boxes[index], box))
+            found.push_back(items[index].user);
+        return true;
+    });
+    FUZZ_ASSERT(is_as_expected());
+}
+
+} // namespace
+} // namespace plumb
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
+    using namespace plumb;
+    FuzzInput input(data, size);
+    DynamicTree tree(Real(0));
+    Octree octree({Vec3{Real(-4)}, Vec3{Real(4)}}, 5, 2);
+    std::vector<Item> items;
+    std::uint32_t next = 0;
+    for (int step = 0; step < 200 && !input.is_empty(); ++step) {
+        const std::uint32_t which = input.below(4);
+        if (which == 0 || items.empty()) {
+            Item item;
+            item.box = input.aabb();
+            item.user = next++;
+            item.leaf = tree.insert(item.box, item.user);
+            item.item = octree.insert(item.box, item.user);
+            items.push_back(item);
+        } else if (which == 1) {
+            const std::size_t at = input.below(static_cast<std::uint32_t>(items.size()));
+            tree.remove(items[at].leaf);
+            octree.remove(items[at].item);
+            items.erase(items.begin() + static_cast<std::ptrdiff_t>(at));
+        } else if (which == 2) {
+            Item &item = items[input.below(static_cast<std::uint32_t>(items.size()))];
+            item.box = input.aabb();
+            // A leaf keeps a box that still holds the new one: put it in anew for equal answers.
+            tree.remove(item.leaf);
+            item.leaf = tree.insert(item.box, item.user);
+            octree.update(item.item, item.box);
+        } else {
+            compare(items, tree, octree, input.aabb());
+        }
+        tree.validate();
+        octree.validate();
+    }
+    return 0;
+}
