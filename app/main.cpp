@@ -331,7 +331,7 @@ struct BenchArguments {
 };
 
 // The other libraries are linked into a program of its own beside this one, which few people need.
-int bench(const BenchArguments &arguments, const std::filesystem::path &out) {
+int bench(const BenchArguments &arguments, const Common &common) {
     const std::filesystem::path program =
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plumb-bench";
     if (!std::filesystem::exists(program)) {
@@ -341,8 +341,8 @@ int bench(const BenchArguments &arguments, const std::filesystem::path &out) {
         return code_of(ExitCode::bad_input);
     }
     const std::string rounds = std::to_string(arguments.rounds);
-    execl(program.c_str(), program.c_str(), arguments.what.c_str(), rounds.c_str(), out.c_str(),
-          static_cast<char *>(nullptr));
+    execl(program.c_str(), program.c_str(), arguments.what.c_str(), rounds.c_str(),
+          common.out.c_str(), common.shader_dir().c_str(), static_cast<char *>(nullptr));
     std::cerr << "plumb: cannot run " << program.string() << ": "
               << std::generic_category().message(errno) << '\n';
     return code_of(ExitCode::bad_input);
@@ -514,7 +514,7 @@ int main_with_errors(int argc, char **argv) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     add_out(*bench_command, common, "out");
-    bench_command->callback([&] { result = bench(bench_arguments, common.out); });
+    bench_command->callback([&] { result = bench(bench_arguments, common); });
 
     std::filesystem::path picture_a, picture_b, difference;
     int tolerance = 0;

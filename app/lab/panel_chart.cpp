@@ -20,11 +20,13 @@ struct Sheet {
     float zero_strip = 22; // its height, below the logarithmic scale
 
     [[nodiscard]] PixelBox panel(std::size_t index) const {
-        const auto column = static_cast<float>(index % static_cast<std::size_t>(columns));
-        const auto row = static_cast<float>(index / static_cast<std::size_t>(columns));
+        const auto across = static_cast<std::size_t>(columns);
+        const std::size_t column = index % across, row = index / across;
         const glm::vec2 count(static_cast<float>(columns), static_cast<float>(rows));
         const glm::vec2 size = (area.max - area.min - gap * (count - 1.0f)) / count;
-        const glm::vec2 corner = area.min + glm::vec2(column, row) * (size + gap);
+        const glm::vec2 corner =
+            area.min +
+            glm::vec2(static_cast<float>(column), static_cast<float>(row)) * (size + gap);
         return {corner, corner + size};
     }
     [[nodiscard]] float x(const PixelBox &box, double value) const {

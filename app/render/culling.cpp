@@ -40,6 +40,9 @@ bool same(const Aabb &a, const Aabb &b) {
 void Culling::rebuild(std::span<const DrawShape> shapes) {
     boxes_.clear();
     items_.clear();
+    tree_.reset();
+    if (shapes.empty())
+        return;
     Aabb world;
     for (const DrawShape &shape : shapes) {
         boxes_.push_back(box_around(shape));
@@ -55,7 +58,7 @@ void Culling::rebuild(std::span<const DrawShape> shapes) {
 }
 
 void Culling::update(std::span<const DrawShape> shapes) {
-    if (!tree_ || shapes.size() != boxes_.size()) {
+    if (shapes.size() != boxes_.size()) {
         rebuild(shapes);
         return;
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <imgui/imgui.h>
 
@@ -18,17 +19,24 @@ std::string value_text(const ProbeValue &value) {
     case ProbeValue::Form::count:
         return number(value.value, {}, 9);
     case ProbeValue::Form::number:
+    case ProbeValue::Form::entry:
         break;
     }
     return number(value.value, {}, 5);
 }
 
-// Green when what is expected came true, red when not, plain when nothing is expected.
-Colour colour_of(const ProbeDesc &probe, const ProbeValue &value) {
-    const auto expect = std::ranges::find(probe.expects, value.name, &ProbeExpectDesc::value);
-    if (expect == probe.expects.end())
-        return theme::text;
-    return std::abs(value.value - expect->is) <= probe.tolerance ? theme::good : theme::error;
+// Green when all that is expected of them came true, red when not, plain when nothing is expected.
+Colour colour_of(const ProbeDesc &probe, std::span<const ProbeValue> values) {
+    bool is_any_expected = false;
+    for (const ProbeValue &value : values) {
+        const auto expect = std::ranges::find(probe.expects, value.name, &ProbeExpectDesc::value);
+        if (expect == probe.expects.end())
+            continue;
+        if (!(std::abs(value.value - expect->is) <= probe.tolerance))
+            return theme::error;
+        is_any_expected = true;
+    }
+    return is_any_expected ? theme::good : theme::text;
 }
 
 } // namespace
@@ -52,10 +60,19 @@ void probes_panel(PanelContext &context) {
             ImGui::TextColored(theme::warning, "%s", found.refusal.c_str());
             ImGui::PopTextWrapPos();
         }
-        for (const ProbeValue &value : found.values) {
-            std::string name(value.name);
+        std::span<const ProbeValue> left = found.values;
+        while (!left.empty()) {
+            // A row of a matrix in one, under the name of the row: "minor_1" for "minor_11".
+            const bool is_row = left.front().form == ProbeValue::Form::entry;
+            const auto values = left.first(is_row ? 3 : 1);
+            left = left.subspan(values.size());
+            std::string name(
+                values.front().name.substr(0, values.front().name.size() - (is_row ? 1 : 0)));
             std::ranges::replace(name, '_', ' ');
-            value_row(name, value_text(value), colour_of(probe, value));
+            std::string text;
+            for (const ProbeValue &value : values)
+                text += (text.empty() ? "" : "   ") + value_text(value);
+            value_row(name, text, colour_of(probe, values));
         }
         ImGui::PopFont();
         ImGui::Spacing();

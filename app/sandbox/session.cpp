@@ -5,6 +5,8 @@
 #include <cmath>
 #include <exception>
 #include <fstream>
+#include <iterator>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -28,6 +30,11 @@ std::string where_not_finite(const Simulation &simulation) {
             where = "body \"" + simulation.body_info(body).name + "\", ";
     }
     return where + "step " + std::to_string(simulation.step_count());
+}
+
+std::string text_of(const std::filesystem::path &path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 } // namespace
@@ -217,6 +224,23 @@ void Session::move_probe(std::size_t probe, std::size_t handle, const glm::dvec3
     answers_[probe] = answer(probes_[probe], simulation_->precision());
 }
 
+// Brings the files that the scene names along, as it looks for them beside itself.
+void Session::save_mesh_files(const std::filesystem::path &folder) const {
+    std::set<std::string> names;
+    for (const ProbeDesc &probe : probes_)
+        for (const ProbeShapeDesc &shape : probe.shapes)
+            if (!shape.file.empty())
+                names.insert(shape.file);
+    for (const std::string &name : names) {
+        const std::filesystem::path from = path_.parent_path() / name;
+        const std::filesystem::path to = folder / name;
+        if (!std::filesystem::exists(to))
+            std::filesystem::copy_file(from, to);
+        else if (text_of(from) != text_of(to))
+            throw std::runtime_error(to.string() + " is another mesh already");
+    }
+}
+
 bool Session::save_scene(const std::filesystem::path &path) {
     if (!simulation_)
         return false;
@@ -226,6 +250,7 @@ bool Session::save_scene(const std::filesystem::path &path) {
         const std::string text = write_scene(present);
         if (path.has_parent_path())
             std::filesystem::create_directories(path.parent_path());
+        save_mesh_files(path.parent_path());
         std::filesystem::path beside = path;
         beside += ".part";
         {

@@ -90,7 +90,8 @@ class Session {
     void move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place);
 
     // Writes the present state as a scene file: beside the file first, then renamed. Makes the
-    // folder.
+    // folder, and copies the meshes' files into it; one that has another file of a mesh's name is
+    // an error.
     bool save_scene(const std::filesystem::path &path);
 
     // Before and after the last step; the same after anything but a step.
@@ -104,6 +105,7 @@ class Session {
     bool start(const SceneDesc &scene, const RunOptions &options,
                const std::optional<StepSettings> &settings);
     void settle_poses();
+    void save_mesh_files(const std::filesystem::path &folder) const;
 
     RunOptions options_;
     TaskPool *tasks_ = nullptr;

@@ -41,7 +41,8 @@ const ImDrawData &Ui::draw(PanelContext &context) {
     LayoutWishes wishes;
     // Of a world that is stepped.
     const Simulation *simulation = context.session.simulation();
-    wishes.diagnostics = context.view.diagnostics && (!simulation || simulation->has_world());
+    wishes.diagnostics =
+        context.view.diagnostics && (simulation == nullptr || simulation->has_world());
     // The width of the messages does not depend on their height.
     const float width = lay_out(window, scale_, wishes).messages.size.x;
     wishes.messages_height = messages_height(context.session.messages(), width);

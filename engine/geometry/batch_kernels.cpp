@@ -18,8 +18,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace plumb::inline PLUMB_PRECISION {
-namespace kernels {
-namespace HWY_NAMESPACE {
+namespace kernels::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -561,8 +560,7 @@ HWY_ATTR bool may_meet_triangles(const TriangleBatch &triangles, const Ray &ray,
 }
 
 } // namespace
-} // namespace HWY_NAMESPACE
-} // namespace kernels
+} // namespace kernels::HWY_NAMESPACE
 } // namespace plumb::inline PLUMB_PRECISION
 HWY_AFTER_NAMESPACE();
 

@@ -179,11 +179,12 @@ Penetration core_penetration(const CoreA &a, const CoreB &b, const GjkResult &ov
             best_normal = face.normal;
         }
         // Nothing of the difference is nearer than the nearest plane of a part of it, and a plane
-        // that it is behind is a way out.
-        if (least - face.height <= relative * least + rounding_along(face.normal, size))
+        // that it is behind is a way out. Both are below zero by rounding where the shapes touch
+        // within it only.
+        if (least - face.height <= relative * std::abs(least) + rounding_along(face.normal, size))
             break;
-        // The second where rounding hands the same few faces around, of what is flat to the last
-        // digit: the depth is known by then.
+        // A face that does not grow is finished once, and ends this when it is the nearest again;
+        // the second limit is for coordinates beyond all sizes, whose products overflow.
         if (polytope.is_full() || result.iterations > 2 * Polytope::vertex_limit) {
             (void)PLUMB_RARELY("epa: vertex limit", true);
             break;

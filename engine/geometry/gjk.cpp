@@ -45,8 +45,9 @@ void keep_closer(SimplexPart &best, const SimplexPart &other) {
 bool is_inner(Real area, const Vec3 &start, const Vec3 &side, Real squared_normal, Real slack) {
     if (area > Real(0))
         return true;
-    return slack > Real(0) && area * area <= slack * slack * squared_normal *
-                                                 glm::dot(start, start) * glm::dot(side, side);
+    // By lengths: the squares of areas would overflow.
+    return slack > Real(0) &&
+           -area <= slack * std::sqrt(squared_normal) * glm::length(start) * glm::length(side);
 }
 
 SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, Real slack) {
@@ -115,7 +116,7 @@ SimplexPart tetrahedron_part(const Simplex &simplex, const Vec3 &size, Real slac
         return best;
     }
     // Inside. The weight of a vertex is the height of the origin above the face opposite of it, in
-    // heights of the vertex. Once more for what rounding left.
+    // heights of the vertex. Then again for what rounding left, of the thinnest most.
     best = {Vec3{Real(0)}, Real(0), {}, {0, 1, 2, 3}, 4};
     Vec3 off = p;
     const auto weighted_sum = [&] {
@@ -125,7 +126,7 @@ SimplexPart tetrahedron_part(const Simplex &simplex, const Vec3 &size, Real slac
         return sum;
     };
     best.weights[newest] = Real(1);
-    for (int pass = 0; pass < 2; ++pass) {
+    for (int pass = 0; pass < 4; ++pass) {
         for (std::size_t f = 0; f < 3; ++f) {
             const Real change = glm::dot(off, normals[f]) / heights[f];
             best.weights[(f + 2) % 3] -= change;
@@ -189,8 +190,47 @@ void reduce(Simplex &simplex, const SimplexPart &part) {
     simplex.count = part.count;
 }
 
+namespace {
+
+// Of a needle the areas say well where across it a point is, and badly where along it: from the
+// point that the weights should add up to, that is put right.
+void settle_along_longest(Simplex &simplex, const Vec3 &closest) {
+    const auto count = static_cast<std::size_t>(simplex.count);
+    const auto difference = [&](std::size_t i) {
+        return simplex.vertices[i].b - simplex.vertices[i].a;
+    };
+    Vec3 off = closest;
+    Vec3 longest{Real(0)};
+    Real squared = Real(0);
+    std::size_t from = 0;
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        off -= simplex.weights[i] * difference(i);
+        for (std::size_t j = 0; j < i; ++j) {
+            const Vec3 side = difference(i) - difference(j);
+            const Real squared_side = glm::dot(side, side);
+            if (squared_side > squared) {
+                squared = squared_side;
+                longest = side;
+                from = j;
+                to = i;
+            }
+        }
+    }
+    if (!(squared > Real(0)))
+        return;
+    const Real change =
+        std::clamp(glm::dot(off, longest) / squared, -simplex.weights[to], simplex.weights[from]);
+    simplex.weights[from] -= change;
+    simplex.weights[to] += change;
+}
+
+} // namespace
+
 Witnesses witnesses(const GjkResult &result) {
-    const Simplex &simplex = result.simplex;
+    Simplex simplex = result.simplex;
+    if (simplex.count == 3)
+        settle_along_longest(simplex, result.difference);
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
     Real spread_a = Real(0);

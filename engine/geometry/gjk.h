@@ -27,11 +27,10 @@ struct ClosestPoints {
 //
 // Right within relative 16 epsilon (cylinders 1e-5 in float, 1e-9 in double) plus 32 epsilon times
 // the largest coordinate of either shape, measured from A's place: what the shapes' own corners are
-// rounded by. Of a million adversarial pairs two in float exceed that: needles. Shapes that are
-// closer may count as overlapping, and their normal is then no better than that either. Axes along
-// which all coordinates are small keep their own rounding: a box on a ground of 200 km has its
-// distance to 1e-6 m. Points, segments and shapes without thickness are allowed, but not a point
-// with a point.
+// rounded by. Shapes that are closer may count as overlapping, and their normal is then no better
+// than that either. Axes along which all coordinates are small keep their own rounding: a box on a
+// ground of 200 km has its distance to 1e-6 m. Points, segments and shapes without thickness are
+// allowed, but not a point with a point.
 template <typename A, typename B>
 requires ConvexPair<A, B> ClosestPoints distance(const A &a, const B &b);
 
@@ -189,7 +188,8 @@ GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
         reduce(simplex, part);
         v = part.closest;
         result.squared_distance = part.squared_distance;
-        if (result.squared_distance == Real(0) ||
+        // Below the least normal number nothing is left of a direction.
+        if (result.squared_distance < std::numeric_limits<Real>::min() ||
             (simplex.count == 3 && result.squared_distance <= rounding_along(v, result.size))) {
             result.is_overlapping = true;
             return result;

@@ -81,14 +81,16 @@ requires ConvexPair<A, B> std::optional<CastHit> cast(const A &a, const Vec3 &tr
             if (!(speed > Real(0)) || gap > speed * (Real(1) - hit.t) + cast_target(size))
                 return std::nullopt;
         }
-        // Between touching cores the direction is rounding, and one that A moves away along is, too;
-        // that of the step before is not.
+        // Between touching cores the direction is rounding, and one that A moves away along is,
+        // too; that of the step before is not.
         if (!is_touch || (between > Real(32) * cast_target(size) && speed > Real(0)))
             hit.normal = normal;
         const Real next = std::min(hit.t + gap / speed, Real(1));
         if (is_touch || !(next > hit.t)) {
             const Witnesses on = witnesses(found);
-            hit.point = origin + (on.on_b - core_b.radius * hit.normal) + hit.t * translation;
+            // Between cores that are apart the point is where they say, whatever the normal.
+            const Vec3 &inward = between > Real(32) * cast_target(size) ? normal : hit.normal;
+            hit.point = origin + (on.on_b - core_b.radius * inward) + hit.t * translation;
             return hit;
         }
         hit.t = next;

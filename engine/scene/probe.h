@@ -28,7 +28,8 @@ enum class ProbeTone {
 };
 
 struct ProbeValue {
-    enum class Form { number, count, flag };
+    // An entry is one of a matrix's; the three of a row stand together.
+    enum class Form { number, count, flag, entry };
     std::string_view name; // one of the question's values
     double value = 0;
     Form form = Form::number;

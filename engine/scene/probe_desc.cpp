@@ -9,10 +9,11 @@ namespace plumb {
 
 namespace {
 
-constexpr std::array<std::string_view, 15> shape_names{
+constexpr std::array<std::string_view, 16> shape_names{
     "sphere",       "box",          "aabb",     "capsule",   "cylinder",
     "plane",        "segment",      "triangle", "hull",      "mesh",
-    "height_field", "flat_segment", "circle",   "rectangle", "oriented_rectangle"};
+    "height_field", "flat_segment", "circle",   "rectangle", "oriented_rectangle",
+    "compound"};
 
 // The places of the probe that can be moved, in the order of their handles. `visit` is given the
 // present place and a function that moves it; a probe that is const must not be moved.
@@ -86,6 +87,20 @@ const std::vector<ProbeQuestionInfo> &probe_questions() {
          {"scale"},
          {"x", "y", "z", "determinant", "there_and_back", "yaw_deg", "pitch_deg", "roll_deg",
           "scale_x", "scale_y", "scale_z"}},
+        {matrix,
+         "matrix",
+         "a matrix by its columns: its determinant, minors, cofactors, adjugate and inverse",
+         {0, 0},
+         {4, 4},
+         {},
+         {"determinant",
+          "invertible", // and by row and column
+          "minor_11",    "minor_12",    "minor_13",    "minor_21",    "minor_22",    "minor_23",
+          "minor_31",    "minor_32",    "minor_33",    "cofactor_11", "cofactor_12", "cofactor_13",
+          "cofactor_21", "cofactor_22", "cofactor_23", "cofactor_31", "cofactor_32", "cofactor_33",
+          "adjugate_11", "adjugate_12", "adjugate_13", "adjugate_21", "adjugate_22", "adjugate_23",
+          "adjugate_31", "adjugate_32", "adjugate_33", "inverse_11",  "inverse_12",  "inverse_13",
+          "inverse_21",  "inverse_22",  "inverse_23",  "inverse_31",  "inverse_32",  "inverse_33"}},
         {contains,
          "contains",
          "which points lie in any of the shapes",

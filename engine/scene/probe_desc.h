@@ -2,8 +2,11 @@
 // they are answered is probe.h's business. SI units, radians.
 #pragma once
 
+#include "engine/scene/obj_file.h"
+
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +22,8 @@ namespace plumb {
 inline constexpr std::size_t max_scene_probes = 1000;
 inline constexpr std::size_t max_probe_shapes = 1000;
 inline constexpr std::size_t max_probe_points = 10'000;
-inline constexpr int max_probe_items = 20'000; // scattered
+inline constexpr int max_probe_items = 20'000;                   // scattered
+inline constexpr std::size_t max_probe_mesh_triangles = 100'000; // from a file
 
 enum class ProbeShapeKind {
     sphere,
@@ -37,6 +41,7 @@ enum class ProbeShapeKind {
     circle,
     rectangle,
     oriented_rectangle,
+    compound,
 };
 
 // Each kind reads what concerns it.
@@ -49,9 +54,13 @@ struct ProbeShapeDesc {
     double half_height = 0.5;       // along the own y axis, without the round ends
     glm::dvec3 half_extents{0.5};   // of the whole model for a mesh or a height field
     std::vector<glm::dvec3> points; // segments: 2, triangle: 3, world; hull: 4 or more, own frame
-    std::string model;              // mesh: "ball", "torus", "knot" or "bowl"
-    int detail = 8;                 // mesh, height_field: how finely it is cut
-    std::string name, parent;       // in "models": parents come before their children
+    std::string model;              // mesh: "ball", "torus", "knot" or "bowl"; or else a file's:
+    std::string file;               // its name, beside the scene
+    std::shared_ptr<const ObjMesh> file_mesh; // what was in it when the scene was read
+    double scale = 1;                         // of the file's numbers
+    int detail = 8;                           // model, height_field: how finely it is cut
+    std::vector<ProbeShapeDesc> parts;        // compound: circles, rectangles, about its position
+    std::string name, parent;                 // in "models": parents come before their children
 };
 
 // origin + t * direction, 0 <= t <= max_t; or, with an end, the segment to it.
@@ -88,6 +97,7 @@ enum class ProbeQuestion {
     vectors,
     basis,
     transform,
+    matrix,
     contains,
     closest,
     overlap,

@@ -26,7 +26,8 @@ struct SceneFileResult {
     bool ok() const;                    // no message is an error
 };
 
-// `path` stands in messages only, and its stem names the scene. Reports every error of the file at
+// `path` stands in messages, its stem names the scene, and the files that a scene names (meshes of
+// probes) are looked for beside it; it is not read itself. Reports every error of the file at
 // once; warnings only when there is no error. A syntax error of TOML hides what comes after it.
 // Method names must be among `known_methods` (empty: not checked).
 SceneFileResult parse_scene(std::string_view text, const std::string &path,
@@ -41,7 +42,8 @@ std::string format_message(const std::string &path, const SceneMessage &message)
 
 // The scene as a file that parses to the same values, bit for bit, but for `name` (the file's stem)
 // and the expects' `line`. Repeated bodies and joints come out one by one. `scene` must be one that
-// parse_scene accepts: the text of any other is a file with errors.
+// parse_scene accepts: the text of any other is a file with errors. Of files that the scene names,
+// the names are written.
 std::string write_scene(const SceneDesc &scene);
 
 } // namespace plumb

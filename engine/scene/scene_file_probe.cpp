@@ -3,6 +3,9 @@
 #include "engine/scene/probe.h"
 #include "engine/scene/scene_file_table.h"
 
+#include <fstream>
+#include <memory>
+
 #include <glm/geometric.hpp>
 #define GLM_ENABLE_EXPERIMENTAL // for glm::rotation, the shortest turn between two directions
 #include <glm/gtx/quaternion.hpp>
@@ -16,6 +19,7 @@ using Kind = ProbeShapeKind;
 
 constexpr std::array<std::string_view, 4> mesh_models{"ball", "torus", "knot", "bowl"};
 constexpr std::array<std::string_view, 3> tree_names{"quadtree", "octree", "bvh"};
+constexpr std::array<std::string_view, 3> part_names{"circle", "rectangle", "oriented_rectangle"};
 
 // The keys of a shape of that kind, besides `kind`.
 std::vector<std::string_view> shape_keys(Kind kind) {
@@ -43,10 +47,12 @@ std::vector<std::string_view> shape_keys(Kind kind) {
     case Kind::hull:
         return {"position", "points", "rotation_deg", "axis", "angle_deg", "orientation"};
     case Kind::mesh:
-        return {"position",     "model", "half_extents", "detail",
-                "rotation_deg", "axis",  "angle_deg",    "orientation"};
+        return {"position", "model",        "half_extents", "detail",    "file",
+                "scale",    "rotation_deg", "axis",         "angle_deg", "orientation"};
     case Kind::height_field:
         return {"position", "half_extents", "detail"};
+    case Kind::compound:
+        return {"position", "parts"};
     }
     return {};
 }
@@ -93,7 +99,8 @@ std::string range_text(std::size_t min, std::size_t max, const std::string &what
 
 class ProbeReader {
   public:
-    ProbeReader(Report &report, Precision precision) : report_(report), precision_(precision) {}
+    ProbeReader(Report &report, Precision precision, std::filesystem::path folder)
+        : report_(report), precision_(precision), folder_(std::move(folder)) {}
 
     void read(const toml::table &source) {
         static constexpr std::array<std::string_view, 17> keys{
@@ -180,19 +187,24 @@ class ProbeReader {
                         asked + " takes " + range_text(info.shapes.min, info.shapes.max, "shapes"));
             return;
         }
-        for (std::size_t i = 0; i < count; ++i) {
-            const toml::table *shape = array->get(i)->as_table();
-            if (!shape)
-                report_.error(position_of(*array->get(i)),
-                              "shapes holds " + std::string(type_name(*array->get(i))),
-                              R"(write { kind = "sphere", radius = 1 })");
-            else
-                read_shape(*shape, table.title(), probe);
-        }
+        for (std::size_t i = 0; i < count; ++i)
+            if (auto shape = read_shape(*array->get(i), "shapes", table.title(),
+                                        probe_shape_names(), &probe))
+                probe.shapes.push_back(std::move(*shape));
     }
 
-    void read_shape(const toml::table &source, const std::string &of, ProbeDesc &probe) {
-        const std::vector<std::string_view> kinds = probe_shape_names();
+    // One of an array of shapes of these kinds. `probe` is what it may have a parent in; parts of
+    // shapes have none.
+    std::optional<ProbeShapeDesc> read_shape(const toml::node &node, std::string_view array,
+                                             const std::string &of, Words kinds,
+                                             const ProbeDesc *probe) {
+        if (!node.is_table()) {
+            report_.error(position_of(node),
+                          std::string(array) + " holds " + std::string(type_name(node)),
+                          "write { kind = " + in_quotes(kinds.front()) + ", radius = 1 }");
+            return std::nullopt;
+        }
+        const toml::table &source = *node.as_table();
         const auto *word = source.get_as<std::string>("kind");
         const auto found = word ? std::find(kinds.begin(), kinds.end(), word->get()) : kinds.end();
         if (found == kinds.end()) {
@@ -201,12 +213,13 @@ class ProbeReader {
                           word ? "unknown kind " + in_quotes(word->get()) + " of shape"
                                : "a shape of " + of + " has no kind",
                           did_you_mean(word ? word->get() : "", kinds));
-            return;
+            return std::nullopt;
         }
         ProbeShapeDesc shape;
-        shape.kind = static_cast<Kind>(found - kinds.begin());
+        const std::vector<std::string_view> all = probe_shape_names();
+        shape.kind = static_cast<Kind>(std::find(all.begin(), all.end(), *found) - all.begin());
         std::vector<std::string_view> keys = shape_keys(shape.kind);
-        const bool has_parent = probe.question == ProbeQuestion::models;
+        const bool has_parent = probe != nullptr && probe->question == ProbeQuestion::models;
         if (has_parent)
             keys.insert(keys.end(), {"name", "parent"});
         const auto has_key = [&](std::string_view key) {
@@ -216,7 +229,12 @@ class ProbeReader {
         const Table table(report_, source, "the " + std::string(*found) + " of " + of, keys);
         const bool flat = is_flat(shape.kind);
         shape.position = place(table, "position", flat, moderate).value_or(shape.position);
-        read_sizes(table, has_key, shape);
+        if (shape.kind == Kind::mesh)
+            read_mesh(table, shape);
+        else
+            read_sizes(table, has_key, shape);
+        if (shape.kind == Kind::compound)
+            read_parts(table, shape);
         if (has_key("orientation"))
             shape.orientation = read_rotation(report_, table);
         if (shape.kind == Kind::oriented_rectangle)
@@ -226,8 +244,89 @@ class ProbeReader {
             if (const std::optional<glm::dvec3> normal = table.unit_vector("normal"))
                 shape.orientation = glm::rotation(glm::dvec3(0, 1, 0), *normal);
         if (has_parent)
-            read_parent(table, probe, shape);
-        probe.shapes.push_back(std::move(shape));
+            read_parent(table, *probe, shape);
+        return shape;
+    }
+
+    void read_parts(const Table &table, ProbeShapeDesc &shape) {
+        if (!table.require("parts", R"(parts = [{ kind = "circle", ... }, ...])"))
+            return;
+        const toml::array *array = table.node("parts")->as_array();
+        if (!array || array->empty() || array->size() > max_probe_shapes) {
+            table.error("parts",
+                        table.title() + " has " +
+                            (array ? std::to_string(array->size()) + " parts" : "no parts"),
+                        "it takes an array of " + range_text(1, max_probe_shapes, "parts"));
+            return;
+        }
+        for (const toml::node &node : *array)
+            if (auto part = read_shape(node, "parts", table.title(), part_names, nullptr))
+                shape.parts.push_back(std::move(*part));
+    }
+
+    void read_mesh(const Table &table, ProbeShapeDesc &shape) {
+        const std::string_view key =
+            table.one_of({"model", "file"}, true,
+                         R"(model = "ball", "torus", "knot" or "bowl", or file = "name.obj")");
+        if (key == "file") {
+            table.refuse({"half_extents", "detail"}, "a mesh from a file",
+                         "it is as large and as fine as in the file, times its scale");
+            shape.scale = table.number("scale", positive).value_or(shape.scale);
+            read_mesh_file(table, shape);
+        } else if (key == "model") {
+            table.refuse({"scale"}, "a mesh without a file", "its half_extents say its size");
+            if (const auto model = table.choice("model", mesh_models))
+                shape.model = mesh_models[*model];
+            if (table.require("half_extents", "half_extents = [x, y, z] in metres"))
+                shape.half_extents =
+                    place(table, "half_extents", false, positive).value_or(shape.half_extents);
+            shape.detail = static_cast<int>(table.integer("detail", 3, 64).value_or(shape.detail));
+        }
+    }
+
+    void read_mesh_file(const Table &table, ProbeShapeDesc &shape) {
+        shape.file = table.string("file").value_or("");
+        if (!table.node("file")->is_string())
+            return;
+        const std::filesystem::path name(shape.file);
+        // Beside the scene and nowhere else: so a scene from elsewhere reads nothing of one's own,
+        // and a saved one can take its meshes along.
+        if (name.empty() || name.filename() != name || name == "." || name == "..") {
+            table.error("file", in_quotes(shape.file) + " is no name of a file beside the scene",
+                        R"(file = "name.obj", without folders)");
+            return;
+        }
+        std::shared_ptr<const ObjMesh> &mesh = mesh_files_[shape.file];
+        if (!mesh)
+            mesh = load_mesh(table, name);
+        shape.file_mesh = mesh;
+    }
+
+    // Null, with an error, when it cannot be used.
+    std::shared_ptr<const ObjMesh> load_mesh(const Table &table,
+                                             const std::filesystem::path &name) {
+        const std::filesystem::path path = folder_ / name;
+        std::error_code ignored;
+        std::ifstream file;
+        if (std::filesystem::is_regular_file(path, ignored))
+            file.open(path, std::ios::binary);
+        if (!file.is_open()) {
+            table.error("file", "cannot read " + in_quotes(name.string()),
+                        "it must be a file beside the scene");
+            return nullptr;
+        }
+        ObjResult read = read_obj(file, name.string());
+        const std::size_t count = read.mesh.triangles.size();
+        if (!read.ok()) {
+            table.error("file", read.error);
+        } else if (count > max_probe_mesh_triangles) {
+            table.error("file",
+                        in_quotes(name.string()) + " has " + std::to_string(count) + " triangles",
+                        "a probe takes at most " + std::to_string(max_probe_mesh_triangles));
+        } else {
+            return std::make_shared<const ObjMesh>(std::move(read.mesh));
+        }
+        return nullptr;
     }
 
     template <typename HasKey>
@@ -255,10 +354,6 @@ class ProbeReader {
                                 " good points",
                             "it takes " + range_text(min, max, "points"));
         }
-        if (has_key("model") &&
-            table.require("model", R"(model = "ball", "torus", "knot" or "bowl")"))
-            if (const auto model = table.choice("model", mesh_models))
-                shape.model = mesh_models[*model];
         if (has_key("detail"))
             shape.detail = static_cast<int>(table.integer("detail", 3, 64).value_or(shape.detail));
     }
@@ -438,14 +533,17 @@ class ProbeReader {
 
     Report &report_;
     Precision precision_;
+    std::filesystem::path folder_;
+    std::map<std::string, std::shared_ptr<const ObjMesh>> mesh_files_; // null: with an error
     Names names_;
     std::vector<ProbeDesc> probes_;
 };
 
 } // namespace
 
-std::vector<ProbeDesc> read_probes(Report &report, const Table &top, Precision precision) {
-    ProbeReader reader(report, precision);
+std::vector<ProbeDesc> read_probes(Report &report, const Table &top, Precision precision,
+                                   const std::filesystem::path &folder) {
+    ProbeReader reader(report, precision, folder);
     std::size_t count = 0;
     for_each(report, top, "probe", [&](const toml::table &table) {
         if (++count <= max_scene_probes)

@@ -3,6 +3,7 @@
 
 #include "engine/scene/scene_desc.h"
 
+#include <filesystem>
 #include <vector>
 
 namespace plumb {
@@ -12,8 +13,9 @@ class Report;
 class Table;
 } // namespace scene_file
 
-// Reports every error. A probe that the geometry refuses to answer in that precision is one.
+// Reports every error. A probe that the geometry refuses to answer in that precision is one. Files
+// of meshes are looked for in the folder.
 std::vector<ProbeDesc> read_probes(scene_file::Report &report, const scene_file::Table &top,
-                                   Precision precision);
+                                   Precision precision, const std::filesystem::path &folder);
 
 } // namespace plumb

@@ -30,11 +30,11 @@ class SceneReader {
     SceneReader(const toml::table &root, const std::vector<std::string> &known_methods)
         : root_(root), known_methods_(known_methods.begin(), known_methods.end()) {}
 
-    SceneFileResult read(std::string name) {
+    SceneFileResult read(const std::filesystem::path &path) {
         static constexpr std::array<std::string_view, 11> keys{
             "title", "description", "world", "methods", "camera", "material",
             "body",  "joint",       "probe", "expect",  "state"};
-        scene_.name = std::move(name);
+        scene_.name = path.stem().string();
         const Table top(report_, root_, "the top level of a scene", keys);
         scene_.title = top.string("title").value_or("");
         scene_.description = top.string("description").value_or("");
@@ -49,7 +49,7 @@ class SceneReader {
         for_each(report_, top, "body", [this](const toml::table &table) { read_body(table); });
         for_each(report_, top, "joint", [this](const toml::table &table) { read_joint(table); });
         for_each(report_, top, "expect", [this](const toml::table &table) { read_expect(table); });
-        scene_.probes = read_probes(report_, top, scene_.world.precision);
+        scene_.probes = read_probes(report_, top, scene_.world.precision, path.parent_path());
         if (const toml::table *table = table_at(report_, top, "state"))
             read_state(*table);
 
@@ -941,8 +941,7 @@ SceneFileResult parse_scene(std::string_view text, const std::string &path,
                                    "see https://toml.io for how TOML is written"});
         return result;
     }
-    return SceneReader(parsed.table(), known_methods)
-        .read(std::filesystem::path(path).stem().string());
+    return SceneReader(parsed.table(), known_methods).read(path);
 }
 
 SceneFileResult load_scene(const std::filesystem::path &path,

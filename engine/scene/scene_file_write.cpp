@@ -291,15 +291,27 @@ class SceneWriter {
             add("orientation", rotation(shape.orientation));
             break;
         case Kind::mesh:
-            add("model", string(shape.model));
-            add("half_extents", array3(shape.half_extents));
-            add("detail", std::to_string(shape.detail));
+            if (shape.file.empty()) {
+                add("model", string(shape.model));
+                add("half_extents", array3(shape.half_extents));
+                add("detail", std::to_string(shape.detail));
+            } else {
+                add("file", string(shape.file));
+                add("scale", shortest(shape.scale));
+            }
             add("orientation", rotation(shape.orientation));
             break;
         case Kind::height_field:
             add("half_extents", array3(shape.half_extents));
             add("detail", std::to_string(shape.detail));
             break;
+        case Kind::compound: {
+            std::string parts;
+            for (const ProbeShapeDesc &part : shape.parts)
+                parts += (parts.empty() ? "" : ", ") + probe_shape(part);
+            add("parts", "[" + parts + "]");
+            break;
+        }
         }
         return text + " }";
     }

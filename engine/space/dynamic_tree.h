@@ -6,6 +6,7 @@
 #include "engine/geometry/shapes.h"
 #include "engine/geometry/slab.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -156,15 +157,13 @@ class DynamicTree {
     }
     static bool touches(const Aabb &box, const Frustum &frustum) {
         // Again monotonic: a larger box has its corner no farther in front.
-        for (const Plane &plane : frustum.planes) {
+        return std::ranges::all_of(frustum.planes, [&](const Plane &plane) {
             const Vec3 &n = plane.normal;
             const Real x = n.x * (n.x > Real(0) ? box.min.x : box.max.x);
             const Real y = n.y * (n.y > Real(0) ? box.min.y : box.max.y);
             const Real z = n.z * (n.z > Real(0) ? box.min.z : box.max.z);
-            if (x + y + z > plane.offset)
-                return false;
-        }
-        return true;
+            return !(x + y + z > plane.offset);
+        });
     }
     // Calls visit(user, ray) -> bool for leaves whose fat box the ray meets, the nearer child
     // first, until it returns false. It may shorten the ray.

@@ -170,11 +170,11 @@ void ModelScene::fit_leaf(Model model) {
     }
 }
 
-ModelScene::Model ModelScene::add(const MeshTree *mesh, const Placement &given, Model parent) {
-    const Placement local = given; // which may be that of a model, and so about to move
+ModelScene::Model ModelScene::add(const MeshTree *mesh, const Placement &local, Model parent) {
+    const Placement placement = local; // which may be that of a model, and so about to move
     if (parent != none)
         check_model(parent);
-    check_placement(local, "model's");
+    check_placement(placement, "model's");
     Model model = free_;
     if (model == none) {
         model = static_cast<Model>(nodes_.size());
@@ -185,7 +185,7 @@ ModelScene::Model ModelScene::add(const MeshTree *mesh, const Placement &given, 
     }
     node(model).mesh = mesh;
     try {
-        place(model, local, parent);
+        place(model, placement, parent);
     } catch (...) {
         node(model).is_free = true;
         node(model).parent = free_;

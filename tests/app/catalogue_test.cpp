@@ -74,7 +74,7 @@ TEST_P(Scene, GoesOnTheSameFromASavedFile) {
             for (; step < saved_at; ++step)
                 simulation->step();
             const std::string text = write_scene(simulation->describe());
-            const SceneFileResult again = parse_scene(text, scene.name + ".toml");
+            const SceneFileResult again = parse_scene(text, GetParam().string());
             ASSERT_TRUE(again.ok()) << format_message("saved", again.messages.front());
             const auto copy = Simulation::create(again.scene, {}, nullptr);
             const auto original = Simulation::create(scene, options, nullptr);

@@ -1,4 +1,4 @@
-// plumb-bench: `plumb bench` runs it. Arguments: geometry ROUNDS OUT_DIR.
+// plumb-bench: `plumb bench` runs it. Arguments: geometry ROUNDS OUT_DIR SHADER_DIR.
 #include "app/lab/chart_image.h"
 #include "app/lab/csv.h"
 #include "app/lab/exit_code.h"
@@ -8,7 +8,6 @@
 #include "app/lab/timing.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
-#include "app/sandbox/scene_catalog.h"
 #include "tests/bench/contest.h"
 #include "tests/bench/trees.h"
 
@@ -79,7 +78,8 @@ void print_contests(const std::vector<Contest> &contests,
         std::printf("  %s\n", one.c_str());
 }
 
-ExitCode bench_geometry(int rounds, const std::filesystem::path &out_dir) {
+ExitCode bench_geometry(int rounds, const std::filesystem::path &out_dir,
+                        const std::filesystem::path &shader_dir) {
     std::error_code error;
     std::filesystem::create_directories(out_dir, error);
     if (error) {
@@ -138,8 +138,8 @@ ExitCode bench_geometry(int rounds, const std::filesystem::path &out_dir) {
     std::cerr << "wrote " << tree_csv.path().string() << '\n';
     try {
         const std::filesystem::path picture = out_dir / "bench_trees.png";
-        write_png(picture, ChartPainter(find_data_dir() / "shaders")
-                               .paint(tree_chart(trees, "plumb bench geometry")));
+        write_png(picture,
+                  ChartPainter(shader_dir).paint(tree_chart(trees, "plumb bench geometry")));
         std::cerr << "wrote " << picture.string() << '\n';
     } catch (const ContextError &failure) {
         std::cerr << "no picture: " << failure.what() << '\n';
@@ -151,11 +151,11 @@ ExitCode bench_geometry(int rounds, const std::filesystem::path &out_dir) {
 int bench(int argc, char **argv) {
     const std::string what = argc > 1 ? argv[1] : "";
     const int rounds = argc > 2 ? std::atoi(argv[2]) : 5;
-    if (what != "geometry" || rounds < 1) {
+    if (argc != 5 || what != "geometry" || rounds < 1) {
         std::cerr << "plumb bench: what to time is \"geometry\", got \"" << what << "\"\n";
         return static_cast<int>(ExitCode::bad_input);
     }
-    const ExitCode code = bench_geometry(rounds, argc > 3 ? argv[3] : "out");
+    const ExitCode code = bench_geometry(rounds, argv[3], argv[4]);
     return InterruptGuard::requested() ? 130 : static_cast<int>(code);
 }
 

@@ -1,9 +1,11 @@
-// libFuzzer target: GJK and EPA end, and do not contradict each other, whatever the shapes.
-#include "engine/geometry/epa.h"
-#include "engine/geometry/gjk.h"
+// libFuzzer target: GJK, EPA, casts and manifolds end, and do not contradict each other, whatever
+// the shapes.
+#include "engine/geometry/manifold_convex.h"
 #include "engine/geometry/quickhull.h"
+#include "engine/geometry/shape_cast.h"
 #include "tests/fuzz/input.h"
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -66,6 +68,51 @@ Any any_shape(FuzzInput &input, HullMesh &mesh) {
 bool is_sound(const Vec3 &v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+bool is_unit(const Vec3 &v) {
+    return std::abs(glm::dot(v, v) - Real(1)) < Real(1e-3);
+}
+
+// Whether there is a manifold of the two in this order.
+template <typename A, typename B>
+concept Collided = requires(const A &a, const B &b) {
+    collide_pair(a, b, Real(0));
+};
+
+// The distance and the penetration of the two, and how far apart they are: negative when in each
+// other.
+template <typename A, typename B> Real check_pair(const A &a, const B &b) {
+    const ClosestPoints apart = distance(a, b);
+    FUZZ_ASSERT(apart.distance >= Real(0) && std::isfinite(apart.distance));
+    FUZZ_ASSERT(is_sound(apart.on_a) && is_sound(apart.on_b));
+    FUZZ_ASSERT(apart.distance > Real(0) ? is_unit(apart.normal) : apart.normal == Vec3{Real(0)});
+    const std::optional<Penetration> deep = penetration(a, b);
+    if (!deep)
+        return apart.distance;
+    FUZZ_ASSERT(deep->depth >= Real(0) && std::isfinite(deep->depth));
+    FUZZ_ASSERT(is_unit(deep->normal) && is_sound(deep->on_a) && is_sound(deep->on_b));
+    return -deep->depth;
+}
+
+template <typename A, typename B> void check_cast(const A &a, const Vec3 &translation, const B &b) {
+    const std::optional<CastHit> hit = cast(a, translation, b);
+    if (!hit)
+        return;
+    FUZZ_ASSERT(hit->t >= Real(0) && hit->t <= Real(1) && is_sound(hit->point));
+    FUZZ_ASSERT(is_unit(hit->normal) && (!hit->starts_overlapping || hit->t == Real(0)));
+}
+
+template <typename A, typename B> void check_collision(const A &a, const B &b, Real separation) {
+    constexpr Real margin = Real(0.25);
+    const Manifold manifold = collide_pair(a, b, margin);
+    FUZZ_ASSERT(manifold.count >= 0 && manifold.count <= 4);
+    // In each other, they touch.
+    FUZZ_ASSERT(manifold.count > 0 || separation > Real(0));
+    FUZZ_ASSERT(manifold.count == 0 || is_unit(manifold.normal));
+    for (int i = 0; i < manifold.count; ++i) {
+        const ManifoldPoint &point = manifold.points[static_cast<std::size_t>(i)];
+        FUZZ_ASSERT(is_sound(point.position) && std::isfinite(point.separation));
+    }
+}
 
 } // namespace
 } // namespace plumb
@@ -76,20 +123,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     HullMesh mesh_a, mesh_b;
     const Any a = any_shape(input, mesh_a);
     const Any b = any_shape(input, mesh_b);
+    const Vec3 translation = input.point();
     std::visit(
-        [](const auto &first, const auto &second) {
-            const ClosestPoints apart = distance(first, second);
-            FUZZ_ASSERT(apart.distance >= Real(0) && std::isfinite(apart.distance));
-            FUZZ_ASSERT(is_sound(apart.on_a) && is_sound(apart.on_b) && is_sound(apart.normal));
-            if (apart.distance > Real(0))
-                FUZZ_ASSERT(std::abs(glm::dot(apart.normal, apart.normal) - Real(1)) < Real(1e-3));
-            const std::optional<Penetration> deep = penetration(first, second);
-            if (deep) {
-                FUZZ_ASSERT(deep->depth >= Real(0) && std::isfinite(deep->depth));
-                FUZZ_ASSERT(std::abs(glm::dot(deep->normal, deep->normal) - Real(1)) < Real(1e-3));
-                FUZZ_ASSERT(is_sound(deep->on_a) && is_sound(deep->on_b));
-            }
+        [&](const auto &first, const auto &second) {
+            const Real separation = check_pair(first, second);
+            check_cast(first, translation, second);
+            using A = std::decay_t<decltype(first)>;
+            using B = std::decay_t<decltype(second)>;
+            if constexpr (Collided<A, B>)
+                check_collision(first, second, separation);
         },
         a, b);
+    // Every search ends by itself.
+    for (const char *limit : {"gjk: iteration limit", "epa: vertex limit", "cast: step limit"})
+        FUZZ_ASSERT(oddity(limit).met == 0U);
     return 0;
 }

@@ -1,10 +1,17 @@
-// libFuzzer target: any stream of changes leaves the trees sound, and all of them find the same.
+// libFuzzer target: any stream of changes leaves the trees sound, and all of them find the same; a
+// mesh is hit exactly where one of its triangles is.
+#include "engine/geometry/raycast.h"
 #include "engine/space/bvh.h"
 #include "engine/space/dynamic_tree.h"
+#include "engine/space/mesh_tree.h"
 #include "engine/space/orthtree.h"
 #include "tests/fuzz/input.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace plumb {
@@ -58,17 +65,48 @@ void compare(const std::vector<Item> &items, const DynamicTree &tree, const Octr
     FUZZ_ASSERT(is_as_expected());
 }
 
+void check_mesh(FuzzInput &input) {
+    TriangleMesh mesh;
+    for (std::uint32_t i = 3 + input.below(20); i > 0; --i)
+        mesh.vertices.push_back(input.point());
+    const auto corner = [&] { return input.below(std::uint32_t(mesh.vertices.size())); };
+    for (std::uint32_t i = input.below(40); i > 0; --i) {
+        const std::uint32_t a = corner(), b = corner();
+        mesh.triangles.push_back({a, b, corner()});
+    }
+    const MeshTree tree(mesh);
+    while (!input.is_empty()) {
+        const Vec3 origin = input.point(), direction = input.point();
+        if (direction == Vec3{Real(0)})
+            continue;
+        const Ray ray{origin, direction, std::numeric_limits<Real>::infinity()};
+        bool is_hit = false;
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+            is_hit = is_hit || raycast(triangle(mesh, i), ray).has_value();
+        const std::optional<MeshHit> hit = raycast(tree, ray);
+        FUZZ_ASSERT(hit.has_value() == is_hit && is_met(tree, ray) == is_hit);
+        if (!hit)
+            continue;
+        FUZZ_ASSERT(hit->t >= Real(0));
+        FUZZ_ASSERT(raycast(triangle(mesh, hit->triangle), ray).has_value());
+    }
+}
+
 } // namespace
 } // namespace plumb
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     using namespace plumb;
     FuzzInput input(data, size);
+    if (input.below(4) == 0) {
+        check_mesh(input);
+        return 0;
+    }
     DynamicTree tree(Real(0));
     Octree octree({Vec3{Real(-4)}, Vec3{Real(4)}}, 5, 2);
     std::vector<Item> items;
     std::uint32_t next = 0;
-    for (int step = 0; step < 200 && !input.is_empty(); ++step) {
+    for (int step = 0; step < 60 && !input.is_empty(); ++step) {
         const std::uint32_t which = input.below(4);
         if (which == 0 || items.empty()) {
             Item item;

@@ -84,6 +84,9 @@ const std::vector<Case> &cases() {
             {"stack_contacts_bounds", "stacking/ten_box_stack", 10, contacts},
             {"cradle_joints_velocities", "joints/newtons_cradle", 15, joints},
             {"chain", "joints/heavy_chain", 20, {}},
+            {"raycasts", "geometry/raycasts", 0, {}},
+            {"manifolds", "geometry/manifolds", 0, {}},
+            {"gjk_epa", "geometry/gjk_epa", 0, {}},
             {"panels", "joints/pendulum", 30, joints, true, {800, 500}},
         };
     }();
@@ -119,10 +122,12 @@ Rendering render(const Case &golden, std::optional<std::size_t> without) {
     return result;
 }
 
-std::size_t shaped_body_count(const Case &golden) {
+std::size_t shape_count(const Case &golden) {
     const Sandbox sandbox = sandbox_of(golden);
     const Simulation &simulation = *sandbox.session().simulation();
-    std::size_t count = 0;
+    if (!simulation.has_world()) // the shapes of probes
+        return sandbox.draw_list().shapes.size();
+    std::size_t count = 0; // bodies come first among the shapes
     for (std::size_t body = 0; body < simulation.body_count(); ++body)
         if (!std::holds_alternative<PlaneDesc>(simulation.body_info(body).shape))
             ++count;

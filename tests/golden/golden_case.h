@@ -47,7 +47,7 @@ struct Rendering {
 // Draws off screen, without multisampling. `without` leaves one body out of the picture, counted
 // among those that are drawn as shapes; not for a case with panels.
 Rendering render(const Case &golden, std::optional<std::size_t> without = {});
-// How many bodies are drawn as shapes.
-std::size_t shaped_body_count(const Case &golden);
+// How many bodies, or shapes of probes, are drawn as shapes.
+std::size_t shape_count(const Case &golden);
 
 } // namespace plumb::golden

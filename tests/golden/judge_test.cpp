@@ -60,7 +60,7 @@ TEST_P(GoldenLimits, RefuseAPictureWithoutOneOfItsBodies) {
     if (golden.panels)
         return;
     const Rendering present = render(golden);
-    const std::size_t count = shaped_body_count(golden);
+    const std::size_t count = shape_count(golden);
     ASSERT_GT(count, 0u);
     for (const std::size_t body : {std::size_t{0}, count / 2, count - 1})
         expect_refused(present.picture, render(golden, body).picture, present.background,

@@ -4,6 +4,7 @@
 #include "engine/scene/scene_file.h"
 
 #include <filesystem>
+#include <fstream>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -89,6 +90,22 @@ TEST_F(ProbeTest, ASavedSceneHasTheMovedProbe) {
     ASSERT_TRUE(again.ok());
     EXPECT_EQ(again.scene.probes.front().shapes.front().position, glm::dvec3(0.25, 0, 0));
     std::filesystem::remove(file);
+}
+
+TEST_F(ProbeTest, ASavedSceneTakesTheFilesOfItsMeshesAlong) {
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / "plumb_saved_mesh";
+    std::filesystem::remove_all(folder);
+    const std::filesystem::path gears = PLUMB_SOURCE_DIR "/scenes/geometry/mesh_file.toml";
+    ASSERT_TRUE(sandbox.session().open(gears));
+    ASSERT_TRUE(sandbox.session().save_scene(folder / "saved.toml"));
+    ASSERT_TRUE(sandbox.session().save_scene(folder / "again.toml"));
+    EXPECT_TRUE(load_scene(folder / "again.toml").ok());
+    // Another mesh of that name is neither lost nor used.
+    std::ofstream(folder / "gear.obj") << "v 0 0 0\nf 1 1 1\n";
+    EXPECT_FALSE(sandbox.session().save_scene(folder / "third.toml"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "third.toml"));
+    std::filesystem::remove_all(folder);
 }
 
 TEST_F(ProbeTest, ProbesAreDrawnOverALevelFloorUnlessTheyAreFlat) {

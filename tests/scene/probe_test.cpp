@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,8 +41,10 @@ std::vector<SceneDesc> geometry_scenes() {
     return scenes;
 }
 
+const std::string beside_the_scenes = PLUMB_SOURCE_DIR "/scenes/geometry/probes.toml";
+
 SceneDesc parsed(const std::string &text) {
-    const SceneFileResult result = parse_scene(text, "probes.toml");
+    const SceneFileResult result = parse_scene(text, beside_the_scenes);
     for (const SceneMessage &message : result.messages)
         ADD_FAILURE() << format_message("probes.toml", message);
     return result.scene;
@@ -169,6 +172,86 @@ scatter = { count = 500, half_extents = [6, 6, 6], size = 0.3, seed = 4 }
     EXPECT_GT(inside, 50U);
 }
 
+// One matrix for which all of the formulas are whole numbers.
+TEST(Probe, AMatrixIsTakenApart) {
+    const SceneDesc scene = parsed(R"([[probe]]
+name = "matrix"
+ask = "matrix"
+points = [[1, 1, 1], [2, 1, 6], [3, 2, 7], [4, 5, 1]]
+)"); // rows 1 2 3, 0 1 4, 5 6 0
+    const std::vector<double> minors{-24, -20, -5, -18, -15, -4, 5, 4, 1};
+    const std::vector<double> inverse{-24, 18, 5, 20, -15, -4, -5, 4, 1}; // as the determinant is 1
+    for (const Precision precision : {Precision::single, Precision::dual}) {
+        const ProbeAnswer found = answer(scene.probes.front(), precision);
+        EXPECT_EQ(found.value("determinant"), 1);
+        EXPECT_EQ(found.value("invertible"), 1);
+        for (std::size_t i = 0; i < 9; ++i) {
+            const std::string at =
+                "_" + std::to_string(i / 3 + 1) + std::to_string(i % 3 + 1); // row, column
+            const std::string turned = "_" + std::to_string(i % 3 + 1) + std::to_string(i / 3 + 1);
+            const double sign = i % 2 == 0 ? 1 : -1;
+            EXPECT_EQ(found.value("minor" + at), minors[i]);
+            EXPECT_EQ(found.value("cofactor" + at), sign * minors[i]);
+            EXPECT_EQ(found.value("adjugate" + turned), sign * minors[i]);
+            EXPECT_NEAR(found.value("inverse" + at), inverse[i], 2e-3); // the stated bound
+        }
+    }
+}
+
+TEST(Probe, ASingularMatrixIsSaidToBeOne) {
+    const SceneDesc scene = parsed(R"([[probe]]
+name = "matrix"
+ask = "matrix"
+points = [[0, 0, 0], [1, 2, 3], [4, 5, 6], [5, 7, 9]]
+)");
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::single);
+    EXPECT_EQ(found.refusal, "");
+    EXPECT_EQ(found.value("invertible"), 0);
+    EXPECT_EQ(found.value("minor_11"), 3); // 5 x 9 - 7 x 6 with rows 1 4 5, 2 5 7, 3 6 9
+    EXPECT_TRUE(std::isnan(found.value("inverse_11")));
+    EXPECT_TRUE(std::ranges::any_of(found.labels, [](const ProbeLabel &label) {
+        return label.text == "singular: no inverse";
+    }));
+}
+
+// The numbers of a file are scaled, turned, and moved.
+TEST(Probe, AMeshFromAFileStandsWhereItIsPut) {
+    const SceneDesc scene = parsed(R"([[probe]]
+name = "ray"
+ask = "raycast"
+ray = { origin = [20, 0, 0.5], direction = [-1, 0, 0] }
+shapes = [{ kind = "mesh", file = "gear.obj", position = [3, 0, 0], scale = 4, axis = [0, 1, 0], angle_deg = 90 }]
+)");
+    const ProbeDesc &probe = scene.probes.front();
+    ASSERT_TRUE(probe.shapes.front().file_mesh);
+    EXPECT_EQ(probe.shapes.front().file_mesh->vertices.size(), 96U);
+    const ProbeAnswer found = answer(probe, Precision::dual);
+    EXPECT_NEAR(found.value("x"), 4, 1e-9); // 0.25 thick to either side
+    EXPECT_NEAR(found.value("normal_x"), 1, 1e-9);
+}
+
+// A compound is its parts, each of which is asked alone.
+TEST(Probe, ACompoundHoldsWhatItsPartsHold) {
+    const std::string parts = R"({ kind = "circle", position = [1, 0], radius = 0.5 },
+{ kind = "rectangle", position = [-1, 0.25], half_extents = [0.75, 0.5] },
+{ kind = "oriented_rectangle", position = [0, -1], half_extents = [0.75, 0.25], angle_deg = 45 })";
+    std::string points;
+    for (int x = -16; x <= 16; ++x)
+        for (int y = -16; y <= 16; ++y)
+            points += "[" + std::to_string(x / 8.0) + ", " + std::to_string(y / 8.0) + "], ";
+    const auto inside = [&](const std::string &shapes) {
+        return answer(parsed("[[probe]]\nname = \"a\"\nask = \"contains\"\nshapes = [" + shapes +
+                             "]\npoints = [" + points + "]\n")
+                          .probes.front(),
+                      Precision::dual)
+            .value("inside");
+    };
+    const double apart = inside(parts);
+    EXPECT_GT(apart, 100);
+    EXPECT_EQ(inside(R"({ kind = "compound", position = [0, 0], parts = [)" + parts + "] }"),
+              apart);
+}
+
 TEST(Probe, WhatTheGeometryRefusesIsSaidAndNotThrown) {
     SceneDesc scene = parsed(ray_and_sphere);
     scene.probes.front().ray->direction = glm::dvec3(0);
@@ -245,6 +328,54 @@ shapes = [{ kind = "plane", position = [0, 0, 0] }, { kind = "sphere", radius = 
 )");
     EXPECT_TRUE(has(all, "has no answer: ")) << all;
     EXPECT_TRUE(has(all, "both shapes must be convex")) << all;
+}
+
+TEST(ProbeFile, AMeshFileThatCannotBeUsedIsAnErrorInTheSceneAndInTheFile) {
+    const fs::path folder = fs::path(testing::TempDir()) / "plumb_probe_mesh";
+    fs::create_directories(folder);
+    std::ofstream(folder / "bad.obj") << "v 0 0 0\nv 1 0 0\nf 1 2 9\n";
+    const auto said_of = [&](const std::string &mesh) {
+        const std::string text = "[[probe]]\nname = \"a\"\nask = \"closest\"\npoint = [0, 0, 0]\n"
+                                 "shapes = [{ kind = \"mesh\", " +
+                                 mesh + " }]\n";
+        std::string all;
+        for (const SceneMessage &message :
+             parse_scene(text, (folder / "scene.toml").string()).messages)
+            all += format_message("scene.toml", message) + "\n";
+        return all;
+    };
+    const std::string bad = said_of(R"(file = "bad.obj")");
+    EXPECT_TRUE(has(bad, "scene.toml:5:35: error: bad.obj:3: ")) << bad;
+    EXPECT_TRUE(
+        has(said_of(R"(file = "none.obj")"), R"(cannot read "none.obj"; it must be a file)"));
+    for (const char *name : {"/etc/passwd", "../gear.obj", "folder/gear.obj", "..", ".", ""}) {
+        const std::string all = said_of("file = \"" + std::string(name) + "\"");
+        EXPECT_TRUE(has(all, "is no name of a file beside the scene")) << all;
+    }
+    EXPECT_TRUE(has(said_of("file = 3"), "file is a number"));
+    EXPECT_TRUE(has(said_of(R"(model = "ball", file = "bad.obj")"), "has both model and file"));
+    EXPECT_TRUE(has(said_of("scale = 2"), "has none of model, file"));
+    EXPECT_TRUE(has(said_of(R"(model = "ball", half_extents = [1, 1, 1], scale = 2)"),
+                    "a mesh without a file has no scale"));
+    EXPECT_TRUE(
+        has(said_of(R"(file = "bad.obj", detail = 4)"), "a mesh from a file has no detail"));
+    fs::remove_all(folder);
+}
+
+TEST(ProbeFile, ACompoundIsMadeOfFlatSolids) {
+    const auto said_of = [](const std::string &keys) {
+        return said("[[probe]]\nname = \"a\"\nask = \"contains\"\npoint = [0, 0]\n"
+                    "shapes = [{ kind = \"compound\"" +
+                    keys + " }]\n");
+    };
+    EXPECT_TRUE(has(said_of(""), "has no parts"));
+    EXPECT_TRUE(has(said_of(", parts = []"), "has 0 parts; it takes an array of 1 to"));
+    EXPECT_TRUE(has(said_of(", parts = [3]"), "parts holds a number"));
+    EXPECT_TRUE(has(said_of(R"(, parts = [{ kind = "sphere", radius = 1 }])"),
+                    R"(unknown kind "sphere" of shape)"));
+    EXPECT_TRUE(has(said_of(R"(, parts = [{ kind = "compound", parts = [] }])"),
+                    R"(unknown kind "compound" of shape)"));
+    EXPECT_TRUE(has(said_of(R"(, parts = [{ kind = "circle", radius = -1 }])"), "radius is -1"));
 }
 
 // ---- handles ----

@@ -157,6 +157,59 @@ void answer_transform(Asking &ask) {
     }
 }
 
+// One of a matrix's tables: its rows as values, and as labels from a place on.
+void show_entries(Asking &ask, const std::string &name, std::size_t first, const Mat3 &entries,
+                  const glm::dvec3 &at) {
+    constexpr double column_width = 0.62;
+    constexpr double row_height = 0.4;
+    ask.answer.labels.push_back({at, name});
+    const std::vector<std::string_view> &names = probe_question(ProbeQuestion::matrix).values;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            // A zero whose sign was turned is shown as zero.
+            const double entry = static_cast<double>(entries[column][row]) + 0.0;
+            ask.answer.values.push_back({names[first + static_cast<std::size_t>(3 * row + column)],
+                                         entry, ProbeValue::Form::entry});
+            ask.label(at + glm::dvec3(column_width * column, -row_height * (row + 1), 0), entry);
+        }
+}
+
+void answer_matrix(Asking &ask) {
+    const Vec3 at{ask.probe.points[0]};
+    Mat3 given{Real(0)};
+    constexpr std::array tones{ProbeTone::result, ProbeTone::yes, ProbeTone::normal};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const int column = static_cast<int>(i);
+        given[column] = Vec3{ask.probe.points[i + 1]} - at;
+        arrow(ask.answer, at, given[column], tones[i], std::to_string(i + 1));
+    }
+    // Where the unit cube goes: its volume is the determinant's magnitude.
+    const std::size_t first = ask.answer.lines.size();
+    draw_edges(ask.answer, {Vec3{Real(0)}, Vec3{Real(1)}}, ProbeTone::edge);
+    double right = ask.probe.points[0].x;
+    for (std::size_t i = first; i < ask.answer.lines.size(); ++i) {
+        ProbeLine &line = ask.answer.lines[i];
+        line.a = wide(at + given * Vec3{line.a});
+        line.b = wide(at + given * Vec3{line.b});
+        right = std::max({right, line.a.x, line.b.x});
+    }
+    const std::optional<Mat3> inverse = try_inverse(given);
+    ask.number("determinant", glm::determinant(given));
+    ask.flag("invertible", inverse.has_value());
+    // The tables stand to the right of the picture, in a row.
+    const auto table_at = [&](int table) {
+        return glm::dvec3(right + 0.5 + 2.3 * table, ask.probe.points[0].y + 1.2,
+                          ask.probe.points[0].z);
+    };
+    show_entries(ask, "minors", 2, minors(given), table_at(0));
+    show_entries(ask, "cofactors", 11, cofactors(given), table_at(1));
+    show_entries(ask, "adjugate", 20, adjugate(given), table_at(2));
+    if (inverse)
+        show_entries(ask, "inverse", 29, *inverse, table_at(3));
+    else
+        ask.answer.labels.push_back({table_at(3), "singular: no inverse"});
+}
+
 // ---- points ----
 
 template <typename Asked> bool holds(const Asked &shape, const glm::dvec3 &point) {
@@ -586,6 +639,9 @@ ProbeAnswer answer_probe(const ProbeDesc &probe) {
         break;
     case ProbeQuestion::transform:
         answer_transform(ask);
+        break;
+    case ProbeQuestion::matrix:
+        answer_matrix(ask);
         break;
     case ProbeQuestion::contains:
         answer_contains(ask);

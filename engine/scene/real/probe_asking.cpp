@@ -40,7 +40,7 @@ class RayInto {
         } else if constexpr (std::same_as<Asked, Plane> || std::same_as<Asked, Triangle> ||
                              std::same_as<Asked, HeightField>) {
             return from_hit(raycast(shape, ray));
-        } else if constexpr (std::same_as<Asked, Segment2>) {
+        } else if constexpr (std::same_as<Asked, Segment2> || std::same_as<Asked, Compound2>) {
             return from_hit(raycast(shape, flat_ray()));
         } else if constexpr (requires { ray_interval(shape, ray); }) {
             return from_interval(ray_interval(shape, ray));

@@ -88,6 +88,13 @@ TriangleMesh unit_model(const std::string &model, int detail) {
 }
 
 TriangleMesh make_mesh(const ProbeShapeDesc &desc) {
+    if (desc.file_mesh) {
+        TriangleMesh mesh;
+        mesh.triangles = desc.file_mesh->triangles;
+        for (const glm::dvec3 &vertex : desc.file_mesh->vertices)
+            mesh.vertices.emplace_back(desc.position + desc.orientation * (desc.scale * vertex));
+        return mesh;
+    }
     TriangleMesh mesh = unit_model(desc.model, desc.detail);
     for (Vec3 &vertex : mesh.vertices)
         vertex = Vec3{desc.position + desc.orientation * (glm::dvec3{vertex} * desc.half_extents)};
@@ -205,6 +212,10 @@ class Drawing {
         draw_quad(answer_, wide(r.center), wide(r.half_extents.x * r.axis),
                   wide(r.half_extents.y * perpendicular(r.axis)), tone_, number_);
     }
+    void operator()(const Compound2 &compound) const {
+        for (const Part2 &part : compound.parts())
+            std::visit(*this, part);
+    }
     // Sphere, Box, Aabb, Capsule, Cylinder
     template <typename Solid> void operator()(const Solid &) const {
         answer_.solids.push_back({desc_, tone_, number_});
@@ -224,6 +235,24 @@ class Drawing {
     ProbeTone tone_;
     std::size_t number_;
 };
+
+Compound2 make_compound(const ProbeShapeDesc &desc) {
+    std::vector<Part2> parts;
+    for (const ProbeShapeDesc &part : desc.parts) {
+        ProbeShapeDesc placed = part;
+        placed.position += desc.position;
+        const AskedShape made = make_shape(placed).shape;
+        if (const auto *circle = std::get_if<Circle>(&made))
+            parts.emplace_back(*circle);
+        else if (const auto *rectangle = std::get_if<Rectangle>(&made))
+            parts.emplace_back(*rectangle);
+        else if (const auto *turned = std::get_if<OrientedRectangle>(&made))
+            parts.emplace_back(*turned);
+        else
+            PLUMB_CHECK(false, "a " << probe_shape_name(part.kind) << " is no part of a compound");
+    }
+    return Compound2(std::move(parts));
+}
 
 AskedShape make(const ProbeShapeDesc &desc, std::unique_ptr<HullMesh> &hull) {
     using Kind = ProbeShapeKind;
@@ -274,6 +303,8 @@ AskedShape make(const ProbeShapeDesc &desc, std::unique_ptr<HullMesh> &hull) {
     case Kind::oriented_rectangle:
         return oriented_rectangle(flattened(desc.position), real(desc.angle),
                                   flattened(desc.half_extents));
+    case Kind::compound:
+        return make_compound(desc);
     }
     PLUMB_CHECK(false, "unknown kind of shape " << static_cast<int>(desc.kind));
 }

@@ -15,7 +15,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 using AskedShape =
     std::variant<Sphere, Box, Aabb, Capsule, Cylinder, Plane, Segment, Triangle, ConvexHull,
-                 MeshTree, HeightField, Circle, Rectangle, OrientedRectangle, Segment2>;
+                 MeshTree, HeightField, Circle, Rectangle, OrientedRectangle, Segment2, Compound2>;
 
 struct MadeShape {
     AskedShape shape;
