@@ -116,6 +116,9 @@ def check(tree):
         if path.startswith("app/lab/"):
             for match in NO_WINDOW.finditer(COMMENT.sub("", tree[path])):
                 found.append(f"{path}: the lab opens no window, but names {match.group()}")
+        own = path[: -len(".cpp")] + ".h"
+        if path.endswith(".cpp") and own in tree and graph[path][:1] != [own]:
+            found.append(f"{path}: includes {own} not first, so nothing shows that it stands alone")
         if path.endswith(".h") and "#pragma once" not in tree[path]:
             found.append(f"{path}: has no #pragma once")
     for pattern, _, most in LIBRARIES:
@@ -177,6 +180,9 @@ VIOLATIONS = [
     ("engine/dynamics/a.cpp", "#include <toml++/toml.h>\n", "toml.h> is not for this file"),
     ("engine/core/a.cpp", '#include "tests/lab/oracle.h"\n', "only tests include tests"),
     ("app/lab/a.cpp", '#include "sweep.h"\n', '"sweep.h" is no file of ours'),
+    ("engine/math/types.cpp", '#include "engine/core/check.h"\n#include "engine/math/types.h"\n',
+     "math/types.h not first"),
+    ("engine/math/types.cpp", "", "math/types.h not first"),
     ("engine/core/a.h", "", "a.h: has no #pragma once"),
     ("engine/core/check.h", '#pragma once\n#include "engine/core/check.h"\n', "form a circle"),
 ]
