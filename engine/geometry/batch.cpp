@@ -168,8 +168,22 @@ void ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatc
     const std::size_t count = count_of(spheres);
     check_room(intervals, count);
     (void)ray_interval(Sphere{}, ray);
-    if (!kernels::ray_interval(spheres, ray, intervals))
-        refuse(count, [&](std::size_t i) { (void)ray_interval(at(spheres, i), ray); });
+    PieceBits unsure;
+    for (std::size_t first = 0; first < count; first += piece_size) {
+        const std::size_t size = std::min(piece_size, count - first);
+        const SphereBatch here = piece(spheres, first, size);
+        const IntervalBatch out{intervals.is_met.subspan(first / 64, bit_words(size)),
+                                intervals.t_enter.subspan(first, size),
+                                intervals.t_exit.subspan(first, size)};
+        if (!kernels::ray_interval(here, ray, out, unsure.data()))
+            refuse(size, [&](std::size_t i) { (void)ray_interval(at(here, i), ray); });
+        each_bit(std::span(unsure).first(bit_words(size)), 0, [&](std::size_t i) {
+            const std::optional<RayInterval> interval = ray_interval(at(here, i), ray);
+            put_bit(out.is_met, i, interval.has_value());
+            out.t_enter[i] = interval ? interval->t_enter : Real(0);
+            out.t_exit[i] = interval ? interval->t_exit : Real(0);
+        });
+    }
 }
 
 std::optional<BatchHit> raycast(const TriangleBatch &triangles, const Ray &ray) {
@@ -223,8 +237,15 @@ void contains(const Sphere &sphere, const PointBatch &points, std::span<std::uin
     const std::size_t count = count_of(points);
     check_room(answers.size(), count);
     check_valid(sphere);
-    if (!kernels::contains(sphere, points, answers.data()))
-        refuse(count, [&](std::size_t i) { (void)contains(sphere, at(points, i)); });
+    PieceBits unsure;
+    for (std::size_t first = 0; first < count; first += piece_size) {
+        const std::size_t size = std::min(piece_size, count - first);
+        const PointBatch here = piece(points, first, size);
+        if (!kernels::contains(sphere, here, answers.data() + first / 64, unsure.data()))
+            refuse(size, [&](std::size_t i) { (void)contains(sphere, at(here, i)); });
+        each_bit(std::span(unsure).first(bit_words(size)), first,
+                 [&](std::size_t i) { put_bit(answers, i, contains(sphere, at(points, i))); });
+    }
 }
 
 void contains(const Aabb &box, const PointBatch &points, std::span<std::uint64_t> answers) {

@@ -253,12 +253,18 @@ HWY_ATTR bool rays_against_aabb(const Aabb &box, const RayBatch &rays, const Int
     });
 }
 
-// through_ball and cut of raycast.cpp, for a sphere.
+// What a sphere's depth may be off by (raycast.cpp); reach is the square of its radius.
+HWY_INLINE Lanes depth_doubt(Lanes reach, Lanes away) {
+    return hn::Add(hn::Mul(all(Real(4) * epsilon), hn::Add(reach, away)),
+                   all(std::numeric_limits<Real>::min()));
+}
+
+// As ray_interval of raycast.cpp has it for a sphere that it is sure of.
 HWY_ATTR bool ray_against_spheres(const SphereBatch &spheres, const Ray &ray,
-                                  const IntervalBatch &out) {
+                                  const IntervalBatch &out, std::uint64_t *unsure) {
     const Real *const in[4] = {spheres.x.data(), spheres.y.data(), spheres.z.data(),
                                spheres.radius.data()};
-    std::uint64_t *const bits[1] = {out.is_met.data()};
+    std::uint64_t *const bits[2] = {out.is_met.data(), unsure};
     Real *const reals[2] = {out.t_enter.data(), out.t_exit.data()};
     // The direction divided by the power of two in its largest component.
     const Real largest_component =
@@ -280,17 +286,26 @@ HWY_ATTR bool ray_against_spheres(const SphereBatch &spheres, const Ray &ray,
 
         const Vector m = minus(center, all(ray.origin));
         const Vector moment = cross(m, d);
-        const Lanes radius_squared = hn::Mul(radius, radius);
-        const Lanes rest = hn::Sub(hn::Mul(radius_squared, squared), dot(moment, moment));
+        const Lanes reach = hn::Mul(radius, radius);
+        const Lanes away = dot(m, m);
+        const Lanes rest = hn::Sub(hn::Mul(reach, squared), dot(moment, moment));
+        const Lanes one_norm = hn::Add(hn::Add(hn::Abs(m.x), hn::Abs(m.y)), hn::Abs(m.z));
+        const Lanes e = hn::Mul(all(Real(4) * epsilon), hn::Add(one_norm, radius));
+        const Lanes doubt =
+            hn::Add(hn::Mul(squared, hn::Mul(e, hn::Add(hn::Mul(all(Real(2)), radius), e))),
+                    all(std::numeric_limits<Real>::min()));
+        const Mask is_sure =
+            hn::And(hn::Gt(hn::Abs(rest), doubt),
+                    hn::Gt(hn::Abs(hn::Sub(reach, away)), depth_doubt(reach, away)));
+
         const Lanes half = hn::Sqrt(rest);
         const Lanes middle = dot(m, d);
         const Lanes enter = hn::Div(hn::Sub(middle, half), squared);
         const Lanes exit = hn::Div(hn::Add(middle, half), squared);
-        const Mask is_cut = hn::And(hn::Ge(rest, zero), hn::Le(enter, exit));
 
         // From inside.
-        const Mask starts_inside = hn::Le(dot(m, m), radius_squared);
-        const Lanes exit_inside = hn::IfThenElseZero(is_cut, hn::Div(exit, scale));
+        const Mask starts_inside = hn::Lt(away, reach);
+        const Lanes exit_inside = hn::Div(exit, scale);
         const Lanes clamped =
             hn::IfThenElse(hn::Lt(exit_inside, zero), zero,
                            hn::IfThenElse(hn::Lt(max_t, exit_inside), max_t, exit_inside));
@@ -299,14 +314,18 @@ HWY_ATTR bool ray_against_spheres(const SphereBatch &spheres, const Ray &ray,
         // From outside.
         const Lanes t_enter = max(hn::Div(enter, scale), zero);
         const Lanes t_exit = min(max(hn::Div(exit, scale), t_enter), max_t);
-        Mask met_outside = hn::AndNot(starts_inside, is_cut);
-        met_outside = hn::AndNot(hn::Lt(exit, zero), met_outside);
+        Mask met_outside = hn::AndNot(starts_inside, hn::Ge(rest, zero));
+        met_outside = hn::And(met_outside, hn::Ge(middle, zero));
         met_outside = hn::And(met_outside, hn::Le(t_enter, max_t));
         met_outside = hn::AndNot(hn::Eq(t_enter, all(infinity)), met_outside);
 
-        return interval(hn::Or(met_inside, met_outside),
-                        hn::IfThenElse(starts_inside, zero, t_enter),
-                        hn::IfThenElse(starts_inside, clamped, t_exit), is_valid);
+        const Mask met = hn::Or(met_inside, met_outside);
+        const Lanes met_enter = hn::IfThenElse(starts_inside, zero, t_enter);
+        const Lanes met_exit = hn::IfThenElse(starts_inside, clamped, t_exit);
+        return Answers<2, 2>{
+            {met, hn::Not(is_sure)},
+            {hn::IfThenElseZero(met, met_enter), hn::IfThenElseZero(met, met_exit)},
+            is_valid};
     });
 }
 
@@ -367,15 +386,19 @@ HWY_ATTR bool sphere_against_spheres(const Sphere &one, const SphereBatch &spher
 }
 
 HWY_ATTR bool points_in_sphere(const Sphere &sphere, const PointBatch &points,
-                               std::uint64_t *answers) {
+                               std::uint64_t *answers, std::uint64_t *unsure) {
     const Real *const in[3] = {points.x.data(), points.y.data(), points.z.data()};
-    return for_each_block(in, points.x.size(), answers,
-                          [&](const Lanes(&p)[3], Mask &answer, Mask &is_valid) HWY_ATTR {
-                              const Vector point{p[0], p[1], p[2]};
-                              is_valid = is_finite(point);
-                              const Vector d = minus(point, all(sphere.center));
-                              answer = hn::Le(dot(d, d), all(sphere.radius * sphere.radius));
-                          });
+    std::uint64_t *const bits[2] = {answers, unsure};
+    Real *const no_reals[1] = {nullptr};
+    return for_each_block(in, points.x.size(), bits, no_reals, [&](const Lanes(&p)[3]) HWY_ATTR {
+        const Vector point{p[0], p[1], p[2]};
+        const Vector d = minus(point, all(sphere.center));
+        const Lanes away = dot(d, d);
+        const Lanes reach = all(sphere.radius * sphere.radius);
+        const Mask is_sure = hn::Gt(hn::Abs(hn::Sub(reach, away)), depth_doubt(reach, away));
+        return Answers<2, 1>{
+            {hn::Lt(away, reach), hn::Not(is_sure)}, {hn::Zero(tag)}, is_finite(point)};
+    });
 }
 
 HWY_ATTR bool points_in_aabb(const Aabb &box, const PointBatch &points, std::uint64_t *answers) {
@@ -588,8 +611,9 @@ bool ray_interval(const AabbBatch &boxes, const Ray &ray, const IntervalBatch &o
 bool ray_interval(const Aabb &box, const RayBatch &rays, const IntervalBatch &out) {
     return HWY_DYNAMIC_DISPATCH(rays_against_aabb)(box, rays, out);
 }
-bool ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &out) {
-    return HWY_DYNAMIC_DISPATCH(ray_against_spheres)(spheres, ray, out);
+bool ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &out,
+                  std::uint64_t *unsure) {
+    return HWY_DYNAMIC_DISPATCH(ray_against_spheres)(spheres, ray, out, unsure);
 }
 bool overlaps(const AabbBatch &a, const AabbBatch &b, std::uint64_t *answers) {
     return HWY_DYNAMIC_DISPATCH(aabb_pairs)(a, b, answers);
@@ -600,8 +624,9 @@ bool overlaps(const Aabb &box, const AabbBatch &boxes, std::uint64_t *answers) {
 bool overlaps(const Sphere &sphere, const SphereBatch &spheres, std::uint64_t *answers) {
     return HWY_DYNAMIC_DISPATCH(sphere_against_spheres)(sphere, spheres, answers);
 }
-bool contains(const Sphere &sphere, const PointBatch &points, std::uint64_t *answers) {
-    return HWY_DYNAMIC_DISPATCH(points_in_sphere)(sphere, points, answers);
+bool contains(const Sphere &sphere, const PointBatch &points, std::uint64_t *answers,
+              std::uint64_t *unsure) {
+    return HWY_DYNAMIC_DISPATCH(points_in_sphere)(sphere, points, answers, unsure);
 }
 bool contains(const Aabb &box, const PointBatch &points, std::uint64_t *answers) {
     return HWY_DYNAMIC_DISPATCH(points_in_aabb)(box, points, answers);

@@ -11,13 +11,16 @@ namespace kernels {
 
 bool ray_interval(const AabbBatch &boxes, const Ray &ray, const IntervalBatch &out);
 bool ray_interval(const Aabb &box, const RayBatch &rays, const IntervalBatch &out);
-bool ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &out);
+// Where `unsure` is set the scalar function must be asked.
+bool ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &out,
+                  std::uint64_t *unsure);
 
 bool overlaps(const AabbBatch &a, const AabbBatch &b, std::uint64_t *answers);
 bool overlaps(const Aabb &box, const AabbBatch &boxes, std::uint64_t *answers);
 bool overlaps(const Sphere &sphere, const SphereBatch &spheres, std::uint64_t *answers);
 
-bool contains(const Sphere &sphere, const PointBatch &points, std::uint64_t *answers);
+bool contains(const Sphere &sphere, const PointBatch &points, std::uint64_t *answers,
+              std::uint64_t *unsure);
 bool contains(const Aabb &box, const PointBatch &points, std::uint64_t *answers);
 bool contains(const Box &box, const PointBatch &points, std::uint64_t *answers);
 

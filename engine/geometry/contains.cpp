@@ -12,8 +12,7 @@ namespace plumb::inline PLUMB_PRECISION {
 bool contains(const Sphere &sphere, const Vec3 &point) {
     check_valid(sphere);
     check_point(point);
-    const Vec3 d = point - sphere.center;
-    return glm::dot(d, d) <= sphere.radius * sphere.radius;
+    return ball_sign(sphere.center, sphere.radius, point) >= 0;
 }
 
 bool contains(const Aabb &box, const Vec3 &point) {

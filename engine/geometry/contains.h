@@ -3,12 +3,12 @@
 // All sets are closed: a point on the surface is inside. A shape that is not valid, or a point that
 // is not finite, fails a check with the value in its message.
 //
-// HalfSpace, Plane, Segment, Ray and Aabb are answered exactly, for the numbers as they are given.
-// The others are exact when everything is a small integer (products of their fourth powers can be
-// represented) and a box is not rotated; elsewhere the answer may be wrong for points nearer to the
-// surface than 8 epsilon times the size of the shape (its radius, its length, its diagonal) only,
-// for a box without rotation epsilon times its largest coordinate. Lengths whose fourth powers
-// overflow or underflow (in float, beyond 1e9 m or below 1e-9 m) are not covered.
+// Sphere, HalfSpace, Plane, Segment, Ray and Aabb are answered exactly, for the numbers as they are
+// given. The others are exact when everything is a small integer (products of their fourth powers
+// can be represented) and a box is not rotated; elsewhere the answer may be wrong for points nearer
+// to the surface than 8 epsilon times the size of the shape (its radius, its length, its diagonal)
+// only, for a box without rotation epsilon times its largest coordinate. Lengths whose fourth
+// powers overflow or underflow (in float, beyond 1e9 m or below 1e-9 m) are not covered.
 #pragma once
 
 #include "engine/geometry/shapes.h"

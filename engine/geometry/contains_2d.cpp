@@ -36,8 +36,7 @@ bool contains(const Ray2 &ray, const Vec2 &point) {
 bool contains(const Circle &circle, const Vec2 &point) {
     check_valid(circle);
     check_valid(point);
-    const Vec2 d = point - circle.center;
-    return glm::dot(d, d) <= circle.radius * circle.radius;
+    return ball_sign({circle.center, Real(0)}, circle.radius, {point, Real(0)}) >= 0;
 }
 
 bool contains(const Rectangle &rectangle, const Vec2 &point) {

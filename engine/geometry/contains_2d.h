@@ -3,10 +3,9 @@
 // All sets are closed: a point on the border is inside. A shape that is not valid, or a point that
 // is not finite, fails a check with the value in its message.
 //
-// Segment2, Ray2 and Rectangle are answered exactly, for the numbers as they are given. The others
-// are exact for small integers (up to 2^10 in float, 2^24 in double; an oriented rectangle turned
-// by quarters). Elsewhere the answer may be wrong only for points nearer to the border than
-//   Circle              2 epsilon radius
+// Segment2, Ray2, Circle and Rectangle are answered exactly, for the numbers as they are given. The
+// others are exact for small integers (up to 2^10 in float, 2^24 in double; an oriented rectangle
+// turned by quarters). Elsewhere the answer may be wrong only for points nearer to the border than
 //   OrientedRectangle   4 epsilon |half_extents|, when its axis is a rounding off unit length
 //   Compound2           as its parts
 // Lengths whose squares overflow or underflow (in float, beyond 1e18 m or below 1e-18 m) are not

@@ -23,6 +23,8 @@ using Wide = glm::dvec3;
 template <typename T> using Vector = glm::vec<3, T, glm::defaultp>;
 
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
+constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+constexpr Real least = std::numeric_limits<Real>::min();
 
 // The greatest power of two that is not above |x|, and so divides without rounding; the smallest
 // normal one for less.
@@ -54,23 +56,33 @@ template <typename T> struct Stretch {
     bool is_empty() const { return !(enter <= exit); }
 };
 
-// The line t * d against a ball around m. The discriminant in the form of Lagrange's identity: what
-// is squared is the distance of the line, not that of the ball, and integers stay integers, so that
-// a tangent touches.
-template <typename T> Stretch<T> through_ball(const Vector<T> &m, const Vector<T> &d, T radius) {
-    const T squared = glm::dot(d, d);
-    const Vector<T> moment = glm::cross(m, d);
-    const T rest = radius * radius * squared - glm::dot(moment, moment);
-    if (!(rest >= T(0)))
-        return {};
-    const T half = std::sqrt(rest);
-    const T middle = glm::dot(m, d);
-    Stretch<T> stretch{(middle - half) / squared, (middle + half) / squared, Vector<T>(T(0))};
-    // From the point closest to the centre, which may be much closer than the origin.
-    stretch.outward = (middle / squared * d - m) - half / squared * d;
-    if (stretch.outward == Vector<T>(T(0)))
-        stretch.outward = -d; // radius zero
-    return stretch;
+// The line t * d and a ball around m. `rest` is the discriminant in the form of Lagrange's
+// identity: what is squared is the distance of the line, not that of the ball.
+template <typename T> struct LineAndBall {
+    Vector<T> m, d;
+    T squared;
+    T middle;
+    T rest; // not negative when they meet
+
+    LineAndBall(const Vector<T> &center, const Vector<T> &direction, T radius)
+        : m(center), d(direction), squared(glm::dot(d, d)), middle(glm::dot(m, d)) {
+        const Vector<T> moment = glm::cross(m, d);
+        rest = radius * radius * squared - glm::dot(moment, moment);
+    }
+    Stretch<T> stretch() const {
+        const T half = std::sqrt(rest);
+        Stretch<T> stretch{(middle - half) / squared, (middle + half) / squared, Vector<T>(T(0))};
+        // From the point closest to the centre, which may be much closer than the origin.
+        stretch.outward = (middle / squared * d - m) - half / squared * d;
+        if (stretch.outward == Vector<T>(T(0)))
+            stretch.outward = -d; // radius zero
+        return stretch;
+    }
+};
+
+Stretch<double> through_ball(const Wide &m, const Wide &d, double radius) {
+    const LineAndBall<double> both(m, d, radius);
+    return both.rest >= 0.0 ? both.stretch() : Stretch<double>{};
 }
 
 // Cuts a stretch to the ray. `starts_inside` is decided by the origin alone.
@@ -230,15 +242,48 @@ Stretch<double> through_cylinder(const AxisAndLine &line, double radius) {
     return whole;
 }
 
+// Nearer to touching than rounded numbers can tell.
+[[gnu::cold]] std::optional<RayInterval> through_touched(const Sphere &sphere, const Ray &ray,
+                                                         const Scaled &direction) {
+    const auto &[center, radius] = sphere;
+    const Vec3 zero{Real(0)};
+    const bool starts_inside = ball_sign(center, radius, ray.origin) >= 0;
+    const int line = line_ball_sign(center, radius, ray.origin, zero, direction.vector);
+    if (!starts_inside && (line < 0 || dot_sign(ray.origin, center, zero, direction.vector) < 0))
+        return std::nullopt;
+    LineAndBall<double> both(Wide(center) - Wide(ray.origin), Wide(direction.vector),
+                             double(radius));
+    both.rest = line > 0 ? std::max(both.rest, 0.0) : 0.0;
+    Stretch<double> stretch = both.stretch();
+    stretch.exit = std::max(stretch.exit, 0.0); // ahead, as has been decided
+    return cut(stretch, direction.scale, starts_inside, ray.max_t);
+}
+
 } // namespace
 
 std::optional<RayInterval> ray_interval(const Sphere &sphere, const Ray &ray) {
     check_ray(ray);
     check_valid(sphere);
     const Scaled d(ray.direction);
-    const Vec3 to_center = sphere.center - ray.origin;
-    const bool starts_inside = glm::dot(to_center, to_center) <= sphere.radius * sphere.radius;
-    return cut(through_ball(to_center, d.vector, sphere.radius), d.scale, starts_inside, ray.max_t);
+    const Real radius = sphere.radius;
+    const LineAndBall<Real> both(sphere.center - ray.origin, d.vector, radius);
+    const Vec3 &m = both.m;
+    const Real away = glm::dot(m, m);
+    const Real reach = radius * radius;
+    // What roundings, and underflow, can take from `rest` and from the depth of the origin: as in
+    // line_ball_sign and ball_sign (predicates.h), whose unit is half an epsilon. An origin that
+    // is outside by that much has `middle` too large for its sign to be wrong, when the line meets
+    // the ball: its square is at least the height over the ball times |d|^2.
+    const Real e = Real(4) * epsilon * (((std::abs(m.x) + std::abs(m.y)) + std::abs(m.z)) + radius);
+    const Real doubt = both.squared * (e * (Real(2) * radius + e)) + least;
+    const Real depth_doubt = Real(4) * epsilon * (reach + away) + least;
+    // Written so that what overflowed is in doubt.
+    if (!(std::abs(both.rest) > doubt && std::abs(reach - away) > depth_doubt)) [[unlikely]]
+        return through_touched(sphere, ray, d);
+    const bool starts_inside = away < reach;
+    if (!starts_inside && (both.rest < Real(0) || both.middle < Real(0)))
+        return std::nullopt;
+    return cut(both.stretch(), d.scale, starts_inside, ray.max_t);
 }
 
 std::optional<RayInterval> ray_interval(const Aabb &box, const Ray &ray) {
@@ -339,7 +384,12 @@ template <typename Solid> bool has_point_of(const Solid &solid, const Vec3 &a, c
 } // namespace
 
 bool linetest(const Sphere &sphere, const Vec3 &a, const Vec3 &b) {
-    return has_point_of(sphere, a, b);
+    check_point(b);
+    if (contains(sphere, a) || contains(sphere, b))
+        return true;
+    const auto &[center, radius] = sphere;
+    return dot_sign(a, center, a, b) > 0 && dot_sign(center, b, a, b) > 0 &&
+           line_ball_sign(center, radius, a, a, b) >= 0;
 }
 
 bool linetest(const Box &box, const Vec3 &a, const Vec3 &b) {

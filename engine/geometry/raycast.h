@@ -20,11 +20,12 @@ struct RayInterval {
 //
 // An Aabb, and a Box without rotation (whose faces are at center -+ half_extents, as rounded), are
 // never missed by a ray that truly meets them, in a face, an edge or a corner, and met wrongly only
-// by rays that pass an edge within 8 epsilon of the distance from the origin. The other answers are
-// those for a solid and a ray moved by at most 16 epsilon times the largest of their coordinates
-// and sizes, but exact for integers of at most 7 (of Cylinders, for those along an axis), so that
-// tangents touch. A HalfSpace is exact in whether there is an interval and whether it starts
-// inside.
+// by rays that pass an edge within 8 epsilon of the distance from the origin. A HalfSpace, and a
+// Sphere for an endless ray, are exact in whether there is an interval and whether it starts
+// inside: a tangent touches, and a ray that passes at a distance does not, whatever their size and
+// place. The other answers are those for a solid and a ray moved by at most 16 epsilon times the
+// largest of their coordinates and sizes, but exact for integers of at most 7 (of Cylinders, for
+// those along an axis).
 std::optional<RayInterval> ray_interval(const Sphere &sphere, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Box &box, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Aabb &box, const Ray &ray);
@@ -69,9 +70,9 @@ std::optional<RayHit> raycast(const Triangle &triangle, const Ray &ray);
 
 // Whether the segment from a to b has a point in the shape. A segment wholly inside does.
 // a == b asks whether that point is inside. The ends are asked for themselves, as by `contains`.
-bool linetest(const Sphere &sphere, const Vec3 &a, const Vec3 &b);
-bool linetest(const Box &box, const Vec3 &a, const Vec3 &b);  // exact without rotation
-bool linetest(const Aabb &box, const Vec3 &a, const Vec3 &b); // exact
+bool linetest(const Sphere &sphere, const Vec3 &a, const Vec3 &b); // exact
+bool linetest(const Box &box, const Vec3 &a, const Vec3 &b);       // exact without rotation
+bool linetest(const Aabb &box, const Vec3 &a, const Vec3 &b);      // exact
 bool linetest(const Capsule &capsule, const Vec3 &a, const Vec3 &b);
 bool linetest(const Cylinder &cylinder, const Vec3 &a, const Vec3 &b);
 bool linetest(const HalfSpace &half_space, const Vec3 &a, const Vec3 &b); // exact

@@ -74,19 +74,18 @@ std::optional<RayInterval2> ray_interval(const Circle &circle, const Ray2 &ray) 
     const RescaledRay rescaled(ray);
     const Vec2 &d = rescaled.ray.direction;
     const Real max_t = rescaled.ray.max_t;
-    const Vec2 to_center = circle.center - ray.origin;
-    const Real along = glm::dot(d, to_center);
-    if (!starts_inside && along < Real(0))
+    const Vec3 center{circle.center, Real(0)}, origin{ray.origin, Real(0)};
+    const Vec3 zero{Real(0)}, direction{d, Real(0)};
+    const int depth_sign = line_ball_sign(center, circle.radius, origin, zero, direction);
+    if (!starts_inside && (depth_sign < 0 || dot_sign(origin, center, zero, direction) < 0))
         return std::nullopt;
 
-    // The distance of the centre from the line is |across| / |d|; the sign of its difference to the
-    // radius is exact whenever these three are.
+    // The distance of the centre from the line is |across| / |d|.
+    const Vec2 to_center = circle.center - ray.origin;
+    const Real along = glm::dot(d, to_center);
     const Real across = cross(d, to_center);
     const Real squared = glm::dot(d, d);
     const Real radius_squared = circle.radius * circle.radius;
-    const int depth_sign = product_difference_sign(radius_squared, squared, across, across);
-    if (!starts_inside && depth_sign < 0)
-        return std::nullopt;
     const Real half =
         depth_sign > 0
             ? std::sqrt(std::max(radius_squared * squared - across * across, Real(0))) / squared
@@ -243,14 +242,9 @@ bool linetest(const Circle &circle, const Vec2 &a, const Vec2 &b) {
     check_valid(Segment2{a, b});
     if (contains(circle, a) || contains(circle, b))
         return true;
-    const Vec2 d = b - a;
-    const Vec2 to_center = circle.center - a;
-    const Real along = glm::dot(d, to_center);
-    const Real squared = glm::dot(d, d);
-    if (!(along > Real(0) && along < squared))
-        return false;
-    const Real across = cross(d, to_center);
-    return product_difference_sign(circle.radius * circle.radius, squared, across, across) >= 0;
+    const Vec3 center{circle.center, Real(0)}, from{a, Real(0)}, to{b, Real(0)};
+    return dot_sign(from, center, from, to) > 0 && dot_sign(center, to, from, to) > 0 &&
+           line_ball_sign(center, circle.radius, from, from, to) >= 0;
 }
 
 bool linetest(const Rectangle &rectangle, const Vec2 &a, const Vec2 &b) {

@@ -3,10 +3,10 @@
 // A shape or ray that is not valid fails a check with the value in its message. A ray with a
 // negative max_t, and an empty rectangle, meet nothing.
 //
-// Whether an endless ray meets a Rectangle or a Segment2, and `linetest` of both, is answered
-// exactly, for the numbers as they are given. The others are exact for small integers (up to 2^10
-// in float, 2^24 in double; an oriented rectangle turned by quarters). Elsewhere the answer may be
-// wrong only where the signed distance of shape and ray is within
+// Whether an endless ray meets a Circle, a Rectangle or a Segment2, and `linetest` of the three, is
+// answered exactly, for the numbers as they are given. The others are exact for small integers (up
+// to 2^10 in float, 2^24 in double; an oriented rectangle turned by quarters). Elsewhere the answer
+// may be wrong only where the signed distance of shape and ray is within
 //   8 epsilon (distance from the ray's origin to the centre + radius or |half_extents|)
 // of 0, and the points at t_enter and t_exit are that near to the border; a hit on a Segment2 is
 // within 8 epsilon times the largest coordinate of both. max_t is compared with the rounded

@@ -1,5 +1,6 @@
 #include "engine/math/predicates.h"
 
+#include <algorithm>
 #include <array>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -19,6 +20,11 @@ template <std::size_t N> struct Expansion {
     Expansion(double value, double error) requires(N == 2) {
         add(error);
         add(value);
+    }
+    // One that had more room than parts.
+    template <std::size_t M>
+    explicit Expansion(const Expansion<M> &other) requires(M > N) : count(other.count) {
+        std::copy_n(other.parts.begin(), count, parts.begin());
     }
     void add(double part) {
         if (part != 0.0)
@@ -125,6 +131,13 @@ template <std::size_t N> Expansion<4 * N> product(const Expansion<N> &e, const E
     return sum(scaled(e, f.parts[0]), scaled(e, f.parts[1]));
 }
 
+template <std::size_t N> Expansion<2 * N * N> squared(const Expansion<N> &e) {
+    Expansion<2 * N * N> total;
+    for (std::size_t i = 0; i < e.count; ++i)
+        total = Expansion<2 * N * N>(sum(total, scaled(e, e.parts[i])));
+    return total;
+}
+
 template <std::size_t N> Expansion<N> negated(Expansion<N> e) {
     for (std::size_t i = 0; i < e.count; ++i)
         e.parts[i] = -e.parts[i];
@@ -168,6 +181,33 @@ int plane_sign(const double (&normal)[3], double offset, const double (&point)[3
 
 int product_difference_sign(double a, double b, double c, double d) {
     return sum(product(a, b), negated(product(c, d))).sign();
+}
+
+int dot_sign(const double (&u)[3][2], const double (&v)[3][2]) {
+    const auto part = [&](std::size_t i) {
+        return product(difference(u[i][0], u[i][1]), difference(v[i][0], v[i][1]));
+    };
+    return sum(sum(part(0), part(1)), part(2)).sign();
+}
+
+int ball_sign(double radius, const double (&m)[3][2]) {
+    const auto part = [&](std::size_t i) { return squared(difference(m[i][0], m[i][1])); };
+    return sum(product(radius, radius), negated(sum(sum(part(0), part(1)), part(2)))).sign();
+}
+
+int line_ball_sign(double radius, const double (&m)[3][2], const double (&d)[3][2]) {
+    std::array<Expansion<2>, 3> a, b;
+    for (std::size_t i = 0; i < 3; ++i) {
+        a[i] = difference(m[i][0], m[i][1]);
+        b[i] = difference(d[i][0], d[i][1]);
+    }
+    const auto reach =
+        product(sum(sum(squared(b[0]), squared(b[1])), squared(b[2])), product(radius, radius));
+    const auto moment_squared = [&](std::size_t i, std::size_t j) {
+        return squared(minor_of(a[i], a[j], b[i], b[j]));
+    };
+    const auto away = sum(sum(moment_squared(1, 2), moment_squared(2, 0)), moment_squared(0, 1));
+    return sum(reach, negated(away)).sign();
 }
 
 glm::dvec3 cross(const double (&u)[3][2], const double (&v)[3][2]) {

@@ -6,8 +6,9 @@
 // Floating-Point Arithmetic and Fast Robust Geometric Predicates"). No fused operations are needed.
 //
 // Range: as floats, every finite value. As doubles, values that are 0 or of magnitude 1e-80 to
-// 1e90; beyond, products of three overflow or underflow, and the sign may be wrong. NaN and
-// infinity give no sign and are the caller's to refuse.
+// 1e90 (for line_ball_sign, 1e-60 to 1e70); beyond, products of three (of four) overflow or
+// underflow, and the sign may be wrong. NaN and infinity give no sign and are the caller's to
+// refuse.
 #pragma once
 
 #include "engine/math/types.h"
@@ -26,6 +27,9 @@ int cross_sign(const double (&u)[2][2], const double (&v)[2][2]);
 int triple_sign(const double (&u)[3][2], const double (&v)[3][2], const double (&w)[3][2]);
 int plane_sign(const double (&normal)[3], double offset, const double (&point)[3]);
 int product_difference_sign(double a, double b, double c, double d);
+int dot_sign(const double (&u)[3][2], const double (&v)[3][2]);
+int ball_sign(double radius, const double (&m)[3][2]);
+int line_ball_sign(double radius, const double (&m)[3][2], const double (&d)[3][2]);
 glm::dvec3 cross(const double (&u)[3][2], const double (&v)[3][2]);
 
 } // namespace exact
@@ -152,6 +156,76 @@ inline int plane_sign(const Vec3 &normal, Real offset, const Vec3 &point) {
         return 0;
     return exact::plane_sign({double(normal.x), double(normal.y), double(normal.z)}, double(offset),
                              {double(point.x), double(point.y), double(point.z)});
+}
+
+// (b - a) . (d - c): +1 when the two ways make an acute angle.
+inline int dot_sign(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
+    const double x = (double(b.x) - double(a.x)) * (double(d.x) - double(c.x));
+    const double y = (double(b.y) - double(a.y)) * (double(d.y) - double(c.y));
+    const double z = (double(b.z) - double(a.z)) * (double(d.z) - double(c.z));
+    const double dot = (x + y) + z;
+    // Three roundings of each product, then that of two sums.
+    const double bound = 8.0 * exact::unit * (std::abs(x) + std::abs(y) + std::abs(z));
+    if (dot > bound)
+        return 1;
+    if (dot < -bound)
+        return -1;
+    if (bound == 0.0)
+        return 0;
+    return exact::dot_sign(
+        {{double(b.x), double(a.x)}, {double(b.y), double(a.y)}, {double(b.z), double(a.z)}},
+        {{double(d.x), double(c.x)}, {double(d.y), double(c.y)}, {double(d.z), double(c.z)}});
+}
+
+// radius^2 - |point - center|^2: +1 when the point is within the ball, 0 when it is on it.
+inline int ball_sign(const Vec3 &center, Real radius, const Vec3 &point) {
+    const double x = double(point.x) - double(center.x);
+    const double y = double(point.y) - double(center.y);
+    const double z = double(point.z) - double(center.z);
+    const double reach = double(radius) * double(radius);
+    const double away = x * x + y * y + z * z;
+    // Five roundings of `away`, one of `reach` and that of the difference.
+    const double bound = 8.0 * exact::unit * (reach + away);
+    if (reach - away > bound)
+        return 1;
+    if (reach - away < -bound)
+        return -1;
+    if (bound == 0.0)
+        return 0;
+    return exact::ball_sign(double(radius), {{double(point.x), double(center.x)},
+                                             {double(point.y), double(center.y)},
+                                             {double(point.z), double(center.z)}});
+}
+
+// radius^2 |d|^2 - |(center - origin) x d|^2 with d = to - from: +1 when the line through `origin`
+// along d cuts the ball, 0 when it touches it, or when d is zero.
+inline int line_ball_sign(const Vec3 &center, Real radius, const Vec3 &origin, const Vec3 &from,
+                          const Vec3 &to) {
+    const glm::dvec3 m = glm::dvec3(center) - glm::dvec3(origin);
+    const glm::dvec3 d = glm::dvec3(to) - glm::dvec3(from);
+    const glm::dvec3 moment{m.y * d.z - m.z * d.y, m.z * d.x - m.x * d.z, m.x * d.y - m.y * d.x};
+    const double r = double(radius);
+    const double squared = d.x * d.x + d.y * d.y + d.z * d.z;
+    const double rest =
+        r * r * squared - (moment.x * moment.x + moment.y * moment.y + moment.z * moment.z);
+    // The components of the moment are off by 4 units of the sum of their products' magnitudes, so
+    // the line's distance by 4 sqrt(2) units of |m|, and the squares by 14 units of r^2 |d|^2 where
+    // they are nearly equal. With e = 8 units (|m| + r), (2 r + e) e is more than all that.
+    const double e = 8.0 * exact::unit * (std::abs(m.x) + std::abs(m.y) + std::abs(m.z) + r);
+    const double bound = squared * (e * (2.0 * r + e));
+    if (rest > bound)
+        return 1;
+    if (rest < -bound)
+        return -1;
+    if (bound == 0.0)
+        return 0;
+    return exact::line_ball_sign(r,
+                                 {{double(center.x), double(origin.x)},
+                                  {double(center.y), double(origin.y)},
+                                  {double(center.z), double(origin.z)}},
+                                 {{double(to.x), double(from.x)},
+                                  {double(to.y), double(from.y)},
+                                  {double(to.z), double(from.z)}});
 }
 
 // (b - a) x (d - c), off by at most 2e-9 of its length in float and 4e-15 in double however nearly

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
@@ -92,6 +94,44 @@ int true_difference_sign(Real a, Real b, Real c, Real d) {
     const long double ab = wide(a) * wide(b), cd = wide(c) * wide(d);
     return sign_by(ab - cd, std::abs(ab) + std::abs(cd),
                    [&] { return Rational(rational(a) * rational(b) - rational(c) * rational(d)); });
+}
+
+int true_dot_sign(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
+    const Wide3 u(b, a), v(d, c);
+    return sign_by(u.x * v.x + u.y * v.y + u.z * v.z,
+                   std::abs(u.x * v.x) + std::abs(u.y * v.y) + std::abs(u.z * v.z),
+                   [&] { return dot(rational(b) - rational(a), rational(d) - rational(c)); });
+}
+
+int true_ball_sign(const Vec3 &center, Real radius, const Vec3 &point) {
+    const Wide3 m(point, center);
+    const long double reach = wide(radius) * wide(radius);
+    const long double away = m.x * m.x + m.y * m.y + m.z * m.z;
+    return sign_by(reach - away, reach + away, [&] {
+        const Rational3 p = rational(point) - rational(center);
+        return Rational(rational(radius) * rational(radius) - dot(p, p));
+    });
+}
+
+int true_line_ball_sign(const Vec3 &center, Real radius, const Vec3 &origin, const Vec3 &from,
+                        const Vec3 &to) {
+    const Wide3 m(center, origin), d(to, from);
+    const long double x = m.y * d.z - m.z * d.y, y = m.z * d.x - m.x * d.z,
+                      z = m.x * d.y - m.y * d.x;
+    const long double mm = m.x * m.x + m.y * m.y + m.z * m.z;
+    const long double dd = d.x * d.x + d.y * d.y + d.z * d.z;
+    const long double r = wide(radius);
+    // The moment is as far off as |m| |d| is large, and is compared by its square.
+    return sign_by(r * r * dd - (x * x + y * y + z * z),
+                   dd * (r * r + 2 * r * std::sqrt(mm) + 0x1p-59L * mm), [&] {
+                       // The distance of the centre from its foot on the line, where the engine
+                       // takes the moment.
+                       const Rational3 p = rational(center) - rational(origin);
+                       const Rational3 q = rational(to) - rational(from);
+                       const Rational squared = dot(q, q), along = dot(p, q);
+                       return Rational(squared * (rational(radius) * rational(radius)) -
+                                       (dot(p, p) * squared - along * along));
+                   });
 }
 
 // Coordinates of every kind: small whole numbers, ordinary ones of one size, sizes over many
@@ -223,6 +263,38 @@ TEST(Predicates, OrientInSpace) {
 }
 
 // Nearly parallel vectors, whose cross product cancels all its digits.
+TEST(Predicates, LinesAndBalls) {
+    Random random(17);
+    int zeros[3] = {};
+    const int count = trials(1'000'000);
+    for (int trial = 0; trial < count; ++trial) {
+        const std::uint32_t kind = random.next_index(5);
+        const Vec3 a = any_point(random, kind), b = any_point(random, kind),
+                   c = any_point(random, kind);
+        Vec3 d = any_point(random, kind);
+        if (trial % 4 == 0) // across
+            d = nudged(random, c + glm::cross(b - a, any_point(random, 1)));
+        const int dot = dot_sign(a, b, c, d);
+        ASSERT_EQ(dot, true_dot_sign(a, b, c, d)) << "trial " << trial;
+        zeros[0] += dot == 0;
+
+        const Real to_point = nudged(random, glm::length(b - a));
+        const int ball = ball_sign(a, to_point, b);
+        ASSERT_EQ(ball, true_ball_sign(a, to_point, b)) << "trial " << trial;
+        zeros[1] += ball == 0;
+
+        const Vec3 along = d - c;
+        const Real length = glm::length(along);
+        const Real to_line = nudged(
+            random, length > Real(0) ? glm::length(glm::cross(a - b, along)) / length : Real(1));
+        const int line = line_ball_sign(a, to_line, b, c, d);
+        ASSERT_EQ(line, true_line_ball_sign(a, to_line, b, c, d)) << "trial " << trial;
+        zeros[2] += line == 0;
+    }
+    for (const int zero : zeros)
+        EXPECT_GT(zero, count / 300);
+}
+
 TEST(Predicates, AccurateCross) {
     Random random(16);
     int zeros = 0, cancelled = 0;
@@ -276,6 +348,31 @@ TEST(Predicates, TheWholeRange) {
                   sign_of((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x)));
         ASSERT_EQ(plane_sign(a, b.x, c), sign_of(dot(p, r) - q.x));
         ASSERT_EQ(product_difference_sign(a.x, b.x, c.x, d.x), sign_of(p.x * q.x - r.x * s.x));
+        ASSERT_EQ(dot_sign(a, b, c, d), sign_of(dot(q - p, s - r)));
+        ASSERT_EQ(ball_sign(a, b.x, c), sign_of(q.x * q.x - dot(r - p, r - p)));
+    }
+}
+
+// Products of four.
+TEST(Predicates, TheWholeRangeOfLinesAndBalls) {
+    Random random(18);
+    const double low = sizeof(Real) == 4 ? -44.0 : -60.0, high = sizeof(Real) == 4 ? 38.0 : 70.0;
+    const auto coordinate = [&] {
+        return static_cast<Real>((random.next_index(2) == 0 ? -1.0 : 1.0) *
+                                 random.next_in(1.0, 3.0) *
+                                 std::pow(10.0, random.next_in(low, high)));
+    };
+    const auto point = [&] { return Vec3{coordinate(), coordinate(), coordinate()}; };
+    for (int trial = 0; trial < trials(40'000); ++trial) {
+        const Vec3 a = point(), b = point(), c = point(), d = point();
+        const Real radius = trial % 2 == 0 ? std::abs(coordinate()) : std::abs(a.y - b.y);
+        const Vec3 to = trial % 2 == 0 ? d : Vec3{d.x, c.y, c.z}; // along x
+        const Vec3 center = trial % 2 == 0 ? a : Vec3{a.x, a.y, b.z};
+        const Rational3 m = rational(center) - rational(b), q = rational(to) - rational(c);
+        const Rational r = rational(radius);
+        ASSERT_EQ(line_ball_sign(center, radius, b, c, to),
+                  sign_of(r * r * dot(q, q) - dot(cross(m, q), cross(m, q))))
+            << "trial " << trial;
     }
 }
 
