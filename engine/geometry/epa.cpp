@@ -1,5 +1,8 @@
 #include "engine/geometry/epa.h"
 
+#include <algorithm>
+#include <span>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
@@ -201,6 +204,140 @@ void keep_independent(Simplex &simplex, const Vec3 &size) {
     }
     if (simplex.count == 2 && glm::distance(at(0), at(1)) <= tolerance)
         simplex.count = 1;
+}
+
+Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
+    // A curved surface takes more vertices the closer it is followed, and around an axis of
+    // symmetry everywhere at once: with this, 64 around each rim.
+    constexpr Real of_polytopes = sizeof(Real) == 4 ? Real(1e-5) : Real(1e-10);
+    const Real relative = cores.is_curved() ? Real(4e-3) : of_polytopes;
+    Simplex simplex = overlap.simplex;
+    Vec3 size = overlap.size;
+    Penetration result;
+    const auto support = [&](const Vec3 &direction) {
+        const SimplexVertex vertex = cores.support(direction);
+        size = glm::max(size, glm::abs(vertex.a) + glm::abs(vertex.b));
+        ++result.iterations;
+        return vertex;
+    };
+    // Adds the support point, of those along the directions and against them, that is farthest off
+    // the simplex; false when none is, by more than rounding.
+    const auto widen = [&](std::span<const Vec3> directions, const auto &off) {
+        Real most = Real(0);
+        SimplexVertex farthest;
+        for (const Vec3 &along : directions) {
+            for (const Vec3 &direction : {along, -along}) {
+                const SimplexVertex vertex = support(direction);
+                const Real distance_off = off(vertex.w);
+                if (distance_off > most) {
+                    most = distance_off;
+                    farthest = vertex;
+                }
+            }
+        }
+        // Off a plane only what rounds along its normal counts, so that large and thin is not flat.
+        const Real rounding = Real(2) * (simplex.count == 3 ? rounding_along(directions[0], size)
+                                                            : rounding_of(size));
+        if (!(most > rounding))
+            return false;
+        simplex.vertices[static_cast<std::size_t>(simplex.count++)] = farthest;
+        return true;
+    };
+
+    const auto flat = [&](const Vec3 &normal) {
+        const Witnesses on = witnesses(overlap);
+        const bool is_backward = glm::dot(normal, cores.between_middles()) < Real(0);
+        result.normal = is_backward ? -normal : normal;
+        result.on_a = result.on_b = Real(0.5) * (on.on_a + on.on_b);
+        return result;
+    };
+    keep_independent(simplex, size);
+    const Vec3 &w0 = simplex.vertices[0].w;
+    if (simplex.count == 1) {
+        const std::array<Vec3, 3> axes = {Vec3{Real(1), Real(0), Real(0)},
+                                          Vec3{Real(0), Real(1), Real(0)},
+                                          Vec3{Real(0), Real(0), Real(1)}};
+        if (!widen(axes, [&](const Vec3 &w) { return glm::length(w - w0); }))
+            return flat(axes[1]);
+    }
+    if (simplex.count == 2) {
+        const Vec3 along = glm::normalize(simplex.vertices[1].w - w0);
+        const Vec3 across = any_perpendicular(along);
+        const std::array<Vec3, 2> directions = {across, glm::cross(along, across)};
+        if (!widen(directions,
+                   [&](const Vec3 &w) { return glm::length(glm::cross(w - w0, along)); }))
+            return flat(across);
+    }
+    if (simplex.count == 3) {
+        const Vec3 &w1 = simplex.vertices[1].w;
+        const Vec3 &w2 = simplex.vertices[2].w;
+        const std::array<Vec3, 1> normal = {
+            glm::normalize(triangle_normal(w1 - w0, w2 - w0, w2 - w1))};
+        if (!widen(normal, [&](const Vec3 &w) { return std::abs(glm::dot(w - w0, normal[0])); }))
+            return flat(normal[0]);
+    }
+
+    Polytope polytope(simplex);
+    Vec3 best_normal = polytope.face(0).normal;
+    Real least = std::numeric_limits<Real>::infinity();
+    for (;;) {
+        const int nearest = polytope.nearest();
+        const Polytope::Face &face = polytope.face(nearest);
+        const SimplexVertex vertex = support(face.normal);
+        const Real height = glm::dot(vertex.w, face.normal);
+        if (height < least) {
+            least = height;
+            best_normal = face.normal;
+        }
+        // Nothing of the difference is nearer than the nearest plane of a part of it, and a plane
+        // that it is behind is a way out. Both are below zero by rounding where the shapes touch
+        // within it only.
+        if (least - face.height <= relative * std::abs(least) + rounding_along(face.normal, size))
+            break;
+        // A face that does not grow is finished once, and ends this when it is the nearest again;
+        // the second limit is for coordinates beyond all sizes, whose products overflow.
+        if (polytope.is_full() || result.iterations > 2 * Polytope::vertex_limit) {
+            (void)PLUMB_RARELY("epa: vertex limit", true);
+            break;
+        }
+        if (!polytope.grow(nearest, vertex, size))
+            polytope.finish(nearest, height);
+    }
+    const Witnesses on = polytope.nearest_points(best_normal, least, size);
+    result.depth = std::max(least, Real(0));
+    result.normal = -best_normal;
+    result.on_a = on.on_a;
+    result.on_b = on.on_b;
+    return result;
+}
+
+Proximity proximity(const CorePair &cores, Real far) {
+    const Real radii = cores.radius_a() + cores.radius_b();
+    const GjkResult found = cores.nearest(cores.between_middles(), far + radii);
+    Proximity result;
+    result.iterations = found.iterations;
+    if (found.is_beyond) {
+        result.is_beyond = true;
+        return result;
+    }
+    if (found.is_overlapping) {
+        const Penetration deep = core_penetration(cores, found);
+        result.separation = -deep.depth - radii;
+        result.normal = deep.normal;
+        result.on_a = deep.on_a;
+        result.on_b = deep.on_b;
+        result.iterations += deep.iterations;
+    } else {
+        const Witnesses on = witnesses(found);
+        const Real between = std::sqrt(found.squared_distance);
+        result.separation = between - radii;
+        result.normal = found.difference / between;
+        result.on_a = on.on_a;
+        result.on_b = on.on_b;
+    }
+    result.on_a += cores.radius_a() * result.normal;
+    result.on_b -= cores.radius_b() * result.normal;
+    return result;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

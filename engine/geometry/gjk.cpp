@@ -252,4 +252,24 @@ Witnesses witnesses(const GjkResult &result) {
     return {on_a, on_b};
 }
 
+ClosestPoints closest_points(const GjkResult &found, Real radius_a, Real radius_b,
+                             const Vec3 &origin) {
+    const Witnesses on = witnesses(found);
+    ClosestPoints result;
+    result.iterations = found.iterations;
+    const Real radii = radius_a + radius_b;
+    const Real between = std::sqrt(found.squared_distance);
+    if (found.is_overlapping || between <= radii) {
+        // Between the surfaces there is at least one common point of the two.
+        const Real share = radii > Real(0) ? radius_a / radii : Real(0);
+        result.on_a = result.on_b = origin + (on.on_a + share * (on.on_b - on.on_a));
+        return result;
+    }
+    result.distance = between - radii;
+    result.normal = found.difference / between;
+    result.on_a = origin + (on.on_a + radius_a * result.normal);
+    result.on_b = origin + (on.on_b - radius_b * result.normal);
+    return result;
+}
+
 } // namespace plumb::inline PLUMB_PRECISION

@@ -10,6 +10,7 @@
 #include "engine/geometry/support.h"
 
 #include <array>
+#include <concepts>
 #include <limits>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -117,85 +118,49 @@ struct GjkResult {
 inline constexpr int gjk_iteration_limit = 200;
 
 // Stops early when the cores are proved to be farther apart than `far`. `guess` is a direction from
-// A to B, of any length; zero is allowed.
+// A to B, of any length; zero is allowed. There is one for each two cores of support.h, made in
+// gjk_pairs.cpp.
 template <typename CoreA, typename CoreB>
-GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
-    // A pair of closest points is known to be right when the support point is no nearer than they
-    // are (van den Bergen 1999, (3)), within this much of the squared distance.
-    constexpr Real relative = Real(16) * std::numeric_limits<Real>::epsilon();
-    constexpr int stall_limit = 6;
-    const Real squared_far = far * far;
-    int stalls = 0;
-    GjkResult result;
-    Simplex &simplex = result.simplex;
-    Vec3 &v = result.difference;
-    v = guess;
-    if (!(glm::dot(v, v) >= std::numeric_limits<Real>::min()))
-        v = Vec3{Real(1), Real(0), Real(0)};
-    for (;;) {
-        SimplexVertex &added = simplex.vertices[static_cast<std::size_t>(simplex.count)];
-        added.a = a.support(v);
-        added.b = b.support(-v);
-        added.w = added.b - added.a;
-        result.size = glm::max(result.size, glm::abs(added.a) + glm::abs(added.b));
-        ++result.iterations;
+GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far);
 
-        const Real along = glm::dot(v, added.w);
-        const Real rounding = rounding_along(v, result.size);
-        const Real apart = along - rounding;
-        if (apart > Real(0) && apart * apart > squared_far * glm::dot(v, v)) {
-            result.is_beyond = true;
-            return result;
-        }
-        if (simplex.count > 0) {
-            // Within rounding too, where v is the normal of a triangle or there is no new point:
-            // the direction of an edge that is long and near is itself mostly rounding.
-            const Real gap = result.squared_distance - along;
-            const Real allowed = relative * result.squared_distance;
-            if (gap <= allowed ||
-                (gap <= allowed + rounding && (simplex.count == 3 || has(simplex, added.w)))) {
-                result.is_overlapping = result.squared_distance <= rounding;
-                return result;
-            }
-            if (result.iterations > gjk_iteration_limit) [[unlikely]] {
-                (void)PLUMB_RARELY("gjk: iteration limit", true);
-                return result;
-            }
-        }
-        ++simplex.count;
-        SimplexPart part = closest_part(simplex, result.size);
-        if (part.count == 4) {
-            reduce(simplex, part);
-            v = Vec3{Real(0)};
-            result.squared_distance = Real(0);
-            result.is_overlapping = true;
-            return result;
-        }
-        // Each step comes closer. Near the end it may not by as much as rounding: the distance is
-        // then right, but the direction may still be the better one; a few such steps are taken.
-        if (!(part.squared_distance < result.squared_distance)) {
-            part =
-                closest_part(simplex, result.size, Real(8) * std::numeric_limits<Real>::epsilon());
-            if (++stalls > stall_limit ||
-                part.squared_distance > result.squared_distance + Real(2) * rounding) {
-                --simplex.count;
-                // Nothing shows that they are apart, and they are hardly farther than rounding.
-                result.is_overlapping =
-                    result.squared_distance <= (along <= Real(0) ? Real(4) : Real(1)) * rounding;
-                return result;
-            }
-        }
-        reduce(simplex, part);
-        v = part.closest;
-        result.squared_distance = part.squared_distance;
-        // Below the least normal number nothing is left of a direction.
-        if (result.squared_distance < std::numeric_limits<Real>::min() ||
-            (simplex.count == 3 && result.squared_distance <= rounding_along(v, result.size))) {
-            result.is_overlapping = true;
-            return result;
-        }
+// Two cores whatever their kinds, for what spends most of its time elsewhere. Borrows them.
+class CorePair {
+  public:
+    template <typename CoreA, typename CoreB>
+    CorePair(const CoreA &a, const CoreB &b)
+        : a_(&a), b_(&b), nearest_(nearest_of<CoreA, CoreB>), support_(support_of<CoreA, CoreB>),
+          radius_a_(a.radius), radius_b_(b.radius), between_middles_(b.middle() - a.middle()),
+          is_curved_(std::same_as<CoreA, CylinderCore> || std::same_as<CoreB, CylinderCore>) {}
+
+    GjkResult nearest(const Vec3 &guess, Real far) const { return nearest_(a_, b_, guess, far); }
+    // The point of the difference B - A farthest along a direction.
+    SimplexVertex support(const Vec3 &direction) const { return support_(a_, b_, direction); }
+    Real radius_a() const { return radius_a_; }
+    Real radius_b() const { return radius_b_; }
+    const Vec3 &between_middles() const { return between_middles_; } // from A's to B's
+    bool is_curved() const { return is_curved_; }
+
+  private:
+    template <typename CoreA, typename CoreB>
+    static GjkResult nearest_of(const void *a, const void *b, const Vec3 &guess, Real far) {
+        return gjk(*static_cast<const CoreA *>(a), *static_cast<const CoreB *>(b), guess, far);
     }
-}
+    template <typename CoreA, typename CoreB>
+    static SimplexVertex support_of(const void *a, const void *b, const Vec3 &direction) {
+        const Vec3 on_a = static_cast<const CoreA *>(a)->support(-direction);
+        const Vec3 on_b = static_cast<const CoreB *>(b)->support(direction);
+        return {on_a, on_b, on_b - on_a};
+    }
+
+    const void *a_;
+    const void *b_;
+    GjkResult (*nearest_)(const void *, const void *, const Vec3 &, Real);
+    SimplexVertex (*support_)(const void *, const void *, const Vec3 &);
+    Real radius_a_;
+    Real radius_b_;
+    Vec3 between_middles_;
+    bool is_curved_;
+};
 
 // The points of the cores that the simplex ended at; they differ by `difference`.
 struct Witnesses {
@@ -204,6 +169,10 @@ struct Witnesses {
 };
 Witnesses witnesses(const GjkResult &result);
 
+// What `distance` says of shapes whose cores, relative to an origin, GJK ended so on.
+ClosestPoints closest_points(const GjkResult &found, Real radius_a, Real radius_b,
+                             const Vec3 &origin);
+
 template <typename A, typename B>
 requires ConvexPair<A, B> ClosestPoints distance(const A &a, const B &b) {
     const Vec3 origin = place_of(a);
@@ -211,22 +180,7 @@ requires ConvexPair<A, B> ClosestPoints distance(const A &a, const B &b) {
     const auto core_b = core_of(b, origin);
     const GjkResult found = gjk(core_a, core_b, core_b.middle() - core_a.middle(),
                                 std::numeric_limits<Real>::infinity());
-    const Witnesses on = witnesses(found);
-    ClosestPoints result;
-    result.iterations = found.iterations;
-    const Real radii = core_a.radius + core_b.radius;
-    const Real between = std::sqrt(found.squared_distance);
-    if (found.is_overlapping || between <= radii) {
-        // Between the surfaces there is at least one common point of the two.
-        const Real share = radii > Real(0) ? core_a.radius / radii : Real(0);
-        result.on_a = result.on_b = origin + (on.on_a + share * (on.on_b - on.on_a));
-        return result;
-    }
-    result.distance = between - radii;
-    result.normal = found.difference / between;
-    result.on_a = origin + (on.on_a + core_a.radius * result.normal);
-    result.on_b = origin + (on.on_b - core_b.radius * result.normal);
-    return result;
+    return closest_points(found, core_a.radius, core_b.radius, origin);
 }
 
 template <typename A, typename B>

@@ -387,7 +387,7 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin) {
     const Vec3 origin = place_of(shape_a);
     const auto a = core_of(shape_a, origin);
     const auto b = core_of(shape_b, origin);
-    const Proximity found = proximity(a, b, margin);
+    const Proximity found = proximity(CorePair(a, b), margin);
     Manifold manifold;
     if (found.is_beyond || found.separation > margin)
         return manifold;

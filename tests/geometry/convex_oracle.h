@@ -267,32 +267,30 @@ inline Wide overlap_along(const Body &a, const Body &b, const W &u) {
     return a.support(u) + b.support(-u);
 }
 
-// The separation of two polytopes: the greatest over the normals of all faces and the cross
-// products of all edges (the faces of their difference); the signed distance when they overlap.
-inline Wide polytope_separation(const Body &a, const Body &b, W *best = nullptr) {
-    Wide most = -1e300;
-    const auto consider = [&](const W &u) {
-        const Wide separation = -overlap_along(a, b, u);
-        if (separation > most) {
-            most = separation;
-            if (best != nullptr)
-                *best = u;
-        }
-    };
+// Visits the directions from A to B that a face of the difference of two polytopes can have: the
+// normals of all faces, and the cross products of all edges both ways.
+template <typename Visit> void for_all_axes(const Body &a, const Body &b, const Visit &visit) {
     for (const auto &plane : a.planes)
-        consider(plane[0]);
+        visit(plane[0]);
     for (const auto &plane : b.planes)
-        consider(-plane[0]);
+        visit(-plane[0]);
     for (const auto &p : a.edges)
         for (const auto &q : b.edges) {
             const W d = p[1] - p[0], e = q[1] - q[0];
             const W cross = glm::cross(d, e);
             const Wide length = glm::length(cross);
             if (length > Wide(1e-9) * glm::length(d) * glm::length(e)) {
-                consider(cross / length);
-                consider(-cross / length);
+                visit(cross / length);
+                visit(-cross / length);
             }
         }
+}
+
+// The separation of two polytopes: the greatest over these directions; the signed distance when
+// they overlap.
+inline Wide polytope_separation(const Body &a, const Body &b) {
+    Wide most = -1e300;
+    for_all_axes(a, b, [&](const W &u) { most = std::max(most, -overlap_along(a, b, u)); });
     return most;
 }
 
@@ -474,36 +472,46 @@ template <typename Shape> Shape moved(Shape shape, const Vec3 &by) {
     return shape;
 }
 
-template <typename A, typename B> struct Pair {
-    A a;
-    B b;
+// What the proofs need to know of a pair, whatever its kinds.
+struct WidePair {
     Body wide_a, wide_b; // relative to the place of A
+    W place;             // of A
     double size = 0.0;   // the largest coordinate, relative to the place of A
     double far = 0.0;    // the largest in the world
+    bool is_curved;      // one is a cylinder: EPA follows it within 4e-3 only
 
-    Pair(const A &a_, const B &b_)
-        : a(a_), b(b_), wide_a(body_of(a_, to_wide(place_of(a_)))),
-          wide_b(body_of(b_, to_wide(place_of(a_)))) {
-        const W place = to_wide(place_of(a));
+    WidePair(Body a, Body b, const W &place_)
+        : wide_a(std::move(a)), wide_b(std::move(b)), place(place_),
+          is_curved(wide_a.is_cylinder || wide_b.is_cylinder) {
         for (const Body *body : {&wide_a, &wide_b})
             size = std::max(size, double(largest_coordinate(*body)));
         far = size + double(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}));
     }
 };
 
-// Two shapes apart, near each other, touching as well as rounding allows, or one in the other.
-template <typename A, typename B> Pair<A, B> any_pair_of(Random &random) {
-    const Scale scale = any_scale(random);
-    const Vec3 at = any_place(random, scale);
-    const A a = Any<A>::make(random, at, scale.size_a, scale);
-    B b = Any<B>::make(random, at, scale.size_b, scale);
+template <typename A, typename B> struct Pair : WidePair {
+    A a;
+    B b;
+
+    Pair(const A &a_, const B &b_)
+        : WidePair(body_of(a_, to_wide(place_of(a_))), body_of(b_, to_wide(place_of(a_))),
+                   to_wide(place_of(a_))),
+          a(a_), b(b_) {}
+};
+
+// Where B goes from where it is concentric with A.
+struct Displacement {
+    Vec3 apart{Real(0)};
+    Vec3 across{Real(0)}; // zero every other time: coplanar faces and parallel edges stay so
+};
+inline Displacement any_displacement(Random &random, const Scale &scale, const Body &a,
+                                     const Body &b) {
     V u = any_direction(random);
     if (scale.is_awkward && random.next_index(2) == 0) {
         u = V{0.0};
         u[int(random.next_index(3))] = random.next_index(2) == 0 ? 1.0 : -1.0;
     }
-    const double both =
-        double(overlap_along(body_of(a, to_wide(at)), body_of(b, to_wide(at)), W(u)));
+    const double both = double(overlap_along(a, b, W(u)));
     const double smaller = std::min(scale.size_a, scale.size_b);
     double move = 0.0;
     switch (random.next_index(6)) {
@@ -526,14 +534,28 @@ template <typename A, typename B> Pair<A, B> any_pair_of(Random &random) {
         move = both * random.next_in(1.0, 4.0);
         break; // far
     }
-    b = moved(b, Vec3{Real(u.x * move), Real(u.y * move), Real(u.z * move)});
-    // Across: coplanar faces and parallel edges stay so.
+    Displacement result;
+    result.apart = Vec3{Real(u.x * move), Real(u.y * move), Real(u.z * move)};
     if (random.next_index(2) == 0) {
         V across = any_direction(random);
         across -= u * glm::dot(across, u);
         across *= std::max(scale.size_a, scale.size_b);
-        b = moved(b, Vec3{Real(across.x), Real(across.y), Real(across.z)});
+        result.across = Vec3{Real(across.x), Real(across.y), Real(across.z)};
     }
+    return result;
+}
+
+// Two shapes apart, near each other, touching as well as rounding allows, or one in the other.
+template <typename A, typename B> Pair<A, B> any_pair_of(Random &random) {
+    const Scale scale = any_scale(random);
+    const Vec3 at = any_place(random, scale);
+    const A a = Any<A>::make(random, at, scale.size_a, scale);
+    B b = Any<B>::make(random, at, scale.size_b, scale);
+    const Displacement by =
+        any_displacement(random, scale, body_of(a, to_wide(at)), body_of(b, to_wide(at)));
+    b = moved(b, by.apart);
+    if (by.across != Vec3{Real(0)})
+        b = moved(b, by.across);
     return {a, b};
 }
 

@@ -16,19 +16,17 @@ constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 // The depth is proved from above by the overlap along the normal in wider arithmetic, and from
 // below by all the directions that the least depth of two polytopes can have, or, where the cores
 // are apart, by the distance of points in them. For cylinders directions are sampled.
-template <typename A, typename B>
-std::string complaint(const Pair<A, B> &pair, const Penetration &found, Random &random) {
+std::string complaint(const WidePair &pair, const Penetration &found, Random &random) {
     std::ostringstream out;
     out.precision(12);
     const double depth = double(found.depth);
-    constexpr bool is_curved = std::same_as<A, Cylinder> || std::same_as<B, Cylinder>;
+    const bool is_curved = pair.is_curved;
     constexpr bool is_float = sizeof(Real) == 4;
     const double rounding = 32.0 * epsilon * pair.size;
     const double relative = is_curved ? 4e-3 : is_float ? 1e-5 : 1e-10;
     const double allowed = relative * depth + rounding;
     const double in_world = allowed + 2.0 * epsilon * pair.far;
-    const W place = to_wide(place_of(pair.a));
-    const W on_a = to_wide(found.on_a) - place, on_b = to_wide(found.on_b) - place;
+    const W on_a = to_wide(found.on_a) - pair.place, on_b = to_wide(found.on_b) - pair.place;
     const W n = to_wide(found.normal);
     if (!(std::abs(double(glm::length(n)) - 1.0) <= 4.0 * epsilon))
         return "normal of length " + std::to_string(glm::length(n));

@@ -15,17 +15,14 @@ constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 
 // A distance is proved, not computed again: points of A and B that far apart bound it from above,
 // and a slab that wide between A and B from below.
-template <typename A, typename B>
-std::string complaint(const Pair<A, B> &pair, const ClosestPoints &found) {
+std::string complaint(const WidePair &pair, const ClosestPoints &found) {
     std::ostringstream out;
     out.precision(12);
     const double distance = double(found.distance);
-    constexpr bool is_curved = std::same_as<A, Cylinder> || std::same_as<B, Cylinder>;
-    const double relative = is_curved ? (sizeof(Real) == 4 ? 1e-5 : 1e-9) : 16.0 * epsilon;
+    const double relative = pair.is_curved ? (sizeof(Real) == 4 ? 1e-5 : 1e-9) : 16.0 * epsilon;
     const double allowed = relative * distance + 32.0 * epsilon * pair.size;
     const double in_world = allowed + 2.0 * epsilon * pair.far;
-    const W place = to_wide(place_of(pair.a));
-    const W on_a = to_wide(found.on_a) - place, on_b = to_wide(found.on_b) - place;
+    const W on_a = to_wide(found.on_a) - pair.place, on_b = to_wide(found.on_b) - pair.place;
     if (pair.wide_a.outside(on_a) > in_world)
         out << "point of A is " << pair.wide_a.outside(on_a) << " outside; ";
     if (pair.wide_b.outside(on_b) > in_world)

@@ -33,31 +33,14 @@ Interval meeting(const Body &a, const Body &b, const W &translation, double slac
             result.high = std::min(result.high, gap / speed);
         }
     };
-    for (const auto &plane : a.planes) {
-        consider(plane[0]);
-        consider(-plane[0]);
-    }
-    for (const auto &plane : b.planes) {
-        consider(plane[0]);
-        consider(-plane[0]);
-    }
-    for (const auto &p : a.edges)
-        for (const auto &q : b.edges) {
-            const W d = p[1] - p[0], e = q[1] - q[0];
-            const W cross = glm::cross(d, e);
-            const Wide length = glm::length(cross);
-            if (length > Wide(1e-9) * glm::length(d) * glm::length(e)) {
-                consider(cross / length);
-                consider(-cross / length);
-            }
-        }
+    for_all_axes(a, b, consider);
+    for_all_axes(a, b, [&](const W &u) { consider(-u); });
     return result;
 }
 
 // A hit is proved: the point is on both at that time, and the plane there parts them before. A miss
 // of solid polytopes is held against the intervals of all their axes.
-template <typename A, typename B>
-std::string complaint(const Pair<A, B> &pair, const Vec3 &translation,
+std::string complaint(const WidePair &pair, const Vec3 &translation,
                       const std::optional<CastHit> &hit) {
     std::ostringstream out;
     out.precision(12);
@@ -67,24 +50,20 @@ std::string complaint(const Pair<A, B> &pair, const Vec3 &translation,
     const double rounding = 32.0 * epsilon * size;
     const double target = 2.0 * double(cast_target(Real(2.0 * size)));
     if (!hit) {
-        if constexpr (!std::same_as<A, Cylinder> && !std::same_as<B, Cylinder>) {
-            if (pair.wide_a.is_solid && pair.wide_b.is_solid) {
-                const Interval sure = meeting(pair.wide_a, pair.wide_b, motion, -rounding);
-                if (sure.low <= sure.high)
-                    out << "missed what is met from " << sure.low << " to " << sure.high;
-            }
+        if (pair.wide_a.is_solid && pair.wide_b.is_solid) {
+            const Interval sure = meeting(pair.wide_a, pair.wide_b, motion, -rounding);
+            if (sure.low <= sure.high)
+                out << "missed what is met from " << sure.low << " to " << sure.high;
         }
         return out.str();
     }
     const W n = to_wide(hit->normal);
     if (!(std::abs(double(glm::length(n)) - 1.0) <= 4.0 * epsilon))
         return "normal of length " + std::to_string(glm::length(n));
-    const W place = to_wide(place_of(pair.a));
-    const W point = to_wide(hit->point) - place;
-    constexpr bool is_curved = std::same_as<A, Cylinder> || std::same_as<B, Cylinder>;
+    const W point = to_wide(hit->point) - pair.place;
     double in_world = target + rounding + 2.0 * epsilon * pair.far;
     if (hit->starts_overlapping) { // what epa.h says of its points
-        const double relative = is_curved ? 4e-3 : sizeof(Real) == 4 ? 1e-5 : 1e-10;
+        const double relative = pair.is_curved ? 4e-3 : sizeof(Real) == 4 ? 1e-5 : 1e-10;
         in_world += relative * std::max(0.0, double(overlap_along(pair.wide_a, pair.wide_b, n)));
     }
     if (!(hit->t >= Real(0) && hit->t <= Real(1)))
