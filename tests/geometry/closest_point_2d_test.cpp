@@ -38,7 +38,7 @@ void check_closest(W distance_of_result, W distance_of_point, const Vec2 &point,
 
 TEST(ClosestPoint2, IsInTheShapeAndAsFarAsTheShapeIs) {
     Random random(0x2d11);
-    for (int trial = 0; trial < trials(250'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const auto any_point = [&](const Vec2 &near, W size) {
             const Wide p = wide(near) + any_unit(random) * size * W(random.next_in(0.0, 3.0));
             return random.next_index(8) == 0 ? any_position(random)
@@ -86,7 +86,7 @@ TEST(ClosestPoint2, IsInTheShapeAndAsFarAsTheShapeIs) {
 TEST(ClosestPoint2, OfARectangleIsExact) {
     // By trying all points of a small grid.
     Random random(0x2d12);
-    for (int trial = 0; trial < trials(50'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec2 a = any_whole_point(random, 4), b = any_whole_point(random, 4);
         const Rectangle rectangle{glm::min(a, b), glm::max(a, b)};
         const Vec2 p = any_whole_point(random, 7);
@@ -106,7 +106,7 @@ TEST(ClosestPoint2, OfARectangleIsExact) {
 
 TEST(ClosestPoint2, OfACompoundIsTheClosestOfItsParts) {
     Random random(0x2d13);
-    for (int trial = 0; trial < trials(100'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Circle circle{any_vector(random, 9.0), any_real(random, 0.0, 3.0)};
         const OrientedRectangle oriented{any_vector(random, 9.0), any_axis(random),
                                          any_half_extents(random, Real(2))};

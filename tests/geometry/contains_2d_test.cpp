@@ -53,7 +53,7 @@ void check_point(Tally &tally, const Shape &shape, const Vec2 &point, double bou
 TEST(Contains2, IsWrongOnlyWithinTheStatedBound) {
     Random random(0x2d01);
     Tally circles, rectangles;
-    const int count = trials(500'000);
+    const int count = trials(1'000'000);
     for (int trial = 0; trial < count; ++trial) {
         const Circle circle = any_circle(random);
         check_point(circles, circle, near_border(random, circle, circle.center),
@@ -123,7 +123,7 @@ TEST(Contains2, IsExactOnSegmentsAndRays) {
 TEST(Contains2, SegmentsScaledAndMovedByPowersOfTwo) {
     // The same points, small and far away: nothing but exponents changes.
     Random random(0x2d04);
-    for (int trial = 0; trial < trials(200'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Real scale = std::ldexp(Real(1), int(random.next_index(40)) - 20);
         const Vec2 a = any_whole_point(random, 9), b = any_whole_point(random, 9);
         const Vec2 p = near_line(random, a, b);
@@ -133,7 +133,7 @@ TEST(Contains2, SegmentsScaledAndMovedByPowersOfTwo) {
 
 TEST(Contains2, CompoundIsAnyOfItsParts) {
     Random random(0x2d05);
-    for (int trial = 0; trial < trials(100'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Circle circle{any_whole_point(random, 9), std::abs(any_whole(random, 5))};
         const Vec2 half = glm::abs(any_whole_point(random, 5));
         const Vec2 corner = any_whole_point(random, 9);

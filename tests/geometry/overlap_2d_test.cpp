@@ -89,7 +89,7 @@ void check_near_touch(Random &random, Tally &tally, const A &a, B b, double boun
 
 TEST(Overlap2, IsWrongOnlyWithinTheStatedBound) {
     Random random(0x2d21);
-    const int count = trials(200'000);
+    const int count = trials(1'000'000);
     std::array<Tally, 5> tallies{};
     for (int trial = 0; trial < count; ++trial) {
         const Circle circle = any_circle(random);
@@ -119,7 +119,7 @@ TEST(Overlap2, IsWrongOnlyWithinTheStatedBound) {
 TEST(Overlap2, SeparatingAxisGivesDepthAndDistance) {
     Random random(0x2d22);
     int overlapping = 0;
-    const int count = trials(400'000);
+    const int count = trials(1'000'000);
     for (int trial = 0; trial < count; ++trial) {
         const Real size = any_size(random);
         const Vec2 center = any_position(random);
@@ -281,7 +281,7 @@ TEST(Overlap2, SegmentsAreExact) {
 TEST(Overlap2, CrossingPointsOfRealSegments) {
     Random random(0x2d25);
     int crossing = 0;
-    for (int trial = 0; trial < trials(300'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec2 middle_point = any_position(random);
         const Real size = any_size(random);
         const Wide u = any_unit(random);
@@ -306,13 +306,13 @@ TEST(Overlap2, CrossingPointsOfRealSegments) {
             ASSERT_LE(segment_distance(wide(s.a), wide(s.b), wide(common->a)),
                       8 * W(epsilon) * largest);
     }
-    EXPECT_GT(crossing, trials(300'000) / 20);
+    EXPECT_GT(crossing, trials(1'000'000) / 20);
 }
 
 TEST(Overlap2, CompoundIsAnyOfItsParts) {
     Random random(0x2d26);
     int some = 0;
-    const int count = trials(100'000);
+    const int count = trials(1'000'000);
     for (int trial = 0; trial < count; ++trial) {
         const auto any_parts = [&] {
             const Circle circle{any_vector(random, 9.0), any_real(random, 0.0, 3.0)};

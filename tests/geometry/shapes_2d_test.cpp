@@ -19,7 +19,7 @@ __extension__ using Quad = __float128;
 TEST(Shapes2, BoundsOfACircleAreTheNearestOutwards) {
     Random random(0x2d51);
     const Real inf = std::numeric_limits<Real>::infinity();
-    for (int trial = 0; trial < trials(500'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Circle circle = any_circle(random);
         const Rectangle box = bounds(circle);
         for (int i = 0; i < 2; ++i) {
@@ -33,7 +33,7 @@ TEST(Shapes2, BoundsOfACircleAreTheNearestOutwards) {
 
 TEST(Shapes2, BoundsOfAnOrientedRectangleHoldItsCorners) {
     Random random(0x2d52);
-    for (int trial = 0; trial < trials(500'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const OrientedRectangle rectangle = any_oriented(random);
         const Rectangle box = bounds(rectangle);
         const Polygon outline = polygon(rectangle);
@@ -77,7 +77,7 @@ TEST(Shapes2, BoundsAreExactWhereTheyCanBe) {
 
 TEST(Shapes2, OrientedRectangleFromAnAngle) {
     Random random(0x2d53);
-    for (int trial = 0; trial < trials(100'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Real angle = any_real(random, -7.0, 7.0);
         const OrientedRectangle rectangle =
             oriented_rectangle(Vec2{Real(1)}, angle, {Real(2), Real(3)});
@@ -89,7 +89,7 @@ TEST(Shapes2, OrientedRectangleFromAnAngle) {
 
 TEST(Shapes2, LengthOfASegment) {
     Random random(0x2d54);
-    for (int trial = 0; trial < trials(500'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec2 a = any_position(random);
         const Vec2 b = a + any_vector(random, double(any_size(random)));
         const W expected = std::hypot(W(b.x) - W(a.x), W(b.y) - W(a.y));

@@ -126,7 +126,7 @@ TEST(Triangle, BarycentricIsExactForSmallIntegers) {
     using namespace exact_oracle;
     Random random(34);
     int on_edge = 0;
-    const int count = trials(200'000);
+    const int count = trials(1'000'000);
     for (int trial = 0; trial < count; ++trial) {
         const auto whole = [&] {
             return Vec3{Real(random.next_index(7)) - 3, Real(random.next_index(7)) - 3,
@@ -156,7 +156,7 @@ TEST(Triangle, BarycentricIsExactForSmallIntegers) {
 
 TEST(Triangle, Bounds) {
     Random random(35);
-    for (int trial = 0; trial < trials(100'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Triangle t = awkward_triangle(random);
         const Aabb box = bounds(t);
         for (int i = 0; i < 3; ++i) {

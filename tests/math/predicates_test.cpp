@@ -134,6 +134,28 @@ int true_line_ball_sign(const Vec3 &center, Real radius, const Vec3 &origin, con
                    });
 }
 
+__extension__ typedef __float128 Quad; // of 113 bits
+
+// (b - a) x (d - c), to a relative 1e-16 of its greatest component; {0, 0, 0} just when it is zero.
+glm::dvec3 true_cross(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
+    const auto magnitude = [](Quad x) { return x < 0 ? -x : x; };
+    Quad n[3], size = 0, greatest = 0;
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const Quad left = (Quad(b[j]) - Quad(a[j])) * (Quad(d[k]) - Quad(c[k]));
+        const Quad right = (Quad(b[k]) - Quad(a[k])) * (Quad(d[j]) - Quad(c[j]));
+        n[i] = left - right;
+        size += magnitude(left) + magnitude(right);
+        greatest = std::max(greatest, magnitude(n[i]));
+    }
+    // Fewer than 8 roundings of 2^-113.
+    if (Quad(0x1p-110) * size < Quad(1e-16) * greatest)
+        return {double(n[0]), double(n[1]), double(n[2])};
+    const Rational3 exact = cross(rational(b) - rational(a), rational(d) - rational(c));
+    return {exact.x.convert_to<double>(), exact.y.convert_to<double>(),
+            exact.z.convert_to<double>()};
+}
+
 // Coordinates of every kind: small whole numbers, ordinary ones of one size, sizes over many
 // orders, zeros of both signs.
 Real any_coordinate(Random &random, std::uint32_t kind) {
@@ -298,31 +320,29 @@ TEST(Predicates, LinesAndBalls) {
 TEST(Predicates, AccurateCross) {
     Random random(16);
     int zeros = 0, cancelled = 0;
-    for (int trial = 0; trial < trials(200'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const std::uint32_t kind = random.next_index(5);
         const Vec3 a = any_point(random, kind), b = any_point(random, kind),
                    c = any_point(random, kind);
         const Real s = static_cast<Real>(random.next_in(-2.0, 2.0));
         const Vec3 d = trial % 2 == 0 ? nudged(random, c + s * (b - a)) : any_point(random, kind);
         const glm::dvec3 answer = accurate_cross(a, b, c, d);
-        const Rational3 p = rational(b) - rational(a), q = rational(d) - rational(c);
-        const Rational3 truth = cross(p, q);
-        const glm::dvec3 rounded{truth.x.convert_to<double>(), truth.y.convert_to<double>(),
-                                 truth.z.convert_to<double>()};
-        ASSERT_EQ(answer == glm::dvec3(0.0), is_zero(truth)) << "trial " << trial;
-        zeros += is_zero(truth);
+        const glm::dvec3 truth = true_cross(a, b, c, d);
+        const bool is_zero = truth == glm::dvec3(0.0);
+        ASSERT_EQ(answer == glm::dvec3(0.0), is_zero) << "trial " << trial;
+        zeros += is_zero;
         // Scaled, as the squares of the smallest would vanish.
         const double size =
-            std::max({std::abs(rounded.x), std::abs(rounded.y), std::abs(rounded.z), 1e-300});
-        ASSERT_LE(glm::length((answer - rounded) / size),
-                  (sizeof(Real) == 4 ? 2e-9 : 4e-15) * glm::length(rounded / size))
+            std::max({std::abs(truth.x), std::abs(truth.y), std::abs(truth.z), 1e-300});
+        ASSERT_LE(glm::length((answer - truth) / size),
+                  (sizeof(Real) == 4 ? 2e-9 : 4e-15) * glm::length(truth / size))
             << "trial " << trial;
         const double lengths =
             glm::length(glm::dvec3(b) - glm::dvec3(a)) * glm::length(glm::dvec3(d) - glm::dvec3(c));
         cancelled += size < 1e-6 * lengths;
     }
-    EXPECT_GT(zeros, trials(200'000) / 100);
-    EXPECT_GT(cancelled, trials(200'000) / 10);
+    EXPECT_GT(zeros, trials(1'000'000) / 100);
+    EXPECT_GT(cancelled, trials(1'000'000) / 10);
 }
 
 // Coordinates from one end of the stated range to the other in one determinant.
@@ -335,21 +355,22 @@ TEST(Predicates, TheWholeRange) {
                                  std::pow(10.0, random.next_in(low, high)));
     };
     const auto point = [&] { return Vec3{coordinate(), coordinate(), coordinate()}; };
-    for (int trial = 0; trial < trials(40'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec3 a = point(), b = point(), c = point();
         Vec3 d = point();
         if (trial % 2 == 0)
             d = {b.x, c.y, a.z};
-        const Rational3 p = rational(a), q = rational(b), r = rational(c), s = rational(d);
-        ASSERT_EQ(orient3d(a, b, c, d), sign_of(dot(s - p, cross(q - p, r - p))));
-        ASSERT_EQ(triple_sign(a, b, c, d), sign_of(dot(p, cross(r - q, s - q))));
+        ASSERT_EQ(orient3d(a, b, c, d), true_orient3d(a, b, c, d));
+        ASSERT_EQ(triple_sign(a, b, c, d), true_triple_sign(a, b, c, d));
         ASSERT_EQ(orient3d(a, b, a, d), 0);
-        ASSERT_EQ(orient2d(Vec2(a), Vec2(b), Vec2(c)),
-                  sign_of((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x)));
-        ASSERT_EQ(plane_sign(a, b.x, c), sign_of(dot(p, r) - q.x));
-        ASSERT_EQ(product_difference_sign(a.x, b.x, c.x, d.x), sign_of(p.x * q.x - r.x * s.x));
-        ASSERT_EQ(dot_sign(a, b, c, d), sign_of(dot(q - p, s - r)));
-        ASSERT_EQ(ball_sign(a, b.x, c), sign_of(q.x * q.x - dot(r - p, r - p)));
+        ASSERT_EQ(orient2d(Vec2(a), Vec2(b), Vec2(c)), true_orient2d(Vec2(a), Vec2(b), Vec2(c)));
+        ASSERT_EQ(cross_sign(Vec2(a), Vec2(b), Vec2(c)),
+                  true_cross_sign(Vec2(a), Vec2(b), Vec2(c)));
+        ASSERT_EQ(plane_sign(a, b.x, c), true_plane_sign(a, b.x, c));
+        ASSERT_EQ(product_difference_sign(a.x, b.x, c.x, d.x),
+                  true_difference_sign(a.x, b.x, c.x, d.x));
+        ASSERT_EQ(dot_sign(a, b, c, d), true_dot_sign(a, b, c, d));
+        ASSERT_EQ(ball_sign(a, b.x, c), true_ball_sign(a, b.x, c));
     }
 }
 
