@@ -40,9 +40,10 @@ Polytope::Polytope(const Simplex &simplex) : vertex_count_(4) {
 }
 
 int Polytope::add_face(int p, int q, int r) {
-    int f = 0;
+    int f = first_free_;
     while (f < face_end_ && faces_[index(f)].is_used)
         ++f;
+    first_free_ = f + 1;
     if (f == face_end_)
         ++face_end_;
     Face &face = faces_[index(f)];
@@ -63,6 +64,8 @@ int Polytope::add_face(int p, int q, int r) {
         face.normal = Vec3{Real(0)};
         face.height = std::numeric_limits<Real>::infinity();
     }
+    face.distance = face.height;
+    face.is_measured = false;
     return f;
 }
 
@@ -73,13 +76,43 @@ void Polytope::join(int f, int side, int g, int other_side) {
     faces_[index(g)].neighbor_sides[index(other_side)] = small(side);
 }
 
-int Polytope::nearest() const {
-    int best = -1;
-    for (int f = 0; f < face_end_; ++f)
-        if (faces_[index(f)].is_used &&
-            (best < 0 || faces_[index(f)].height < faces_[index(best)].height))
-            best = f;
-    return best;
+void Polytope::measure(Face &face, const Vec3 &size) const {
+    face.is_measured = true;
+    const Vec3 &p = vertices_[face.vertices[0]].w;
+    const Vec3 &q = vertices_[face.vertices[1]].w;
+    const Vec3 &r = vertices_[face.vertices[2]].w;
+    // Where the foot of the origin is in the triangle, the height is the distance.
+    if (glm::dot(glm::cross(p, q - p), face.normal) >= Real(0) &&
+        glm::dot(glm::cross(q, r - q), face.normal) >= Real(0) &&
+        glm::dot(glm::cross(r, p - r), face.normal) >= Real(0))
+        return;
+    Simplex triangle;
+    triangle.count = 3;
+    for (std::size_t i = 0; i < 3; ++i)
+        triangle.vertices[i] = vertices_[face.vertices[i]];
+    face.distance = std::max(face.height, std::sqrt(closest_part(triangle, size).squared_distance));
+}
+
+int Polytope::nearest(const Vec3 &size) {
+    for (;;) {
+        int best = -1;
+        for (int f = 0; f < face_end_; ++f)
+            if (faces_[index(f)].is_used &&
+                (best < 0 || faces_[index(f)].distance < faces_[index(best)].distance))
+                best = f;
+        Face &face = faces_[index(best)];
+        if (face.is_measured)
+            return best;
+        measure(face, size);
+        if (face.distance == face.height)
+            return best;
+    }
+}
+
+void Polytope::finish(int i, Real height) {
+    Face &face = faces_[index(i)];
+    face.height = height;
+    face.distance = std::max(face.distance, height);
 }
 
 bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
@@ -140,6 +173,8 @@ bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
 
     for (std::size_t k = 0; k < removed_count; ++k)
         faces_[removed[k]].is_used = false;
+    first_free_ = std::min<int>(
+        first_free_, *std::min_element(removed.begin(), removed.begin() + removed_count));
     const int added = vertex_count_++;
     vertices_[index(added)] = point;
     int first = 0;
@@ -280,8 +315,9 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
     Polytope polytope(simplex);
     Vec3 best_normal = polytope.face(0).normal;
     Real least = std::numeric_limits<Real>::infinity();
+    Real bound = -least;
     for (;;) {
-        const int nearest = polytope.nearest();
+        const int nearest = polytope.nearest(size);
         const Polytope::Face &face = polytope.face(nearest);
         const SimplexVertex vertex = support(face.normal);
         const Real height = glm::dot(vertex.w, face.normal);
@@ -289,10 +325,12 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
             least = height;
             best_normal = face.normal;
         }
-        // Nothing of the difference is nearer than the nearest plane of a part of it, and a plane
-        // that it is behind is a way out. Both are below zero by rounding where the shapes touch
+        // The difference contains a part of itself, and the ball in it: no way out is shorter than
+        // the distance of its surface, which grows with it but for rounding. A plane that the
+        // difference is behind is a way out. Both are below zero by rounding where the shapes touch
         // within it only.
-        if (least - face.height <= relative * std::abs(least) + rounding_along(face.normal, size))
+        bound = std::max(bound, face.distance);
+        if (least - bound <= relative * std::abs(least) + rounding_along(face.normal, size))
             break;
         // A face that does not grow is finished once, and ends this when it is the nearest again;
         // the second limit is for coordinates beyond all sizes, whose products overflow.

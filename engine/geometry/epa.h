@@ -42,24 +42,31 @@ class Polytope {
 
     // Not initialised, for there is room for many.
     struct Face {
-        Vec3 normal; // unit, outward
-        Real height; // of the plane above the origin
+        Vec3 normal;   // unit, outward
+        Real height;   // of the plane above the origin
+        Real distance; // of the triangle from the origin; no less, while it is not measured
         std::array<std::uint8_t, 3> vertices;
         std::array<std::uint8_t, 3> neighbors;      // across the side from vertex i to the next
         std::array<std::uint8_t, 3> neighbor_sides; // which of the neighbour's sides it is
         bool is_used;
         bool is_visible;
+        bool is_measured;
     };
 
     // A tetrahedron that is not flat.
     explicit Polytope(const Simplex &simplex);
 
-    // The face with the least height.
-    int nearest() const;
+    // The face that is nearest to the origin as a triangle: no ball around the origin that it does
+    // not meet leaves the polyhedron, whatever the normals are worth. In a convex polyhedron it is
+    // also the face with the lowest plane; but the normal of a sliver far from the origin is mostly
+    // rounding, and so is then the height of its plane. Van den Bergen 2001 leaves out faces that
+    // the foot of the origin is not in, for that reason; this does not lose the nearest point where
+    // it is on an edge.
+    int nearest(const Vec3 &size);
     const Face &face(int i) const { return faces_[static_cast<std::size_t>(i)]; }
     bool is_full() const { return vertex_count_ == vertex_limit; }
     // No support point is farther along the face's normal than this: its height, then.
-    void finish(int i, Real height) { faces_[static_cast<std::size_t>(i)].height = height; }
+    void finish(int i, Real height);
 
     // Grows to a point in front of the face; false, and nothing changed, when it is in front of no
     // face, within rounding, or the border of those it is in front of is not one loop.
@@ -74,10 +81,12 @@ class Polytope {
     static constexpr int face_limit = 2 * vertex_limit - 4;
 
     int add_face(int p, int q, int r);
+    void measure(Face &face, const Vec3 &size) const;
     void join(int f, int side, int g, int other_side);
 
     int vertex_count_ = 0;
-    int face_end_ = 0; // those from here on were never used
+    int face_end_ = 0;   // those from here on were never used
+    int first_free_ = 0; // none before is free
     std::array<SimplexVertex, static_cast<std::size_t>(vertex_limit)> vertices_;
     std::array<Face, static_cast<std::size_t>(face_limit)> faces_;
 };

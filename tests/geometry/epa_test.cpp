@@ -127,6 +127,23 @@ TEST(Epa, EndsWhereTouchingIsRounding) {
     }
 }
 
+// The difference is a cylinder swept along 1574 m: in float the normals of its ends' slivers are
+// rounding, and their planes seem to pass the origin nearer than those that matter.
+TEST(Epa, EndsOnLongNeedles) {
+    const Cylinder cylinder{Vec3{Real(-2), Real(-0.75), Real(-2)},
+                            Vec3{Real(0.125), Real(0.125), Real(0.125)}, Real(0.125)};
+    const Aabb line{Vec3{Real(0.125), Real(-1574.14893), Real(0.125)},
+                    Vec3{Real(0.125), Real(0.125), Real(0.125)}};
+    const Pair<Cylinder, Aabb> pair(cylinder, line);
+    const std::uint64_t limits = oddity("epa: vertex limit").met;
+    Random random(1);
+    const std::optional<Penetration> found = penetration(cylinder, line);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(complaint(pair, *found, random), "");
+    EXPECT_LE(found->iterations, 100);
+    EXPECT_EQ(oddity("epa: vertex limit").met, limits);
+}
+
 // Cores closer than what has a square still have a way out.
 TEST(Epa, CoresCloserThanANumberPart) {
     const Real tiny = std::sqrt(std::numeric_limits<Real>::min()) / Real(16);
