@@ -43,13 +43,42 @@ struct RayFound {
 };
 std::optional<RayFound> ray_into(const AskedShape &shape, const ProbeRayDesc &ray);
 
+Ray ray_of(const ProbeRayDesc &ray);
+// As far as what it hits and a little farther, or as far as it reaches.
+void draw_ray(Asking &ask, const ProbeRayDesc &ray, std::optional<double> hit_t);
+
 // The places of a scatter, and the boxes that stand there.
 std::vector<glm::dvec3> scattered_points(const ProbeScatterDesc &scatter);
 std::vector<Aabb> scattered_boxes(const ProbeScatterDesc &scatter);
+void draw_item(Asking &ask, const Aabb &box, ProbeTone tone); // one of those boxes
 
-// Crowds: trees, models, frustums.
+// The questions, in one file for each subject.
+// probe_vectors.cpp
+void answer_vectors(Asking &ask);
+void answer_basis(Asking &ask);
+void answer_transform(Asking &ask);
+void answer_matrix(Asking &ask);
+// probe_points.cpp
+void answer_contains(Asking &ask);
+void answer_closest(Asking &ask);
+void answer_enclose(Asking &ask);
+// probe_planes.cpp
+void answer_classify(Asking &ask);
+void answer_planes(Asking &ask);
+// probe_rays.cpp
+void answer_raycast(Asking &ask);
+// probe_overlaps.cpp
+void answer_overlap(Asking &ask);
+// probe_convex.cpp
+void answer_distance(Asking &ask);
+void answer_penetration(Asking &ask);
+void answer_collide(Asking &ask);
+void answer_cast(Asking &ask);
+// probe_trees.cpp
 void answer_tree(Asking &ask);
+// probe_models.cpp
 void answer_models(Asking &ask);
+// probe_cameras.cpp
 void answer_frustum(Asking &ask);
 void answer_cull(Asking &ask);
 void answer_pick(Asking &ask);

@@ -1,0 +1,57 @@
+// A scene file while it is read: what its tables have brought so far, and who reads which.
+// Not for users of the engine.
+#pragma once
+
+#include "engine/scene/repeat.h"
+#include "engine/scene/scene_file_names.h"
+#include "engine/scene/scene_file_table.h"
+
+#include <map>
+
+namespace plumb::scene_file {
+
+// The copies of a repeated body: their indices, one after the other.
+struct BodyGroup {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    bool is_complete = false; // not when the repeat had errors
+};
+
+struct Reading {
+    std::vector<std::string_view> known_methods;
+    Report report;
+    SceneDesc scene;
+    ScenePositions positions;
+    Names materials;
+    Names bodies;
+    Names joints;
+    Names expects;
+    std::map<std::string, double> densities; // of materials
+    std::map<std::string, std::size_t> bodies_by_name;
+    std::map<std::string, BodyGroup> groups; // by the name of the repeated body
+    int missing_bodies = 0;
+    bool said_too_many = false;
+};
+
+// Each adds what the table says to the scene, and reports every error.
+void read_world(Reading &reading, const toml::table &source);
+void read_methods(Reading &reading, const toml::table &source);
+void read_camera(Reading &reading, const toml::table &source);
+void read_material(Reading &reading, const toml::table &source);
+void read_body(Reading &reading, const toml::table &source);
+void read_joint(Reading &reading, const toml::table &source);
+void read_expect(Reading &reading, const toml::table &source);
+void read_state(Reading &reading, const toml::table &source);
+
+// How the body of that title is repeated; empty, having reported it, when that cannot be said.
+std::optional<Repeat> read_repeat(Report &report, const toml::table &source,
+                                  const std::string &title, const BodyDesc &body, bool has_shape);
+
+// The index of the body of that name; empty, having reported it, when there is none.
+std::optional<std::size_t> find_body(Reading &reading, const Table &table, std::string_view key);
+
+// Whether `count` more fit beside those present; an error, once for a file, when not.
+bool has_room_for(Reading &reading, std::size_t count, std::size_t limit, std::size_t present,
+                  const char *what, const FilePosition &at);
+
+} // namespace plumb::scene_file
