@@ -1,6 +1,7 @@
 // What the renderer sees: a flat list of values. Poses in metres, colours in sRGB 0..1.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,10 @@
 #include "app/render/camera.h"
 
 namespace plumb {
+
+inline bool finite(const glm::vec3 &v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 enum class DrawKind : std::uint8_t { sphere, box, capsule, cylinder };
 

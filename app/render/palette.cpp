@@ -1,8 +1,19 @@
 #include "app/render/palette.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace plumb {
+
+namespace {
+
+float linear_from_srgb(float s) {
+    s = std::clamp(s, 0.0f, 1.0f);
+    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+}
+
+} // namespace
 
 glm::vec3 palette_colour(std::size_t index) {
     // Similar in lightness, so that shading and not the colour shows the form.
@@ -17,6 +28,10 @@ glm::vec3 palette_colour(std::size_t index) {
         {0.82f, 0.64f, 0.70f}, // rose
     }};
     return colour[index % palette_size];
+}
+
+glm::vec3 linear_from_srgb(const glm::vec3 &srgb) {
+    return {linear_from_srgb(srgb.x), linear_from_srgb(srgb.y), linear_from_srgb(srgb.z)};
 }
 
 } // namespace plumb

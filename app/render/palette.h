@@ -11,6 +11,9 @@ namespace plumb {
 inline constexpr std::size_t palette_size = 8;
 [[nodiscard]] glm::vec3 palette_colour(std::size_t index);
 
+// As shaders and blending need it; components beyond 0..1 are clamped.
+[[nodiscard]] glm::vec3 linear_from_srgb(const glm::vec3 &srgb);
+
 namespace colours {
 inline constexpr glm::vec3 fixed{0.66f, 0.67f, 0.69f};     // bodies that never move
 inline constexpr glm::vec3 kinematic{0.50f, 0.55f, 0.60f}; // bodies that move as they are told

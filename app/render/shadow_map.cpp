@@ -1,0 +1,75 @@
+#include "app/render/shadow_map.h"
+
+#include <array>
+#include <optional>
+
+#include <glad/gl.h>
+
+#include "app/render/culling.h"
+#include "app/render/frame_block.h"
+
+namespace plumb {
+
+ShadowMap::ShadowMap(const std::filesystem::path &shader_dir)
+    : program_(frame_program(shader_dir, "shadow.vert", "shadow.frag")) {
+    glGenTextures(1, &texture_);
+    glActiveTexture(GL_TEXTURE0 + shadow_unit);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT,
+                 GL_UNSIGNED_INT, nullptr);
+    // Linear filtering of comparisons; outside the map everything is lit.
+    const std::array<float, 4> lit{1, 1, 1, 1};
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+    glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit.data());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    glGenFramebuffers(1, &target_);
+    glBindFramebuffer(GL_FRAMEBUFFER, target_);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture_, 0);
+    glDrawBuffer(GL_NONE);
+    glReadBuffer(GL_NONE);
+}
+
+ShadowMap::~ShadowMap() {
+    glDeleteFramebuffers(1, &target_);
+    glDeleteTextures(1, &texture_);
+}
+
+void ShadowMap::bind() const {
+    glActiveTexture(GL_TEXTURE0 + shadow_unit);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+}
+
+void ShadowMap::draw(const std::vector<DrawShape> &shapes,
+                     const std::vector<const TriangleBatch *> &flat, const glm::vec3 &origin,
+                     const ShadowFit &fit, const ShapeMeshes &meshes) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, target_);
+    glViewport(0, 0, size, size);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(2.0f, 4.0f);
+    // What is nearer to the light than the map's near end still throws its shadow.
+    glEnable(GL_DEPTH_CLAMP);
+    program_.use();
+    meshes.draw(shape_batch(shapes, origin, [&](const DrawShape &shape) {
+        const glm::vec3 at = shape.position - origin;
+        const glm::vec4 centre = fit.texture_from_relative * glm::vec4(at, 1);
+        const float metres = bounding_radius(shape);
+        const float radius = metres / (fit.texel * static_cast<float>(size));
+        const bool outside = centre.x < -radius || centre.x > 1 + radius || centre.y < -radius ||
+                             centre.y > 1 + radius;
+        // A quarter of the texels: a shadow's edge is soft.
+        return outside ? std::nullopt : std::optional<float>(0.25f * shape.size.x / fit.texel);
+    }));
+    glDisable(GL_CULL_FACE);
+    for (const TriangleBatch *batch : flat)
+        meshes.draw(*batch);
+    glEnable(GL_CULL_FACE);
+    glDisable(GL_DEPTH_CLAMP);
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+} // namespace plumb

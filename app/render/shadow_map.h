@@ -1,0 +1,36 @@
+// The scene's depth as the light sees it.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "app/render/draw_list.h"
+#include "app/render/shader_program.h"
+#include "app/render/shadow_fit.h"
+#include "app/render/shape_meshes.h"
+
+namespace plumb {
+
+class ShadowMap {
+  public:
+    static constexpr int size = 2048; // texels, both ways
+
+    explicit ShadowMap(const std::filesystem::path &shader_dir);
+    ~ShadowMap();
+    ShadowMap(const ShadowMap &) = delete;
+    ShadowMap &operator=(const ShadowMap &) = delete;
+
+    // For the shaders of the frame.
+    void bind() const;
+
+    // `origin` is what the triangles are relative to, and the fit.
+    void draw(const std::vector<DrawShape> &shapes, const std::vector<const TriangleBatch *> &flat,
+              const glm::vec3 &origin, const ShadowFit &fit, const ShapeMeshes &meshes) const;
+
+  private:
+    ShaderProgram program_;
+    unsigned texture_ = 0;
+    unsigned target_ = 0;
+};
+
+} // namespace plumb

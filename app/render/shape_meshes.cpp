@@ -1,0 +1,179 @@
+#include "app/render/shape_meshes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glad/gl.h>
+
+#include <glm/geometric.hpp>
+
+#include "app/render/palette.h"
+#include "app/render/vertex_input.h"
+#include "engine/core/check.h"
+
+namespace plumb {
+
+namespace {
+
+enum MeshName : std::size_t {
+    box,
+    sphere_0,
+    sphere_1,
+    sphere_2,
+    sphere_3,
+    capsule_0,
+    capsule_1,
+    capsule_2,
+    cylinder_0,
+    cylinder_1,
+    cylinder_2,
+    mesh_count
+};
+static_assert(mesh_count == shape_mesh_count);
+
+// Radii on the screen, in pixels, from which the finer meshes are drawn: there the outline is off
+// by less than a third of a pixel.
+constexpr std::array<float, 3> sphere_steps{least_sphere_step, 36, 140};
+constexpr std::array<float, 2> capsule_steps{12, 60};
+
+// What shaders take flat triangles for, beside the kinds of shapes.
+constexpr float mesh_kind = 4;
+
+// Their meshes have two ends, which are moved apart.
+bool has_ends(DrawKind kind) {
+    return kind == DrawKind::capsule || kind == DrawKind::cylinder;
+}
+
+glm::vec3 scale_of(const DrawShape &shape) {
+    return shape.kind == DrawKind::box ? shape.size : glm::vec3(shape.size.x);
+}
+
+} // namespace
+
+std::size_t mesh_for(const DrawShape &shape, float pixels) {
+    const auto step = [&](const auto &steps) {
+        return static_cast<std::size_t>(std::upper_bound(steps.begin(), steps.end(), pixels) -
+                                        steps.begin());
+    };
+    switch (shape.kind) {
+    case DrawKind::sphere:
+        return sphere_0 + step(sphere_steps);
+    case DrawKind::box:
+        return box;
+    case DrawKind::capsule:
+        return capsule_0 + step(capsule_steps);
+    case DrawKind::cylinder:
+        return cylinder_0 + step(capsule_steps);
+    }
+    PLUMB_CHECK(false, "unknown kind of shape " << static_cast<int>(shape.kind));
+}
+
+ShapeInstance instance_of(const DrawShape &shape, const glm::vec3 &origin) {
+    const glm::quat &q = shape.rotation;
+    return {shape.position - origin,        has_ends(shape.kind) ? shape.size.y : 0,
+            {q.x, q.y, q.z, q.w},           scale_of(shape),
+            static_cast<float>(shape.kind), linear_from_srgb(shape.colour),
+            shape.highlighted ? 1.0f : 0.0f};
+}
+
+TriangleBatch triangle_batch(const std::vector<DrawMesh> &meshes, const glm::vec3 &origin,
+                             bool glass) {
+    TriangleBatch batch;
+    for (const DrawMesh &mesh : meshes) {
+        if (mesh.glass != glass)
+            continue;
+        const std::size_t first = batch.vertices.size();
+        for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
+            const std::array corners{mesh.corners[i], mesh.corners[i + 1], mesh.corners[i + 2]};
+            const glm::vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+            const float twice_area = glm::length(across);
+            if (!(twice_area > 0) || !std::isfinite(twice_area))
+                continue;
+            for (const glm::vec3 &corner : corners)
+                batch.vertices.push_back({corner - origin, across / twice_area, 0});
+        }
+        const std::size_t count = batch.vertices.size() - first;
+        if (count > 0)
+            batch.parts.push_back({static_cast<GLint>(first), static_cast<GLsizei>(count),
+                                   linear_from_srgb(mesh.colour)});
+    }
+    return batch;
+}
+
+ShapeMeshes::ShapeMeshes() {
+    const std::array<Mesh, mesh_count> made{
+        box_mesh(),        sphere_mesh(1),      sphere_mesh(2),      sphere_mesh(3),
+        sphere_mesh(4),    capsule_mesh(12, 3), capsule_mesh(28, 7), capsule_mesh(64, 16),
+        cylinder_mesh(12), cylinder_mesh(28),   cylinder_mesh(64)};
+    std::vector<MeshVertex> vertices;
+    std::vector<std::uint16_t> indices;
+    for (std::size_t i = 0; i < mesh_count; ++i) {
+        meshes_[i] = {indices.size() * sizeof(std::uint16_t),
+                      static_cast<GLsizei>(made[i].indices.size()),
+                      static_cast<GLint>(vertices.size())};
+        vertices.insert(vertices.end(), made[i].vertices.begin(), made[i].vertices.end());
+        indices.insert(indices.end(), made[i].indices.begin(), made[i].indices.end());
+    }
+    glGenVertexArrays(1, &shape_array_);
+    glGenBuffers(1, &vertices_);
+    glGenBuffers(1, &indices_);
+    glBindVertexArray(shape_array_);
+    upload(vertices_, std::as_bytes(std::span(vertices)));
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint16_t)), indices.data(),
+                 GL_STATIC_DRAW);
+    attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position), 0);
+    attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal), 0);
+    attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, end), 0);
+    glGenBuffers(1, &instances_);
+    glGenBuffers(1, &triangles_);
+    glGenVertexArrays(1, &triangle_array_);
+}
+
+ShapeMeshes::~ShapeMeshes() {
+    const std::array buffers{vertices_, indices_, instances_, triangles_};
+    glDeleteBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
+    const std::array arrays{shape_array_, triangle_array_};
+    glDeleteVertexArrays(static_cast<GLsizei>(arrays.size()), arrays.data());
+}
+
+void ShapeMeshes::draw(const ShapeBatch &batch) const {
+    if (batch.instances.empty())
+        return;
+    glBindVertexArray(shape_array_);
+    upload(instances_, std::as_bytes(std::span(batch.instances)));
+    for (std::size_t mesh = 0; mesh < mesh_count; ++mesh) {
+        const std::size_t count = batch.first[mesh + 1] - batch.first[mesh];
+        if (count == 0)
+            continue;
+        // GL 3.3 has no first instance: the attributes are pointed there.
+        const std::size_t base = batch.first[mesh] * sizeof(ShapeInstance);
+        attribute(3, 4, sizeof(ShapeInstance), base + offsetof(ShapeInstance, position), 1);
+        attribute(4, 4, sizeof(ShapeInstance), base + offsetof(ShapeInstance, rotation), 1);
+        attribute(5, 4, sizeof(ShapeInstance), base + offsetof(ShapeInstance, scale), 1);
+        attribute(6, 4, sizeof(ShapeInstance), base + offsetof(ShapeInstance, colour), 1);
+        glDrawElementsInstancedBaseVertex(GL_TRIANGLES, meshes_[mesh].index_count,
+                                          GL_UNSIGNED_SHORT, byte_offset(meshes_[mesh].first_index),
+                                          static_cast<GLsizei>(count), meshes_[mesh].first_vertex);
+    }
+}
+
+void ShapeMeshes::draw(const TriangleBatch &batch) const {
+    if (batch.parts.empty())
+        return;
+    glBindVertexArray(triangle_array_);
+    upload(triangles_, std::as_bytes(std::span(batch.vertices)));
+    attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position), 0);
+    attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal), 0);
+    attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, end), 0);
+    glVertexAttrib4f(3, 0, 0, 0, 0);
+    glVertexAttrib4f(4, 0, 0, 0, 1);
+    glVertexAttrib4f(5, 1, 1, 1, mesh_kind);
+    for (const TriangleBatch::Part &part : batch.parts) {
+        glVertexAttrib4f(6, part.colour.r, part.colour.g, part.colour.b, 0);
+        glDrawArrays(GL_TRIANGLES, part.first, part.count);
+    }
+}
+
+} // namespace plumb
