@@ -325,6 +325,15 @@ int compare(const std::filesystem::path &a_path, const std::filesystem::path &b_
                                                           : ExitCode::outside_tolerance);
 }
 
+// A chart of geometric queries steps no world, so it would pass over them in silence.
+void refuse_options_of_scenes(const CLI::App &chart_command) {
+    for (const CLI::Option *option : chart_command.get_options())
+        if (option->count() > 0 && option->get_name() != "SCENE" &&
+            option->get_name() != "--repeats" && option->get_name() != "--out")
+            throw std::invalid_argument("chart geometry takes --repeats and --out, but no " +
+                                        option->get_name());
+}
+
 struct BenchArguments {
     std::string what;
     int rounds = 5;
@@ -469,7 +478,7 @@ int main_with_errors(int argc, char **argv) {
     std::vector<std::string> sweeps;
     CLI::App *chart_command = app.add_subcommand(
         "chart", "Charts each method's cost against its error, as CSV and PNG: of scenes, or of "
-                 "geometric queries (`plumb chart geometry`)");
+                 "geometric queries (`plumb chart geometry`, with --repeats and --out alone)");
     add_scenes(*chart_command, common);
     chart_command->add_option("--methods", chart.options.methods, "Of " + method_names() + " (all)")
         ->allow_extra_args(false)
@@ -488,6 +497,7 @@ int main_with_errors(int argc, char **argv) {
     add_run_options(*chart_command, common, true);
     chart_command->callback([&] {
         if (common.scenes == std::vector<std::string>{"geometry"}) {
+            refuse_options_of_scenes(*chart_command);
             QueryChartCommand command;
             command.options.repeats = chart.options.repeats;
             command.out_dir = common.out;

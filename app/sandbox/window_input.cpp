@@ -78,13 +78,12 @@ struct WindowInput::Callbacks {
             {{lower(static_cast<char32_t>(code)), false, false}, input.repeat_});
     }
 
+    // Where the moves before it led to. glfwGetCursorPos would say where the pointer is by now,
+    // which after a slow frame is not where a button was pressed.
     static PointerEvent here(GLFWwindow *window, PointerEvent::Kind kind) {
-        double x = 0;
-        double y = 0;
-        glfwGetCursorPos(window, &x, &y);
         PointerEvent event;
         event.kind = kind;
-        event.position = {static_cast<float>(x), static_cast<float>(y)};
+        event.position = self(window).pointer_;
         event.ctrl = held(window, GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
         event.shift = held(window, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
         return event;
@@ -104,9 +103,8 @@ struct WindowInput::Callbacks {
     }
 
     static void move(GLFWwindow *window, double x, double y) {
-        PointerEvent event = here(window, PointerEvent::Kind::move);
-        event.position = {static_cast<float>(x), static_cast<float>(y)};
-        self(window).events_.pointer.push_back(event);
+        self(window).pointer_ = {static_cast<float>(x), static_cast<float>(y)};
+        self(window).events_.pointer.push_back(here(window, PointerEvent::Kind::move));
     }
 
     static void wheel(GLFWwindow *window, double, double y) {
@@ -126,6 +124,10 @@ WindowInput::WindowInput(Window &window) : window_(window.handle()) {
     glfwSetWindowSizeLimits(window_, static_cast<int>(least.x), static_cast<int>(least.y),
                             GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
+    double x = 0;
+    double y = 0;
+    glfwGetCursorPos(window_, &x, &y);
+    pointer_ = {static_cast<float>(x), static_cast<float>(y)};
     glfwSetKeyCallback(window_, Callbacks::key);
     glfwSetCharCallback(window_, Callbacks::character);
     glfwSetMouseButtonCallback(window_, Callbacks::button);

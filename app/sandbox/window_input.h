@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 namespace plumb {
 
 class WindowInput {
@@ -34,6 +36,7 @@ class WindowInput {
     struct Callbacks;
     GLFWwindow *window_ = nullptr;
     Events events_;
+    glm::vec2 pointer_{0};
     bool repeat_ = false; // the last key event was of a key held down
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 namespace plumb {
 
@@ -13,6 +14,17 @@ namespace plumb {
 namespace f64 {
 ProbeAnswer answer_probe(const ProbeDesc &);
 }
+
+namespace {
+
+// What a failed check says, without the place in our code where it failed: who wrote the probe has
+// to mend that and not the code.
+std::string reason(const CheckFailure &failure) {
+    const std::string text = failure.what();
+    return text.substr(0, text.rfind(" (check `"));
+}
+
+} // namespace
 
 double ProbeAnswer::value(std::string_view name) const {
     const auto found = std::ranges::find(values, name, &ProbeValue::name);
@@ -24,7 +36,7 @@ ProbeAnswer answer(const ProbeDesc &probe, Precision precision) {
         return precision == Precision::dual ? f64::answer_probe(probe) : f32::answer_probe(probe);
     } catch (const CheckFailure &failure) {
         ProbeAnswer refused;
-        refused.refusal = failure.what();
+        refused.refusal = reason(failure);
         return refused;
     }
 }

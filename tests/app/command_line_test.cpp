@@ -128,7 +128,8 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "measure pendulum --steps -1",
                                   "snapshot pendulum --every 3 --steps -9",
                                   "compare a.png",
-                                  "chart pendulum --sweep dt"}) {
+                                  "chart pendulum --sweep dt",
+                                  "chart geometry --methods rk4"}) {
         const ProgramResult result = run_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.out << result.err;
         EXPECT_FALSE(result.err.empty()) << arguments;

@@ -257,6 +257,7 @@ TEST(Probe, WhatTheGeometryRefusesIsSaidAndNotThrown) {
     scene.probes.front().ray->direction = glm::dvec3(0);
     const ProbeAnswer found = answer(scene.probes.front(), Precision::single);
     EXPECT_NE(found.refusal, "");
+    EXPECT_EQ(found.refusal.find(".cpp"), std::string::npos) << found.refusal;
     EXPECT_TRUE(found.values.empty());
 }
 
