@@ -80,10 +80,11 @@ TEST(Enclosing2, CircleIsTheSmallest) {
     Random random(0x2d41);
     Tally tally;
     std::vector<Vec2> points;
-    for (int trial = 0; trial < trials(150'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec2 center = any_position(random);
         const Real size = any_size(random);
-        const std::uint32_t count = 1 + random.next_index(9);
+        // Few, mostly: there are n^3 / 6 triples.
+        const std::uint32_t count = 1 + random.next_index(random.next_index(8) == 0 ? 9 : 4);
         const std::uint32_t family = random.next_index(7);
         const Wide u = any_unit(random);
         const W flat = W(any_magnitude(random, -16.0, -1.0));
@@ -193,7 +194,7 @@ TEST(Enclosing2, CircleIsExactWhereItCanBe) {
 
 TEST(Enclosing2, RectangleIsExact) {
     Random random(0x2d44);
-    for (int trial = 0; trial < trials(100'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         std::vector<Vec2> points;
         for (std::uint32_t i = 0; i <= random.next_index(9); ++i)
             points.push_back(any_position(random));

@@ -2,6 +2,7 @@
 
 #include "engine/core/check.h"
 #include "tests/geometry/oracle.h"
+#include "tests/trials.h"
 
 #include <gtest/gtest.h>
 
@@ -130,11 +131,12 @@ std::string complaint(const Pair &pair, const Manifold &m, Random &random) {
     return out.str();
 }
 
-TEST(Manifold, AllPairsAgainstTheOracle) {
-    Random random(1);
+// A million pairs in all, a third for each kind.
+void check_all_pairs(std::uint32_t kind_a) {
+    Random random(1 + kind_a);
     int wrong = 0;
-    for (int trial = 0; trial < 120000; ++trial) {
-        const std::uint32_t kind_a = random.next_index(3), kind_b = random.next_index(3);
+    for (int trial = 0; trial < trials(334'000); ++trial) {
+        const std::uint32_t kind_b = random.next_index(3);
         const bool is_awkward = random.next_index(2) == 0;
         const Pair pair = any_pair(random, kind_a, kind_b, is_awkward, true);
         const Manifold m = collide(pair.a, pair.b, Real(margin));
@@ -147,9 +149,21 @@ TEST(Manifold, AllPairsAgainstTheOracle) {
     EXPECT_EQ(wrong, 0);
 }
 
+TEST(Manifold, SpheresWithAllAgainstTheOracle) {
+    check_all_pairs(0);
+}
+
+TEST(Manifold, BoxesWithAllAgainstTheOracle) {
+    check_all_pairs(1);
+}
+
+TEST(Manifold, CapsulesWithAllAgainstTheOracle) {
+    check_all_pairs(2);
+}
+
 TEST(Manifold, HalfSpaceAgainstSupportHeights) {
     Random random(2);
-    for (int trial = 0; trial < 100000; ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const std::uint32_t kind = random.next_index(3);
         const Shape solid = any_shape(random, kind, any_vector(random, 1.0), trial % 2 == 0);
         const V direction = trial % 3 == 0 ? V{0.0, 1.0, 0.0} : any_direction(random);

@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -227,6 +229,144 @@ TEST(Quickhull, ExactOnTheLattice) {
         ASSERT_EQ(faces, expected_faces) << "trial " << trial;
         check_mesh(mesh, points);
         ASSERT_FALSE(HasFailure()) << "trial " << trial;
+        ASSERT_LE(double(result.left_out), double(result.tolerance));
+    }
+    EXPECT_GT(solids, count / 2);
+    EXPECT_GT(flats, count / 100);
+}
+
+// Up to eight points, as bits of a number.
+struct SmallHull {
+    std::vector<std::uint32_t> facets; // their corners; none when all is in one plane
+    std::uint32_t vertices = 0;
+};
+
+// As exact_hull() finds it: a facet is in a plane through three points that has none in front.
+void find_small_hull(const std::vector<Lattice> &points, SmallHull &hull) {
+    hull.facets.clear();
+    hull.vertices = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t j = i + 1; j < points.size(); ++j)
+            for (std::size_t k = j + 1; k < points.size(); ++k) {
+                const Lattice &a = points[i], &b = points[j], &c = points[k];
+                const std::int64_t u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+                const std::int64_t w[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+                const std::int64_t n[3] = {u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2],
+                                           u[0] * w[1] - u[1] * w[0]};
+                std::uint32_t on = 0, front = 0, behind = 0;
+                for (std::size_t p = 0; p < points.size(); ++p) {
+                    const std::int64_t height = n[0] * (points[p][0] - a[0]) +
+                                                n[1] * (points[p][1] - a[1]) +
+                                                n[2] * (points[p][2] - a[2]);
+                    (height > 0 ? front : height < 0 ? behind : on) |= 1U << p;
+                }
+                if ((front == 0) == (behind == 0))
+                    continue; // not supporting; or everything in one plane
+                if (std::find(hull.facets.begin(), hull.facets.end(), on) == hull.facets.end())
+                    hull.facets.push_back(on);
+            }
+    // In an edge of the hull lie two facets, in a corner at least three.
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        int facets_at = 0;
+        for (const std::uint32_t facet : hull.facets)
+            facets_at += int(facet >> p & 1U);
+        hull.vertices |= facets_at >= 3 ? 1U << p : 0U;
+    }
+    for (std::uint32_t &facet : hull.facets)
+        facet &= hull.vertices;
+}
+
+// Six times the volume of the tetrahedron of three corners and the origin.
+std::int64_t six_volumes(const Lattice &a, const Lattice &b, const Lattice &c) {
+    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+           a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+// The mesh of distinct points is closed, faces outward, and has just these faces and this volume.
+void expect_small_hull(const HullMesh &mesh, const std::vector<Lattice> &points,
+                       const SmallHull &expected) {
+    std::array<std::uint32_t, 8> index{};
+    std::uint32_t vertices = 0;
+    ASSERT_LE(mesh.vertices.size(), points.size());
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        const Vec3 &p = mesh.vertices[v];
+        const Lattice place{std::int64_t(p.x), std::int64_t(p.y), std::int64_t(p.z)};
+        const auto found = std::find(points.begin(), points.end(), place);
+        ASSERT_NE(found, points.end());
+        index[v] = std::uint32_t(found - points.begin());
+        vertices |= 1U << index[v];
+    }
+    ASSERT_EQ(vertices, expected.vertices);
+    ASSERT_EQ(std::size_t(std::popcount(vertices)), mesh.vertices.size());
+    ASSERT_EQ(mesh.faces.size(), expected.facets.size());
+    std::uint64_t sides = 0, turned = 0; // 8 x 8 bits: an edge from one vertex to another
+    std::uint32_t faces_seen = 0;
+    std::int64_t volume = 0;
+    for (const HullMesh::Face &face : mesh.faces) {
+        std::uint32_t corners = 0;
+        const auto at = [&](std::uint32_t i) {
+            return index[mesh.vertex_indices[face.first + i % face.count]];
+        };
+        for (std::uint32_t i = 0; i < face.count; ++i) {
+            corners |= 1U << at(i);
+            ASSERT_EQ(sides >> (8 * at(i) + at(i + 1)) & 1U, 0U) << "a side used twice";
+            sides |= std::uint64_t(1) << (8 * at(i) + at(i + 1));
+            turned |= std::uint64_t(1) << (8 * at(i + 1) + at(i));
+            if (i >= 2)
+                volume += six_volumes(points[at(0)], points[at(i - 1)], points[at(i)]);
+        }
+        ASSERT_EQ(std::uint32_t(std::popcount(corners)), face.count);
+        const auto facet = std::find(expected.facets.begin(), expected.facets.end(), corners);
+        ASSERT_NE(facet, expected.facets.end()) << "a face that is none";
+        faces_seen |= 1U << (facet - expected.facets.begin());
+    }
+    ASSERT_EQ(std::size_t(std::popcount(faces_seen)), mesh.faces.size());
+    ASSERT_EQ(sides, turned); // each beside its other side
+    ASSERT_EQ(std::size_t(std::popcount(sides)), 2 * mesh.edges.size());
+    ASSERT_GT(volume, 0);
+    // As in check_mesh().
+    const double exact = double(volume) / 6.0;
+    const double extent = glm::length(wide(mesh.box.max) - wide(mesh.box.min));
+    ASSERT_NEAR(double(mesh.volume), exact,
+                epsilon * exact + 1e-16 * double(mesh.faces.size()) * extent * extent * extent);
+}
+
+TEST(Quickhull, AMillionSmallSetsAreExact) {
+    Random random(7);
+    int solids = 0, flats = 0;
+    const int count = trials(1'000'000);
+    std::vector<Lattice> lattice;
+    std::vector<Vec3> points;
+    SmallHull expected;
+    for (int trial = 0; trial < count; ++trial) {
+        const std::int64_t reach = 1 + random.next_index(trial % 4 == 0 ? 10 : 3);
+        const std::size_t size = 4 + random.next_index(5);
+        const std::int64_t shift = trial % 5 == 0 ? 1000 : 0;
+        lattice.clear();
+        points.clear();
+        for (std::size_t i = 0; i < size; ++i) {
+            Lattice p;
+            for (std::int64_t &x : p)
+                x = std::int64_t(random.next_index(std::uint32_t(2 * reach + 1))) - reach;
+            if (trial % 50 == 0) // all in one plane, a slanting one
+                p[2] = p[0] + 2 * p[1];
+            for (std::int64_t &x : p)
+                x += shift;
+            points.push_back({Real(p[0]), Real(p[1]), Real(p[2])});
+            if (std::find(lattice.begin(), lattice.end(), p) == lattice.end())
+                lattice.push_back(p); // the oracle's are distinct
+        }
+        find_small_hull(lattice, expected);
+        const HullResult result = convex_hull(points, no_limit);
+        ASSERT_EQ(result.mesh.has_value(), !expected.facets.empty()) << "trial " << trial;
+        if (!result.mesh) {
+            ++flats;
+            ASSERT_NE(result.problem, HullProblem::none);
+            continue;
+        }
+        ++solids;
+        expect_small_hull(*result.mesh, lattice, expected);
+        ASSERT_FALSE(HasFatalFailure()) << "trial " << trial;
         ASSERT_LE(double(result.left_out), double(result.tolerance));
     }
     EXPECT_GT(solids, count / 2);

@@ -220,11 +220,11 @@ TEST(RaycastFamilies, RoundShapesAreExactForSmallIntegers) {
         const bool to_sphere = ray_interval(Sphere{a, Real(radius)}, cut).has_value();
         ASSERT_EQ(to_sphere, comes_within(o, d, last, exactly(a), {0, 0, 0}, radius))
             << "trial " << trial;
-        if (last) {
-            const Vec3 end = ray.origin + ray.direction;
-            ASSERT_EQ(linetest(Capsule{a, b, Real(radius)}, ray.origin, end), to_capsule);
-            ASSERT_EQ(linetest(Sphere{a, Real(radius)}, ray.origin, end), to_sphere);
-        }
+        const Vec3 end = ray.origin + ray.direction;
+        ASSERT_EQ(linetest(Capsule{a, b, Real(radius)}, ray.origin, end),
+                  comes_within(o, d, 1, exactly(a), exactly(b) - exactly(a), radius));
+        ASSERT_EQ(linetest(Sphere{a, Real(radius)}, ray.origin, end),
+                  comes_within(o, d, 1, exactly(a), {0, 0, 0}, radius));
         hits[0] += to_capsule;
         hits[1] += to_sphere;
     }
@@ -236,7 +236,7 @@ TEST(RaycastFamilies, RoundShapesAreExactForSmallIntegers) {
 TEST(RaycastFamilies, CylindersAreExactForSmallIntegers) {
     Random random(53);
     int hits = 0;
-    const int count = trials(1'000'000);
+    const int count = trials(2'000'000); // a million segments
     for (int trial = 0; trial < count; ++trial) {
         const WholeRay ray = any_whole_ray(random, 6);
         const int k = int(random.next_index(3)), x = (k + 1) % 3, y = (k + 2) % 3;
@@ -279,6 +279,10 @@ TEST(RaycastFamilies, CylindersAreExactForSmallIntegers) {
             is_met = px * px + py * py <= radius * radius;
         }
         ASSERT_EQ(interval.has_value(), is_met) << "trial " << trial;
+        if (is_segment) {
+            ASSERT_EQ(linetest(cylinder, ray.origin, ray.origin + ray.direction), is_met)
+                << "trial " << trial;
+        }
         hits += is_met;
     }
     EXPECT_GT(hits, count / 20);
@@ -468,6 +472,10 @@ TEST(RaycastFamilies, PlanesAndHalfSpaces) {
             return Rational(dot(rational(n), rational(v)) - rational(o)).sign();
         };
         const int above = side(origin, offset), climb = side(direction, Real(0));
+        const Vec3 end = origin + direction;
+        const int at_end = side(end, offset);
+        ASSERT_EQ(linetest(Plane{n, offset}, origin, end), above * at_end <= 0);
+        ASSERT_EQ(linetest(HalfSpace{n, offset}, origin, end), above <= 0 || at_end <= 0);
         const Ray ray{origin, direction};
         const auto of_plane = raycast(Plane{n, offset}, ray);
         const auto of_space = ray_interval(HalfSpace{n, offset}, ray);

@@ -2,6 +2,7 @@
 
 #include "engine/core/check.h"
 #include "tests/geometry/oracle.h"
+#include "tests/trials.h"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +37,8 @@ std::pair<Box, Box> any_boxes(Random &random, bool is_awkward) {
 TEST(Sat, OverlapAgainstClipping) {
     Random random(1);
     int overlapping = 0;
-    const int trials = 100000;
-    for (int trial = 0; trial < trials; ++trial) {
+    const int count = trials(100'000); // the million is in box_overlap_test.cpp
+    for (int trial = 0; trial < count; ++trial) {
         const auto [a, b] = any_boxes(random, trial % 2 == 0);
         const bool answer = overlaps(a, b);
         overlapping += answer;
@@ -48,13 +49,13 @@ TEST(Sat, OverlapAgainstClipping) {
             ASSERT_FALSE(boxes_meet(WideBox(a), WideBox(b), -rounding)) << "trial " << trial;
         }
     }
-    EXPECT_GT(overlapping, trials / 5);
-    EXPECT_LT(overlapping, trials * 4 / 5);
+    EXPECT_GT(overlapping, count / 5);
+    EXPECT_LT(overlapping, count / 5 * 4);
 }
 
 TEST(Sat, SeparationIsTrueOfItsAxisAndABoundOfTheDistance) {
     Random random(2);
-    for (int trial = 0; trial < 100000; ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const auto [a, b] = any_boxes(random, trial % 2 == 0);
         const SatResult result = separating_axis(a, b);
         const V n = wide(result.normal);
@@ -78,7 +79,7 @@ TEST(Sat, SeparationIsTrueOfItsAxisAndABoundOfTheDistance) {
 TEST(Sat, FindsEdgeEdgeAxes) {
     Random random(3);
     const double h = 0.70710678118654752440;
-    for (int trial = 0; trial < 1000; ++trial) {
+    for (int trial = 0; trial < trials(100'000); ++trial) {
         // Each box on an edge; the edges cross at a right angle, seen from above.
         const Quat on_z{Real(std::cos(0.39269908169872414)), Real(0), Real(0),
                         Real(std::sin(0.39269908169872414))};
