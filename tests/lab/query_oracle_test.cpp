@@ -30,7 +30,7 @@ Point scaled(const Point &p, Int by) {
 TEST(QueryOracle, PointsOfLinesThatLieInShapesProveThatTheyMeet) {
     Random random(1);
     int met = 0;
-    for (int trial = 0; trial < trials(20'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Line line{any_point(random, 3), any_point(random, 3), true};
         const Point p = any_point(random, 3), q = any_point(random, 3);
         const Block block{{std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)},
@@ -55,12 +55,12 @@ TEST(QueryOracle, PointsOfLinesThatLieInShapesProveThatTheyMeet) {
             }
         }
     }
-    EXPECT_GT(met, trials(20'000) / 4);
+    EXPECT_GT(met, trials(1'000'000) / 4);
 }
 
 TEST(QueryOracle, TriangleHasItsCornersEdgesAndMiddle) {
     Random random(2);
-    for (int trial = 0; trial < trials(20'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Corners t{any_point(random, 5), any_point(random, 5), any_point(random, 5)};
         const Corners big{scaled(t[0], 6), scaled(t[1], 6), scaled(t[2], 6)};
         const Point half = scaled(t[0] + t[1], 3);
@@ -78,7 +78,7 @@ TEST(QueryOracle, TriangleHasItsCornersEdgesAndMiddle) {
 TEST(QueryOracle, APlaneBetweenThemProvesThatTheyDoNotMeet) {
     Random random(3);
     int apart = 0;
-    for (int trial = 0; trial < trials(200'000); ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Corners t{any_point(random, 5), any_point(random, 5), any_point(random, 5)};
         const Corners u{any_point(random, 5), any_point(random, 5), any_point(random, 5)};
         const Point n = any_point(random, 5);
@@ -92,7 +92,7 @@ TEST(QueryOracle, APlaneBetweenThemProvesThatTheyDoNotMeet) {
         ASSERT_FALSE(meets(Line{t[0], t[1] - t[0], true}, u));
         ASSERT_FALSE(contains(u, t[0]));
     }
-    EXPECT_GT(apart, trials(200'000) / 100);
+    EXPECT_GT(apart, trials(1'000'000) / 100);
 }
 
 TEST(QueryOracle, KnowsTheEdgesOfSets) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -67,8 +68,8 @@ TEST(ObjFile, RelativeIndicesCountFromTheirLine) {
 
 TEST(ObjFile, NumbersAreReadToTheLastBit) {
     Random random(1);
-    const int rounds = trials(100'000);
-    for (int round = 0; round < rounds; round += 100) {
+    const int rounds = trials(1'000'000); // numbers
+    for (int round = 0; round < rounds; round += 300) {
         std::vector<double> expected;
         std::string text;
         for (int i = 0; i < 300; ++i) {
@@ -131,45 +132,80 @@ TEST(ObjFile, AnArrowheadIsNotCutOutside) {
     }
 }
 
-// Simple polygons of all forms: stars with spikes inwards and outwards, corners in line, tilted.
+void append(std::string &text, double value) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    text += ' ';
+    text.append(digits.data(), end);
+}
+
+// A star with spikes inwards and outwards, corners in line, flat or tilted.
+std::vector<glm::dvec3> any_simple_polygon(Random &random, std::uint32_t count) {
+    const bool is_flat = random.next_index(2) == 0;
+    const double angle = is_flat ? 0.0 : random.next_in(0.0, 6.0);
+    const glm::dvec3 center{random.next_in(-9, 9), random.next_in(-9, 9), random.next_in(-9, 9)};
+    std::vector<glm::dvec3> outline;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double turn = 6.283185307179586 * double(i) / count;
+        double reach = random.next_index(3) == 0 ? 0.05 : random.next_in(0.2, 1.0);
+        if (random.next_index(5) == 0 && i > 0) // in line with the last ones, or nearly
+            reach = glm::length(outline.back() - center) * random.next_in(0.99, 1.01);
+        const double x = reach * std::cos(turn), y = reach * std::sin(turn);
+        outline.push_back(center + glm::dvec3{x * std::cos(angle), y, x * std::sin(angle)});
+    }
+    return outline;
+}
+
 // Each triangle must turn as the outline does, and the areas add up to its area: then nothing is
-// covered twice or left out.
+// covered twice or left out. A million polygons, ten in a file.
 TEST(ObjFile, AnySimplePolygonIsCutIntoItsArea) {
     Random random(2);
-    const int rounds = trials(30'000);
+    const int rounds = trials(100'000);
     for (int round = 0; round < rounds; ++round) {
-        const std::uint32_t count = round % 500 == 0 ? 255 : 4 + random.next_index(20);
-        const bool is_flat = random.next_index(2) == 0;
-        const double angle = is_flat ? 0.0 : random.next_in(0.0, 6.0);
-        const glm::dvec3 center{random.next_in(-9, 9), random.next_in(-9, 9),
-                                random.next_in(-9, 9)};
-        std::vector<glm::dvec3> outline;
-        std::ostringstream text;
-        text.precision(17);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const double turn = 6.283185307179586 * double(i) / count;
-            double reach = random.next_index(3) == 0 ? 0.05 : random.next_in(0.2, 1.0);
-            if (random.next_index(5) == 0 && i > 0) // in line with the last ones, or nearly
-                reach = glm::length(outline.back() - center) * random.next_in(0.99, 1.01);
-            const double x = reach * std::cos(turn), y = reach * std::sin(turn);
-            outline.push_back(center + glm::dvec3{x * std::cos(angle), y, x * std::sin(angle)});
-            const glm::dvec3 &p = outline.back();
-            text << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+        std::vector<std::vector<glm::dvec3>> outlines;
+        std::vector<bool> is_backward;
+        std::string text;
+        std::uint32_t first = 1;
+        for (int k = 0; k < 10; ++k) {
+            const std::uint32_t few = random.next_index(random.next_index(8) == 0 ? 20 : 5);
+            const std::uint32_t count = k == 0 && round % 500 == 0 ? 255 : 4 + few;
+            outlines.push_back(any_simple_polygon(random, count));
+            for (const glm::dvec3 &p : outlines.back()) {
+                text += 'v';
+                for (int i = 0; i < 3; ++i)
+                    append(text, p[i]);
+                text += '\n';
+            }
+            is_backward.push_back(random.next_index(2) == 0);
+            text += 'f';
+            for (std::uint32_t i = 0; i < count; ++i)
+                append(text, is_backward.back() ? first + count - 1 - i : first + i);
+            text += '\n';
+            first += count;
         }
-        text << 'f';
-        const bool is_backward = random.next_index(2) == 0;
-        for (std::uint32_t i = 0; i < count; ++i)
-            text << ' ' << (is_backward ? count - i : i + 1);
-        const ObjMesh mesh = mesh_of(text.str());
-        ASSERT_EQ(mesh.triangles.size(), count - 2U);
-        const glm::dvec3 whole = area_of(outline) * (is_backward ? -1.0 : 1.0);
-        double sum = 0;
-        for (const auto &[a, b, c] : mesh.triangles) {
-            const glm::dvec3 part = area_of({outline[a], outline[b], outline[c]});
-            ASSERT_GT(glm::dot(part, whole), -1e-14) << "round " << round;
-            sum += glm::length(part);
+        const ObjMesh mesh = mesh_of(text);
+        ASSERT_EQ(mesh.vertices.size(), first - 1);
+        std::size_t at = 0;
+        first = 0;
+        for (std::size_t k = 0; k < outlines.size(); ++k) {
+            const std::vector<glm::dvec3> &outline = outlines[k];
+            const glm::dvec3 whole = area_of(outline) * (is_backward[k] ? -1.0 : 1.0);
+            double sum = 0;
+            for (std::size_t i = 2; i < outline.size(); ++i, ++at) {
+                ASSERT_LT(at, mesh.triangles.size());
+                std::array<glm::dvec3, 3> corners{};
+                for (std::size_t c = 0; c < 3; ++c)
+                    corners[c] = outline.at(mesh.triangles[at][c] - first);
+                const glm::dvec3 part =
+                    0.5 * glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+                ASSERT_GT(glm::dot(part, whole), -1e-14) << "round " << round;
+                sum += glm::length(part);
+            }
+            ASSERT_NEAR(sum, glm::length(whole), 1e-12 * double(outline.size()))
+                << "round " << round;
+            first += std::uint32_t(outline.size());
         }
-        ASSERT_NEAR(sum, glm::length(whole), 1e-12 * count) << "round " << round;
+        ASSERT_EQ(at, mesh.triangles.size());
     }
 }
 
@@ -274,7 +310,7 @@ TEST(ObjFile, DamagedFiles) {
                              "f 1 2 6 5\nf 3 4 8 7\nf 1 5 8 4 \n";
     const std::string bytes = "0123456789-+./eE vfn#\n\r\t\\\0x";
     int read_well = 0, refused = 0;
-    for (int round = 0; round < trials(200'000); ++round) {
+    for (int round = 0; round < trials(1'000'000); ++round) {
         std::string text = good;
         const std::uint32_t changes = 1 + random.next_index(4);
         for (std::uint32_t k = 0; k < changes; ++k) {
@@ -306,8 +342,8 @@ TEST(ObjFile, DamagedFiles) {
             for (const std::uint32_t corner : triangle)
                 ASSERT_LT(corner, result.mesh.vertices.size());
     }
-    EXPECT_GT(read_well, trials(200'000) / 10);
-    EXPECT_GT(refused, trials(200'000) / 10);
+    EXPECT_GT(read_well, trials(1'000'000) / 10);
+    EXPECT_GT(refused, trials(1'000'000) / 10);
 }
 
 } // namespace
