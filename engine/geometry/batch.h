@@ -58,7 +58,8 @@ struct IntervalBatch {
     std::span<Real> t_enter, t_exit;
 };
 
-// --- ray_interval (raycast.h). The normal is not given: ask for it where it is wanted.
+// --- ray_interval (raycast.h), of many boxes that of a PreparedRay. The normal is not given: ask
+// for it where it is wanted.
 void ray_interval(const AabbBatch &boxes, const Ray &ray, const IntervalBatch &intervals);
 void ray_interval(const Aabb &box, const RayBatch &rays, const IntervalBatch &intervals);
 void ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &intervals);

@@ -83,8 +83,9 @@ HWY_INLINE Mask is_finite(const Vector &v) {
 HWY_INLINE std::uint64_t bits_of(Mask mask) {
     alignas(8) std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(tag, mask, bytes);
+    // No more than was stored: processors wait for a load that takes from two stores.
     std::uint64_t bits = 0;
-    std::memcpy(&bits, bytes, sizeof bits);
+    std::memcpy(&bits, bytes, (hn::MaxLanes(tag) + 7) / 8);
     return bits;
 }
 
@@ -189,6 +190,7 @@ HWY_ATTR bool ray_against_aabbs(const AabbBatch &boxes, const Ray &ray, const In
                                boxes.max_x.data(), boxes.max_y.data(), boxes.max_z.data()};
     std::uint64_t *const bits[1] = {out.is_met.data()};
     Real *const reals[2] = {out.t_enter.data(), out.t_exit.data()};
+    const SlabRay prepared(ray);
     return for_each_block(in, boxes.min_x.size(), bits, reals, [&](const Lanes(&box)[6]) HWY_ATTR {
         Slabs slabs;
         Mask is_valid = hn::Not(none());
@@ -204,9 +206,15 @@ HWY_ATTR bool ray_against_aabbs(const AabbBatch &boxes, const Ray &ray, const In
                     hn::Or(slabs.missed, hn::Or(hn::Lt(origin, low), hn::Gt(origin, high)));
                 continue;
             }
-            const Lanes direction = all(ray.direction[axis]);
-            slabs.cut(hn::Div(hn::Sub(low, origin), direction),
-                      hn::Div(hn::Sub(high, origin), direction));
+            const Lanes to_low = hn::Sub(low, origin);
+            const Lanes to_high = hn::Sub(high, origin);
+            if (prepared.has_inverse) {
+                const Lanes inverse = all(prepared.inverse[axis]);
+                slabs.cut(hn::Mul(to_low, inverse), hn::Mul(to_high, inverse));
+            } else {
+                const Lanes direction = all(ray.direction[axis]);
+                slabs.cut(hn::Div(to_low, direction), hn::Div(to_high, direction));
+            }
         }
         const Mask met = slabs.finish(all(ray.max_t));
         return interval(met, slabs.enter, slabs.exit, is_valid);

@@ -294,6 +294,10 @@ std::optional<RayInterval> ray_interval(const Aabb &box, const Ray &ray) {
     return through_aligned(box, ray);
 }
 
+PreparedRay::PreparedRay(const Ray &ray) : slabs_(ray) {
+    check_ray(ray);
+}
+
 std::optional<RayInterval> ray_interval(const Box &box, const Ray &ray) {
     check_ray(ray);
     check_valid(box);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "engine/geometry/shapes.h"
+#include "engine/geometry/slab.h"
 
+#include <limits>
 #include <optional>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -33,6 +35,29 @@ std::optional<RayInterval> ray_interval(const Capsule &capsule, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Cylinder &cylinder, const Ray &ray);
 std::optional<RayInterval> ray_interval(const HalfSpace &half_space, const Ray &ray);
 std::optional<RayInterval> ray_interval(const Shape &shape, const Ray &ray);
+
+// A ray that is asked about many boxes: checked, and its reciprocals taken, once. As true as above.
+class PreparedRay {
+  public:
+    explicit PreparedRay(const Ray &ray);
+    const SlabRay &slabs() const { return slabs_; }
+
+  private:
+    SlabRay slabs_;
+};
+inline std::optional<RayInterval> ray_interval(const Aabb &box, const PreparedRay &ray) {
+    check_valid(box);
+    RayInterval interval;
+    int axis = -1;
+    const bool is_empty = box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
+    if (is_empty || !slab_interval(box, ray.slabs(), interval.t_enter, interval.t_exit, axis) ||
+        interval.t_enter == std::numeric_limits<Real>::infinity())
+        return std::nullopt;
+    if (axis >= 0)
+        interval.enter_normal[axis] =
+            ray.slabs().ray.direction[axis] > Real(0) ? Real(-1) : Real(1);
+    return interval;
+}
 
 struct RayHit {
     Real t = Real(0);

@@ -5,49 +5,89 @@
 #include "engine/geometry/shapes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
+
+// A ray for many boxes: its reciprocals are taken once.
+struct SlabRay {
+    Ray ray;
+    Vec3 inverse{Real(0)}; // 1 / direction, when all of both are normal numbers
+    bool has_inverse = true;
+
+    explicit SlabRay(const Ray &given) : ray(given) {
+        constexpr Real least = std::numeric_limits<Real>::min();
+        for (int i = 0; i < 3; ++i) {
+            const Real size = std::abs(ray.direction[i]);
+            has_inverse = has_inverse && size >= least && size <= Real(1) / least;
+            inverse[i] = Real(1) / ray.direction[i];
+        }
+    }
+};
+
+// Between three pairs of planes, each met at `near` and `far`; -infinity and infinity for a ray
+// along them and between.
+inline bool slab_interval(const Vec3 &near, const Vec3 &far, Real max_t, Real &enter, Real &exit,
+                          int &enter_axis) {
+    constexpr Real slack = Real(1) + Real(4) * std::numeric_limits<Real>::epsilon();
+    constexpr Real least = std::numeric_limits<Real>::min();
+    const Real latest = std::max(std::max(std::max(Real(0), near.x), near.y), near.z);
+    const Real earliest = std::min(std::min(far.x, far.y), far.z);
+    // All at once: which of them fails is a guess to the processor.
+    const bool is_missed = (static_cast<unsigned>(earliest < Real(0)) |
+                            static_cast<unsigned>(latest > earliest * slack + least) |
+                            static_cast<unsigned>(latest > max_t * slack)) != 0;
+    enter_axis = near.x == latest ? 0 : (near.y == latest ? 1 : 2);
+    enter_axis = latest > Real(0) ? enter_axis : -1;
+    enter = std::min(latest, max_t);
+    exit = std::min(std::max(earliest, enter), max_t);
+    return !is_missed && exit >= enter;
+}
 
 // The interval [enter, exit] of the ray's parameter in a closed box, cut to [0, max_t], and the
 // axis of the face it enters by (-1 when it starts inside). Returns whether there is one.
 //
 // A component of the direction that is 0 or -0 decides by the origin alone, so a ray that lies in a
 // face is inside. The signs of the quotients, so the comparison with 0, are exact. The quotients
-// carry at most two roundings each, and are allowed that much, and what underflow takes, where
-// enter is compared with exit and with max_t: a ray through an edge or corner, or one that ends at
-// a face, is never missed because of them. And as every operation is monotonic, a box that holds
-// another is met by every ray that meets the other: trees prune without loss.
+// carry at most two roundings each, three with SlabRay, and are allowed that much, and what
+// underflow takes, where enter is compared with exit and with max_t: a ray through an edge or
+// corner, or one that ends at a face, is never missed because of them. And as every operation is
+// monotonic, a box that holds another is met by every ray that meets the other: trees prune without
+// loss.
 inline bool slab_interval(const Aabb &box, const Ray &ray, Real &enter, Real &exit,
                           int &enter_axis) {
-    enter = Real(0);
-    exit = std::numeric_limits<Real>::infinity();
-    enter_axis = -1;
+    constexpr Real infinity = std::numeric_limits<Real>::infinity();
+    Vec3 near{-infinity}, far{infinity};
     for (int i = 0; i < 3; ++i) {
         const Real origin = ray.origin[i];
         const Real direction = ray.direction[i];
-        const Real low = box.min[i];
-        const Real high = box.max[i];
         if (direction == Real(0)) [[unlikely]] {
-            if (origin < low || origin > high)
+            if (origin < box.min[i] || origin > box.max[i])
                 return false;
             continue;
         }
         // The lesser and the greater, not a choice by the sign of the direction, which for rays of
         // all directions would be a guess.
-        const Real to_low = (low - origin) / direction;
-        const Real to_high = (high - origin) / direction;
-        const Real near = std::min(to_low, to_high);
-        enter_axis = near > enter ? i : enter_axis;
-        enter = std::max(enter, near);
-        exit = std::min(exit, std::max(to_low, to_high));
+        const Real to_low = (box.min[i] - origin) / direction;
+        const Real to_high = (box.max[i] - origin) / direction;
+        near[i] = std::min(to_low, to_high);
+        far[i] = std::max(to_low, to_high);
     }
-    constexpr Real slack = Real(1) + Real(4) * std::numeric_limits<Real>::epsilon();
-    constexpr Real least = std::numeric_limits<Real>::min();
-    if (exit < Real(0) || enter > exit * slack + least || enter > ray.max_t * slack)
-        return false;
-    enter = std::min(enter, ray.max_t);
-    exit = std::min(std::max(exit, enter), ray.max_t);
-    return exit >= enter;
+    return slab_interval(near, far, ray.max_t, enter, exit, enter_axis);
+}
+
+inline bool slab_interval(const Aabb &box, const SlabRay &prepared, Real &enter, Real &exit,
+                          int &enter_axis) {
+    const Ray &ray = prepared.ray;
+    if (!prepared.has_inverse) [[unlikely]]
+        return slab_interval(box, ray, enter, exit, enter_axis);
+    const Vec3 to_low = (box.min - ray.origin) * prepared.inverse;
+    const Vec3 to_high = (box.max - ray.origin) * prepared.inverse;
+    return slab_interval(glm::min(to_low, to_high), glm::max(to_low, to_high), ray.max_t, enter,
+                         exit, enter_axis);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -5,6 +5,7 @@
 #include "engine/geometry/triangle.h"
 #include "tests/bench/contest.h"
 #include "tests/bench/inputs.h"
+#include "tests/bench/peer_bullet.h"
 
 #include <bit>
 #include <memory>
@@ -73,8 +74,17 @@ std::vector<Contest> batch_contests() {
                for (const Aabb &box : c->boxes)
                    yes += ray_interval(box, c->ray).has_value() ? 1 : 0;
                return yes;
-           }}},
-         0});
+           }},
+          {"our prepared loop",
+           [c] {
+               const PreparedRay ray(c->ray);
+               std::uint64_t yes = 0;
+               for (const Aabb &box : c->boxes)
+                   yes += ray_interval(box, ray).has_value() ? 1 : 0;
+               return yes;
+           }},
+          {"Bullet btRayAabb2, loop", bullet::ray_aabbs(c->ray, c->boxes)}},
+         1});
     contests.push_back(
         {"ray, 1024 spheres at once",
          inputs::count,

@@ -168,6 +168,28 @@ Work rays_aabbs(std::span<const Ray> rays, std::span<const Aabb> boxes) {
     };
 }
 
+Work ray_aabbs(const Ray &ray, std::span<const Aabb> boxes) {
+    struct Bounds {
+        btVector3 of[2];
+    };
+    const auto all = std::make_shared<std::vector<Bounds>>();
+    for (const Aabb &box : boxes)
+        all->push_back({{of(box.min), of(box.max)}});
+    return [ray, all] {
+        const btVector3 origin = of(ray.origin), direction = of(ray.direction);
+        const btVector3 inverse(1 / direction.x(), 1 / direction.y(), 1 / direction.z());
+        const unsigned signs[3] = {inverse.x() < 0, inverse.y() < 0, inverse.z() < 0};
+        std::uint64_t yes = 0;
+        btScalar t = 0;
+        for (const Bounds &bounds : *all)
+            yes += btRayAabb2(origin, inverse, signs, bounds.of, t, 0,
+                              static_cast<btScalar>(ray.max_t))
+                       ? 1
+                       : 0;
+        return yes;
+    };
+}
+
 template <typename Solid> Work rays(std::span<const Ray> rays, std::span<const Solid> solids) {
     const auto shared = std::make_shared<Objects>(objects(solids));
     return [rays, shared] {

@@ -16,6 +16,8 @@ using Work = std::function<std::uint64_t()>;
 // btRayAabb2, the test in the inner loop of Bullet's trees: it wants the inverse direction, which
 // is part of the work, as it is of ours.
 Work rays_aabbs(std::span<const Ray> rays, std::span<const Aabb> boxes);
+// The same, one ray against all boxes: its inverse, and the boxes in Bullet's numbers, are at hand.
+Work ray_aabbs(const Ray &ray, std::span<const Aabb> boxes);
 
 // btCollisionWorld::rayTestSingle: ray i against shape i.
 template <typename Solid> Work rays(std::span<const Ray> rays, std::span<const Solid> solids);

@@ -295,7 +295,8 @@ TEST(Batch, RayAgainstAabbs) {
         const Columns columns = columns_of(boxes);
         IntervalRoom room(count);
         ray_interval(boxes_of(columns), ray, room.batch());
-        expect_intervals(room, [&](std::size_t i) { return ray_interval(boxes[i], ray); });
+        const PreparedRay prepared(ray);
+        expect_intervals(room, [&](std::size_t i) { return ray_interval(boxes[i], prepared); });
         for (std::size_t i = 0; i < count; ++i)
             met += room.is_met.at(i) ? 1 : 0;
     });

@@ -128,6 +128,21 @@ TEST(RaycastFamilies, NoRayThatMeetsABoxIsLost) {
                 << "trial " << trial;
             grazes += !truth.is_met;
         }
+        const auto prepared = ray_interval(aabb, PreparedRay(ray));
+        if (truth.is_met && truth.near < std::numeric_limits<Real>::max()) {
+            ASSERT_TRUE(prepared) << "trial " << trial;
+        }
+        if (prepared) {
+            const long double enter = prepared->t_enter, exit = prepared->t_exit;
+            ASSERT_LE(truth.near, truth.far + 8.0L * epsilon * truth.far) << "trial " << trial;
+            ASSERT_LE(std::abs(enter - truth.near), 8.0L * epsilon * truth.near)
+                << "trial " << trial;
+            if (exit < infinity) {
+                ASSERT_LE(std::abs(exit - truth.far), 8.0L * epsilon * exit) << "trial " << trial;
+            }
+            ASSERT_EQ(prepared->enter_normal == Vec3{Real(0)}, contains(aabb, ray.origin))
+                << "trial " << trial;
+        }
         const auto of_box = ray_interval(box, ray);
         ASSERT_EQ(of_box.has_value(), interval.has_value());
         if (of_box) {
