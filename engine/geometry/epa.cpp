@@ -349,32 +349,54 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
     return result;
 }
 
+namespace {
+
+// From the cores' points to those of the shapes.
+Proximity apart(const CorePair &cores, const Vec3 &difference, Real between, const Vec3 &on_a,
+                const Vec3 &on_b) {
+    Proximity result;
+    result.separation = between - (cores.radius_a() + cores.radius_b());
+    result.normal = difference / between;
+    result.on_a = on_a + cores.radius_a() * result.normal;
+    result.on_b = on_b - cores.radius_b() * result.normal;
+    return result;
+}
+
+} // namespace
+
 Proximity proximity(const CorePair &cores, Real far) {
     const Real radii = cores.radius_a() + cores.radius_b();
-    const GjkResult found = cores.nearest(cores.between_middles(), far + radii);
+    // With a closed form, what it says decides whether the cores overlap, as for `overlaps`.
+    const bool is_decided = cores.has_closed_form();
+    if (is_decided) {
+        const NearestPoints found = cores.closed_form();
+        const Real between = std::sqrt(found.squared_distance);
+        if (!found.is_overlapping) {
+            Proximity result = apart(cores, found.difference, between, found.on_a, found.on_b);
+            result.is_beyond = result.separation > far;
+            return result;
+        }
+    }
+    const GjkResult found = cores.search(
+        cores.between_middles(), is_decided ? std::numeric_limits<Real>::infinity() : far + radii);
     Proximity result;
-    result.iterations = found.iterations;
     if (found.is_beyond) {
         result.is_beyond = true;
-        return result;
-    }
-    if (found.is_overlapping) {
+    } else if (found.is_overlapping) {
         const Penetration deep = core_penetration(cores, found);
         result.separation = -deep.depth - radii;
         result.normal = deep.normal;
-        result.on_a = deep.on_a;
-        result.on_b = deep.on_b;
-        result.iterations += deep.iterations;
+        result.on_a = deep.on_a + cores.radius_a() * deep.normal;
+        result.on_b = deep.on_b - cores.radius_b() * deep.normal;
+        result.iterations = deep.iterations;
     } else {
         const Witnesses on = witnesses(found);
-        const Real between = std::sqrt(found.squared_distance);
-        result.separation = between - radii;
-        result.normal = found.difference / between;
-        result.on_a = on.on_a;
-        result.on_b = on.on_b;
+        result =
+            apart(cores, found.difference, std::sqrt(found.squared_distance), on.on_a, on.on_b);
+        if (is_decided) // apart by rounding only
+            result.separation = -radii;
     }
-    result.on_a += cores.radius_a() * result.normal;
-    result.on_b -= cores.radius_b() * result.normal;
+    result.iterations += found.iterations;
     return result;
 }
 

@@ -33,6 +33,18 @@ struct Penetration {
 template <typename A, typename B>
 requires ConvexPair<A, B> std::optional<Penetration> penetration(const A &a, const B &b);
 
+// `distance` and `penetration` in one: where two shapes are closest, or deepest in each other.
+struct Proximity {
+    Real separation = Real(0); // negative in penetration
+    Vec3 normal{Real(0)};      // unit, from A to B
+    Vec3 on_a{Real(0)};
+    Vec3 on_b{Real(0)};
+    int iterations = 0;
+    bool is_beyond = false; // farther apart than was asked for; nothing else is known
+};
+template <typename A, typename B>
+requires ConvexPair<A, B> Proximity proximity(const A &a, const B &b);
+
 // --- The parts -----------------------------------------------------------------------------------
 
 // The polyhedron that EPA grows: triangles, each knowing its neighbours.
@@ -99,17 +111,19 @@ void keep_independent(Simplex &simplex, const Vec3 &size);
 // an overlap.
 Penetration core_penetration(const CorePair &cores, const GjkResult &overlap);
 
-// Where two placed cores are closest or deepest, with their radii: what `distance` and
-// `penetration` say, in one.
-struct Proximity {
-    Real separation = Real(0); // negative in penetration
-    Vec3 normal{Real(0)};      // unit, from A to B
-    Vec3 on_a{Real(0)};
-    Vec3 on_b{Real(0)};
-    int iterations = 0;
-    bool is_beyond = false; // farther apart than asked for; nothing else is known
-};
+// For two cores, relative to their origin; is_beyond when they are farther apart than `far`.
 Proximity proximity(const CorePair &cores, Real far);
+
+template <typename A, typename B>
+requires ConvexPair<A, B> Proximity proximity(const A &a, const B &b) {
+    const Vec3 origin = place_of(a);
+    const auto core_a = core_of(a, origin);
+    const auto core_b = core_of(b, origin);
+    Proximity found = proximity(CorePair(core_a, core_b), std::numeric_limits<Real>::infinity());
+    found.on_a += origin;
+    found.on_b += origin;
+    return found;
+}
 
 template <typename A, typename B>
 requires ConvexPair<A, B> std::optional<Penetration> penetration(const A &a, const B &b) {

@@ -50,14 +50,22 @@ bool is_inner(Real area, const Vec3 &start, const Vec3 &side, Real squared_norma
            -area <= slack * std::sqrt(squared_normal) * glm::length(start) * glm::length(side);
 }
 
-SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, Real slack) {
+Vec3 normal_of(const Simplex &simplex, int i, int j, int k) {
+    const Vec3 &p = at(simplex, i);
+    const Vec3 &q = at(simplex, j);
+    const Vec3 &r = at(simplex, k);
+    return triangle_normal(q - p, r - p, r - q);
+}
+
+// `normal` is the triangle's normal_of.
+SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, const Vec3 &normal,
+                          Real slack) {
     const Vec3 &p = at(simplex, i);
     const Vec3 &q = at(simplex, j);
     const Vec3 &r = at(simplex, k);
     const Vec3 pq = q - p;
     const Vec3 pr = r - p;
     const Vec3 qr = r - q;
-    const Vec3 normal = triangle_normal(pq, pr, qr);
     const Real squared = glm::dot(normal, normal);
     // The area of each side with the origin's projection on the plane, times twice the triangle's.
     // As p x (q - p), not p x q: the error is then in proportion to the side's length.
@@ -90,66 +98,89 @@ SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, Real slac
     return best;
 }
 
+constexpr int newest = 3;
+
+// The faces of a tetrahedron that have the newest vertex: face i with vertex i and the next; its
+// opposite vertex is the one after.
+struct NewFaces {
+    std::array<Vec3, 3> normals{};
+    std::array<Real, 3> heights{}; // of the opposite vertex, scaled as the normal is
+};
+NewFaces new_faces(const Simplex &simplex) {
+    NewFaces faces;
+    for (int i = 0; i < 3; ++i) {
+        const auto f = static_cast<std::size_t>(i);
+        faces.normals[f] = normal_of(simplex, newest, i, (i + 1) % 3);
+        faces.heights[f] =
+            glm::dot(at(simplex, (i + 2) % 3) - at(simplex, newest), faces.normals[f]);
+    }
+    return faces;
+}
+
 SimplexPart tetrahedron_part(const Simplex &simplex, const Vec3 &size, Real slack) {
-    constexpr std::size_t newest = 3;
     const Vec3 &p = at(simplex, newest);
-    // Face i has the newest vertex, vertex i and the next; its opposite vertex is the one after.
-    std::array<Vec3, 3> normals;
-    std::array<Real, 3> heights{};
+    const NewFaces faces = new_faces(simplex);
     std::array<bool, 3> is_outside{};
     bool is_flat = false;
-    for (int i = 0; i < 3; ++i) {
-        const Vec3 &q = at(simplex, i);
-        const Vec3 &r = at(simplex, (i + 1) % 3);
-        const auto f = static_cast<std::size_t>(i);
-        normals[f] = triangle_normal(q - p, r - p, r - q);
-        heights[f] = glm::dot(at(simplex, (i + 2) % 3) - p, normals[f]);
-        const Real rounding = rounding_along(normals[f], size);
-        is_flat = is_flat || std::abs(heights[f]) <= rounding;
-        is_outside[f] = !(-glm::dot(p, normals[f]) * heights[f] > Real(0));
+    for (std::size_t f = 0; f < 3; ++f) {
+        is_flat = is_flat || std::abs(faces.heights[f]) <= rounding_along(faces.normals[f], size);
+        is_outside[f] = !(-glm::dot(p, faces.normals[f]) * faces.heights[f] > Real(0));
     }
     SimplexPart best;
     if (is_flat || is_outside[0] || is_outside[1] || is_outside[2]) {
-        for (int i = 0; i < 3; ++i)
-            if (is_flat || is_outside[static_cast<std::size_t>(i)])
-                keep_closer(best, triangle_part(simplex, newest, i, (i + 1) % 3, slack));
+        for (int i = 0; i < 3; ++i) {
+            const auto f = static_cast<std::size_t>(i);
+            if (is_flat || is_outside[f])
+                keep_closer(
+                    best, triangle_part(simplex, newest, i, (i + 1) % 3, faces.normals[f], slack));
+        }
         return best;
     }
-    // Inside. The weight of a vertex is the height of the origin above the face opposite of it, in
-    // heights of the vertex. Then again for what rounding left, of the thinnest most.
-    best = {Vec3{Real(0)}, Real(0), {}, {0, 1, 2, 3}, 4};
-    Vec3 off = p;
+    best.squared_distance = Real(0);
+    best.count = 4;
+    return best;
+}
+
+// The weights of the vertices of a tetrahedron around the origin: of each the height of the origin
+// above the face opposite of it, in heights of the vertex. Then again for what rounding left, of
+// the thinnest most.
+std::array<Real, 4> inner_weights(const Simplex &simplex, const Vec3 &size) {
+    const NewFaces faces = new_faces(simplex);
+    std::array<Real, 4> weights{};
+    Vec3 off = at(simplex, newest);
     const auto weighted_sum = [&] {
         Vec3 sum{Real(0)};
         for (std::size_t i = 0; i < 4; ++i)
-            sum += best.weights[i] * simplex.vertices[i].w;
+            sum += weights[i] * simplex.vertices[i].w;
         return sum;
     };
-    best.weights[newest] = Real(1);
-    for (int pass = 0; pass < 4; ++pass) {
+    weights[newest] = Real(1);
+    const Real settled = std::numeric_limits<Real>::epsilon() * glm::length(size);
+    for (int pass = 0; pass < 4 && glm::dot(off, off) > settled * settled; ++pass) {
         for (std::size_t f = 0; f < 3; ++f) {
-            const Real change = glm::dot(off, normals[f]) / heights[f];
-            best.weights[(f + 2) % 3] -= change;
-            best.weights[newest] += change;
+            const Real change = glm::dot(off, faces.normals[f]) / faces.heights[f];
+            weights[(f + 2) % 3] -= change;
+            weights[newest] += change;
         }
         off = weighted_sum();
     }
-    for (Real &weight : best.weights)
+    for (Real &weight : weights)
         weight = std::max(weight, Real(0));
     off = weighted_sum();
     constexpr Real nothing = Real(8) * std::numeric_limits<Real>::epsilon();
     if (glm::dot(off, off) > nothing * nothing * glm::dot(size, size)) {
         // So thin that the volumes are mostly rounding: the nearest face is as good.
-        SimplexPart face = triangle_part(simplex, 0, 1, 2, slack);
+        SimplexPart face = triangle_part(simplex, 0, 1, 2, normal_of(simplex, 0, 1, 2), Real(0));
         for (int i = 0; i < 3; ++i)
-            keep_closer(face, triangle_part(simplex, newest, i, (i + 1) % 3, slack));
+            keep_closer(face, triangle_part(simplex, newest, i, (i + 1) % 3,
+                                            faces.normals[static_cast<std::size_t>(i)], Real(0)));
         if (face.squared_distance < glm::dot(off, off)) {
-            best.weights = {};
+            weights = {};
             for (std::size_t i = 0; i < static_cast<std::size_t>(face.count); ++i)
-                best.weights[static_cast<std::size_t>(face.indices[i])] = face.weights[i];
+                weights[static_cast<std::size_t>(face.indices[i])] = face.weights[i];
         }
     }
-    return best;
+    return weights;
 }
 
 } // namespace
@@ -174,7 +205,7 @@ SimplexPart closest_part(const Simplex &simplex, const Vec3 &size, Real slack) {
     case 2:
         return edge_part(simplex, 1, 0);
     case 3:
-        return triangle_part(simplex, 2, 0, 1, slack);
+        return triangle_part(simplex, 2, 0, 1, normal_of(simplex, 2, 0, 1), slack);
     default:
         return tetrahedron_part(simplex, size, slack);
     }
@@ -231,6 +262,8 @@ Witnesses witnesses(const GjkResult &result) {
     Simplex simplex = result.simplex;
     if (simplex.count == 3)
         settle_along_longest(simplex, result.difference);
+    if (simplex.count == 4)
+        simplex.weights = inner_weights(simplex, result.size);
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
     Real spread_a = Real(0);
@@ -252,9 +285,8 @@ Witnesses witnesses(const GjkResult &result) {
     return {on_a, on_b};
 }
 
-ClosestPoints closest_points(const GjkResult &found, Real radius_a, Real radius_b,
+ClosestPoints closest_points(const NearestPoints &found, Real radius_a, Real radius_b,
                              const Vec3 &origin) {
-    const Witnesses on = witnesses(found);
     ClosestPoints result;
     result.iterations = found.iterations;
     const Real radii = radius_a + radius_b;
@@ -262,14 +294,22 @@ ClosestPoints closest_points(const GjkResult &found, Real radius_a, Real radius_
     if (found.is_overlapping || between <= radii) {
         // Between the surfaces there is at least one common point of the two.
         const Real share = radii > Real(0) ? radius_a / radii : Real(0);
-        result.on_a = result.on_b = origin + (on.on_a + share * (on.on_b - on.on_a));
+        result.on_a = result.on_b = origin + (found.on_a + share * (found.on_b - found.on_a));
         return result;
     }
     result.distance = between - radii;
     result.normal = found.difference / between;
-    result.on_a = origin + (on.on_a + radius_a * result.normal);
-    result.on_b = origin + (on.on_b - radius_b * result.normal);
+    result.on_a = origin + (found.on_a + radius_a * result.normal);
+    result.on_b = origin + (found.on_b - radius_b * result.normal);
     return result;
+}
+
+ClosestPoints closest_points(const GjkResult &found, Real radius_a, Real radius_b,
+                             const Vec3 &origin) {
+    const Witnesses on = witnesses(found);
+    return closest_points(NearestPoints{on.on_a, on.on_b, found.difference, found.squared_distance,
+                                        found.is_overlapping, found.iterations},
+                          radius_a, radius_b, origin);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

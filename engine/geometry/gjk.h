@@ -12,6 +12,7 @@
 #include <array>
 #include <concepts>
 #include <limits>
+#include <utility>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -20,7 +21,7 @@ struct ClosestPoints {
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
     Vec3 normal{Real(0)}; // unit, from A to B; zero when the shapes overlap
-    int iterations = 0;   // support points taken
+    int iterations = 0;   // support points taken; none where the answer is a closed form
 };
 
 // The distance of two convex shapes and a pair of closest points; for shapes that overlap 0 and a
@@ -52,7 +53,8 @@ struct SimplexVertex {
 };
 
 // Up to four of them, and the point of their hull closest to the origin as the sum of
-// weights[i] * vertices[i].w. All weights are positive once it is reduced.
+// weights[i] * vertices[i].w. All weights are positive once it is reduced. Of four the origin is
+// inside, and the weights are left to `witnesses`, for few ask.
 struct Simplex {
     std::array<SimplexVertex, 4> vertices;
     std::array<Real, 4> weights;
@@ -65,7 +67,7 @@ struct SimplexPart {
     Real squared_distance = std::numeric_limits<Real>::infinity();
     std::array<Real, 4> weights{};
     std::array<int, 4> indices{};
-    int count = 0; // 4: the origin is inside
+    int count = 0; // 4: the origin is inside, and nothing else is said
 };
 
 // Rounding along the direction v of points whose coordinates are below `size`, times |v|: each
@@ -123,16 +125,56 @@ inline constexpr int gjk_iteration_limit = 200;
 template <typename CoreA, typename CoreB>
 GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far);
 
+// Where two cores are closest.
+struct NearestPoints {
+    Vec3 on_a{Real(0)};
+    Vec3 on_b{Real(0)};
+    Vec3 difference{Real(0)}; // from A's point to B's
+    Real squared_distance = Real(0);
+    bool is_overlapping = false; // or closer than rounding
+    int iterations = 0;
+};
+
+// A point and what has its closest point in closed form. Those relative to an origin near both keep
+// their digits, as closest_point (closest_point.h) in the world does not.
+NearestPoints nearest_points(const PointCore &a, const PointCore &b);
+NearestPoints nearest_points(const PointCore &a, const SegmentCore &b);
+NearestPoints nearest_points(const PointCore &a, const AabbCore &b);
+NearestPoints nearest_points(const PointCore &a, const BoxCore &b);
+NearestPoints nearest_points(const PointCore &a, const CylinderCore &b);
+template <typename CoreA>
+requires(!std::same_as<CoreA, PointCore> && requires(const CoreA &a, const PointCore &b) {
+    nearest_points(b, a);
+}) NearestPoints nearest_points(const CoreA &a, const PointCore &b) {
+    NearestPoints found = nearest_points(b, a);
+    std::swap(found.on_a, found.on_b);
+    found.difference = -found.difference;
+    return found;
+}
+
+template <typename CoreA, typename CoreB>
+concept HasNearestPoints = requires(const CoreA &a, const CoreB &b) {
+    nearest_points(a, b);
+};
+
 // Two cores whatever their kinds, for what spends most of its time elsewhere. Borrows them.
 class CorePair {
   public:
     template <typename CoreA, typename CoreB>
     CorePair(const CoreA &a, const CoreB &b)
-        : a_(&a), b_(&b), nearest_(nearest_of<CoreA, CoreB>), support_(support_of<CoreA, CoreB>),
+        : a_(&a), b_(&b), gjk_(gjk_of<CoreA, CoreB>), support_(support_of<CoreA, CoreB>),
           radius_a_(a.radius), radius_b_(b.radius), between_middles_(b.middle() - a.middle()),
-          is_curved_(std::same_as<CoreA, CylinderCore> || std::same_as<CoreB, CylinderCore>) {}
+          is_curved_(std::same_as<CoreA, CylinderCore> || std::same_as<CoreB, CylinderCore>) {
+        if constexpr (HasNearestPoints<CoreA, CoreB>)
+            closed_form_ = [](const void *of_a, const void *of_b) {
+                return nearest_points(*static_cast<const CoreA *>(of_a),
+                                      *static_cast<const CoreB *>(of_b));
+            };
+    }
 
-    GjkResult nearest(const Vec3 &guess, Real far) const { return nearest_(a_, b_, guess, far); }
+    GjkResult search(const Vec3 &guess, Real far) const { return gjk_(a_, b_, guess, far); }
+    bool has_closed_form() const { return closed_form_ != nullptr; }
+    NearestPoints closed_form() const { return closed_form_(a_, b_); }
     // The point of the difference B - A farthest along a direction.
     SimplexVertex support(const Vec3 &direction) const { return support_(a_, b_, direction); }
     Real radius_a() const { return radius_a_; }
@@ -142,7 +184,7 @@ class CorePair {
 
   private:
     template <typename CoreA, typename CoreB>
-    static GjkResult nearest_of(const void *a, const void *b, const Vec3 &guess, Real far) {
+    static GjkResult gjk_of(const void *a, const void *b, const Vec3 &guess, Real far) {
         return gjk(*static_cast<const CoreA *>(a), *static_cast<const CoreB *>(b), guess, far);
     }
     template <typename CoreA, typename CoreB>
@@ -154,8 +196,9 @@ class CorePair {
 
     const void *a_;
     const void *b_;
-    GjkResult (*nearest_)(const void *, const void *, const Vec3 &, Real);
+    GjkResult (*gjk_)(const void *, const void *, const Vec3 &, Real);
     SimplexVertex (*support_)(const void *, const void *, const Vec3 &);
+    NearestPoints (*closed_form_)(const void *, const void *) = nullptr;
     Real radius_a_;
     Real radius_b_;
     Vec3 between_middles_;
@@ -169,7 +212,9 @@ struct Witnesses {
 };
 Witnesses witnesses(const GjkResult &result);
 
-// What `distance` says of shapes whose cores, relative to an origin, GJK ended so on.
+// What `distance` says of shapes whose cores, relative to an origin, are so.
+ClosestPoints closest_points(const NearestPoints &found, Real radius_a, Real radius_b,
+                             const Vec3 &origin);
 ClosestPoints closest_points(const GjkResult &found, Real radius_a, Real radius_b,
                              const Vec3 &origin);
 
@@ -178,9 +223,12 @@ requires ConvexPair<A, B> ClosestPoints distance(const A &a, const B &b) {
     const Vec3 origin = place_of(a);
     const auto core_a = core_of(a, origin);
     const auto core_b = core_of(b, origin);
-    const GjkResult found = gjk(core_a, core_b, core_b.middle() - core_a.middle(),
-                                std::numeric_limits<Real>::infinity());
-    return closest_points(found, core_a.radius, core_b.radius, origin);
+    if constexpr (HasNearestPoints<decltype(core_a), decltype(core_b)>)
+        return closest_points(nearest_points(core_a, core_b), core_a.radius, core_b.radius, origin);
+    else
+        return closest_points(gjk(core_a, core_b, core_b.middle() - core_a.middle(),
+                                  std::numeric_limits<Real>::infinity()),
+                              core_a.radius, core_b.radius, origin);
 }
 
 template <typename A, typename B>
@@ -190,8 +238,14 @@ bool overlaps(const A &a, const B &b) {
     const auto core_a = core_of(a, origin);
     const auto core_b = core_of(b, origin);
     const Real radii = core_a.radius + core_b.radius;
-    const GjkResult found = gjk(core_a, core_b, core_b.middle() - core_a.middle(), radii);
-    return found.is_overlapping || (!found.is_beyond && std::sqrt(found.squared_distance) <= radii);
+    if constexpr (HasNearestPoints<decltype(core_a), decltype(core_b)>) {
+        const NearestPoints found = nearest_points(core_a, core_b);
+        return found.is_overlapping || std::sqrt(found.squared_distance) <= radii;
+    } else {
+        const GjkResult found = gjk(core_a, core_b, core_b.middle() - core_a.middle(), radii);
+        return found.is_overlapping ||
+               (!found.is_beyond && std::sqrt(found.squared_distance) <= radii);
+    }
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -50,7 +50,6 @@ GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
         ++simplex.count;
         SimplexPart part = closest_part(simplex, result.size);
         if (part.count == 4) {
-            reduce(simplex, part);
             v = Vec3{Real(0)};
             result.squared_distance = Real(0);
             result.is_overlapping = true;

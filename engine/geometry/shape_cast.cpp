@@ -22,7 +22,7 @@ std::optional<CastHit> cast_cores(const CorePair &cores, const MovingCore &core_
     for (int step = 0;; ++step) {
         // B comes towards A, which stays near the origin.
         core_b.place(-hit.t * translation);
-        const GjkResult found = cores.nearest(guess, std::numeric_limits<Real>::infinity());
+        const GjkResult found = cores.search(guess, std::numeric_limits<Real>::infinity());
         const Real between = std::sqrt(found.squared_distance);
         const Real gap = found.is_overlapping ? -radii : between - radii;
         const Real size = std::max({found.size.x, found.size.y, found.size.z}) + radii + reach;

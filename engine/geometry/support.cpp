@@ -40,8 +40,9 @@ PointCore core_of(const Sphere &sphere, const Vec3 &origin) {
 BoxCore core_of(const Box &box, const Vec3 &origin) {
     check_valid(box);
     const Mat3 axes = glm::mat3_cast(box.rotation);
-    return {box.center - origin, Mat3{axes[0] * box.half_extents.x, axes[1] * box.half_extents.y,
-                                      axes[2] * box.half_extents.z}};
+    return {box.center - origin, axes, box.half_extents,
+            Mat3{axes[0] * box.half_extents.x, axes[1] * box.half_extents.y,
+                 axes[2] * box.half_extents.z}};
 }
 
 AabbCore core_of(const Aabb &box, const Vec3 &origin) {

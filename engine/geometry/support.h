@@ -10,6 +10,7 @@
 #include "engine/geometry/shapes.h"
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 
 #include <glm/common.hpp>
@@ -84,6 +85,8 @@ struct AabbCore {
 
 struct BoxCore {
     Vec3 center{Real(0)};
+    Mat3 axes{Real(0)};
+    Vec3 half_extents{Real(0)};
     Mat3 half_edges{Real(0)}; // the axes, each as long as its half extent
     static constexpr Real radius = Real(0);
 
@@ -136,7 +139,7 @@ struct HullCore {
     Vec3 support(const Vec3 &direction) const {
         const Vec3 local = direction * rotation; // transposed: into the mesh's frame
         // Up to here looking at all vertices is as fast as a climb from neighbour to neighbour.
-        constexpr std::size_t few = 24;
+        constexpr std::size_t few = 40;
         last = mesh->vertices.size() <= few ? support_vertex(*mesh, local)
                                             : support_vertex(*mesh, local, last);
         return position + rotation * mesh->vertices[last];
@@ -146,32 +149,17 @@ struct HullCore {
 };
 
 // Where a shape is: the origin that cores of a pair are relative to.
-inline Vec3 place_of(const Vec3 &point) {
-    return point;
-}
-inline Vec3 place_of(const Segment &segment) {
-    return segment.a;
-}
-inline Vec3 place_of(const Triangle &triangle) {
-    return triangle.a;
-}
-inline Vec3 place_of(const Sphere &sphere) {
-    return sphere.center;
-}
-inline Vec3 place_of(const Box &box) {
-    return box.center;
-}
-inline Vec3 place_of(const Aabb &box) {
-    return box.min;
-}
-inline Vec3 place_of(const Capsule &capsule) {
-    return capsule.a;
-}
-inline Vec3 place_of(const Cylinder &cylinder) {
-    return cylinder.a;
-}
-inline Vec3 place_of(const ConvexHull &hull) {
-    return hull.position;
+template <typename Shape> Vec3 place_of(const Shape &shape) {
+    if constexpr (std::same_as<Shape, Vec3>)
+        return shape;
+    else if constexpr (requires { shape.center; })
+        return shape.center;
+    else if constexpr (requires { shape.position; })
+        return shape.position;
+    else if constexpr (requires { shape.min; })
+        return shape.min;
+    else
+        return shape.a;
 }
 
 // The core of a shape relative to an origin. A shape that is not valid (check_valid) fails a check;

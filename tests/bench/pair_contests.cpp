@@ -118,14 +118,13 @@ std::vector<Contest> pair_contests() {
     // Distance, or depth where they overlap: what Bullet's pair detector answers.
     const auto signed_contest = [&]<typename A, typename B>(std::string name, std::span<const A> a,
                                                             std::span<const B> b) {
-        contests.push_back({std::move(name),
-                            a.size(),
-                            {"penetration or distance", each<[](const A &x, const B &y) {
-                                 return penetration(x, y).has_value() ||
-                                        distance(x, y).distance <= 0;
-                             }>(a, b)},
-                            {{"Bullet GJK and EPA", bullet::closest(a, b)}},
-                            twice});
+        contests.push_back(
+            {std::move(name),
+             a.size(),
+             {"proximity",
+              each<[](const A &x, const B &y) { return proximity(x, y).separation <= 0; }>(a, b)},
+             {{"Bullet GJK and EPA", bullet::closest(a, b)}},
+             twice});
     };
     signed_contest("box, box: signed distance", boxes, more_boxes);
     signed_contest("capsule, box: signed distance", capsules, boxes);

@@ -92,6 +92,16 @@ TEST(Epa, ProvesEachDepth) {
                 if (overlaps(pair.a, pair.b))
                     text = "no penetration, and an overlap";
             }
+            if (i % 4 == 0) {
+                const Proximity both = proximity(pair.a, pair.b);
+                if (found && (both.separation != -found->depth || both.normal != found->normal ||
+                              both.on_a != found->on_a || both.on_b != found->on_b))
+                    text += "another penetration as proximity";
+                // What is apart by rounding may count as either.
+                if (!found &&
+                    std::max(both.separation, Real(0)) != distance(pair.a, pair.b).distance)
+                    text += "another distance as proximity";
+            }
             if (!text.empty() && ++wrong <= 3)
                 ADD_FAILURE() << "seed " << seed << " pair " << i << ": " << text;
         }
