@@ -35,6 +35,8 @@ struct ClosestPoints {
 // allowed, but not a point with a point.
 template <typename A, typename B>
 requires ConvexPair<A, B> ClosestPoints distance(const A &a, const B &b);
+ClosestPoints distance(const Sphere &a, const Box &b);
+ClosestPoints distance(const Box &a, const Sphere &b);
 
 // Whether the shapes have a common point; touching ones do. Those for which overlap.h or sat.h has
 // an exact answer use that. True for shapes closer than the rounding given at `distance`.

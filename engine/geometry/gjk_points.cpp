@@ -1,8 +1,9 @@
 // The closest points of a point and a core in closed form.
 #include "engine/geometry/closest.h"
 #include "engine/geometry/gjk.h"
+#include "engine/math/rigid.h"
 
-#include <algorithm>
+#include <optional>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -13,13 +14,24 @@ Vec3 across(const Vec3 &v, const Vec3 &side, Real squared_side) {
     return v - side * (glm::dot(v, side) / squared_side);
 }
 
-// From the point to the core, whose coordinates are of that size. What is nearer than they round by
-// overlaps, as for GJK: such a difference has no direction.
-NearestPoints from_point(const PointCore &a, const Vec3 &difference, const Vec3 &size) {
+// From the point to the core. With the size of the core's coordinates, what is nearer than they
+// round by overlaps, as for GJK: such a difference has no direction.
+NearestPoints from_point(const PointCore &a, const Vec3 &difference,
+                         const std::optional<Vec3> &size) {
     const Real squared = glm::dot(difference, difference);
-    const bool is_overlapping = squared <= rounding_along(difference, glm::abs(a.point) + size) ||
-                                squared < std::numeric_limits<Real>::min();
+    const bool is_overlapping =
+        squared < std::numeric_limits<Real>::min() ||
+        (size && squared <= rounding_along(difference, glm::abs(a.point) + *size));
     return {a.point, a.point + difference, difference, squared, is_overlapping, 0};
+}
+
+// Beyond no face there is no distance, and beyond one there is nothing but that: the direction is
+// good however small, and nothing needs to count as overlapping.
+NearestPoints to_box(const PointCore &a, const Vec3 &center, const Mat3 &axes,
+                     const Vec3 &half_extents) {
+    const Vec3 local = (a.point - center) * axes; // transposed: into the box's frame
+    const Vec3 beyond = local - glm::clamp(local, -half_extents, half_extents);
+    return from_point(a, -(axes * beyond), std::nullopt);
 }
 
 Vec3 larger(const Vec3 &a, const Vec3 &b) {
@@ -47,15 +59,11 @@ NearestPoints nearest_points(const PointCore &a, const SegmentCore &b) {
 }
 
 NearestPoints nearest_points(const PointCore &a, const AabbCore &b) {
-    return from_point(a, glm::clamp(a.point, b.min, b.max) - a.point, larger(b.min, b.max));
+    return from_point(a, glm::clamp(a.point, b.min, b.max) - a.point, std::nullopt);
 }
 
 NearestPoints nearest_points(const PointCore &a, const BoxCore &b) {
-    const Vec3 local = (a.point - b.center) * b.axes; // transposed: into the box's frame
-    const Vec3 beyond = local - glm::clamp(local, -b.half_extents, b.half_extents);
-    const Vec3 reach =
-        glm::abs(b.half_edges[0]) + glm::abs(b.half_edges[1]) + glm::abs(b.half_edges[2]);
-    return from_point(a, -(b.axes * beyond), glm::abs(b.center) + reach);
+    return to_box(a, b.center, b.axes, b.half_extents);
 }
 
 NearestPoints nearest_points(const PointCore &a, const CylinderCore &b) {
@@ -72,6 +80,22 @@ NearestPoints nearest_points(const PointCore &a, const CylinderCore &b) {
     if (away > b.side)
         difference -= outward * ((away - b.side) / away);
     return from_point(a, difference, larger(b.a, b.b) + b.side);
+}
+
+// These two without the edges that only a search needs.
+ClosestPoints distance(const Sphere &a, const Box &b) {
+    check_valid(b);
+    const PointCore point = core_of(a, a.center);
+    return closest_points(
+        to_box(point, b.center - a.center, rotation_matrix(b.rotation), b.half_extents),
+        point.radius, Real(0), a.center);
+}
+
+ClosestPoints distance(const Box &a, const Sphere &b) {
+    ClosestPoints found = distance(b, a);
+    std::swap(found.on_a, found.on_b);
+    found.normal = -found.normal;
+    return found;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

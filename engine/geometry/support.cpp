@@ -1,6 +1,7 @@
 #include "engine/geometry/support.h"
 
 #include "engine/math/printed.h"
+#include "engine/math/rigid.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -39,7 +40,7 @@ PointCore core_of(const Sphere &sphere, const Vec3 &origin) {
 
 BoxCore core_of(const Box &box, const Vec3 &origin) {
     check_valid(box);
-    const Mat3 axes = glm::mat3_cast(box.rotation);
+    const Mat3 axes = rotation_matrix(box.rotation);
     return {box.center - origin, axes, box.half_extents,
             Mat3{axes[0] * box.half_extents.x, axes[1] * box.half_extents.y,
                  axes[2] * box.half_extents.z}};
