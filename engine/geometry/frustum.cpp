@@ -102,10 +102,28 @@ bool is_separated(const Frustum &frustum, const OpenBox &box) {
     return false;
 }
 
+bool is_behind_all(const Frustum &frustum, const Vec3 &point) {
+    return std::ranges::all_of(
+        frustum.planes, [&](const Plane &plane) { return height_of(plane, point) <= Real(0); });
+}
+
+// A common point, where one is found without search: the box's middle, or its point closest to the
+// frustum's. Of boxes across the border most have one.
+bool has_obvious_point(const Frustum &frustum, const OpenBox &box) {
+    if (is_behind_all(frustum, box.center))
+        return true;
+    Vec3 middle{Real(0)};
+    for (const Vec3 &corner : frustum.corners)
+        middle += Real(0.125) * corner;
+    const Vec3 local = glm::clamp((middle - box.center) * box.axes, -box.half, box.half);
+    return is_behind_all(frustum, box.center + box.axes * local);
+}
+
 bool overlaps_box(const Frustum &frustum, const OpenBox &box) {
     const FrustumSide side = classify_box(frustum, box);
     return side != FrustumSide::outside &&
-           (side == FrustumSide::inside || !is_separated(frustum, box));
+           (side == FrustumSide::inside || has_obvious_point(frustum, box) ||
+            !is_separated(frustum, box));
 }
 
 OpenBox opened(const Aabb &box) {
@@ -122,11 +140,6 @@ void check_box(const Aabb &box) {
     PLUMB_CHECK(box.min.x <= box.max.x && box.min.y <= box.max.y && box.min.z <= box.max.z,
                 "an empty box is on no side of a frustum, got min "
                     << Printed{box.min} << " and max " << Printed{box.max});
-}
-
-bool is_behind_all(const Frustum &frustum, const Vec3 &point) {
-    return std::ranges::all_of(
-        frustum.planes, [&](const Plane &plane) { return height_of(plane, point) <= Real(0); });
 }
 
 void check_finite(const Mat4 &m) {
