@@ -156,7 +156,8 @@ Work rays_aabbs(std::span<const Ray> rays, std::span<const Aabb> boxes) {
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const btVector3 direction = of(rays[i].direction);
             const btVector3 inverse(1 / direction.x(), 1 / direction.y(), 1 / direction.z());
-            const unsigned signs[3] = {inverse.x() < 0, inverse.y() < 0, inverse.z() < 0};
+            const unsigned signs[3] = {inverse.x() < 0 ? 1U : 0U, inverse.y() < 0 ? 1U : 0U,
+                                       inverse.z() < 0 ? 1U : 0U};
             const btVector3 bounds[2] = {of(boxes[i].min), of(boxes[i].max)};
             btScalar t = 0;
             yes += btRayAabb2(of(rays[i].origin), inverse, signs, bounds, t, 0,
@@ -178,7 +179,8 @@ Work ray_aabbs(const Ray &ray, std::span<const Aabb> boxes) {
     return [ray, all] {
         const btVector3 origin = of(ray.origin), direction = of(ray.direction);
         const btVector3 inverse(1 / direction.x(), 1 / direction.y(), 1 / direction.z());
-        const unsigned signs[3] = {inverse.x() < 0, inverse.y() < 0, inverse.z() < 0};
+        const unsigned signs[3] = {inverse.x() < 0 ? 1U : 0U, inverse.y() < 0 ? 1U : 0U,
+                                   inverse.z() < 0 ? 1U : 0U};
         std::uint64_t yes = 0;
         btScalar t = 0;
         for (const Bounds &bounds : *all)
