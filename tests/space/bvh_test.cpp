@@ -2,7 +2,7 @@
 
 #include "engine/core/check.h"
 #include "engine/core/random.h"
-#include "tests/geometry/oracle.h"
+#include "tests/space/tree_boxes.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -21,13 +21,7 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 using oracle::any_vector;
-
-bool touches(const Aabb &a, const Aabb &b) {
-    for (int i = 0; i < 3; ++i)
-        if (a.min[i] > b.max[i] || b.min[i] > a.max[i])
-            return false;
-    return true;
-}
+using tree_boxes::touches;
 
 struct Family {
     const char *name;
@@ -152,7 +146,7 @@ TEST(Bvh, IsConsistentAndAnswersQueriesAsAListDoes) {
             const Bvh tree(boxes);
             ASSERT_EQ(tree.size(), boxes.size());
             expect_consistent(tree, boxes);
-            for (int k = 0; k < trials(2000); ++k) {
+            for (int k = 0; k < trials(count <= 33 ? 18'000 : 2'000); ++k) {
                 Aabb query = family.make(random, int(random.next_index(1000)));
                 const Vec3 grow = glm::abs(any_vector(random, 2.0));
                 if (k % 2 == 0)
@@ -199,21 +193,23 @@ TEST(Bvh, FindsTheNearestItemAsAListDoes) {
     };
     for (const Family &family : families) {
         SCOPED_TRACE(family.name);
-        const std::vector<Aabb> boxes = boxes_of(family, random, 700);
-        const Bvh tree(boxes);
-        for (int k = 0; k < trials(3000); ++k) {
-            const Vec3 p = k % 3 == 0 ? any_vector(random, 120.0)
-                                      : family.make(random, k % 700).min +
-                                            any_vector(random, k % 3 == 1 ? 1.0 : 1e-3);
-            Real best = std::numeric_limits<Real>::infinity();
-            tree.nearest(p, best, [&](std::uint32_t item) {
-                best = std::min(best, squared_distance(boxes[item], p));
-                return best;
-            });
-            Real expected = std::numeric_limits<Real>::infinity();
-            for (const Aabb &box : boxes)
-                expected = std::min(expected, squared_distance(box, p));
-            ASSERT_EQ(best, expected);
+        for (const int count : {2, 9, 20, 700}) {
+            const std::vector<Aabb> boxes = boxes_of(family, random, count);
+            const Bvh tree(boxes);
+            for (int k = 0; k < trials(count <= 20 ? 48'000 : 3'000); ++k) {
+                const Vec3 p = k % 3 == 0 ? any_vector(random, 120.0)
+                                          : family.make(random, k % 700).min +
+                                                any_vector(random, k % 3 == 1 ? 1.0 : 1e-3);
+                Real best = std::numeric_limits<Real>::infinity();
+                tree.nearest(p, best, [&](std::uint32_t item) {
+                    best = std::min(best, squared_distance(boxes[item], p));
+                    return best;
+                });
+                Real expected = std::numeric_limits<Real>::infinity();
+                for (const Aabb &box : boxes)
+                    expected = std::min(expected, squared_distance(box, p));
+                ASSERT_EQ(best, expected) << count;
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 #include "engine/space/orthtree.h"
 
-#include "engine/core/check.h"
 #include "engine/core/random.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -106,21 +106,28 @@ std::optional<W> entry(const BoxOf<Dim> &box, const PointOf<Dim> &origin,
 // All items in a list, each asked: what the tree must agree with.
 template <int Dim> class Checked {
   public:
-    Checked(int max_depth, int capacity, std::uint64_t seed)
+    // Up to `most` items, and down to a fifteenth of that.
+    Checked(int max_depth, int capacity, std::size_t most, std::uint64_t seed)
         : tree_(world<Dim>(), max_depth, capacity), max_depth_(max_depth), capacity_(capacity),
-          random_(seed) {}
+          most_(most), random_(seed) {}
 
     void change() {
         const std::uint32_t what = random_.next_index(100);
-        // Grows to some hundred, and falls again: cells are divided and united.
-        is_growing_ = items_.empty() || (is_growing_ ? items_.size() < 300 : items_.size() < 20);
+        // Grows, and falls again: cells are divided and united.
+        is_growing_ =
+            items_.empty() || (is_growing_ ? items_.size() < most_ : items_.size() < most_ / 15);
         if (items_.empty() || (what < 50 && is_growing_) || what < 15) {
             const BoxOf<Dim> box = any_box<Dim>(random_);
-            const std::uint32_t user = next_user_++;
+            std::uint32_t user = std::uint32_t(items_.size());
+            if (!free_users_.empty()) {
+                user = free_users_.back();
+                free_users_.pop_back();
+            }
             items_.push_back({tree_.insert(box, user), user, box});
         } else if (what < 65) {
             const std::size_t i = any_index();
             tree_.remove(items_[i].item);
+            free_users_.push_back(items_[i].user);
             items_[i] = items_.back();
             items_.pop_back();
         } else {
@@ -347,7 +354,7 @@ template <int Dim> class Checked {
 
     // Each item is found once if it must be, never if it must not. `must` may leave it open.
     template <typename Query, typename Must> void check_found(Query &&query, Must &&must) {
-        found_.assign(next_user_, 0);
+        found_.assign(items_.size() + free_users_.size(), 0);
         query([&](std::uint32_t user) {
             ++found_[user];
             return true;
@@ -375,9 +382,10 @@ template <int Dim> class Checked {
     Orthtree<Dim> tree_;
     int max_depth_;
     int capacity_;
+    std::size_t most_;
     Random random_;
     std::vector<Item> items_;
-    std::uint32_t next_user_ = 0;
+    std::vector<std::uint32_t> free_users_;
     bool is_growing_ = true;
     std::vector<int> found_;
     std::size_t hits_ = 0;
@@ -386,7 +394,7 @@ template <int Dim> class Checked {
 template <int Dim> void check_streams() {
     constexpr std::array<std::array<int, 2>, 5> settings{{{0, 1}, {3, 4}, {6, 8}, {16, 1}, {8, 2}}};
     for (const auto &[max_depth, capacity] : settings) {
-        Checked<Dim> checked(max_depth, capacity, 0x0c7 + std::uint64_t(max_depth));
+        Checked<Dim> checked(max_depth, capacity, 300, 0x0c7 + std::uint64_t(max_depth));
         const int count = trials(60'000);
         for (int step = 0; step < count; ++step) {
             checked.change();
@@ -431,6 +439,36 @@ TEST(Orthtree, QuadtreeAgreesWithAList) {
 
 TEST(Orthtree, OctreeAgreesWithAList) {
     check_streams<3>();
+}
+
+// A million changes, each followed by one of each question: few items, so that a list is quick.
+template <int Dim> void check_a_million() {
+    Checked<Dim> checked(6, 1, 15, 0x0c9);
+    const int count = trials(1'000'000);
+    for (int step = 0; step < count; ++step) {
+        checked.change();
+        checked.check_box_query();
+        checked.check_ball_query();
+        checked.check_line_query();
+        checked.check_region_query();
+        checked.check_raycast();
+        checked.check_closest();
+        checked.check_pairs();
+        if (step % 256 == 0) {
+            checked.check_items();
+            checked.check_cells();
+        }
+        ASSERT_FALSE(testing::Test::HasFatalFailure()) << "step " << step;
+    }
+    EXPECT_GT(checked.hits(), std::size_t(count));
+}
+
+TEST(Orthtree, QuadtreeAnswersAMillionOfEach) {
+    check_a_million<2>();
+}
+
+TEST(Orthtree, OctreeAnswersAMillionOfEach) {
+    check_a_million<3>();
 }
 
 TEST(Orthtree, SmallThingsOnADividingPlaneAreNotAtTheTop) {
@@ -520,14 +558,6 @@ TEST(Orthtree, CopiesAnswerAlike) {
 }
 
 TEST(Orthtree, SaysWhatIsWrong) {
-    const auto says = [](auto call, const std::string &part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Vec2 zero{Real(0)}, one{Real(1)};
     says([&] { Quadtree({zero, Vec2{Real(1), Real(0)}}, 4, 4); }, "[0, 0] on axis 1");
