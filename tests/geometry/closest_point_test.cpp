@@ -1,8 +1,8 @@
 #include "engine/geometry/closest_point.h"
 
-#include "engine/core/check.h"
 #include "engine/geometry/contains.h"
 #include "tests/geometry/wide.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -223,14 +223,6 @@ TEST(ClosestPoint, DegenerateAndMisuse) {
     EXPECT_EQ(closest_point(Box{p, identity_rotation, Vec3{Real(0)}}, far), p);
     EXPECT_EQ(closest_point(Ray{p, far, Real(0)}, far), p);
     EXPECT_EQ(closest_point(Shape{Sphere{p, Real(0)}}, far), p);
-    const auto says = [](const auto &ask, const std::string &value) {
-        try {
-            ask();
-            ADD_FAILURE() << "not refused: " << value;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(value), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     says([&] { closest_point(Aabb{p, Vec3{Real(0)}}, p); }, "(1, 2, 3)");
     says([&] { closest_point(Aabb{Vec3{Real(0)}, p}, Vec3{nan}); }, "nan");

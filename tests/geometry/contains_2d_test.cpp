@@ -1,7 +1,7 @@
 #include "engine/geometry/contains_2d.h"
 
-#include "engine/core/check.h"
 #include "tests/geometry/oracle_2d.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -147,14 +147,6 @@ TEST(Contains2, CompoundIsAnyOfItsParts) {
 }
 
 TEST(Contains2, SaysWhatIsWrong) {
-    const auto says = [](auto call, const std::string &part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Real inf = std::numeric_limits<Real>::infinity();
     const Vec2 zero{Real(0)};

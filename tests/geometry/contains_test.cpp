@@ -1,7 +1,7 @@
 #include "engine/geometry/contains.h"
 
-#include "engine/core/check.h"
 #include "tests/geometry/wide.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -13,30 +13,6 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 using namespace wide;
-
-// The answers are right but within `bound` of the surface, and most points are outside of that.
-class Judge {
-  public:
-    ~Judge() {
-        EXPECT_GT(decided_, total_ / 2);
-        EXPECT_GT(inside_, total_ / 8);
-        EXPECT_LT(inside_, total_ * 7 / 8);
-    }
-    void operator()(bool answer, W signed_distance, W bound) {
-        ++total_;
-        if (std::abs(signed_distance) <= bound)
-            return;
-        ++decided_;
-        inside_ += answer;
-        ASSERT_EQ(answer, signed_distance <= W(0))
-            << "trial " << total_ << ", signed distance " << signed_distance << ", bound " << bound;
-    }
-
-  private:
-    int total_ = 0;
-    int decided_ = 0;
-    int inside_ = 0;
-};
 
 TEST(Contains, SphereOfAnySize) {
     Random random(1);
@@ -154,37 +130,16 @@ TEST(Contains, CylinderOfAnySize) {
 
 // --- Exact answers -----------------------------------------------------------------------------
 
-using Int = std::int64_t;
-struct Int3 {
-    Int x = 0, y = 0, z = 0;
-};
-Int3 operator-(const Int3 &a, const Int3 &b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Int dot(const Int3 &a, const Int3 &b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec3 real(const Int3 &v) {
-    return {Real(v.x), Real(v.y), Real(v.z)};
-}
-Int any_int(Random &random, Int reach) {
-    return Int(random.next_index(std::uint32_t(2 * reach + 1))) - reach;
-}
-Int3 any_int3(Random &random, Int reach) {
-    const Int x = any_int(random, reach), y = any_int(random, reach), z = any_int(random, reach);
-    return {x, y, z};
-}
-
 // The squared distance of p from the segment times |b - a|^2 (times 1 when that is zero).
 Int scaled_distance(const Int3 &a, const Int3 &b, const Int3 &p, Int &scale) {
     const Int3 d = b - a, from_a = p - a, from_b = p - b;
     scale = 1;
-    if (dot(from_a, d) <= 0)
-        return dot(from_a, from_a);
-    if (dot(from_b, d) >= 0)
-        return dot(from_b, from_b);
-    scale = dot(d, d);
-    return dot(from_a, from_a) * scale - dot(from_a, d) * dot(from_a, d);
+    if (product(from_a, d) <= 0)
+        return product(from_a, from_a);
+    if (product(from_b, d) >= 0)
+        return product(from_b, from_b);
+    scale = product(d, d);
+    return product(from_a, from_a) * scale - product(from_a, d) * product(from_a, d);
 }
 
 TEST(Contains, WholeNumbersAreExact) {
@@ -198,18 +153,19 @@ TEST(Contains, WholeNumbersAreExact) {
         const Int3 a = any_int3(random, 8), b = any_int3(random, 8), p = any_int3(random, 8);
         const Int r = Int(random.next_index(9));
         const Int3 from_a = p - a;
-        ASSERT_EQ(contains(Sphere{real(a), Real(r)}, real(p)), dot(from_a, from_a) <= r * r);
+        ASSERT_EQ(contains(Sphere{real(a), Real(r)}, real(p)), product(from_a, from_a) <= r * r);
         Int scale = 1;
         const Int squared = scaled_distance(a, b, p, scale);
         on_surface += squared == r * r * scale;
         ASSERT_EQ(contains(Capsule{real(a), real(b), Real(r)}, real(p)), squared <= r * r * scale);
         ASSERT_EQ(contains(Segment{real(a), real(b)}, real(p)), squared == 0);
         const Int3 d = b - a;
-        if (dot(d, d) > 0) {
-            const Int rest = dot(from_a, from_a) * dot(d, d) - dot(from_a, d) * dot(from_a, d);
-            const bool is_between = dot(from_a, d) >= 0 && dot(p - b, d) <= 0;
+        if (product(d, d) > 0) {
+            const Int rest =
+                product(from_a, from_a) * product(d, d) - product(from_a, d) * product(from_a, d);
+            const bool is_between = product(from_a, d) >= 0 && product(p - b, d) <= 0;
             ASSERT_EQ(contains(Cylinder{real(a), real(b), Real(r)}, real(p)),
-                      is_between && rest <= r * r * dot(d, d));
+                      is_between && rest <= r * r * product(d, d));
         }
         const std::size_t turn = random.next_index(4);
         const Int3 half{std::abs(b.x), std::abs(b.y), std::abs(b.z)};
@@ -240,6 +196,7 @@ Huge any_huge(Random &random) {
 struct Huge3 {
     Huge x = 0, y = 0, z = 0;
 };
+using wide::real;
 Vec3 real(const Huge3 &v) {
     return {Real(Int(v.x)), Real(Int(v.y)), Real(Int(v.z))};
 }
@@ -257,7 +214,7 @@ TEST(Contains, LinesWithoutThicknessAreExact) {
         const Int steps = any_int(random, 1 << 12);
         const Int length = Int(random.next_index(1 << 12));
         const Int3 d = any_int3(random, 1 << 6);
-        if (dot(d, d) == 0)
+        if (product(d, d) == 0)
             continue;
         const Huge3 b{a.x + d.x * length, a.y + d.y * length, a.z + d.z * length};
         Huge3 p{a.x + d.x * steps, a.y + d.y * steps, a.z + d.z * steps};
@@ -270,7 +227,7 @@ TEST(Contains, LinesWithoutThicknessAreExact) {
                                   cross_part(d.y, d.z, f.y, f.z) == 0 &&
                                   cross_part(d.z, d.x, f.z, f.x) == 0;
         const Huge along = d.x * f.x + d.y * f.y + d.z * f.z; // steps * |d|^2 on the line
-        const Huge whole = Huge(dot(d, d));
+        const Huge whole = Huge(product(d, d));
         const bool is_forward = is_collinear && along >= 0;
         on_line += is_collinear;
         const bool on_segment = length == 0 ? along == 0 && f.x == 0 && f.y == 0 && f.z == 0
@@ -292,7 +249,7 @@ TEST(Contains, LinesWithoutThicknessAreExact) {
         const Int3 q{m.y * far + any_int(random, 1), -m.x * far, any_int(random, 2)};
         const Int offset = any_int(random, 1);
         const Plane plane{real(m) / Real(one), Real(offset) / Real(one)};
-        const Int height = dot(m, q) - offset;
+        const Int height = product(m, q) - offset;
         ASSERT_EQ(contains(plane, real(q)), height == 0) << "trial " << trial;
         ASSERT_EQ(contains(HalfSpace{plane.normal, plane.offset}, real(q)), height <= 0)
             << "trial " << trial;
@@ -322,14 +279,6 @@ TEST(Contains, DegenerateShapes) {
 }
 
 TEST(Contains, MisuseNamesTheValue) {
-    const auto says = [](const auto &ask, const std::string &value) {
-        try {
-            ask();
-            ADD_FAILURE() << "not refused: " << value;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(value), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Real infinity = std::numeric_limits<Real>::infinity();
     const Vec3 p{Real(1), Real(2), Real(3)};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <boost/multiprecision/gmp.hpp>
@@ -53,6 +54,28 @@ inline Rational3 cross(const Rational3 &a, const Rational3 &b) {
 inline bool is_zero(const Rational3 &v) {
     return v.x == 0 && v.y == 0 && v.z == 0;
 }
+
+// The side of a plane that a point is on, by the plane's numbers as they are: in long double where
+// that is enough.
+inline int side_of(const Vec3 &normal, Real offset, const Vec3 &p) {
+    long double height = -static_cast<long double>(offset), size = std::abs(height);
+    for (int i = 0; i < 3; ++i) {
+        const long double term =
+            static_cast<long double>(normal[i]) * static_cast<long double>(p[i]);
+        height += term;
+        size += std::abs(term);
+    }
+    // The error is below 2^-64 a rounding, of which there are six.
+    if (std::abs(height) > 0x1p-60L * size)
+        return height > 0 ? 1 : -1;
+    return Rational(dot(rational(normal), rational(p)) - rational(offset)).sign();
+}
+
+// Normals that floats do not hold but for rounding, and that they do.
+inline constexpr std::array<Vec3, 4> plane_normals{{{Real(0), Real(1), Real(0)},
+                                                    {Real(-1), Real(0), Real(0)},
+                                                    {Real(0.6), Real(0), Real(-0.8)},
+                                                    {Real(0.48), Real(-0.6), Real(0.64)}}};
 
 // --- Polytopes of whole coordinates, by separating axes. Nothing is rounded or overflows where
 // coordinates stay below 2^12 for 64 bits, or 2^24 for 128.

@@ -1,7 +1,7 @@
 #include "engine/geometry/frustum.h"
 
-#include "engine/core/check.h"
 #include "tests/geometry/wide.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -423,14 +423,6 @@ TEST(Frustum, PixelsAreCountedFromTheTopLeft) {
 }
 
 TEST(Frustum, MisuseNamesTheValue) {
-    const auto says = [](const auto &ask, const std::string &value) {
-        try {
-            ask();
-            ADD_FAILURE() << "not refused: " << value;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(value), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Mat4 good = glm::perspective(Real(1), Real(1), Real(1), Real(10));
     const Frustum frustum = frustum_of(good);

@@ -1,9 +1,9 @@
 #include "engine/geometry/height_field.h"
 
-#include "engine/core/check.h"
 #include "engine/geometry/triangle.h"
 #include "engine/geometry/triangle_overlap.h"
 #include "tests/geometry/oracle.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -294,14 +294,6 @@ TEST(HeightField, PointsAndSolidsAgainstAllTriangles) {
 }
 
 TEST(HeightField, MisuseNamesTheValue) {
-    const auto says = [](auto &&call, const char *part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const HeightField good{Vec3{Real(0)}, Real(1), 2, 2, std::vector<Real>(4, Real(0))};
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     check_valid(good);

@@ -1,9 +1,9 @@
 #include "engine/geometry/hull_queries.h"
 
-#include "engine/core/check.h"
 #include "engine/geometry/quickhull.h"
 #include "tests/geometry/hull_points.h"
 #include "tests/geometry/oracle.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -464,14 +464,6 @@ TEST(HullQueries, BoundsAndSides) {
 }
 
 TEST(HullQueries, MisuseNamesTheValue) {
-    const auto says = [](auto &&call, const char *part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Vec3 x{Real(1), Real(0), Real(0)};
     const Vec3 o{Real(0)};

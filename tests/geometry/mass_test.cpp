@@ -1,9 +1,9 @@
 #include "engine/geometry/mass.h"
 
-#include "engine/core/check.h"
 #include "engine/geometry/hull_queries.h"
 #include "engine/geometry/quickhull.h"
 #include "tests/geometry/oracle.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -277,14 +277,6 @@ TEST(Mass, SurfacesAroundNothing) {
 }
 
 TEST(Mass, MisuseNamesTheValue) {
-    const auto says = [](auto &&call, const char *part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     says([] { principal_inertia(HalfSpace{}, Real(1)); }, "half-space");
     says([] { principal_inertia(Sphere{Vec3{Real(0)}, Real(1)}, Real(-4)); }, "-4");
     says([] { principal_inertia(Sphere{Vec3{Real(0)}, Real(-9)}, Real(1)); }, "-9");

@@ -1,7 +1,7 @@
 #include "engine/geometry/overlap.h"
 
-#include "engine/core/check.h"
 #include "tests/geometry/wide.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -15,30 +15,6 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 using namespace wide;
-
-// The answers are right but within `bound` of touching, and most pairs are outside of that.
-class Judge {
-  public:
-    ~Judge() {
-        EXPECT_GT(decided_, total_ / 2);
-        EXPECT_GT(overlapping_, total_ / 8);
-        EXPECT_LT(overlapping_, total_ * 7 / 8);
-    }
-    void operator()(bool answer, W distance, W bound) {
-        ++total_;
-        if (std::abs(distance) <= bound)
-            return;
-        ++decided_;
-        overlapping_ += answer;
-        ASSERT_EQ(answer, distance <= W(0))
-            << "pair " << total_ << ", distance " << distance << ", bound " << bound;
-    }
-
-  private:
-    int total_ = 0;
-    int decided_ = 0;
-    int overlapping_ = 0;
-};
 
 // The least distance of the points of a segment from a convex set, less `radius`, given the set's
 // closest point: the derivative of the squared distance along the segment grows, so it is bisected.
@@ -206,23 +182,6 @@ TEST(Overlap, CapsuleWithBoxes) {
 
 // --- Exact answers -----------------------------------------------------------------------------
 
-using Int = std::int64_t;
-using Int3 = glm::vec<3, Int, glm::defaultp>;
-
-Int any_int(Random &random, Int reach) {
-    return Int(random.next_index(std::uint32_t(2 * reach + 1))) - reach;
-}
-Int3 any_int3(Random &random, Int reach) {
-    const Int x = any_int(random, reach), y = any_int(random, reach), z = any_int(random, reach);
-    return {x, y, z};
-}
-Int product(const Int3 &a, const Int3 &b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec3 real(const Int3 &v) {
-    return {Real(v.x), Real(v.y), Real(v.z)};
-}
-
 // Whether the segment from a to b comes within r of the box, by the squared distance
 //   f(t) = sum of max(low - x, x - high, 0)^2,  x = a + t (b - a),
 // which is a parabola between the parameters n / m at which x meets a plane of the box: its least
@@ -380,14 +339,6 @@ TEST(Overlap, EmptyBoxesOverlapNothingAndMisuseNamesTheValue) {
     EXPECT_TRUE(overlaps(Capsule{p, p, Real(0)}, Capsule{p, p, Real(0)}));
     EXPECT_TRUE(overlaps(Capsule{p, p, Real(0)}, all));
 
-    const auto says = [](const auto &ask, const std::string &value) {
-        try {
-            ask();
-            ADD_FAILURE() << "not refused: " << value;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(value), std::string::npos) << error.what();
-        }
-    };
     says([&] { overlaps(Sphere{p, Real(1)}, Sphere{p, Real(-7)}); }, "-7");
     says([&] { overlaps(Sphere{p, Real(-7)}, all); }, "-7");
     says([&] { overlaps(Capsule{p, p, Real(-7)}, box); }, "-7");

@@ -1,7 +1,7 @@
 #include "engine/geometry/plane.h"
 
-#include "engine/core/check.h"
 #include "tests/geometry/wide.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -311,14 +311,6 @@ TEST(PlaneIntersection, AxesAreExactAndParallelHasNone) {
 }
 
 TEST(PlaneClassify, MisuseNamesTheValue) {
-    const auto says = [](const auto &ask, const std::string &value) {
-        try {
-            ask();
-            ADD_FAILURE() << "not refused: " << value;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(value), std::string::npos) << error.what();
-        }
-    };
     const Plane good;
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     says([&] { classify(good, Vec3{Real(7), nan, Real(0)}); }, "(7, nan, 0)");

@@ -1,8 +1,8 @@
 #include "engine/geometry/raycast_2d.h"
 
-#include "engine/core/check.h"
 #include "engine/geometry/contains_2d.h"
 #include "tests/geometry/oracle_2d.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -520,14 +520,6 @@ TEST(Raycast2, CompoundIsTheFirstOfItsParts) {
 }
 
 TEST(Raycast2, SaysWhatIsWrong) {
-    const auto says = [](auto call, const std::string &part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Vec2 zero{Real(0)}, x{Real(1), Real(0)};
     const Circle circle{zero, Real(1)};

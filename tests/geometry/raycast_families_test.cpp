@@ -460,13 +460,9 @@ TEST(RaycastFamilies, PlanesAndHalfSpaces) {
     Random random(56);
     int hits = 0, inside = 0;
     const int count = trials(1'000'000);
-    const Vec3 normals[] = {{Real(0), Real(1), Real(0)},
-                            {Real(-1), Real(0), Real(0)},
-                            {Real(0.6), Real(0), Real(-0.8)},
-                            {Real(0.48), Real(-0.6), Real(0.64)}};
     for (int trial = 0; trial < count; ++trial) {
         const double size = std::pow(10.0, random.next_in(-3.0, 5.0));
-        const Vec3 n = random.next_index(2) == 0 ? normals[random.next_index(4)]
+        const Vec3 n = random.next_index(2) == 0 ? plane_normals[random.next_index(4)]
                                                  : glm::normalize(any_offset(random, 1.0));
         const Vec3 origin = any_offset(random, size);
         const Real offset = random.next_index(3) == 0
@@ -477,15 +473,7 @@ TEST(RaycastFamilies, PlanesAndHalfSpaces) {
             direction = glm::cross(n, any_offset(random, 1.0)); // in the plane, or nearly
         if (direction == Vec3{Real(0)})
             continue;
-        const auto side = [&](const Vec3 &v, Real o) {
-            const long double h = static_cast<long double>(n.x) * static_cast<long double>(v.x) +
-                                  static_cast<long double>(n.y) * static_cast<long double>(v.y) +
-                                  static_cast<long double>(n.z) * static_cast<long double>(v.z) -
-                                  static_cast<long double>(o);
-            if (std::abs(h) > 1e-17L * glm::length(wide(v)))
-                return h > 0 ? 1 : -1;
-            return Rational(dot(rational(n), rational(v)) - rational(o)).sign();
-        };
+        const auto side = [&](const Vec3 &v, Real o) { return side_of(n, o, v); };
         const int above = side(origin, offset), climb = side(direction, Real(0));
         const Vec3 end = origin + direction;
         const int at_end = side(end, offset);

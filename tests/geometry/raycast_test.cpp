@@ -1,8 +1,8 @@
 #include "engine/geometry/raycast.h"
 
-#include "engine/core/check.h"
 #include "engine/geometry/contains.h"
 #include "tests/geometry/oracle.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -305,14 +305,6 @@ TEST(Raycast, LinetestAgainstTheOracle) {
 }
 
 TEST(Raycast, MisuseNamesTheValue) {
-    const auto says = [](auto &&call, const char *part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Real inf = std::numeric_limits<Real>::infinity();
     const Sphere good{Vec3{Real(0)}, Real(1)};

@@ -1,7 +1,7 @@
 #include "engine/geometry/shapes_2d.h"
 
-#include "engine/core/check.h"
 #include "tests/geometry/oracle_2d.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -101,14 +101,6 @@ TEST(Shapes2, LengthOfASegment) {
 }
 
 TEST(Shapes2, SayWhatIsWrong) {
-    const auto says = [](auto call, const std::string &part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Vec2 zero{Real(0)};
     says([&] { oriented_rectangle(zero, nan, Vec2{Real(1)}); }, "nan");

@@ -1,11 +1,11 @@
 #include "engine/geometry/triangle_overlap.h"
 
-#include "engine/core/check.h"
 #include "engine/core/random.h"
 #include "engine/geometry/raycast.h"
 #include "engine/geometry/triangle.h"
 #include "tests/geometry/exact.h"
 #include "tests/geometry/wide_triangle.h"
+#include "tests/says.h"
 #include "tests/trials.h"
 
 #include <gtest/gtest.h>
@@ -168,26 +168,13 @@ TEST(TriangleOverlap, PlaneIsExact) {
     const int count = trials(1'000'000);
     // Unit vectors whose components and products are exact as they are, or rounded: the plane is
     // what its numbers say.
-    const Vec3 normals[] = {{Real(0), Real(1), Real(0)},
-                            {Real(-1), Real(0), Real(0)},
-                            {Real(0.6), Real(0), Real(-0.8)},
-                            {Real(0.48), Real(-0.6), Real(0.64)}};
     for (int trial = 0; trial < count; ++trial) {
         const Grid &grid = grids[random.next_index(std::size(grids))];
-        const Vec3 &n = normals[random.next_index(4)];
+        const Vec3 &n = plane_normals[random.next_index(4)];
         const Triangle t{grid.point(random), grid.point(random), grid.point(random)};
         const Real offset =
             random.next_index(3) == 0 ? glm::dot(n, grid.point(random)) : glm::dot(n, t.b);
-        const auto height = [&](const Vec3 &p) {
-            const long double h = static_cast<long double>(n.x) * static_cast<long double>(p.x) +
-                                  static_cast<long double>(n.y) * static_cast<long double>(p.y) +
-                                  static_cast<long double>(n.z) * static_cast<long double>(p.z) -
-                                  static_cast<long double>(offset);
-            const long double size = 4.0L * static_cast<long double>(glm::length(p)) + 1e-30L;
-            if (std::abs(h) > 0x1p-60L * size)
-                return h > 0 ? 1 : -1;
-            return Rational(dot(rational(n), rational(p)) - rational(offset)).sign();
-        };
+        const auto height = [&](const Vec3 &p) { return side_of(n, offset, p); };
         const int low = std::min({height(t.a), height(t.b), height(t.c)});
         const int high = std::max({height(t.a), height(t.b), height(t.c)});
         const bool answer = overlaps(t, Plane{n, offset});
@@ -317,14 +304,6 @@ TEST(TriangleOverlap, BoxWithinTheBound) {
 }
 
 TEST(TriangleOverlap, MisuseNamesTheValue) {
-    const auto says = [](auto &&call, const char *part) {
-        try {
-            call();
-            ADD_FAILURE() << "nothing failed; wanted " << part;
-        } catch (const CheckFailure &error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
-    };
     const Real nan = std::numeric_limits<Real>::quiet_NaN();
     const Real inf = std::numeric_limits<Real>::infinity();
     const Triangle good{{Real(0), Real(0), Real(0)}, {Real(1), Real(0), Real(0)}, Vec3{Real(1)}};

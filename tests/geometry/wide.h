@@ -6,8 +6,11 @@
 #include "engine/geometry/shapes.h"
 #include "tests/geometry/oracle.h"
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 
@@ -222,6 +225,52 @@ inline W scale_of(const Cylinder &c) {
 inline W scale_of(const Segment &s) {
     return std::max(scale_of(s.a), scale_of(s.b));
 }
+
+// --- Whole numbers -----------------------------------------------------------------------------
+
+using Int = std::int64_t;
+using Int3 = glm::vec<3, Int, glm::defaultp>;
+
+inline Int any_int(Random &random, Int reach) {
+    return Int(random.next_index(std::uint32_t(2 * reach + 1))) - reach;
+}
+inline Int3 any_int3(Random &random, Int reach) {
+    const Int x = any_int(random, reach), y = any_int(random, reach), z = any_int(random, reach);
+    return {x, y, z};
+}
+inline Int product(const Int3 &a, const Int3 &b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vec3 real(const Int3 &v) {
+    return {Real(v.x), Real(v.y), Real(v.z)};
+}
+
+// --- Answers -----------------------------------------------------------------------------------
+
+// The answers, whether something is inside or overlaps, are right but within `bound` of touching,
+// and most inputs are outside of that.
+class Judge {
+  public:
+    ~Judge() {
+        EXPECT_GT(decided_, total_ / 2);
+        EXPECT_GT(met_, total_ / 8);
+        EXPECT_LT(met_, total_ * 7 / 8);
+    }
+    void operator()(bool answer, W distance, W bound) {
+        ++total_;
+        if (std::abs(distance) <= bound)
+            return;
+        ++decided_;
+        met_ += answer;
+        ASSERT_EQ(answer, distance <= W(0))
+            << "input " << total_ << ", distance " << distance << ", bound " << bound;
+    }
+
+  private:
+    int total_ = 0;
+    int decided_ = 0;
+    int met_ = 0;
+};
 
 } // namespace wide
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,333 @@
+// Each way in which joints, expectations and states of a scene file can be wrong.
+#include "tests/scene/scene_file_errors.h"
+
+namespace plumb {
+namespace {
+
+using namespace scene_file_errors;
+
+const std::vector<SceneFileError> &errors() {
+    static const std::vector<SceneFileError> all{
+        {"JointMissingType",
+         two + R"(@[[joint]]
+name = "j"
+body_a = "a"
+body_b = "b"
+anchor = [0, 0, 0]
+)",
+         {R"([[joint]] "j" has no type; type = "ball" or "distance")"}},
+        {"JointUnknownType",
+         two + R"([[joint]]
+name = "j"
+type = @"bal"
+body_a = "a"
+body_b = "b"
+anchor = [0, 0, 0]
+)",
+         {R"(unknown type "bal"; did you mean "ball"?)"}},
+        {"JointUnknownBody",
+         two + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = @"c"
+body_b = @"nowhere"
+anchor = [0, 0, 0]
+)",
+         {R"(there is no body "c"; there are a, b)",
+          R"(there is no body "nowhere"; there are a, b)"}},
+        {"JointNearBody",
+         ball + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = @"bal"
+anchor = [0, 0, 0]
+)",
+         {R"(there is no body "bal"; did you mean "ball"?)"}},
+        {"JointRepeatedBody",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = @"link"
+anchor = [0, 0, 0]
+)",
+         {R"(the body "link" is repeated, so there are many; name one of link_0 to link_3)"}},
+        {"JointWorldToItself",
+         two + R"(@[[joint]]
+name = "j"
+type = "ball"
+body_b = "world"
+anchor = [0, 0, 0]
+)",
+         {R"([[joint]] "j" joins the world to itself; give body_a or body_b the name of a body)"}},
+        {"JointBodyToItself",
+         two + R"([[joint]]
+name = "j"
+type = "ball"
+body_a = "a"
+body_b = @"a"
+anchor = [0, 0, 0]
+)",
+         {R"([[joint]] "j" joins a body to itself; body_a and body_b must differ)"}},
+        {"JointNoAnchor",
+         two + R"(@[[joint]]
+name = "j"
+type = "ball"
+body_a = "a"
+body_b = "b"
+anchor_a = [0, 0, 0]
+)",
+         {R"([[joint]] "j" has no anchor_b; anchor = [x, y, z] is one point of the world for both bodies, anchor_b one for this body, anchor_b_local one in its frame)"}},
+        {"JointTwoAnchors",
+         two + joint + R"(anchor = [0, 0, 0]
+@anchor_b = [0, 0, 0]
+)",
+         {R"([[joint]] "j" has both anchor and anchor_b; keep one of them)"}},
+        {"JointAnchorIsWrong",
+         two + joint + R"(anchor = [0, 0, @nan]
+)",
+         {"anchor[2] is nan; it must be a number between -1e9 and 1e9"}},
+        {"BallJointLength",
+         two + joint + R"(anchor = [0, 0, 0]
+@length = 3
+)",
+         {R"(a ball joint has no length; type = "distance" has a length)"}},
+        {"DistanceJointOfNoLength",
+         two + R"(@[[joint]]
+name = "j"
+type = "distance"
+body_a = "a"
+body_b = "b"
+anchor = [0, 0, 0]
+)",
+         {R"(the anchors of [[joint]] "j" are 0 m apart, which cannot be its length; give a length of its own: a positive number, from 1e-9 to 1e9)"}},
+        {"DuplicateJoint",
+         two + joint + R"(anchor = [0, 0, 0]
+[[joint]]
+name = @"j"
+type = "distance"
+body_a = "a"
+body_b = "b"
+)",
+         {R"(another joint is named "j" already, at line 11; each joint needs a name of its own)"}},
+        {"ChainOfSingle",
+         two + R"([[joint]]
+name = "j"
+type = "ball"
+chain = @"a"
+)",
+         {R"(the body "a" is not repeated; a chain runs through the copies of a body with repeat)"}},
+        {"ChainUnknown",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+chain = @"lnik"
+)",
+         {R"(there is no body "lnik"; did you mean "link"?)"}},
+        {"ChainOfOne",
+         ball + R"(repeat = { kind = "stack", count = 1 }
+[[joint]]
+name = "j"
+type = "ball"
+chain = @"ball"
+)",
+         {R"(there is only one "ball"; a chain needs two bodies at least)"}},
+        {"ChainWithBody",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+chain = "link"
+@body_a = "link_0"
+)",
+         {"a chain has no body_a; its bodies are the copies of a repeated one, its anchors in "
+          "their frames: anchor_a_local, anchor_b_local"}},
+        {"ChainWithOneAnchor",
+         chain + R"([[joint]]
+name = "j"
+type = "ball"
+chain = "link"
+anchor_a_local = @[1, 0, 0]
+)",
+         {R"([[joint]] "j" has only one of anchor_a_local and anchor_b_local; give both, or neither: then a ball joint sits halfway between the centres, and a distance joint holds the centres)"}},
+        {"ExpectUnknownQuantity",
+         R"([[expect]]
+name = "e"
+quantity = @"enregy"
+to = 1
+at_most = 1
+source = "x"
+)",
+         {R"(unknown quantity "enregy"; did you mean "energy"?)"}},
+        {"ExpectMissingBody",
+         R"(@[[expect]]
+name = "e"
+quantity = "speed"
+to = 1
+at_most = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has no body; speed is of one body: which?)"}},
+        {"ExpectUnwantedBody",
+         ball + expect + R"(@body = "ball"
+to = 1
+at_most = 1
+)",
+         {"energy has no body; it is of the whole scene"}},
+        {"ExpectUnknownBody",
+         ball + R"([[expect]]
+name = "e"
+quantity = "speed"
+body = @"balk"
+to = 1
+at_most = 1
+source = "x"
+)",
+         {R"(there is no body "balk"; did you mean "ball"?)"}},
+        {"ExpectUnknownReduction",
+         expect + R"(reduce = @"maxabs"
+to = 1
+at_most = 1
+)",
+         {R"(unknown reduce "maxabs"; did you mean "max_abs"?)"}},
+        {"ExpectUnwantedLevel",
+         expect + R"(@level = 1
+to = 1
+at_most = 1
+)",
+         {R"(reduce = "last" has no level; period and crossings have one)"}},
+        {"ExpectWindowReversed",
+         expect + R"(from = @2
+to = 1
+at_most = 1
+)",
+         {"the window from 2 to 1 s is empty; from must not be after to"}},
+        {"ExpectWindowEmpty",
+         expect + R"(to = @0
+at_most = 1
+)",
+         {"the window ends at 0 s; to must be later than the start"}},
+        {"ExpectNoEnd",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+at_most = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has no to; to = seconds, the end of the window and of the run)"}},
+        {"ExpectNoRelation",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has none of equals, at_most, at_least; what must the number be?)"}},
+        {"ExpectTwoRelations",
+         expect + R"(to = 1
+at_most = 1
+@at_least = 0
+)",
+         {R"([[expect]] "e" has both at_most and at_least; keep one of them)"}},
+        {"ExpectNoTolerance",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+equals = 1
+source = "x"
+)",
+         {R"([[expect]] "e" has no tolerance; how far the truth may be missed, in the quantity's unit)"}},
+        {"ExpectZeroTolerance",
+         expect + R"(to = 1
+equals = 1
+tolerance = @0
+)",
+         {"tolerance is 0; it must be a number above 0"}},
+        {"ExpectToleranceOfBound",
+         expect + R"(to = 1
+at_most = 1
+@tolerance = 1
+)",
+         {"a bound has no tolerance; put it into the bound itself"}},
+        {"ExpectNoSource",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+at_most = 1
+)",
+         {R"([[expect]] "e" has no source; where does the number come from?)"}},
+        {"ExpectEmptySource",
+         R"([[expect]]
+name = "e"
+quantity = "energy"
+to = 1
+at_most = 1
+source = @""
+)",
+         {"the source is empty; where does the number come from?"}},
+        {"StateStep",
+         R"([state]
+step = @-1
+)",
+         {"step is not a natural number; it must be a whole number from 0 to 2^64 - 1 (in quotes "
+          "from 2^63 on)"}},
+        {"StateUnknownKey",
+         R"([state]
+@steps = 1
+)",
+         {R"(unknown key "steps" in [state]; did you mean "step"?)"}},
+        {"ContactUnknownBody",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = @"d"
+features = []
+impulses = []
+)",
+         {R"(there is no body "d"; there are a, b)"}},
+        {"ContactWithItself",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = @"a"
+features = []
+impulses = []
+)",
+         {"a body is in contact with itself; body_a and body_b must differ"}},
+        {"ContactCounts",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = "b"
+features = [1, 2]
+impulses = @[[0, 0, 0]]
+)",
+         {"there are 2 features and 1 impulses; there must be as many of one as of the other"}},
+        {"ContactFeature",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = "b"
+features = [@4294967296]
+impulses = [[0, @nan, 0]]
+)",
+         {"features[0] is 4294967296; it must be a whole number from 0 to 4294967295",
+          "impulses[0][1] is nan; it must be a finite number"}},
+        {"ContactMissing",
+         two + R"(@[[state.contact]]
+body_a = "a"
+body_b = "b"
+impulses = []
+)",
+         {"[[state.contact]] has no features; an array, one element for each contact point"}},
+    };
+    return all;
+}
+
+class SceneFileLinkErrors : public testing::TestWithParam<SceneFileError> {};
+
+TEST_P(SceneFileLinkErrors, PointAndExplain) {
+    expect_messages(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SceneFileLinkErrors, testing::ValuesIn(errors()),
+                         [](const auto &each) { return each.param.name; });
+
+} // namespace
+} // namespace plumb
