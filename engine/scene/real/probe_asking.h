@@ -47,6 +47,16 @@ Ray ray_of(const ProbeRayDesc &ray);
 // As far as what it hits and a little farther, or as far as it reaches.
 void draw_ray(Asking &ask, const ProbeRayDesc &ray, std::optional<double> hit_t);
 
+// What the probe's ray hits of triangles.
+template <typename Hit> void show_hit(Asking &ask, const std::optional<Hit> &hit) {
+    ask.flag("hit", hit.has_value());
+    draw_ray(ask, *ask.probe.ray, hit ? std::optional<double>(hit->t) : std::nullopt);
+    if (!hit)
+        return;
+    ask.number("t", hit->t);
+    ask.answer.points.push_back({wide(hit->point), ProbeTone::result, wide(hit->normal)});
+}
+
 // The places of a scatter, and the boxes that stand there.
 std::vector<glm::dvec3> scattered_points(const ProbeScatterDesc &scatter);
 std::vector<Aabb> scattered_boxes(const ProbeScatterDesc &scatter);

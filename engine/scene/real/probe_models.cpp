@@ -63,12 +63,7 @@ void answer_models(Asking &ask) {
         ask.answer.labels.push_back({placed.position, placed.name});
     }
     ask.count("models", scene.size());
-    ask.flag("hit", hit.has_value());
-    draw_ray(ask, *ask.probe.ray, hit ? std::optional<double>(hit->t) : std::nullopt);
-    if (!hit)
-        return;
-    ask.number("t", hit->t);
-    ask.answer.points.push_back({wide(hit->point), ProbeTone::result, wide(hit->normal)});
+    show_hit(ask, hit);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

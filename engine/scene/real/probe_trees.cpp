@@ -174,15 +174,8 @@ void answer_mesh_tree(Asking &ask, const MeshTree &mesh) {
     ask.draw(0, ProbeTone::plain);
     draw_bvh(ask, mesh.tree());
     ask.count("items", mesh.mesh().triangles.size());
-    if (!ask.probe.ray)
-        return;
-    const std::optional<MeshHit> hit = raycast(mesh, ray_of(*ask.probe.ray));
-    ask.flag("hit", hit.has_value());
-    draw_ray(ask, *ask.probe.ray, hit ? std::optional<double>(hit->t) : std::nullopt);
-    if (!hit)
-        return;
-    ask.number("t", hit->t);
-    ask.answer.points.push_back({wide(hit->point), ProbeTone::result, wide(hit->normal)});
+    if (ask.probe.ray)
+        show_hit(ask, raycast(mesh, ray_of(*ask.probe.ray)));
 }
 
 } // namespace
