@@ -4,6 +4,7 @@
 #include "engine/scene/probe.h"
 
 #include <stdexcept>
+#include <utility>
 
 namespace plumb {
 
@@ -11,7 +12,8 @@ namespace {
 
 class ProbeSimulation final : public Simulation {
   public:
-    ProbeSimulation(const SceneDesc &scene, const ResolvedRun &run) : scene_(scene), run_(run) {}
+    ProbeSimulation(SceneDesc scene, const ResolvedRun &run)
+        : scene_(std::move(scene)), run_(run) {}
 
     bool has_world() const override { return false; }
     void step() override {}
