@@ -1,6 +1,7 @@
 #include "engine/geometry/enclosing_2d.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/contains_2d.h"
 
 #include <algorithm>
 #include <array>
@@ -80,15 +81,17 @@ struct Support {
     }
 };
 
-// The least circle around `center` in which `contains` finds every point.
+// The least circle around `center` in which `contains` finds every point, or one of few epsilons
+// more: distances are rounded, `contains` is not.
 Circle reaching_all(const Vec2 &center, std::span<const Vec2> points) {
     Real squared = Real(0);
     for (const Vec2 &point : points)
         squared = std::max(squared, squared_distance(center, point));
-    Real radius = std::sqrt(squared);
-    while (radius * radius < squared)
-        radius = std::nextafter(radius, infinity);
-    return {center, radius};
+    Circle circle{center, std::sqrt(squared)};
+    for (const Vec2 &point : points)
+        while (!contains(circle, point))
+            circle.radius = std::nextafter(circle.radius, infinity);
+    return circle;
 }
 
 } // namespace
