@@ -53,6 +53,8 @@ void probes_panel(PanelContext &context) {
         ImGui::TextUnformatted(probe.name.c_str());
         ImGui::PopTextWrapPos();
         ImGui::PopStyleColor();
+        if (is_hovered && !ImGui::IsItemVisible())
+            ImGui::SetScrollHereY();
         tooltip(probe_question(probe.question).about);
         ImGui::PushFont(context.fonts.small);
         if (!found.refusal.empty()) {

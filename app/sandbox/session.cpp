@@ -221,6 +221,8 @@ std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dve
 
 void Session::move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place) {
     move_probe_handle(probes_.at(probe), handle, place);
+    probes_[probe].expects.clear();
+    probes_[probe].source.clear();
     answers_[probe] = answer(probes_[probe], simulation_->precision());
 }
 

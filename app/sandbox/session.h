@@ -86,7 +86,8 @@ class Session {
     // The scene's probes as they have been moved, and what they are answered.
     [[nodiscard]] const std::vector<ProbeDesc> &probes() const { return probes_; }
     [[nodiscard]] const std::vector<ProbeAnswer> &answers() const { return answers_; }
-    // See probe_handles. A restart brings the scene's own places back.
+    // See probe_handles. What was expected of the probe at its old place is expected no more; a
+    // restart brings the scene's own places back, and what is expected there.
     void move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place);
 
     // Writes the present state as a scene file: beside the file first, then renamed. Makes the

@@ -23,6 +23,8 @@ SceneDesc ray_at_ball() {
     ProbeShapeDesc ball;
     ball.radius = 1;
     probe.shapes.push_back(ball);
+    probe.expects = {{"t", 1}};
+    probe.source = "-2 + t = -1";
     scene.probes.push_back(probe);
     scene.camera.target = glm::dvec3(0);
     scene.camera.yaw = 0;
@@ -69,8 +71,11 @@ TEST_F(ProbeTest, ADragOnADiscMovesTheProbeAndNotTheCamera) {
     EXPECT_EQ(sandbox.view().camera.yaw, yaw);
     EXPECT_EQ(sandbox.tools().drag(), Tools::Drag::none);
 
+    EXPECT_TRUE(sandbox.session().probes().front().expects.empty());
+
     sandbox.perform(Action::restart);
     EXPECT_EQ(t(), 1);
+    EXPECT_EQ(sandbox.session().probes().front().expects.size(), 1U);
 }
 
 TEST_F(ProbeTest, BesideTheDiscsTheCameraTurns) {
@@ -82,13 +87,15 @@ TEST_F(ProbeTest, BesideTheDiscsTheCameraTurns) {
     EXPECT_EQ(t(), 1);
 }
 
-TEST_F(ProbeTest, ASavedSceneHasTheMovedProbe) {
+// What is expected holds where the scene has the probe, and nowhere else.
+TEST_F(ProbeTest, ASavedSceneHasTheMovedProbeAndExpectsNothingOfIt) {
     const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "moved.toml";
     sandbox.session().move_probe(0, 0, {0.25, 0, 0});
     ASSERT_TRUE(sandbox.session().save_scene(file));
     const SceneFileResult again = load_scene(file);
     ASSERT_TRUE(again.ok());
     EXPECT_EQ(again.scene.probes.front().shapes.front().position, glm::dvec3(0.25, 0, 0));
+    EXPECT_TRUE(again.scene.probes.front().expects.empty());
     std::filesystem::remove(file);
 }
 
