@@ -1,6 +1,7 @@
 #include "engine/math/basis.h"
 
 #include "engine/core/random.h"
+#include "tests/trials.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -58,7 +59,7 @@ double tolerance(const Wide &n) {
 
 TEST(TangentBasis, OrthonormalAndRightHanded) {
     Random random(1);
-    for (int trial = 0; trial < 20000; ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec3 n = narrow(any_direction(random));
         EXPECT_LE(orthonormal_error(wide(n), tangent_basis(n)), tolerance(wide(n)))
             << n.x << ' ' << n.y << ' ' << n.z;

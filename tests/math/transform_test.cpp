@@ -1,6 +1,7 @@
 #include "engine/math/types.h"
 
 #include "engine/core/random.h"
+#include "tests/trials.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -50,7 +51,7 @@ Quat any_rotation(Random &random) {
 // Two cross products, three sums and a product, each a rounding of a value of at most 4 |v|.
 TEST(Rotated, AgainstTheRotationMatrix) {
     Random random(1);
-    for (int trial = 0; trial < 20000; ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Quat q = any_rotation(random);
         const Vec3 v = any_vector(random, 10);
         const double size = double(glm::length(wide(v)));
@@ -63,7 +64,7 @@ TEST(Rotated, AgainstTheRotationMatrix) {
 // product is off by twice the quaternion's error.
 TEST(Rotated, LengthIsKeptByAQuaternionThatIsNotOfUnitLength) {
     Random random(2);
-    for (int trial = 0; trial < 1000; ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Quat q = Real(1.001) * any_rotation(random);
         const Vec3 v = any_vector(random, 10);
         const double before = double(glm::length(wide(v)));
@@ -91,7 +92,7 @@ TEST(Rotated, ThereAndBackManyTimes) {
 // at most 2 epsilon, scales the vector by twice that each way.
 TEST(Transform, RoundTrips) {
     Random random(4);
-    for (int trial = 0; trial < 20000; ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Transform frame{any_vector(random, 5), any_rotation(random)};
         const Vec3 v = any_vector(random, 10);
         const double size = double(glm::length(wide(v)) + glm::length(wide(frame.position)));
@@ -109,7 +110,7 @@ TEST(Transform, RoundTrips) {
 
 TEST(Transform, RotateThenTranslate) {
     Random random(5);
-    for (int trial = 0; trial < 1000; ++trial) {
+    for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Transform frame{any_vector(random, 5), any_rotation(random)};
         const Vec3 v = any_vector(random, 10);
         const Wide expected = wide(frame.position) + matrix_times(frame.rotation, wide(v));
