@@ -219,7 +219,8 @@ TEST(DynamicTree, AMillionTimesOverlappingPairs) {
     Mirror mirror(Real(0.05));
     std::vector<std::pair<std::uint32_t, std::uint32_t>> found, expected;
     std::size_t pairs = 0;
-    const int steps = trials(1'000'000);
+    int inserted = 0, removed = 0, updated = 0;
+    const int steps = trials(4'400'000);
     for (int step = 0; step < steps; ++step) {
         const std::size_t count = mirror.leaves.size();
         const std::size_t any = count == 0 ? 0 : random.next_index(std::uint32_t(count));
@@ -229,11 +230,14 @@ TEST(DynamicTree, AMillionTimesOverlappingPairs) {
         const std::uint32_t action = random.next_index(4);
         if (count == 0 || (action == 0 && count < 10)) {
             mirror.insert(any_one());
+            ++inserted;
         } else if (action == 1) {
             mirror.remove(any);
+            ++removed;
         } else {
             mirror.boxes[any] = any_one();
             mirror.tree.update(mirror.leaves[any], mirror.boxes[any]);
+            ++updated;
         }
         expected.clear();
         for (std::size_t i = 0; i < mirror.leaves.size(); ++i)
@@ -246,6 +250,7 @@ TEST(DynamicTree, AMillionTimesOverlappingPairs) {
         pairs += expected.size();
     }
     EXPECT_GT(pairs, std::size_t(steps) / 4);
+    EXPECT_GT(std::min({inserted, removed, updated}), trials(1'000'000));
 }
 
 TEST(DynamicTree, NodesAreVisitedParentsFirst) {
