@@ -185,6 +185,25 @@ TEST(Bvh, RefitsToBoxesThatMoved) {
     }
 }
 
+TEST(Bvh, RefitsAMillionTimes) {
+    Random random(7);
+    for (const int count : {1, 3, 8, 9, 20}) {
+        const std::vector<Aabb> start = boxes_of(families[0], random, count);
+        std::vector<Aabb> boxes = start;
+        Bvh tree(boxes);
+        for (int k = 0; k < trials(200'000); ++k) {
+            for (std::size_t i = 0; i < boxes.size(); ++i) {
+                const Vec3 by = any_vector(random, 2.0);
+                boxes[i] = {start[i].min + by, start[i].max + by};
+            }
+            tree.refit(boxes);
+            const Vec3 middle = boxes[std::size_t(k) % boxes.size()].min;
+            expect_right_query(tree, boxes, {middle - Real(3), middle + Real(3)});
+        }
+        expect_consistent(tree, boxes);
+    }
+}
+
 TEST(Bvh, FindsTheNearestItemAsAListDoes) {
     Random random(4);
     const auto squared_distance = [](const Aabb &box, const Vec3 &p) {

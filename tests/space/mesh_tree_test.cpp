@@ -348,6 +348,32 @@ TEST(MeshTree, MovedVerticesAnswerAsANewTreeDoes) {
     }
 }
 
+TEST(MeshTree, VerticesMovedAMillionTimes) {
+    Random random(11);
+    TriangleMesh mesh{std::vector<Vec3>(4, Vec3{Real(0)}),
+                      {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    MeshTree moved(mesh);
+    int hits = 0;
+    const int count = trials(1'000'000);
+    for (int k = 0; k < count; ++k) {
+        for (Vec3 &v : mesh.vertices)
+            v = any_vector(random, 1.0);
+        moved.move_vertices(mesh.vertices);
+        const MeshTree fresh(mesh);
+        const Vec3 origin = any_vector(random, 2.0);
+        const Ray ray{origin, any_vector(random, 0.5) - origin};
+        const std::optional<MeshHit> one = raycast(moved, ray);
+        const std::optional<MeshHit> other = raycast(fresh, ray);
+        ASSERT_EQ(one.has_value(), other.has_value()) << "trial " << k;
+        if (one) {
+            ASSERT_EQ(one->t, other->t) << "trial " << k;
+            ASSERT_EQ(one->triangle, other->triangle) << "trial " << k;
+            ++hits;
+        }
+    }
+    EXPECT_GT(hits, count / 20);
+}
+
 TEST(MeshTree, OfNothingIsMetByNothing) {
     const MeshTree mesh(TriangleMesh{});
     EXPECT_FALSE(raycast(mesh, {}));
