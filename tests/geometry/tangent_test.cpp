@@ -166,7 +166,7 @@ TEST(Tangents, SpheresInWholeNumbers) {
     }
     EXPECT_GT(tally.touching, count / 4);
     EXPECT_GT(tally.met, count / 4);
-    EXPECT_GT(segments, count / 50);
+    EXPECT_GT(segments, count / 100);
     EXPECT_GT(tally.lost_when_rounded, count / 100);
 }
 
@@ -197,7 +197,7 @@ TEST(Tangents, CirclesInWholeNumbers) {
     }
     EXPECT_GT(touching, count / 4);
     EXPECT_GT(met, count / 4);
-    EXPECT_GT(segments, count / 50);
+    EXPECT_GT(segments, count / 100);
 }
 
 // --- Any numbers, in rationals -------------------------------------------------------------------
