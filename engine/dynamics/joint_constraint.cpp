@@ -69,6 +69,10 @@ void refresh_joints(StepContext &context, std::span<JointConstraint> joints) {
             constraint.mass[0][0] = k > Real(0) ? Real(1) / k : Real(0);
             break;
         }
+        case JointType::hinge:
+        case JointType::slider:
+        case JointType::fixed:
+            break; // the world takes none
         }
     }
 }
@@ -126,6 +130,10 @@ void solve_joints(StepContext &context, std::span<JointConstraint> joints, const
             apply(context, joint, change * joint.axis);
             break;
         }
+        case JointType::hinge:
+        case JointType::slider:
+        case JointType::fixed:
+            break; // the world takes none
         }
     }
 }

@@ -7,8 +7,9 @@ namespace plumb {
 // nothing changes; static ones not at all.
 enum class BodyKind { fixed, kinematic, dynamic };
 
-// ball: a point of one body stays on a point of the other. distance: the two points stay a given
-// length apart, like a rigid massless rod.
-enum class JointType { ball, distance };
+// ball: a point of one body stays on a point of the other. distance: the two points stay between a
+// least and a greatest distance, like a massless rod or rope. hinge: the bodies share a point and
+// an axis, about which they turn. slider: they only move along an axis. fixed: they are one.
+enum class JointType { ball, distance, hinge, slider, fixed };
 
 } // namespace plumb

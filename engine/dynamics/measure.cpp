@@ -147,6 +147,10 @@ Real World::joint_drift(const Joint &joint) const {
         return distance;
     case JointType::distance:
         return std::abs(distance - joint.length);
+    case JointType::hinge:
+    case JointType::slider:
+    case JointType::fixed:
+        break; // the world takes none
     }
     return Real(0);
 }

@@ -180,6 +180,9 @@ JointId World::add_joint(const JointDef &def) {
     PLUMB_CHECK(a != b, "a joint needs two different bodies");
     PLUMB_CHECK(is_finite(def.anchor_a_local) && is_finite(def.anchor_b_local),
                 "joint anchors must be finite");
+    PLUMB_CHECK(def.type == JointType::ball || def.type == JointType::distance,
+                "only ball and distance joints can be run, got type "
+                    << static_cast<int>(def.type));
     PLUMB_CHECK(def.type != JointType::distance || (def.length > 0 && std::isfinite(def.length)),
                 "a distance joint's length must be positive, got " << def.length);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/kinds.h"
+#include "engine/scene/joint_desc.h"
 #include "engine/scene/probe_desc.h"
 
 #include <array>
@@ -60,20 +61,6 @@ struct BodyDesc {
     glm::dvec3 velocity{0};         // m/s, world
     glm::dvec3 angular_velocity{0}; // rad/s, world
     std::optional<glm::vec3> colour;
-};
-
-// Holds a point of body a to a point of body b: together (ball), or `length` apart (distance, a
-// rigid massless rod). An empty body name means the world; its anchor is then in world coordinates.
-struct JointDesc {
-    std::string name;
-    JointType type = JointType::ball;
-    std::string body_a;
-    std::string body_b;
-    glm::dvec3 anchor_a_local{0};
-    glm::dvec3 anchor_b_local{0};
-    double length = 0;              // metres; distance only
-    bool collide_connected = false; // whether the two bodies also collide with each other
-    glm::dvec3 impulse{0}; // state: what the solver remembers (N s); x alone for a distance joint
 };
 
 struct CameraDesc {

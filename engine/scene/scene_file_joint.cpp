@@ -66,13 +66,14 @@ bool add_joint(Reading &reading, const Table &table, JointDesc joint, const Join
     joint.anchor_a_local = a.anchor_local.value_or(glm::dvec3(0));
     joint.anchor_b_local = b.anchor_local.value_or(glm::dvec3(0));
     if (joint.type == JointType::distance) {
-        joint.length =
+        joint.max_length =
             length.value_or(glm::distance(to_world(reading.scene, a.body, joint.anchor_a_local),
                                           to_world(reading.scene, b.body, joint.anchor_b_local)));
-        if (!(joint.length >= positive.min && joint.length <= positive.max)) {
+        joint.min_length = joint.max_length;
+        if (!(joint.max_length >= positive.min && joint.max_length <= positive.max)) {
             reading.report.error(table.position(),
                                  "the anchors of " + table.title() + " are " +
-                                     shortest(joint.length) +
+                                     shortest(joint.max_length) +
                                      " m apart, which cannot be its length",
                                  "give a length of its own: " + std::string(positive.text));
             return false;
@@ -166,7 +167,8 @@ void read_joint(Reading &reading, const toml::table &source) {
         joint.type =
             table.choice("type", types).value_or(0) == 0 ? JointType::ball : JointType::distance;
     joint.collide_connected = table.boolean("collide_connected").value_or(false);
-    joint.impulse = table.vector("impulse", finite).value_or(joint.impulse);
+    if (const std::optional<glm::dvec3> impulse = table.vector("impulse", finite))
+        joint.impulses = {impulse->x, impulse->y, impulse->z};
     if (joint.type == JointType::ball && table.has("type"))
         table.refuse({"length"}, "a ball joint", R"(type = "distance" has a length)");
     const std::optional<double> length = table.number("length", positive);

@@ -320,7 +320,7 @@ class Checker {
             const JointDesc &joint = scene_.joints[i];
             if (joint.type != JointType::distance)
                 continue;
-            const double omega = std::sqrt(gravity / joint.length);
+            const double omega = std::sqrt(gravity / joint.max_length);
             if (omega * substep > 2)
                 pendulums_.add(positions_.joints[i],
                                "a pendulum on " + in_quotes(joint.name) +

@@ -219,11 +219,12 @@ class SceneWriter {
         line("anchor_a_local", array3(joint.anchor_a_local));
         line("anchor_b_local", array3(joint.anchor_b_local));
         if (joint.type == JointType::distance)
-            line("length", shortest(joint.length));
+            line("length", shortest(joint.max_length));
         if (joint.collide_connected)
             line("collide_connected", "true");
-        if (!same_bits(joint.impulse, {0, 0, 0}))
-            line("impulse", array3(joint.impulse));
+        const glm::dvec3 impulse{joint.impulses[0], joint.impulses[1], joint.impulses[2]};
+        if (!same_bits(impulse, {0, 0, 0}))
+            line("impulse", array3(impulse));
     }
 
     // A probe's point: two numbers where it lies in the xy plane.

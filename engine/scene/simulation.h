@@ -50,10 +50,29 @@ struct ContactView {
 };
 
 struct JointView {
+    std::string name;
     JointType type = JointType::ball;
     std::optional<std::size_t> body_a, body_b; // empty: the world
     glm::dvec3 anchor_a{0}, anchor_b{0};       // world, now
-    double drift = 0;                          // m
+    // World, now; the x axes are that of a hinge or slider. Fixed joints have frames too.
+    glm::dquat frame_a{1, 0, 0, 0}, frame_b{1, 0, 0, 0};
+    // Angle of a hinge (rad), place of a slider (m), distance of the anchors of a distance joint
+    // (m), and its rate; 0 for the others.
+    double position = 0;
+    double speed = 0;
+    // Of a hinge or slider where it has some; least and greatest length of a distance joint.
+    std::optional<std::array<double, 2>> limits;
+    std::optional<double> motor_speed; // rad/s or m/s
+    double max_motor_force = 0;        // N m or N
+    double motor_force = 0;            // now, likewise
+    double frequency = 0;              // Hz; 0: rigid
+    double break_force = 0;            // N; 0: never
+    bool broken = false;
+    double drift = 0;       // m, by which the anchors miss what they are held to
+    double angle_drift = 0; // rad, likewise of the frames
+    // Of all rows, on b, mean over the last substep: at its anchor (N), and about it (N m). World.
+    glm::dvec3 force{0};
+    glm::dvec3 torque{0};
 };
 
 struct BoundsView {

@@ -291,7 +291,7 @@ chain = "link"
             expect_near(world(joint.body_a, joint.anchor_a_local), middle);
             expect_near(world(joint.body_b, joint.anchor_b_local), middle);
         } else {
-            EXPECT_NEAR(joint.length, 0.5, rounding);
+            EXPECT_NEAR(joint.max_length, 0.5, rounding);
         }
     }
 }

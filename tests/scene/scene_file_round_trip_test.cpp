@@ -68,8 +68,11 @@ std::vector<std::string> words(const SceneDesc &scene) {
     }
     for (const JointDesc &j : scene.joints) {
         w.add(j.name), w.number(static_cast<std::uint64_t>(j.type)), w.add(j.body_a);
-        w.add(j.body_b), w.add(j.anchor_a_local), w.add(j.anchor_b_local), w.add(j.length);
-        w.number(j.collide_connected), w.add(j.impulse);
+        w.add(j.body_b), w.add(j.anchor_a_local), w.add(j.anchor_b_local), w.add(j.min_length),
+            w.add(j.max_length);
+        w.number(j.collide_connected);
+        for (const double impulse : j.impulses)
+            w.add(impulse);
     }
     for (const ExpectDesc &e : scene.expects) {
         w.add(e.name), w.add(e.quantity), w.add(e.body), w.add(e.reduce), w.add(e.level);
@@ -239,10 +242,10 @@ class Scenes {
         j.anchor_a_local = vector();
         j.anchor_b_local = vector();
         if (j.type == JointType::distance)
-            j.length = positive();
+            j.min_length = j.max_length = positive();
         j.collide_connected = one_in(2);
         if (one_in(2))
-            j.impulse = vector();
+            j.impulses = {positive(), -positive(), positive()};
         return j;
     }
 

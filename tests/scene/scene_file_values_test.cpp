@@ -215,10 +215,10 @@ length = 9
     const JointDesc &rod = scene.joints.at(1);
     EXPECT_EQ(rod.body_a, "");
     EXPECT_EQ(rod.anchor_b_local, glm::dvec3(0));
-    EXPECT_EQ(rod.length, 4);
+    EXPECT_EQ(rod.max_length, 4);
     EXPECT_TRUE(rod.collide_connected);
     EXPECT_EQ(scene.joints.at(2).anchor_a_local, glm::dvec3(0.5, 0, 0));
-    EXPECT_EQ(scene.joints.at(2).length, 9);
+    EXPECT_EQ(scene.joints.at(2).max_length, 9);
 }
 
 TEST(SceneFileValues, Expects) {

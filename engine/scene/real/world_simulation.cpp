@@ -201,16 +201,29 @@ std::size_t WorldSimulation::insert(const BodyDesc &desc) {
     return index;
 }
 
+// What the world cannot run yet is refused, by its name.
+void check_runnable(const JointDesc &joint) {
+    const bool is_rod = joint.type == JointType::distance && joint.min_length == joint.max_length;
+    const char *what = joint.type != JointType::ball && !is_rod ? "of its type"
+                       : joint.frequency > 0                    ? "that are springs"
+                       : joint.break_force > 0 || joint.broken  ? "that break"
+                                                                : nullptr;
+    if (what != nullptr)
+        throw std::invalid_argument("joint \"" + joint.name + "\": joints " + what +
+                                    " cannot be run yet, only ball joints and rods");
+}
+
 void WorldSimulation::insert(const JointDesc &desc) {
+    check_runnable(desc);
     JointDef def;
     def.type = desc.type;
     def.a = id_of(desc.body_a);
     def.b = id_of(desc.body_b);
     def.anchor_a_local = Vec3{desc.anchor_a_local};
     def.anchor_b_local = Vec3{desc.anchor_b_local};
-    def.length = static_cast<Real>(desc.length);
+    def.length = static_cast<Real>(desc.max_length);
     def.collide_connected = desc.collide_connected;
-    def.impulse = Vec3{desc.impulse};
+    def.impulse = Vec3{glm::dvec3{desc.impulses[0], desc.impulses[1], desc.impulses[2]}};
     state_.world.add_joint(def);
     state_.scene.joints.push_back(desc);
 }
@@ -260,7 +273,8 @@ SceneDesc WorldSimulation::describe() const {
         if (!world.joints()[i].alive)
             continue;
         JointDesc joint = state_.scene.joints[i];
-        joint.impulse = glm::dvec3{world.joints()[i].impulse};
+        const glm::dvec3 impulse{world.joints()[i].impulse};
+        joint.impulses = {impulse.x, impulse.y, impulse.z};
         out.joints.push_back(std::move(joint));
     }
     for (const Contact &contact : world.contacts()) {
@@ -301,11 +315,15 @@ std::vector<ContactView> WorldSimulation::contacts() const {
 
 std::vector<JointView> WorldSimulation::joints() const {
     const World &world = state_.world;
+    const double rate = world.settings().substeps / world.settings().dt;
     std::vector<JointView> views;
-    for (const Joint &joint : world.joints()) {
+    for (std::size_t i = 0; i < world.joints().size(); ++i) {
+        const Joint &joint = world.joints()[i];
         if (!joint.alive)
             continue;
+        const JointDesc &desc = state_.scene.joints[i];
         JointView view;
+        view.name = desc.name;
         view.type = joint.type;
         if (joint.a != Joint::world)
             view.body_a = joint.a;
@@ -314,6 +332,15 @@ std::vector<JointView> WorldSimulation::joints() const {
         view.anchor_a = glm::dvec3{world.anchor_a(joint)};
         view.anchor_b = glm::dvec3{world.anchor_b(joint)};
         view.drift = static_cast<double>(world.joint_drift(joint));
+        const glm::dvec3 impulse{joint.impulse};
+        if (joint.type == JointType::distance) {
+            const glm::dvec3 way = view.anchor_b - view.anchor_a;
+            view.position = glm::length(way);
+            view.limits = {desc.min_length, desc.max_length};
+            view.force = view.position > 0 ? impulse.x * rate / view.position * way : view.force;
+        } else {
+            view.force = rate * impulse;
+        }
         views.push_back(view);
     }
     return views;
