@@ -24,17 +24,6 @@ void add(StateHash &hash, const Quat &q) {
     hash.add(q.z);
 }
 
-void add(StateHash &hash, const StepSettings &s) {
-    for (const double value :
-         {s.gravity.x, s.gravity.y, s.gravity.z, s.dt, s.speculative_distance, s.penetration_slop,
-          s.baumgarte, s.contact_frequency_ratio, s.contact_damping_ratio, s.joint_frequency_ratio,
-          s.joint_damping_ratio, s.push_velocity, s.restitution_threshold, s.impact_lookahead})
-        hash.add(value);
-    for (const int value :
-         {s.substeps, s.iterations, s.impact_sweeps, s.impact_passes, s.gyroscopic_iterations})
-        hash.add(static_cast<std::uint64_t>(value));
-}
-
 void add(StateHash &hash, const Shape &shape) {
     hash.add(std::uint64_t{shape.index()});
     if (const auto *sphere = std::get_if<Sphere>(&shape)) {
@@ -157,7 +146,7 @@ Real World::joint_drift(const Joint &joint) const {
 
 std::uint64_t World::hash() const {
     StateHash hash;
-    add(hash, settings_);
+    hash_settings(hash, settings_);
     for (const char c : method_->info.name)
         hash.add(static_cast<std::uint64_t>(c));
     hash.add(step_count_);

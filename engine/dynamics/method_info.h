@@ -1,23 +1,33 @@
 // What a method for advancing a world says about itself, in either precision.
 #pragma once
 
+#include "engine/dynamics/settings.h"
+
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace plumb {
 
 struct MethodInfo {
-    std::string_view name;   // in files and on the command line: "soft_step"
-    std::string_view title;  // for people: "Soft step"
-    std::string_view source; // where it is published
-    bool contacts = false;   // can hold bodies apart
-    bool joints = false;     // can hold bodies together
+    std::string_view name;           // in files and on the command line: "soft_step"
+    std::string_view title;          // for people: "Soft step"
+    std::string_view source;         // where it is published
+    bool contacts = false;           // can hold bodies apart
+    bool joints = false;             // can hold bodies together
+    std::vector<SettingGroup> reads; // of the settings, beside those that every method reads
     int default_substeps = 1;
     int default_iterations = 1;
     // Declared work of one step: passes over all bodies, and over all constraints.
     int (*body_passes)(int substeps, int iterations) = nullptr;
     int (*constraint_passes)(int substeps, int iterations) = nullptr;
 };
+
+// Whether the method's motion depends on that setting.
+bool reads(const MethodInfo &method, const SettingRow &setting);
+
+// The settings with which the method runs where nothing else is said.
+StepSettings default_settings(const MethodInfo &method);
 
 // All methods, in the registry's order (engine/dynamics/methods/registry.cpp).
 std::span<const MethodInfo> method_infos();

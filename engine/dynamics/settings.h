@@ -1,50 +1,172 @@
-// Everything that a step can be told, with units and reasons. No method has a constant of its own.
+// Everything that a step can be told. No method has a constant of its own.
+//
+// A setting is a member of StepSettings and a row of setting_rows. Checks, the state hash, scene
+// files, the command line, sweeps, the panel, charts and scenes/README.md are made from the table:
+// a new setting is two entries in this file.
 #pragma once
+
+#include "engine/core/hash.h"
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
 
 #include <glm/vec3.hpp>
 
 namespace plumb {
 
 struct StepSettings {
-    glm::dvec3 gravity{0, -9.81, 0}; // m/s^2
-    double dt = 1.0 / 60.0;          // s, one step
-    int substeps = 4;                // the step is cut into so many; collision is found once a step
-    int iterations = 1;              // passes over all constraints in each substep
-
-    // Contacts closer than this are made before they touch, so that nothing falls into its
-    // neighbour within a step (m). Bodies that approach each other get their relative motion on
-    // top.
+    glm::dvec3 gravity{0, -9.81, 0};
+    double dt = 1.0 / 60.0;
+    int substeps = 4;   // the default of a method stands in its row of the registry
+    int iterations = 1; // likewise
     double speculative_distance = 0.02;
-    // Penetration that sequential impulses leave alone, so that contacts persist (m).
     double penetration_slop = 0.0005;
-    // Fraction of the penetration (or of a joint's drift) that sequential impulses remove in a
-    // substep (Baumgarte 1972).
     double baumgarte = 0.2;
-    // Natural frequency of a soft contact as a fraction of the substep rate. Above 1/4 the spring
-    // is under-sampled; 1/8 lets it settle between neighbours (Catto 2024, "Solver2D").
     double contact_frequency_ratio = 0.125;
     double contact_damping_ratio = 10;
-    // Soft joints, likewise. Stiffer keeps a pendulum truer, and tears a chain of ten with a
-    // hundredfold weight at its end apart at four substeps; 0.2 and 5 is the stiffest that holds
-    // both.
     double joint_frequency_ratio = 0.2;
     double joint_damping_ratio = 5;
-    // The fastest that overlapping bodies are pushed apart (m/s).
     double push_velocity = 3;
-    // Slower impacts do not bounce, so that bodies come to rest (m/s).
     double restitution_threshold = 0.02;
-    // An impact counts when it would happen within this many substeps. A hair less than one, and
-    // the solver would stop the body before it bounces; a little early does no harm, as the rebound
-    // accounts for the gap.
     double impact_lookahead = 1.1;
-    // How often an impact may be handed on from contact to contact within one substep.
     int impact_sweeps = 32;
-    // Gauss-Seidel passes by which the points of one manifold share an impact; four corners of a
-    // box agree to float precision after about so many.
     int impact_passes = 16;
-    // Newton steps for the implicit gyroscopic term; three reach rounding up to a third of a
-    // radian a substep.
     int gyroscopic_iterations = 3;
 };
+
+// Settings that are read together: a method's row in the registry names the groups that it reads.
+// Every method reads the first two.
+enum class SettingGroup {
+    world,       // of the scene: the same for all methods
+    step,        // how any method cuts a step
+    constraints, // whatever solves contacts and joints
+    baumgarte,   // drift removed through the velocities
+    soft,        // contacts and joints as springs
+    impacts,     // bounces, with each impact handed on
+    gyroscopic   // an implicit gyroscopic term
+};
+
+using SettingMember =
+    std::variant<double StepSettings::*, int StepSettings::*, glm::dvec3 StepSettings::*>;
+
+struct SettingRow {
+    std::string_view name;
+    SettingMember member;
+    std::string_view unit; // "m/s^2"; empty for plain numbers
+    double min, max;       // each number's range, both ends included
+    SettingGroup group;
+    std::string_view reason; // what it is, and why that default
+};
+
+inline constexpr auto setting_rows = std::to_array<SettingRow>({
+    {"gravity", &StepSettings::gravity, "m/s^2", -1e9, 1e9, SettingGroup::world,
+     "The acceleration of every free dynamic body."},
+    {"dt", &StepSettings::dt, "s", 1e-9, 1, SettingGroup::world,
+     "Time that one step takes in the world."},
+    {"substeps", &StepSettings::substeps, "", 1, 10000, SettingGroup::step,
+     "Into how many parts a step is cut; collision is found once a step."},
+    {"iterations", &StepSettings::iterations, "", 1, 10000, SettingGroup::constraints,
+     "Passes over all constraints in each substep."},
+    {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,
+     SettingGroup::constraints,
+     "Contacts closer than this are made before they touch, so that nothing falls into its "
+     "neighbour within a step; bodies that approach each other get their relative motion on top."},
+    {"penetration_slop", &StepSettings::penetration_slop, "m", 0, 1e9, SettingGroup::baumgarte,
+     "Penetration that is left alone, so that contacts persist."},
+    {"baumgarte", &StepSettings::baumgarte, "", 0, 1, SettingGroup::baumgarte,
+     "Fraction of the penetration, or of a joint's drift, that is removed in a substep (Baumgarte "
+     "1972)."},
+    {"contact_frequency_ratio", &StepSettings::contact_frequency_ratio, "", 1e-6, 1000,
+     SettingGroup::soft,
+     "Natural frequency of a soft contact as a fraction of the substep rate: above 1/4 the spring "
+     "is under-sampled, 1/8 lets it settle between neighbours (Catto 2024, Solver2D)."},
+    {"contact_damping_ratio", &StepSettings::contact_damping_ratio, "", 0, 1e6, SettingGroup::soft,
+     "Damping of a soft contact; 1 is critical."},
+    {"joint_frequency_ratio", &StepSettings::joint_frequency_ratio, "", 1e-6, 1000,
+     SettingGroup::soft,
+     "Natural frequency of a soft joint as a fraction of the substep rate: stiffer keeps a "
+     "pendulum truer, and tears a chain of ten with a hundredfold weight at its end apart at four "
+     "substeps; 0.2 with a damping of 5 is the stiffest that holds both."},
+    {"joint_damping_ratio", &StepSettings::joint_damping_ratio, "", 0, 1e6, SettingGroup::soft,
+     "Damping of a soft joint; 1 is critical."},
+    {"push_velocity", &StepSettings::push_velocity, "m/s", 0, 1e9, SettingGroup::constraints,
+     "The fastest that overlapping bodies are pushed apart."},
+    {"restitution_threshold", &StepSettings::restitution_threshold, "m/s", 0, 1e9,
+     SettingGroup::impacts, "Slower impacts do not bounce, so that bodies come to rest."},
+    {"impact_lookahead", &StepSettings::impact_lookahead, "substeps", 0, 1000,
+     SettingGroup::impacts,
+     "An impact counts when it would happen within so many substeps: a hair less than one, and the "
+     "solver would stop the body before it bounces; a little early does no harm, as the rebound "
+     "accounts for the gap."},
+    {"impact_sweeps", &StepSettings::impact_sweeps, "", 0, 10000, SettingGroup::impacts,
+     "How often an impact may be handed on from contact to contact within one substep; 0: nothing "
+     "bounces."},
+    {"impact_passes", &StepSettings::impact_passes, "", 1, 10000, SettingGroup::impacts,
+     "Gauss-Seidel passes by which the points of one manifold share an impact; four corners of a "
+     "box agree to float precision after about 16."},
+    {"gyroscopic_iterations", &StepSettings::gyroscopic_iterations, "", 0, 100,
+     SettingGroup::gyroscopic,
+     "Newton steps for the implicit gyroscopic term; three reach rounding up to a third of a "
+     "radian a substep."},
+});
+
+namespace settings_detail {
+
+struct AnyMember {
+    template <typename Type> operator Type() const; // NOLINT(google-explicit-constructor)
+};
+template <typename Settings, typename... Members> consteval std::size_t member_count() {
+    if constexpr (requires { Settings{Members{}..., AnyMember{}}; })
+        return member_count<Settings, Members..., AnyMember>();
+    else
+        return sizeof...(Members);
+}
+
+} // namespace settings_detail
+
+static_assert(settings_detail::member_count<StepSettings>() == setting_rows.size(),
+              "each member of StepSettings has a row in setting_rows");
+
+// One number of a setting: a vector has three.
+struct SettingNumber {
+    std::size_t row = 0; // of setting_rows
+    int component = 0;   // 0 to 2; 0 but for vectors
+
+    const SettingRow &setting() const { return setting_rows[row]; }
+    auto operator<=>(const SettingNumber &) const = default;
+};
+
+// All of them, in the order of the table.
+std::span<const SettingNumber> setting_numbers();
+
+// "dt", "gravity.y"
+std::string setting_name(SettingNumber number);
+
+double setting_value(const StepSettings &settings, SettingNumber number);
+
+// `value` must be in range; a whole number for those that are whole.
+void set_setting(StepSettings &settings, SettingNumber number, double value);
+
+bool is_whole(const SettingRow &row);
+bool is_vector(const SettingRow &row);
+
+// Null when there is none of that name.
+const SettingRow *find_setting(std::string_view name);
+
+// "a whole number from 1 to 10000", "a number from 1e-9 to 1 s"; of each number of a vector.
+std::string range_text(const SettingRow &row);
+
+// Empty when that number may have that value; else "dt must be a number from 1e-9 to 1 s, got 2".
+std::string why_refused(SettingNumber number, double value);
+
+// Throws CheckFailure, with the text of why_refused, when one is out of range.
+void check_settings(const StepSettings &settings);
+
+void hash_settings(StateHash &hash, const StepSettings &settings);
 
 } // namespace plumb

@@ -30,39 +30,6 @@ void check_pose(const Transform &pose) {
                 "body rotation must be of unit length, got " << length);
 }
 
-void check_settings(const StepSettings &s) {
-    PLUMB_CHECK(std::isfinite(s.dt) && s.dt > 0, "dt must be positive and finite, got " << s.dt);
-    PLUMB_CHECK(s.substeps >= 1 && s.substeps <= 10000,
-                "substeps must be 1 to 10000, got " << s.substeps);
-    PLUMB_CHECK(s.iterations >= 1 && s.iterations <= 10000,
-                "iterations must be 1 to 10000, got " << s.iterations);
-    PLUMB_CHECK(is_finite(Vec3{s.gravity}), "gravity must be finite, got " << s.gravity.x << ", "
-                                                                           << s.gravity.y << ", "
-                                                                           << s.gravity.z);
-    const auto check_not_negative = [](const char *name, double value) {
-        PLUMB_CHECK(std::isfinite(value) && value >= 0,
-                    name << " must be finite and not negative, got " << value);
-    };
-    check_not_negative("speculative_distance", s.speculative_distance);
-    check_not_negative("penetration_slop", s.penetration_slop);
-    check_not_negative("baumgarte", s.baumgarte);
-    check_not_negative("contact_damping_ratio", s.contact_damping_ratio);
-    check_not_negative("joint_damping_ratio", s.joint_damping_ratio);
-    check_not_negative("push_velocity", s.push_velocity);
-    check_not_negative("restitution_threshold", s.restitution_threshold);
-    check_not_negative("impact_lookahead", s.impact_lookahead);
-    // 0 would divide by zero where damping is 0, too.
-    PLUMB_CHECK(std::isfinite(s.contact_frequency_ratio) && s.contact_frequency_ratio > 0,
-                "contact_frequency_ratio must be positive, got " << s.contact_frequency_ratio);
-    PLUMB_CHECK(std::isfinite(s.joint_frequency_ratio) && s.joint_frequency_ratio > 0,
-                "joint_frequency_ratio must be positive, got " << s.joint_frequency_ratio);
-    PLUMB_CHECK(s.impact_sweeps >= 0,
-                "impact_sweeps must not be negative, got " << s.impact_sweeps);
-    PLUMB_CHECK(s.impact_passes >= 1, "impact_passes must be at least 1, got " << s.impact_passes);
-    PLUMB_CHECK(s.gyroscopic_iterations >= 0,
-                "gyroscopic_iterations must not be negative, got " << s.gyroscopic_iterations);
-}
-
 template <typename Item>
 std::uint32_t take_slot(std::vector<Item> &items, std::vector<std::uint32_t> &free_slots) {
     if (free_slots.empty()) {

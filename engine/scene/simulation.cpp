@@ -35,6 +35,18 @@ const MethodInfo *find_method_info(std::string_view name) {
     return found == method_infos().end() ? nullptr : &*found;
 }
 
+bool reads(const MethodInfo &method, const SettingRow &setting) {
+    return setting.group == SettingGroup::world || setting.group == SettingGroup::step ||
+           std::ranges::find(method.reads, setting.group) != method.reads.end();
+}
+
+StepSettings default_settings(const MethodInfo &method) {
+    StepSettings settings;
+    settings.substeps = method.default_substeps;
+    settings.iterations = method.default_iterations;
+    return settings;
+}
+
 ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {
     const std::string &name = options.method.empty() ? scene.world.method : options.method;
     ResolvedRun run;

@@ -3,6 +3,7 @@
 #include "tests/dynamics/worlds.h"
 
 #include <functional>
+#include <limits>
 
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
@@ -154,34 +155,44 @@ TEST(World, MisuseIsNamedWithItsValue) {
                    [&] { world.remember_contact(id, wall, features, impulses); });
 }
 
-TEST(World, SettingsOutOfRangeAreNamedWithTheirValue) {
+TEST(World, SettingsOutOfRangeAreNamedWithTheirRangeAndValue) {
     World world = plain_world();
-    const auto refused = [&](const std::string &part,
-                             const std::function<void(StepSettings &)> &change) {
-        StepSettings settings;
-        change(settings);
-        expect_failure(part, [&] { world.set_settings(settings); });
+    const StepSettings before = world.settings();
+    const auto refused = [&](SettingNumber number, double value, const std::string &part) {
+        StepSettings settings = before;
+        set_setting(settings, number, value);
+        expect_failure(setting_name(number) + " must be " + range_text(number.setting()) + part,
+                       [&] { world.set_settings(settings); });
     };
-    refused("dt must be positive and finite, got 0", [](StepSettings &s) { s.dt = 0; });
-    refused("got -1", [](StepSettings &s) { s.dt = -1; });
-    refused("dt must be", [](StepSettings &s) { s.dt = std::nan(""); });
-    refused("got 0", [](StepSettings &s) { s.substeps = 0; });
-    refused("got 10001", [](StepSettings &s) { s.substeps = 10001; });
-    refused("iterations must be 1 to 10000, got 0", [](StepSettings &s) { s.iterations = 0; });
-    refused("gravity must be finite", [](StepSettings &s) { s.gravity.x = std::nan(""); });
-    refused("speculative_distance", [](StepSettings &s) { s.speculative_distance = -1; });
-    refused("penetration_slop", [](StepSettings &s) { s.penetration_slop = std::nan(""); });
-    refused("baumgarte", [](StepSettings &s) { s.baumgarte = -0.1; });
-    refused("contact_frequency_ratio", [](StepSettings &s) { s.contact_frequency_ratio = 0; });
-    refused("contact_damping_ratio", [](StepSettings &s) { s.contact_damping_ratio = -1; });
-    refused("joint_frequency_ratio", [](StepSettings &s) { s.joint_frequency_ratio = 0; });
-    refused("joint_damping_ratio", [](StepSettings &s) { s.joint_damping_ratio = -1; });
-    refused("push_velocity", [](StepSettings &s) { s.push_velocity = -1; });
-    refused("restitution_threshold", [](StepSettings &s) { s.restitution_threshold = -1; });
-    refused("impact_sweeps", [](StepSettings &s) { s.impact_sweeps = -1; });
-    refused("impact_passes", [](StepSettings &s) { s.impact_passes = 0; });
-    refused("gyroscopic_iterations", [](StepSettings &s) { s.gyroscopic_iterations = -1; });
-    EXPECT_EQ(world.settings().dt, StepSettings{}.dt); // as before
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const SettingNumber number : setting_numbers()) {
+        const SettingRow &row = number.setting();
+        if (is_whole(row)) {
+            refused(number, row.min - 1, ", got " + std::to_string(int(row.min) - 1));
+            refused(number, row.max + 1, ", got " + std::to_string(int(row.max) + 1));
+        } else {
+            refused(number, std::nextafter(row.min, -infinity), ", got ");
+            refused(number, std::nextafter(row.max, infinity), ", got ");
+            refused(number, -infinity, ", got -inf");
+            refused(number, std::nan(""), ", got nan");
+        }
+        EXPECT_EQ(setting_value(world.settings(), number), setting_value(before, number));
+        for (const double end : {row.min, row.max}) {
+            StepSettings settings = before;
+            set_setting(settings, number, end);
+            EXPECT_NO_THROW(world.set_settings(settings)) << setting_name(number);
+            EXPECT_EQ(setting_value(world.settings(), number), end);
+            world.set_settings(before);
+        }
+    }
+    StepSettings settings;
+    settings.substeps = 0;
+    expect_failure("substeps must be a whole number from 1 to 10000, got 0",
+                   [&] { world.set_settings(settings); });
+    settings = {};
+    settings.dt = 2;
+    expect_failure("dt must be a number from 1e-9 to 1 s, got 2",
+                   [&] { world.set_settings(settings); });
 }
 
 TEST(World, JoinedBodiesCollideOnlyWhenAsked) {

@@ -75,6 +75,7 @@ Method rk4() {
              .source = "Kutta 1901",
              .contacts = false,
              .joints = false,
+             .reads = {},
              .default_substeps = 1,
              .default_iterations = 1,
              .body_passes = [](int substeps, int) { return 4 * substeps; },

@@ -42,6 +42,7 @@ Method semi_implicit_euler() {
              .source = "Hairer, Lubich, Wanner 2003",
              .contacts = false,
              .joints = false,
+             .reads = {},
              .default_substeps = 1,
              .default_iterations = 1,
              .body_passes = [](int substeps, int) { return substeps; },

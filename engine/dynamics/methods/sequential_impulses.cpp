@@ -52,6 +52,8 @@ Method sequential_impulses() {
              .source = "Catto 2005, Iterative Dynamics with Temporal Coherence",
              .contacts = true,
              .joints = true,
+             .reads = {SettingGroup::constraints, SettingGroup::baumgarte, SettingGroup::impacts,
+                       SettingGroup::gyroscopic},
              .default_substeps = 1,
              .default_iterations = 10,
              .body_passes = [](int substeps, int) { return 2 * substeps; },

@@ -73,6 +73,8 @@ Method soft_step() {
              .source = "Catto 2024, Solver2D; Macklin et al. 2019, Small Steps",
              .contacts = true,
              .joints = true,
+             .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::impacts,
+                       SettingGroup::gyroscopic},
              .default_substeps = 4,
              .default_iterations = 1,
              .body_passes = [](int substeps, int) { return 2 * substeps; },
