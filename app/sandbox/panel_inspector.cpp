@@ -31,7 +31,19 @@ struct ShapeText {
     std::string operator()(const CapsuleDesc &c) const {
         return "capsule, r " + number(c.radius) + ", h " + number(2 * c.half_height, "m");
     }
+    std::string operator()(const CylinderDesc &c) const {
+        return "cylinder, r " + number(c.radius) + ", h " + number(2 * c.half_height, "m");
+    }
+    std::string operator()(const HullDesc &h) const {
+        return "hull of " + std::to_string(h.points->size()) + " points";
+    }
     std::string operator()(const PlaneDesc &) const { return "plane"; }
+    std::string operator()(const MeshDesc &m) const {
+        return "mesh of " + std::to_string(m.data->triangles.size()) + " triangles";
+    }
+    std::string operator()(const HeightFieldDesc &f) const {
+        return "height field of " + std::to_string(f.rows) + " × " + std::to_string(f.columns);
+    }
 };
 
 const char *text(BodyKind kind) {
@@ -91,7 +103,8 @@ void inspector_panel(PanelContext &context) {
     const BodyState state = simulation->body_state(*body);
     value_row("Name", info.name);
     value_row("Kind", text(info.kind));
-    value_row("Shape", std::visit(ShapeText{}, info.shape));
+    for (const ColliderDesc &collider : info.colliders)
+        value_row("Shape", std::visit(ShapeText{}, collider.shape));
     if (!info.material.empty())
         value_row("Material", info.material);
     if (info.kind == BodyKind::dynamic) {

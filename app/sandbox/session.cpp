@@ -206,7 +206,7 @@ std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dve
         return {};
     BodyDesc ball;
     ball.name = "ball";
-    ball.shape = SphereDesc{radius};
+    ball.colliders.emplace_back().shape = SphereDesc{radius};
     ball.position = from;
     ball.velocity = velocity;
     try {

@@ -20,13 +20,35 @@ namespace {
 template <typename... Cases> struct Overloaded : Cases... { using Cases::operator()...; };
 template <typename... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
 
-// Of the smallest sphere about the body's origin that holds the shape; 0 for a plane.
+// Of a sphere about the shape's own origin that holds it; 0 for a plane.
 double reach(const ShapeDesc &shape) {
-    return std::visit(Overloaded{[](const SphereDesc &s) { return s.radius; },
-                                 [](const BoxDesc &b) { return glm::length(b.half_extents); },
-                                 [](const CapsuleDesc &c) { return c.half_height + c.radius; },
-                                 [](const PlaneDesc &) { return 0.0; }},
-                      shape);
+    const auto farthest = [](const auto &points) {
+        double far = 0;
+        for (const glm::dvec3 &point : points)
+            far = std::max(far, glm::length(point));
+        return far;
+    };
+    return std::visit(
+        Overloaded{[](const SphereDesc &s) { return s.radius; },
+                   [](const BoxDesc &b) { return glm::length(b.half_extents); },
+                   [](const CapsuleDesc &c) { return c.half_height + c.radius; },
+                   [](const CylinderDesc &c) { return std::hypot(c.half_height, c.radius); },
+                   [&](const HullDesc &h) { return farthest(*h.points); },
+                   [](const PlaneDesc &) { return 0.0; },
+                   [&](const MeshDesc &m) { return farthest(m.data->vertices); },
+                   [](const HeightFieldDesc &f) {
+                       const BoundsDesc box = bounds(f, {}, {1, 0, 0, 0});
+                       return glm::length(glm::max(-box.min, box.max));
+                   }},
+        shape);
+}
+
+// Likewise about the body's origin.
+double reach(const BodyInfo &body) {
+    double far = 0;
+    for (const ColliderDesc &collider : body.colliders)
+        far = std::max(far, glm::length(collider.position) + reach(collider.shape));
+    return far;
 }
 
 bool is_plane(const ShapeDesc &shape) {
@@ -47,14 +69,9 @@ glm::vec3 colour_of(const BodyInfo &body, std::size_t index) {
     return palette_colour(index);
 }
 
-void add_body(DrawList &list, const BodyInfo &body, const Pose &pose, std::size_t index,
-              const WorldDrawOptions &options) {
-    DrawShape shape;
-    shape.position = glm::vec3(pose.position);
-    shape.rotation = glm::quat(pose.orientation);
-    shape.colour = colour_of(body, index);
-    shape.selected = options.selected == index;
-    shape.highlighted = options.hovered == index;
+void add_collider(DrawList &list, const ColliderDesc &collider, const Pose &pose, DrawShape shape) {
+    shape.position = glm::vec3(pose.position + pose.orientation * collider.position);
+    shape.rotation = glm::quat(pose.orientation * collider.orientation);
     std::visit(
         Overloaded{
             [&](const SphereDesc &s) {
@@ -69,12 +86,28 @@ void add_body(DrawList &list, const BodyInfo &body, const Pose &pose, std::size_
                 shape.kind = DrawKind::capsule;
                 shape.size = {static_cast<float>(c.radius), static_cast<float>(c.half_height), 0};
             },
+            [&](const CylinderDesc &c) {
+                shape.kind = DrawKind::cylinder;
+                shape.size = {static_cast<float>(c.radius), static_cast<float>(c.half_height), 0};
+            },
+            [&](const HullDesc &) {},
             [&](const PlaneDesc &) {
                 list.planes.push_back({shape.position, shape.rotation});
-            }},
-        body.shape);
-    if (!is_plane(body.shape))
+            },
+            [&](const MeshDesc &) {}, [&](const HeightFieldDesc &) {}},
+        collider.shape);
+    if (!is_plane(collider.shape))
         list.shapes.push_back(shape);
+}
+
+void add_body(DrawList &list, const BodyInfo &body, const Pose &pose, std::size_t index,
+              const WorldDrawOptions &options) {
+    DrawShape shape;
+    shape.colour = colour_of(body, index);
+    shape.selected = options.selected == index;
+    shape.highlighted = options.hovered == index;
+    for (const ColliderDesc &collider : body.colliders)
+        add_collider(list, collider, pose, shape);
 }
 
 void add_line(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, const glm::vec3 &colour,
@@ -243,7 +276,7 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
 
 Around around(const Simulation &simulation, std::optional<std::size_t> body) {
     if (body && *body < simulation.body_count() && simulation.body_info(*body).alive) {
-        const double radius = reach(simulation.body_info(*body).shape);
+        const double radius = reach(simulation.body_info(*body));
         return {glm::vec3(simulation.body_state(*body).position),
                 radius > 0 ? static_cast<float>(radius) : 5.0f};
     }
@@ -254,11 +287,12 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
         for (std::size_t i = 0; i < simulation.body_count(); ++i) {
             const BodyInfo &info = simulation.body_info(i);
             const glm::dvec3 at = simulation.body_state(i).position;
-            if (!info.alive || is_plane(info.shape) || !std::isfinite(at.x + at.y + at.z) ||
-                (info.kind == BodyKind::fixed && !fixed_too))
+            if (!info.alive ||
+                std::ranges::any_of(info.colliders, is_plane, &ColliderDesc::shape) ||
+                !std::isfinite(at.x + at.y + at.z) || (info.kind == BodyKind::fixed && !fixed_too))
                 continue;
-            low = glm::min(low, at - reach(info.shape));
-            high = glm::max(high, at + reach(info.shape));
+            low = glm::min(low, at - reach(info));
+            high = glm::max(high, at + reach(info));
         }
         if (low.x <= high.x)
             return {glm::vec3((low + high) * 0.5),

@@ -4,13 +4,13 @@
 #include "engine/dynamics/kinds.h"
 #include "engine/scene/joint_desc.h"
 #include "engine/scene/probe_desc.h"
+#include "engine/scene/shape_desc.h"
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
@@ -26,22 +26,6 @@ inline constexpr int max_scene_substeps = 10'000; // and iterations
 // that must be positive are at least 1 / this: their products then stay finite in float.
 inline constexpr double max_scene_magnitude = 1e9;
 
-struct SphereDesc {
-    double radius = 0.5;
-};
-struct BoxDesc {
-    glm::dvec3 half_extents{0.5};
-};
-// Along the body's y axis: a cylinder of 2 * half_height with a hemisphere on each end.
-struct CapsuleDesc {
-    double half_height = 0.5;
-    double radius = 0.25;
-};
-// The solid half-space y <= 0 of the body's frame. Never dynamic.
-struct PlaneDesc {};
-
-using ShapeDesc = std::variant<SphereDesc, BoxDesc, CapsuleDesc, PlaneDesc>;
-
 struct MaterialDesc {
     std::string name;
     double density = 1000;           // kg/m^3
@@ -50,17 +34,52 @@ struct MaterialDesc {
     std::optional<glm::vec3> colour; // sRGB, 0..1; by default the app's palette chooses
 };
 
+// Which pairs collide: all but those of which one ignores the other's layer.
+struct FilterDesc {
+    int layer = 0;             // below max_layers
+    std::uint32_t ignores = 0; // bit i: layer i
+};
+inline constexpr int max_layers = 32;
+
+// One shape of a body.
+struct ColliderDesc {
+    ShapeDesc shape;
+    glm::dvec3 position{0}; // in the body's frame
+    glm::dquat orientation{1, 0, 0, 0};
+    std::string material{};        // a MaterialDesc's name; empty: the body's
+    std::optional<double> density; // kg/m^3; see density_of
+    FilterDesc filter;
+    bool sensor = false; // reports what it touches, and lets it pass
+};
+
+// Where the centre of mass is in the body's frame, and how the principal axes of inertia lie there.
+struct MassPoseDesc {
+    glm::dvec3 position{0};
+    glm::dquat orientation{1, 0, 0, 0};
+};
+
 struct BodyDesc {
     std::string name; // unique
     BodyKind kind = BodyKind::dynamic;
-    ShapeDesc shape;
-    std::string material;       // a MaterialDesc's name; empty: the default MaterialDesc
-    std::optional<double> mass; // kg; by default density times volume
-    glm::dvec3 position{0};
+    std::vector<ColliderDesc> colliders; // one or more
+    std::string material;                // a MaterialDesc's name; empty: the default MaterialDesc
+    std::optional<double> mass;          // kg; by default densities times volumes
+    std::optional<double> density;       // kg/m^3; see density_of
+    std::optional<glm::dvec3> center_of_mass; // in the body's frame; by default of its shapes
+    // Moments of inertia about the body's axes, through the centre of mass (kg m^2); by default of
+    // its shapes.
+    std::optional<glm::dvec3> inertia;
+    glm::dvec3 position{0}; // of the body's frame, which need not be its centre of mass
     glm::dquat orientation{1, 0, 0, 0};
-    glm::dvec3 velocity{0};         // m/s, world
+    glm::dvec3 velocity{0};         // of the centre of mass, m/s, world
     glm::dvec3 angular_velocity{0}; // rad/s, world
+    std::array<bool, 6> locked{};   // translations along the world's x, y, z, turns about them
+    double gravity_scale = 1;
+    double linear_damping = 0;  // 1/s: the rate at which the velocity falls
+    double angular_damping = 0; // 1/s
     std::optional<glm::vec3> colour;
+    // State: the centre of mass and the principal axes that a saved scene continues from, exactly.
+    std::optional<MassPoseDesc> mass_pose;
 };
 
 struct CameraDesc {
@@ -135,6 +154,22 @@ struct SceneDesc {
     std::uint64_t step_count = 0;
     std::vector<ContactStateDesc> contacts;
 };
+
+// Of a body's shape (kg/m^3): its own, else its material's, else the body's own, else the body's
+// material's. A material that the scene does not have counts as the default one.
+double density_of(const SceneDesc &scene, const BodyDesc &body, const ColliderDesc &collider);
+
+// kg: the body's own, or else densities times volumes. Sensors weigh nothing.
+double mass_of(const SceneDesc &scene, const BodyDesc &body);
+
+// The smallest of the widths of the body's shapes (m).
+double smallest_width(const BodyDesc &body);
+
+// The axis-aligned box around all shapes of a body (m); infinite if one of them is a plane.
+BoundsDesc bounds(const BodyDesc &body);
+
+// Whether any of the body's shapes is a plane.
+bool has_plane(const BodyDesc &body);
 
 // Whether there is a world to step: a scene that has only probes has none.
 inline bool has_world(const SceneDesc &scene) {

@@ -1,6 +1,5 @@
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/scene_file_reading.h"
-#include "engine/scene/shape_desc.h"
 
 namespace plumb::scene_file {
 
@@ -11,7 +10,7 @@ void add_body(Reading &reading, BodyDesc body, const FilePosition &at) {
     reading.positions.bodies.push_back(at);
 }
 
-bool read_shape(const Table &table, BodyDesc &body) {
+bool read_shape(const Table &table, ShapeDesc &read) {
     static constexpr std::array<std::string_view, 4> shapes{"sphere", "box", "capsule", "plane"};
     if (!table.require("shape", R"(shape = "sphere", "box", "capsule" or "plane")"))
         return false;
@@ -24,7 +23,7 @@ bool read_shape(const Table &table, BodyDesc &body) {
         if (!table.require("radius", "radius = metres"))
             return false;
         const std::optional<double> radius = table.number("radius", positive);
-        body.shape = SphereDesc{radius.value_or(1)};
+        read = SphereDesc{radius.value_or(1)};
         return radius.has_value();
     }
     case 1: {
@@ -32,7 +31,7 @@ bool read_shape(const Table &table, BodyDesc &body) {
         if (!table.require("half_extents", "half_extents = [x, y, z] in metres"))
             return false;
         const std::optional<glm::dvec3> half = table.vector("half_extents", positive);
-        body.shape = BoxDesc{half.value_or(glm::dvec3(1))};
+        read = BoxDesc{half.value_or(glm::dvec3(1))};
         return half.has_value();
     }
     case 2: {
@@ -42,20 +41,20 @@ bool read_shape(const Table &table, BodyDesc &body) {
         const bool has_radius = table.require("radius", "radius = metres");
         const std::optional<double> height = table.number("half_height", positive);
         const std::optional<double> radius = table.number("radius", positive);
-        body.shape = CapsuleDesc{height.value_or(1), radius.value_or(1)};
+        read = CapsuleDesc{height.value_or(1), radius.value_or(1)};
         return has_height && has_radius && height && radius;
     }
     default:
         table.refuse({"radius", "half_extents", "half_height"}, "a plane",
                      "it is infinite: the solid below y = 0 of its frame");
-        body.shape = PlaneDesc{};
+        read = PlaneDesc{};
         return true;
     }
 }
 
 void read_kind(const Table &table, BodyDesc &body) {
     static constexpr std::array<std::string_view, 3> kinds{"static", "kinematic", "dynamic"};
-    const bool is_plane = std::holds_alternative<PlaneDesc>(body.shape);
+    const bool is_plane = has_plane(body);
     body.kind = is_plane ? BodyKind::fixed : BodyKind::dynamic;
     const std::optional<std::size_t> kind = table.choice("kind", kinds);
     if (!kind)
@@ -76,7 +75,7 @@ void read_mass(Reading &reading, const Table &table, BodyDesc &body, bool has_sh
             table.error("material", "there is no material " + in_quotes(*material),
                         reading.materials.suggestion(*material));
     }
-    if (std::holds_alternative<PlaneDesc>(body.shape)) {
+    if (has_plane(body)) {
         table.refuse({"mass", "density"}, "a plane", "it is infinite and never moves by itself");
         return;
     }
@@ -88,9 +87,8 @@ void read_mass(Reading &reading, const Table &table, BodyDesc &body, bool has_sh
     }
     if (!key.empty() && !value)
         return;
-    const double mass = value.value_or(density) * volume(body.shape);
-    if (value)
-        body.mass = mass;
+    body.density = value;
+    const double mass = value.value_or(density) * volume(body.colliders.front().shape);
     if (has_shape && !(mass >= positive.min && mass <= positive.max))
         table.error(key.empty() ? "shape" : key,
                     "density times volume makes a mass of " + shortest(mass) + " kg",
@@ -214,7 +212,7 @@ void read_body(Reading &reading, const toml::table &source) {
     const std::optional<std::string> name =
         read_name(reading.report, table, "body", reading.bodies);
     body.name = name.value_or("");
-    const bool has_shape = read_shape(table, body);
+    const bool has_shape = read_shape(table, body.colliders.emplace_back().shape);
     read_kind(table, body);
     read_mass(reading, table, body, has_shape);
     body.position = table.vector("position", moderate).value_or(body.position);

@@ -1,6 +1,5 @@
 #include "engine/scene/scene_file_reading.h"
 #include "engine/scene/scene_file_spelling.h"
-#include "engine/scene/shape_desc.h"
 
 namespace plumb::scene_file {
 
@@ -23,6 +22,13 @@ glm::ivec3 read_counts(const Table &table, std::int64_t most) {
                                                   "count[" + std::to_string(i) + "]", 1, most)
                                          .value_or(1));
     return counts;
+}
+
+// Wherever the body is, so that rounding does not make copies of one height differ.
+double height_of(BodyDesc body) {
+    body.position = glm::dvec3(0);
+    const BoundsDesc around = bounds(body);
+    return around.max.y - around.min.y;
 }
 
 } // namespace
@@ -75,10 +81,10 @@ std::optional<Repeat> read_repeat(Report &report, const toml::table &source,
     }
     case 1: {
         StackRepeat stack{count("count"), 0, 0};
-        if (std::holds_alternative<PlaneDesc>(body.shape) && !table.has("spacing"))
+        if (has_plane(body) && !table.has("spacing"))
             table.require("spacing", "a plane has no height to take it from");
         else if (has_shape)
-            stack.spacing = 2 * half_bounds(body.shape, body.orientation).y;
+            stack.spacing = height_of(body);
         stack.spacing = table.number("spacing", positive).value_or(stack.spacing);
         stack.turn = table.number("turn_deg", moderate).value_or(0) * degree;
         return stack;

@@ -3,7 +3,6 @@
 #include "engine/dynamics/method_info.h"
 #include "engine/geometry/manifold.h"
 #include "engine/scene/scene_file_number.h"
-#include "engine/scene/shape_desc.h"
 
 #include <algorithm>
 #include <array>
@@ -63,39 +62,72 @@ class Kind {
     std::vector<SceneMessage> messages_;
 };
 
-// The shape with its origin moved to `origin`, so that float keeps its digits far out.
+// The shape with its origin moved to `position`, so that float keeps its digits far out. Nothing
+// for kinds that are not looked at.
 struct AsShape {
     glm::dvec3 position;
     glm::dquat orientation;
 
-    f32::Shape operator()(const SphereDesc &s) const {
+    using Found = std::optional<f32::Shape>;
+    Found operator()(const SphereDesc &s) const {
         return f32::Sphere{f32::Vec3(position), static_cast<float>(s.radius)};
     }
-    f32::Shape operator()(const BoxDesc &b) const {
+    Found operator()(const BoxDesc &b) const {
         return f32::Box{f32::Vec3(position), f32::Quat(orientation), f32::Vec3(b.half_extents)};
     }
-    f32::Shape operator()(const CapsuleDesc &c) const {
+    Found operator()(const CapsuleDesc &c) const {
         const glm::dvec3 up = orientation * glm::dvec3(0, c.half_height, 0);
         return f32::Capsule{f32::Vec3(position - up), f32::Vec3(position + up),
                             static_cast<float>(c.radius)};
     }
-    f32::Shape operator()(const PlaneDesc &) const {
+    Found operator()(const PlaneDesc &) const {
         const glm::dvec3 normal = orientation * glm::dvec3(0, 1, 0);
         return f32::HalfSpace{f32::Vec3(normal), static_cast<float>(glm::dot(normal, position))};
     }
+    Found operator()(const CylinderDesc &) const { return std::nullopt; }
+    Found operator()(const HullDesc &) const { return std::nullopt; }
+    Found operator()(const MeshDesc &) const { return std::nullopt; }
+    Found operator()(const HeightFieldDesc &) const { return std::nullopt; }
 };
+
+// How deep the shapes of two bodies are in each other at the deepest (m), as far as they are less
+// than `margin` apart; empty if they are farther.
+std::optional<double> deepest(const BodyDesc &a, const BodyDesc &b, double margin) {
+    // Both relative to the first, or to the second when the first is a plane: it may be far away.
+    const glm::dvec3 origin = has_plane(a) ? b.position : a.position;
+    const auto placed = [&](const BodyDesc &body, const ColliderDesc &collider) {
+        return std::visit(AsShape{body.position - origin + body.orientation * collider.position,
+                                  body.orientation * collider.orientation},
+                          collider.shape);
+    };
+    std::optional<double> depth;
+    for (const ColliderDesc &collider_a : a.colliders) {
+        const std::optional<f32::Shape> shape_a = placed(a, collider_a);
+        for (const ColliderDesc &collider_b : b.colliders) {
+            const std::optional<f32::Shape> shape_b = placed(b, collider_b);
+            if (!shape_a || !shape_b)
+                continue;
+            const f32::Manifold manifold =
+                f32::collide(*shape_a, *shape_b, static_cast<float>(margin));
+            for (int i = 0; i < manifold.count; ++i)
+                depth = std::max(
+                    depth.value_or(0),
+                    -static_cast<double>(manifold.points[static_cast<std::size_t>(i)].separation));
+        }
+    }
+    return depth;
+}
 
 class Checker {
   public:
     Checker(const SceneDesc &scene, const ScenePositions &positions)
         : scene_(scene), positions_(positions) {
-        std::map<std::string, double> densities{{"", MaterialDesc{}.density}};
-        for (const MaterialDesc &material : scene.materials)
-            densities[material.name] = material.density;
         for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
             const BodyDesc &body = scene.bodies[i];
             indices_[body.name] = i;
-            masses_.push_back(body.mass.value_or(densities[body.material] * volume(body.shape)));
+            masses_.push_back(body.kind == BodyKind::dynamic ? mass_of(scene, body) : 0);
+            widths_.push_back(smallest_width(body));
+            bounds_.push_back(bounds(body));
         }
     }
 
@@ -160,7 +192,7 @@ class Checker {
             double width = std::numeric_limits<double>::infinity();
             for (const std::optional<std::size_t> &body : {a, b})
                 if (body)
-                    width = std::min(width, smallest_width(scene_.bodies[*body].shape));
+                    width = std::min(width, widths_[*body]);
             if (joint.type == JointType::ball && gap > anchor_gap_limit * width)
                 gaps_.add(at,
                           "the two anchors of ball joint " + in_quotes(joint.name) + " start " +
@@ -177,28 +209,16 @@ class Checker {
         const BodyDesc &body_b = scene_.bodies[b];
         if (std::binary_search(exempt_.begin(), exempt_.end(), std::pair(a, b)))
             return;
-        const double width = std::min(smallest_width(body_a.shape), smallest_width(body_b.shape));
-        const double limit = overlap_limit * width;
-        // Both relative to the first, or to the second when the first is a plane: it may be far
-        // away.
-        const glm::dvec3 origin =
-            std::holds_alternative<PlaneDesc>(body_a.shape) ? body_b.position : body_a.position;
-        const f32::Manifold manifold = f32::collide(
-            std::visit(AsShape{body_a.position - origin, body_a.orientation}, body_a.shape),
-            std::visit(AsShape{body_b.position - origin, body_b.orientation}, body_b.shape),
-            static_cast<float>(limit));
-        if (manifold.count == 0)
+        const double limit = overlap_limit * std::min(widths_[a], widths_[b]);
+        const std::optional<double> depth = deepest(body_a, body_b, limit);
+        if (!depth)
             return;
-        double depth = 0;
-        for (int i = 0; i < manifold.count; ++i)
-            depth = std::max(depth, -static_cast<double>(
-                                        manifold.points[static_cast<std::size_t>(i)].separation));
         // The one further down in the file is the one to move.
         const FilePosition &at = positions_.bodies[b];
-        if (depth > limit)
+        if (*depth > limit)
             overlaps_.add(at,
                           in_quotes(body_a.name) + " and " + in_quotes(body_b.name) +
-                              " overlap by " + rounded(depth) + " m at the start",
+                              " overlap by " + rounded(*depth) + " m at the start",
                           "move them apart, or they will be thrown apart");
         if (differ_in_mass(a, b))
             warn_of_mass_ratio(a, b, at, "touch");
@@ -207,13 +227,9 @@ class Checker {
     // Two shapes are no deeper in each other than their bounding boxes are along any axis: a pile
     // of bodies that merely touch needs no closer look.
     bool may_overlap(std::size_t a, std::size_t b) const {
-        const BodyDesc &body_a = scene_.bodies[a];
-        const BodyDesc &body_b = scene_.bodies[b];
-        const glm::dvec3 depth = half_bounds(body_a.shape, body_a.orientation) +
-                                 half_bounds(body_b.shape, body_b.orientation) -
-                                 glm::abs(body_a.position - body_b.position);
-        const double limit =
-            overlap_limit * std::min(smallest_width(body_a.shape), smallest_width(body_b.shape));
+        const glm::dvec3 depth =
+            glm::min(bounds_[a].max - bounds_[b].min, bounds_[b].max - bounds_[a].min);
+        const double limit = overlap_limit * std::min(widths_[a], widths_[b]);
         return depth.x > limit && depth.y > limit && depth.z > limit;
     }
 
@@ -230,13 +246,13 @@ class Checker {
         glm::dvec3 mean{0};
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
             const BodyDesc &body = scene_.bodies[i];
-            if (std::holds_alternative<PlaneDesc>(body.shape)) {
+            if (has_plane(body)) {
                 planes.push_back(i);
                 continue;
             }
-            const glm::dvec3 half = half_bounds(body.shape, body.orientation) +
-                                    overlap_limit * smallest_width(body.shape);
-            bounded.push_back({body.position - half, body.position + half, i});
+            // Of what is infinitely wide only the other's width counts.
+            const double near = std::isfinite(widths_[i]) ? overlap_limit * widths_[i] : 0;
+            bounded.push_back({bounds_[i].min - near, bounds_[i].max + near, i});
             mean += body.position;
         }
         for (const std::size_t plane : planes)
@@ -286,7 +302,7 @@ class Checker {
         const BodyDesc *smallest_body = nullptr;
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
             const BodyDesc &body = scene_.bodies[i];
-            const double width = smallest_width(body.shape);
+            const double width = widths_[i];
             if (is_dynamic(i) && width < smallest) {
                 smallest = width;
                 smallest_body = &body;
@@ -334,7 +350,9 @@ class Checker {
     const SceneDesc &scene_;
     const ScenePositions &positions_;
     std::map<std::string, std::size_t> indices_;
-    std::vector<double> masses_;
+    std::vector<double> masses_; // 0 unless dynamic
+    std::vector<double> widths_;
+    std::vector<BoundsDesc> bounds_;
     std::vector<std::pair<std::size_t, std::size_t>> exempt_; // sorted
 
     Kind overlaps_{"overlaps"};

@@ -184,19 +184,26 @@ class SceneWriter {
         line("radius", shortest(capsule.radius));
     }
     void write_shape(const PlaneDesc &) { line("shape", "\"plane\""); }
+    void write_shape(const CylinderDesc &) {}
+    void write_shape(const HullDesc &) {}
+    void write_shape(const MeshDesc &) {}
+    void write_shape(const HeightFieldDesc &) {}
 
     void write_body(const BodyDesc &body) {
         constexpr std::array<const char *, 3> kinds{"\"static\"", "\"kinematic\"", "\"dynamic\""};
-        const bool is_plane = std::holds_alternative<PlaneDesc>(body.shape);
+        const ShapeDesc &shape = body.colliders.front().shape;
+        const bool is_plane = std::holds_alternative<PlaneDesc>(shape);
         header("[[body]]");
         line("name", string(body.name));
         if (body.kind != (is_plane ? BodyKind::fixed : BodyKind::dynamic))
             line("kind", kinds[static_cast<std::size_t>(body.kind)]);
-        std::visit([this](const auto &shape) { write_shape(shape); }, body.shape);
+        std::visit([this](const auto &s) { write_shape(s); }, shape);
         if (!body.material.empty())
             line("material", string(body.material));
         if (body.mass)
             line("mass", shortest(*body.mass));
+        if (body.density)
+            line("density", shortest(*body.density));
         line("position", array3(body.position));
         const glm::dquat &q = body.orientation;
         if (!same_bits(q.w, 1) || !same_bits({q.x, q.y, q.z}, {0, 0, 0}))

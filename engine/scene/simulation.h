@@ -32,7 +32,7 @@ struct BodyInfo {
     bool alive = false; // a removed body leaves a hole
     std::string name;
     BodyKind kind = BodyKind::dynamic;
-    ShapeDesc shape;
+    std::vector<ColliderDesc> colliders;
     double mass = 0;       // kg; 0 for static and kinematic
     glm::dvec3 inertia{0}; // kg m^2, principal, body frame
     std::string material;

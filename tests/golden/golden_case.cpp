@@ -129,7 +129,7 @@ std::size_t shape_count(const Case &golden) {
         return sandbox.draw_list().shapes.size();
     std::size_t count = 0; // bodies come first among the shapes
     for (std::size_t body = 0; body < simulation.body_count(); ++body)
-        if (!std::holds_alternative<PlaneDesc>(simulation.body_info(body).shape))
+        if (!std::holds_alternative<PlaneDesc>(simulation.body_info(body).colliders.front().shape))
             ++count;
     return count;
 }

@@ -22,7 +22,7 @@ SceneDesc falling_scene() {
     scene.title = "Free fall";
     BodyDesc ball;
     ball.name = "ball";
-    ball.shape = SphereDesc{0.5};
+    ball.colliders.emplace_back().shape = SphereDesc{0.5};
     scene.bodies.push_back(ball);
     ExpectDesc expect;
     expect.name = "x";

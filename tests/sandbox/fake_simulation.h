@@ -97,7 +97,7 @@ class FakeSimulation final : public Simulation {
         std::optional<Pick> nearest;
         const double a = glm::dot(direction, direction);
         for (std::size_t i = 0; i < infos_.size(); ++i) {
-            const auto *sphere = std::get_if<SphereDesc>(&infos_[i].shape);
+            const auto *sphere = std::get_if<SphereDesc>(&infos_[i].colliders.front().shape);
             if (!sphere)
                 continue;
             const glm::dvec3 to = state_.bodies[i].position - origin;
@@ -118,7 +118,7 @@ class FakeSimulation final : public Simulation {
         info.alive = true;
         info.name = body.name;
         info.kind = body.kind;
-        info.shape = body.shape;
+        info.colliders = body.colliders;
         info.mass = 1;
         infos_.push_back(info);
         state_.bodies.push_back(
@@ -151,7 +151,7 @@ inline SceneDesc two_balls() {
     for (const double x : {0.0, 5.0}) {
         BodyDesc ball;
         ball.name = x == 0.0 ? "left" : "right";
-        ball.shape = SphereDesc{1};
+        ball.colliders.emplace_back().shape = SphereDesc{1};
         ball.position = {x, 0, 0};
         ball.velocity = {0, 0.25, 0};
         scene.bodies.push_back(ball);

@@ -37,7 +37,14 @@ class Words {
     void add(const SphereDesc &s) { add(s.radius); }
     void add(const BoxDesc &b) { add(b.half_extents); }
     void add(const CapsuleDesc &c) { add(c.half_height), add(c.radius); }
+    void add(const CylinderDesc &c) { add(c.half_height), add(c.radius); }
+    void add(const HullDesc &h) {
+        for (const glm::dvec3 &point : *h.points)
+            add(point);
+    }
     void add(const PlaneDesc &) {}
+    void add(const MeshDesc &) {}
+    void add(const HeightFieldDesc &) {}
     void add(const MethodSettings &s) {
         add(static_cast<double>(s.substeps)), add(static_cast<double>(s.iterations));
     }
@@ -61,9 +68,12 @@ std::vector<std::string> words(const SceneDesc &scene) {
     for (const MaterialDesc &m : scene.materials)
         w.add(m.name), w.add(m.density), w.add(m.friction), w.add(m.restitution), w.add(m.colour);
     for (const BodyDesc &b : scene.bodies) {
-        w.add(b.name), w.number(static_cast<std::uint64_t>(b.kind)), w.number(b.shape.index());
-        std::visit([&](const auto &shape) { w.add(shape); }, b.shape);
-        w.add(b.material), w.add(b.mass), w.add(b.position), w.add(b.orientation);
+        w.add(b.name), w.number(static_cast<std::uint64_t>(b.kind)), w.number(b.colliders.size());
+        for (const ColliderDesc &c : b.colliders) {
+            w.number(c.shape.index());
+            std::visit([&](const auto &shape) { w.add(shape); }, c.shape);
+        }
+        w.add(b.material), w.add(b.mass), w.add(b.density), w.add(b.position), w.add(b.orientation);
         w.add(b.velocity), w.add(b.angular_velocity), w.add(b.colour);
     }
     for (const JointDesc &j : scene.joints) {
@@ -190,28 +200,29 @@ class Scenes {
         BodyDesc b;
         b.name = unique();
         b.kind = static_cast<BodyKind>(random_.next_index(3));
+        ShapeDesc &shape = b.colliders.emplace_back().shape;
         switch (random_.next_index(4)) {
         case 0:
-            b.shape = SphereDesc{positive()};
+            shape = SphereDesc{positive()};
             break;
         case 1: {
             const double x = positive();
             const double y = positive();
-            b.shape = BoxDesc{{x, y, positive()}};
+            shape = BoxDesc{{x, y, positive()}};
             break;
         }
         case 2: {
             const double h = positive();
-            b.shape = CapsuleDesc{h, positive()};
+            shape = CapsuleDesc{h, positive()};
             break;
         }
         default:
-            b.shape = PlaneDesc{};
+            shape = PlaneDesc{};
             if (b.kind == BodyKind::dynamic)
                 b.kind = BodyKind::fixed;
         }
         // A mass of its own, as the materials' densities may give too much for a scene.
-        if (!std::holds_alternative<PlaneDesc>(b.shape))
+        if (!std::holds_alternative<PlaneDesc>(shape))
             b.mass = positive();
         if (!one_in(3))
             b.material = scene.materials[random_.next_index(3)].name;
@@ -315,16 +326,11 @@ TEST(RoundTrip, TextReadsWell) {
     scene.title = "One ball";
     scene.world.dt = 1.0 / 120;
     scene.camera.yaw = 30 * (3.14159265358979323846 / 180);
-    scene.bodies.push_back({"ball",
-                            BodyKind::dynamic,
-                            SphereDesc{0.1},
-                            "",
-                            2.5,
-                            {0, 1, 0},
-                            {1, 0, 0, 0},
-                            {0, 0, 0},
-                            {0, 0, 0},
-                            std::nullopt});
+    BodyDesc &ball = scene.bodies.emplace_back();
+    ball.name = "ball";
+    ball.colliders.emplace_back().shape = SphereDesc{0.1};
+    ball.mass = 2.5;
+    ball.position = {0, 1, 0};
     const std::string text = write_scene(scene);
     EXPECT_NE(text.find("dt = \"1/120\"\n"), std::string::npos) << text;
     EXPECT_NE(text.find("yaw_deg = 30\n"), std::string::npos) << text;

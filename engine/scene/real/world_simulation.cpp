@@ -33,8 +33,36 @@ Shape make_shape(const ShapeDesc &desc) {
         Shape operator()(const PlaneDesc &) const {
             return HalfSpace{Vec3{Real(0), Real(1), Real(0)}, Real(0)};
         }
+        Shape operator()(const CylinderDesc &) const { cannot("cylinders"); }
+        Shape operator()(const HullDesc &) const { cannot("hulls"); }
+        Shape operator()(const MeshDesc &) const { cannot("meshes"); }
+        Shape operator()(const HeightFieldDesc &) const { cannot("height fields"); }
+        [[noreturn]] static void cannot(const char *what) {
+            throw std::invalid_argument(std::string(what) + " cannot be bodies yet");
+        }
     };
     return std::visit(Maker{}, desc);
+}
+
+// The one shape of a body without anything that a world cannot run yet.
+Shape make_shape(const BodyDesc &body) {
+    const auto refuse = [&](bool has, const char *what) {
+        if (has)
+            throw std::invalid_argument("the body \"" + body.name + "\" has " + what +
+                                        ", which cannot be run yet");
+    };
+    refuse(body.colliders.size() != 1, "several shapes");
+    const ColliderDesc &collider = body.colliders.front();
+    refuse(collider.position != glm::dvec3(0) || collider.orientation != glm::dquat(1, 0, 0, 0),
+           "a shape with a place of its own");
+    refuse(!collider.material.empty() || collider.density, "a shape with a material of its own");
+    refuse(collider.filter.layer != 0 || collider.filter.ignores != 0, "a layer");
+    refuse(collider.sensor, "a sensor");
+    refuse(body.center_of_mass || body.inertia || body.mass_pose, "a centre of mass or inertia");
+    refuse(body.locked != std::array<bool, 6>{}, "locked axes");
+    refuse(body.gravity_scale != 1 || body.linear_damping != 0 || body.angular_damping != 0,
+           "a gravity scale or damping");
+    return make_shape(collider.shape);
 }
 
 class WorldSimulation final : public Simulation {
@@ -173,10 +201,11 @@ std::size_t WorldSimulation::insert(const BodyDesc &desc) {
 
     BodyDef def;
     def.kind = desc.kind;
-    def.shape = make_shape(desc.shape);
+    def.shape = make_shape(desc);
     if (desc.kind == BodyKind::dynamic)
-        def.mass = desc.mass ? static_cast<Real>(*desc.mass)
-                             : static_cast<Real>(material.density) * volume(def.shape);
+        def.mass = desc.mass || desc.density
+                       ? static_cast<Real>(mass_of(state_.scene, desc))
+                       : static_cast<Real>(material.density) * volume(def.shape);
     def.material = {static_cast<Real>(material.friction), static_cast<Real>(material.restitution)};
     def.pose = {Vec3{desc.position}, Quat{desc.orientation}};
     def.velocity = Vec3{desc.velocity};
@@ -188,7 +217,7 @@ std::size_t WorldSimulation::insert(const BodyDesc &desc) {
     info.alive = true;
     info.name = desc.name;
     info.kind = desc.kind;
-    info.shape = desc.shape;
+    info.colliders = desc.colliders;
     info.mass = body.mass;
     info.inertia = glm::dvec3{body.inertia};
     info.material = desc.material;

@@ -9,7 +9,7 @@ int main() {
     plumb::SceneDesc scene;
     plumb::BodyDesc ball;
     ball.name = "ball";
-    ball.shape = plumb::SphereDesc{0.5};
+    ball.colliders.emplace_back().shape = plumb::SphereDesc{0.5};
     ball.position = {0, 100, 0};
     scene.bodies.push_back(ball);
 #if defined(PLUMB_DOUBLE)
