@@ -129,16 +129,16 @@ TEST(SceneFileValues, OrientationIsNormalisedOnlyWhenItNeedsTo) {
 
 TEST(SceneFileValues, MassFromDensity) {
     const auto mass = [](const std::string &body) {
-        return parse("[[body]]\nname = \"b\"\n" + body).bodies.at(0).mass;
+        const SceneDesc scene = parse("[[body]]\nname = \"b\"\n" + body);
+        return mass_of(scene, scene.bodies.at(0));
     };
     EXPECT_EQ(mass("shape = \"sphere\"\nradius = 2\nmass = 7\n"), 7);
-    EXPECT_NEAR(mass("shape = \"sphere\"\nradius = 2\ndensity = 3\n").value(), 32 * pi, 1e-12);
-    EXPECT_NEAR(mass("shape = \"box\"\nhalf_extents = [1, 2, 3]\ndensity = 0.5\n").value(), 24,
-                1e-13);
+    EXPECT_NEAR(mass("shape = \"sphere\"\nradius = 2\ndensity = 3\n"), 32 * pi, 1e-12);
+    EXPECT_NEAR(mass("shape = \"box\"\nhalf_extents = [1, 2, 3]\ndensity = 0.5\n"), 24, 1e-13);
     // A cylinder of height 2 and two half spheres, all of radius 1.
-    EXPECT_NEAR(mass("shape = \"capsule\"\nradius = 1\nhalf_height = 1\ndensity = 1\n").value(),
+    EXPECT_NEAR(mass("shape = \"capsule\"\nradius = 1\nhalf_height = 1\ndensity = 1\n"),
                 2 * pi + 4 * pi / 3, 1e-13);
-    EXPECT_FALSE(mass("shape = \"sphere\"\nradius = 2\n").has_value());
+    EXPECT_NEAR(mass("shape = \"sphere\"\nradius = 2\n"), 1000 * 32 * pi / 3, 1e-9);
 }
 
 TEST(SceneFileValues, Bodies) {
