@@ -49,8 +49,8 @@ constexpr std::array all_quantities{
                  "mean depth of the contact points that penetrate; 0 without contact points"},
     QuantityInfo{
         "joint_drift", "m", false,
-        "largest error of any joint: distance between the anchors (ball), or how far it is "
-        "from `length` (distance)"},
+        "largest error of any joint: distance between the anchors (of a slider: across its axis), "
+        "or how far it is beyond its least or greatest length (distance)"},
 };
 
 constexpr std::array all_reductions{

@@ -2,6 +2,7 @@
 
 #include "engine/dynamics/method_info.h"
 #include "engine/geometry/manifold.h"
+#include "engine/scene/joint_type.h"
 #include "engine/scene/scene_file_number.h"
 
 #include <algorithm>
@@ -157,6 +158,27 @@ class Checker {
         return scene_.bodies[*body].position + scene_.bodies[*body].orientation * local;
     }
 
+    // How far apart the anchors are that the joint is to keep together.
+    double start_gap(const JointDesc &joint, const std::optional<std::size_t> &a,
+                     const std::optional<std::size_t> &b) const {
+        const glm::dvec3 gap =
+            to_world(b, joint.anchor_b_local) - to_world(a, joint.anchor_a_local);
+        switch (joint.type) {
+        case JointType::ball:
+        case JointType::hinge:
+        case JointType::fixed:
+            return glm::length(gap);
+        case JointType::slider: {
+            const glm::dvec3 local = joint.frame_a_local * glm::dvec3(1, 0, 0);
+            const glm::dvec3 axis = a ? scene_.bodies[*a].orientation * local : local;
+            return glm::length(gap - glm::dot(gap, axis) * axis);
+        }
+        case JointType::distance:
+            break; // a rod may be put where it is not yet as long as it is
+        }
+        return 0;
+    }
+
     bool differ_in_mass(std::size_t a, std::size_t b) const {
         const double ratio = std::max(masses_[a], masses_[b]) / std::min(masses_[a], masses_[b]);
         return is_dynamic(a) && is_dynamic(b) && ratio > mass_ratio_limit * (1 + 1e-9);
@@ -187,16 +209,17 @@ class Checker {
                                  "");
             if (a && b && differ_in_mass(*a, *b))
                 warn_of_mass_ratio(*a, *b, at, "are joined");
-            const double gap =
-                glm::distance(to_world(a, joint.anchor_a_local), to_world(b, joint.anchor_b_local));
+            const double gap = start_gap(joint, a, b);
             double width = std::numeric_limits<double>::infinity();
             for (const std::optional<std::size_t> &body : {a, b})
                 if (body)
                     width = std::min(width, widths_[*body]);
-            if (joint.type == JointType::ball && gap > anchor_gap_limit * width)
+            if (joint.frequency == 0 && gap > anchor_gap_limit * width)
                 gaps_.add(at,
-                          "the two anchors of ball joint " + in_quotes(joint.name) + " start " +
-                              rounded(gap) + " m apart",
+                          "the two anchors of " + std::string(joint_type(joint.type).name) +
+                              " joint " + in_quotes(joint.name) + " start " + rounded(gap) +
+                              " m apart" +
+                              (joint.type == JointType::slider ? " across its axis" : ""),
                           "they should be one point, or the first step will jerk them together");
         }
         std::sort(exempt_.begin(), exempt_.end());

@@ -1,5 +1,6 @@
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_file_number.h"
+#include "engine/scene/scene_file_text.h"
 
 #include <algorithm>
 #include <array>
@@ -14,42 +15,7 @@ namespace plumb {
 
 namespace {
 
-bool same_bits(double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
-
-bool same_bits(const glm::dvec3 &a, const glm::dvec3 &b) {
-    return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
-}
-
-template <typename Vector> std::string array3(const Vector &v) {
-    return "[" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + "]";
-}
-
-// A character that a basic string must not hold as it is.
-void append_escaped(std::string &text, char c) {
-    constexpr std::string_view hex = "0123456789ABCDEF";
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-        text += {'\\', c};
-    else if (c == '\n')
-        text += "\\n";
-    else if (c == '\t')
-        text += "\\t";
-    else if (c == '\r')
-        text += "\\r";
-    else if (code < 0x20 || code == 0x7F)
-        text += "\\u00", text += hex[code >> 4], text += hex[code & 0xF];
-    else
-        text += c;
-}
-
-std::string string(std::string_view value) {
-    std::string text = "\"";
-    for (const char c : value)
-        append_escaped(text, c);
-    return text + '"';
-}
+using namespace scene_file;
 
 // As several lines where it has several.
 std::string paragraph(std::string_view value) {
@@ -85,20 +51,6 @@ std::string step_length(double dt) {
     return shortest(dt);
 }
 
-// In degrees where some number of degrees converts to the very angle, and else in radians.
-std::string angle_in_line(const std::string &key, double radians) {
-    constexpr double degree = std::numbers::pi / 180;
-    const double degrees = radians / degree;
-    for (const double candidate :
-         {std::round(degrees * 1e6) / 1e6, std::round(degrees * 1e12) / 1e12, degrees})
-        if (same_bits(candidate * degree, radians))
-            return key + "_deg = " + shortest(candidate);
-    return key + " = " + shortest(radians);
-}
-std::string angle(const std::string &key, double radians) {
-    return angle_in_line(key, radians) + "\n";
-}
-
 class SceneWriter {
   public:
     std::string write(const SceneDesc &scene) {
@@ -113,7 +65,7 @@ class SceneWriter {
         for (const BodyDesc &body : scene.bodies)
             write_body(body);
         for (const JointDesc &joint : scene.joints)
-            write_joint(joint);
+            header("[[joint]]"), text_ += joint_text(joint);
         for (const ProbeDesc &probe : scene.probes)
             write_probe(probe);
         for (const ExpectDesc &expect : scene.expects)
@@ -207,31 +159,13 @@ class SceneWriter {
         line("position", array3(body.position));
         const glm::dquat &q = body.orientation;
         if (!same_bits(q.w, 1) || !same_bits({q.x, q.y, q.z}, {0, 0, 0}))
-            line("orientation", "[" + shortest(q.w) + ", " + shortest(q.x) + ", " + shortest(q.y) +
-                                    ", " + shortest(q.z) + "]");
+            line("orientation", rotation(q));
         if (!same_bits(body.velocity, {0, 0, 0}))
             line("velocity", array3(body.velocity));
         if (!same_bits(body.angular_velocity, {0, 0, 0}))
             line("angular_velocity", array3(body.angular_velocity));
         if (body.colour)
             line("color", array3(*body.colour));
-    }
-
-    void write_joint(const JointDesc &joint) {
-        header("[[joint]]");
-        line("name", string(joint.name));
-        line("type", joint.type == JointType::ball ? "\"ball\"" : "\"distance\"");
-        line("body_a", string(joint.body_a.empty() ? "world" : joint.body_a));
-        line("body_b", string(joint.body_b.empty() ? "world" : joint.body_b));
-        line("anchor_a_local", array3(joint.anchor_a_local));
-        line("anchor_b_local", array3(joint.anchor_b_local));
-        if (joint.type == JointType::distance)
-            line("length", shortest(joint.max_length));
-        if (joint.collide_connected)
-            line("collide_connected", "true");
-        const glm::dvec3 impulse{joint.impulses[0], joint.impulses[1], joint.impulses[2]};
-        if (!same_bits(impulse, {0, 0, 0}))
-            line("impulse", array3(impulse));
     }
 
     // A probe's point: two numbers where it lies in the xy plane.
@@ -244,11 +178,6 @@ class SceneWriter {
             text += (text.empty() ? "" : ", ") + place(point, flat);
         return "[" + text + "]";
     }
-    static std::string rotation(const glm::dquat &q) {
-        return "[" + shortest(q.w) + ", " + shortest(q.x) + ", " + shortest(q.y) + ", " +
-               shortest(q.z) + "]";
-    }
-
     static std::string probe_shape(const ProbeShapeDesc &shape) {
         using Kind = ProbeShapeKind;
         const bool flat = is_flat(shape.kind);

@@ -3,12 +3,16 @@
 
 #include "engine/core/random.h"
 #include "engine/scene/expect.h"
+#include "engine/scene/joint_type.h"
 #include "engine/scene/scene_file_number.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -34,6 +38,7 @@ class Words {
         if (value)
             add(*value);
     }
+    void add(const std::array<double, 2> &pair) { add(pair[0]), add(pair[1]); }
     void add(const SphereDesc &s) { add(s.radius); }
     void add(const BoxDesc &b) { add(b.half_extents); }
     void add(const CapsuleDesc &c) { add(c.half_height), add(c.radius); }
@@ -78,9 +83,11 @@ std::vector<std::string> words(const SceneDesc &scene) {
     }
     for (const JointDesc &j : scene.joints) {
         w.add(j.name), w.number(static_cast<std::uint64_t>(j.type)), w.add(j.body_a);
-        w.add(j.body_b), w.add(j.anchor_a_local), w.add(j.anchor_b_local), w.add(j.min_length),
-            w.add(j.max_length);
-        w.number(j.collide_connected);
+        w.add(j.body_b), w.add(j.anchor_a_local), w.add(j.anchor_b_local);
+        w.add(j.frame_a_local), w.add(j.frame_b_local), w.add(j.min_length), w.add(j.max_length);
+        w.add(j.limits), w.add(j.motor_speed), w.add(j.max_motor_force), w.add(j.frequency);
+        w.add(j.damping_ratio), w.add(j.break_force);
+        w.number(j.collide_connected), w.number(j.broken);
         for (const double impulse : j.impulses)
             w.add(impulse);
     }
@@ -227,13 +234,8 @@ class Scenes {
         if (!one_in(3))
             b.material = scene.materials[random_.next_index(3)].name;
         b.position = vector();
-        if (!one_in(3)) {
-            // Drawn at once: the order of evaluation of arguments is not fixed.
-            double q[4];
-            for (double &part : q)
-                part = random_.next_in(-1, 1);
-            b.orientation = glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
-        }
+        if (!one_in(3))
+            b.orientation = rotation();
         if (b.kind != BodyKind::fixed && one_in(2)) {
             b.velocity = vector();
             b.angular_velocity = vector();
@@ -245,19 +247,65 @@ class Scenes {
     JointDesc joint(const SceneDesc &scene) {
         JointDesc j;
         j.name = unique();
-        j.type = one_in(2) ? JointType::ball : JointType::distance;
+        const auto types = joint_types();
+        const JointTypeInfo &type =
+            *types[random_.next_index(static_cast<std::uint32_t>(types.size()))];
+        j.type = type.type;
         j.body_a = scene.bodies[random_.next_index(4)].name;
         j.body_b = one_in(3) ? "" : scene.bodies[4 + random_.next_index(4)].name;
         if (one_in(2))
             std::swap(j.body_a, j.body_b);
         j.anchor_a_local = vector();
         j.anchor_b_local = vector();
-        if (j.type == JointType::distance)
-            j.min_length = j.max_length = positive();
-        j.collide_connected = one_in(2);
+        if (type.frames != JointTypeInfo::Frames::none) {
+            j.frame_a_local = rotation();
+            j.frame_b_local = rotation();
+        }
+        for (const std::vector<JointKey> *keys : {&type.keys, &common_joint_keys()})
+            for (const JointKey &key : *keys)
+                if (one_in(2))
+                    std::visit([&](auto member) { set(j, key, member); }, key.member);
+        if (j.type == JointType::distance && j.max_length < j.min_length)
+            std::swap(j.min_length, j.max_length);
+        if (j.type == JointType::distance && j.max_length == 0)
+            j.max_length = positive();
         if (one_in(2))
-            j.impulses = {positive(), -positive(), positive()};
+            for (std::size_t i = 0; i < type.rows.size(); ++i)
+                j.impulses[i] = one_in(3) ? number() : 0;
         return j;
+    }
+
+    // Within the key's bounds, which are degrees for an angle.
+    double value(const JointKey &key) {
+        const double share = random_.next_unit();
+        const double low = std::max(key.bounds.min, -1000.0);
+        const double value = low + share * (std::min(key.bounds.max, 1000.0) - low);
+        const double written = one_in(2) ? std::clamp(std::round(value), low, 1000.0) : value;
+        return key.is_angle() ? written * (std::numbers::pi / 180) : written;
+    }
+    void set(JointDesc &j, const JointKey &key, JointKey::Length) {
+        j.min_length = j.max_length = value(key);
+    }
+    void set(JointDesc &j, const JointKey &, bool JointDesc::*member) { j.*member = true; }
+    void set(JointDesc &j, const JointKey &key, double JointDesc::*member) {
+        j.*member = value(key);
+    }
+    void set(JointDesc &j, const JointKey &key, std::optional<double> JointDesc::*member) {
+        j.*member = value(key);
+    }
+    void set(JointDesc &j, const JointKey &key,
+             std::optional<std::array<double, 2>> JointDesc::*member) {
+        const double a = value(key);
+        const double b = value(key);
+        j.*member = {std::min(a, b), std::max(a, b)};
+    }
+
+    glm::dquat rotation() {
+        // Drawn at once: the order of evaluation of arguments is not fixed.
+        double q[4];
+        for (double &part : q)
+            part = random_.next_in(-1, 1);
+        return glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
     }
 
     ExpectDesc expect(const SceneDesc &scene) {

@@ -131,6 +131,23 @@ TEST(SceneWarnings, JointsThatMoveNothingOrJerk) {
               "should be one point, or the first step will jerk them together"}));
 }
 
+TEST(SceneWarnings, AnchorsThatEachTypeKeepsTogether) {
+    const auto joint = [&](const std::string &keys) {
+        return warnings(body("a", sphere) + "[[joint]]\nname = \"j\"\nbody_a = \"a\"\n"
+                                            "anchor_a = [0, 0, 0]\nanchor_b = [0, 0.25, 0]\n" +
+                        keys);
+    };
+    EXPECT_EQ(joint("type = \"hinge\"\naxis = [0, 1, 0]\n").size(), 1U);
+    EXPECT_EQ(joint("type = \"fixed\"\n").size(), 1U);
+    EXPECT_EQ(joint("type = \"slider\"\naxis = [1, 0, 0]\n"),
+              (None{"s.toml:6:1: warning: the two anchors of slider joint \"j\" start 0.25 m apart "
+                    "across its axis; they should be one point, or the first step will jerk them "
+                    "together"}));
+    EXPECT_EQ(joint("type = \"slider\"\naxis = [0, 1, 0]\n"), None{}); // along it they may
+    EXPECT_EQ(joint("type = \"ball\"\nfrequency = 2\n"), None{});      // a spring that is drawn
+    EXPECT_EQ(joint("type = \"distance\"\n"), None{});
+}
+
 TEST(SceneWarnings, StepTooLong) {
     // 0.5 m wide and 200 m/s: 1/400 s at most; here 2 m a step.
     EXPECT_EQ(

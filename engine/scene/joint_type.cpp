@@ -1,0 +1,171 @@
+#include "engine/scene/joint_type.h"
+
+#include "engine/core/check.h"
+
+namespace plumb {
+
+namespace {
+
+using scene_file::Bounds;
+using scene_file::moderate;
+using scene_file::not_negative;
+using scene_file::positive;
+
+constexpr Bounds yes_or_no{0, 1, "true or false"};
+constexpr Bounds half_turn{-180, 180, "an angle from -180 to 180 degrees"};
+
+std::vector<JointKey> limits_and_motor(std::string_view unit, const Bounds &bounds,
+                                       std::string_view force, std::string_view what) {
+    const bool is_angle = unit == "rad";
+    return {{"limits", &JointDesc::limits, unit, bounds, "", what, "none"},
+            {"motor_speed", &JointDesc::motor_speed, is_angle ? "rad/s" : "m/s", moderate,
+             "max_motor_force", "what the motor drives it to; with it the motor is on", "no motor"},
+            {"max_motor_force", &JointDesc::max_motor_force, force, not_negative, "",
+             is_angle ? "the motor's greatest torque" : "the motor's greatest force", "0"}};
+}
+
+// Null past the last type.
+const JointTypeInfo *find(JointType type) {
+    using Frames = JointTypeInfo::Frames;
+    switch (type) {
+    case JointType::ball: {
+        static const JointTypeInfo info{type,    "ball",         "holds two points together",
+                                        "a dot", false,          Frames::none,
+                                        {},      {"x", "y", "z"}};
+        return &info;
+    }
+    case JointType::distance: {
+        static const JointTypeInfo info{
+            type,
+            "distance",
+            "holds two points at a distance, like a rod; between a least and a greatest one, like "
+            "a rope; or, with a `frequency`, like a spring",
+            "a rod, a rope that hangs slack where it is longer, or a coil",
+            true,
+            Frames::none,
+            {{"length", JointKey::Length{}, "m", positive, "", "least and greatest length at once",
+              "the distance of the anchors at the start"},
+             {"min_length", &JointDesc::min_length, "m", not_negative, "max_length",
+              "the least distance of the anchors", "0"},
+             {"max_length", &JointDesc::max_length, "m", positive, "",
+              "the greatest distance of the anchors", ""}},
+            {"the length, or the greatest", "the least length"}};
+        return &info;
+    }
+    case JointType::hinge: {
+        static const JointTypeInfo info{
+            type,
+            "hinge",
+            "holds two points and an axis together; the angle is how far b has turned about the "
+            "axis against a",
+            "its axis, and about it the arc of its limits with a hand at the present angle",
+            false,
+            Frames::axis,
+            limits_and_motor("rad", half_turn, "N m", "`[lower, upper]` angle"),
+            {"x", "y", "z", "tilt about y", "tilt about z", "lower limit", "upper limit", "motor"}};
+        return &info;
+    }
+    case JointType::slider: {
+        static const JointTypeInfo info{
+            type,
+            "slider",
+            "lets b move along the axis alone, without turning against a; the position is how far "
+            "its anchor is ahead of a's along the axis",
+            "its rail, with a stop at each limit",
+            false,
+            Frames::axis,
+            limits_and_motor("m", moderate, "N", "`[lower, upper]` position"),
+            {"aside along y", "aside along z", "turn about x", "turn about y", "turn about z",
+             "lower limit", "upper limit", "motor"}};
+        return &info;
+    }
+    case JointType::fixed: {
+        static const JointTypeInfo info{
+            type,
+            "fixed",
+            "holds two bodies together as if they were one",
+            "a small cross",
+            false,
+            Frames::whole,
+            {},
+            {"x", "y", "z", "turn about x", "turn about y", "turn about z"}};
+        return &info;
+    }
+    }
+    return nullptr;
+}
+
+std::string text_of(const JointKey &key) {
+    std::string names = "`" + std::string(key.name) + "`";
+    std::string units(key.unit);
+    if (key.is_angle()) {
+        names += " *or* `" + std::string(key.name) + "_deg`";
+        units += key.unit == "rad" ? " or degrees" : " or degrees/s";
+    }
+    const bool is_positive = key.bounds.min > 0;
+    return "| " + names + " | " + units +
+           (units.empty() ? ""
+            : is_positive ? ", positive: "
+                          : ": ") +
+           std::string(key.about) +
+           (key.needs.empty() ? "" : "; needs `" + std::string(key.needs) + "`") + " | " +
+           std::string(key.by_default) + " |\n";
+}
+
+} // namespace
+
+const std::vector<JointKey> &common_joint_keys() {
+    static const std::vector<JointKey> keys{
+        {"frequency", &JointDesc::frequency, "Hz", not_negative, "",
+         "how fast its spring swings with the bodies on it", "0: rigid"},
+        {"damping_ratio", &JointDesc::damping_ratio, "", not_negative, "frequency",
+         "of that spring: from 1 on it comes to rest without swinging", "1"},
+        {"break_force", &JointDesc::break_force, "N", not_negative, "",
+         "it breaks when it would need more to hold its anchors", "0: never"},
+        {"collide_connected", &JointDesc::collide_connected, "", yes_or_no, "",
+         "whether the two bodies also collide with each other", "false"},
+        {"broken", &JointDesc::broken, "", yes_or_no, "",
+         "whether it has broken: what a saved scene remembers", "false"}};
+    return keys;
+}
+
+const JointTypeInfo &joint_type(JointType type) {
+    const JointTypeInfo *info = find(type);
+    PLUMB_CHECK(info != nullptr, "there is no joint type " << static_cast<int>(type));
+    return *info;
+}
+
+std::span<const JointTypeInfo *const> joint_types() {
+    static const std::vector<const JointTypeInfo *> all = [] {
+        std::vector<const JointTypeInfo *> types;
+        for (int i = 0; const JointTypeInfo *info = find(static_cast<JointType>(i)); ++i)
+            types.push_back(info);
+        return types;
+    }();
+    return all;
+}
+
+std::string joint_reference() {
+    std::string text = "| `type` | it | drawn as | `impulses` of |\n|---|---|---|---|\n";
+    for (const JointTypeInfo *type : joint_types()) {
+        text += "| `\"" + std::string(type->name) + "\"` | " + std::string(type->about) + " | " +
+                std::string(type->drawn) + " | ";
+        for (std::size_t i = 0; i < type->rows.size(); ++i)
+            text += (i == 0 ? "" : ", ") + std::string(type->rows[i]);
+        text += " |\n";
+    }
+    text += "\n| key of every joint | value | default |\n|---|---|---|\n";
+    for (const JointKey &key : common_joint_keys())
+        text += text_of(key);
+    for (const JointTypeInfo *type : joint_types()) {
+        if (type->keys.empty())
+            continue;
+        text +=
+            "\n| key of `\"" + std::string(type->name) + "\"` | value | default |\n|---|---|---|\n";
+        for (const JointKey &key : type->keys)
+            text += text_of(key);
+    }
+    return text;
+}
+
+} // namespace plumb
