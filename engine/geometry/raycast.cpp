@@ -63,19 +63,20 @@ template <typename T> struct LineAndBall {
     T squared;
     T middle;
     T rest; // not negative when they meet
+    bool is_point;
 
     LineAndBall(const Vector<T> &center, const Vector<T> &direction, T radius)
-        : m(center), d(direction), squared(glm::dot(d, d)), middle(glm::dot(m, d)) {
+        : m(center), d(direction), squared(glm::dot(d, d)), middle(glm::dot(m, d)),
+          is_point(!(radius > T(0))) {
         const Vector<T> moment = glm::cross(m, d);
         rest = radius * radius * squared - glm::dot(moment, moment);
     }
     Stretch<T> stretch() const {
         const T half = std::sqrt(rest);
         Stretch<T> stretch{(middle - half) / squared, (middle + half) / squared, Vector<T>(T(0))};
-        // From the point closest to the centre, which may be much closer than the origin.
-        stretch.outward = (middle / squared * d - m) - half / squared * d;
-        if (stretch.outward == Vector<T>(T(0)))
-            stretch.outward = -d; // radius zero
+        // From the point closest to the centre, which may be much closer than the origin. A point
+        // has no direction of its own: what is left of the difference is rounding.
+        stretch.outward = is_point ? -d : (middle / squared * d - m) - half / squared * d;
         return stretch;
     }
 };
@@ -171,9 +172,10 @@ Stretch<double> through_side(const AxisAndLine &line, double radius) {
     const double middle = glm::dot(glm::cross(line.m, line.axis), line.across);
     Stretch<double> stretch{(middle - half) / line.across_squared,
                             (middle + half) / line.across_squared, Wide(0.0)};
-    stretch.outward = line.outward(stretch.enter);
-    if (stretch.outward == Wide(0.0))
-        stretch.outward = -line.d; // radius zero
+    // Off a line only the ray has a direction: the part of it that is across the line.
+    stretch.outward = radius > 0.0
+                          ? line.outward(stretch.enter)
+                          : glm::dot(line.d, line.axis) / line.axis_squared * line.axis - line.d;
     return stretch;
 }
 
@@ -207,7 +209,8 @@ Stretch<double> through_capsule(const AxisAndLine &line, double radius) {
         whole.exit = std::max(whole.exit, side.exit);
         enter_at(side.exit, line.outward(side.exit)); // by the very seam, where no ball was met
     }
-    whole.exit = std::max(whole.exit, whole.enter);
+    if (whole.enter < std::numeric_limits<double>::infinity()) // else nothing was met
+        whole.exit = std::max(whole.exit, whole.enter);
     return whole;
 }
 

@@ -98,9 +98,8 @@ std::optional<RayInterval2> ray_interval(const Circle &circle, const Ray2 &ray) 
     const Real enter = std::max(middle - half, Real(0));
     if (!(enter <= max_t) || enter == infinity)
         return std::nullopt;
-    Vec2 outward = enter * d - to_center;
-    if (outward == Vec2{Real(0)})
-        outward = -d; // a circle without radius
+    // Off a point only the ray has a direction.
+    const Vec2 outward = circle.radius > Real(0) ? enter * d - to_center : -d;
     return rescaled.in_given_units(
         RayInterval2{enter, std::min(middle + half, max_t), glm::normalize(outward)});
 }
