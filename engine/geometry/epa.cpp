@@ -1,5 +1,7 @@
 #include "engine/geometry/epa.h"
 
+#include "engine/geometry/gauss_map.h"
+
 #include <algorithm>
 #include <span>
 
@@ -241,6 +243,35 @@ void keep_independent(Simplex &simplex, const Vec3 &size) {
         simplex.count = 1;
 }
 
+namespace {
+
+// Where a polytope has too many faces for EPA, all directions that its nearest face can have are
+// tried. Then the shapes are moved apart by a little more, and GJK finds where they are closest.
+[[gnu::cold]] Penetration across_the_nearest_face(const CorePair &cores, Vec3 out, Real least,
+                                                  const Vec3 &size) {
+    Penetration result;
+    const auto [map_a, map_b] = cores.gauss_maps();
+    for_each_face_normal(map_a, map_b, [&](const Vec3 &normal) {
+        const Real height = glm::dot(cores.support(normal).w, normal);
+        ++result.iterations;
+        if (height < least) {
+            least = height;
+            out = normal;
+        }
+    });
+    result.depth = std::max(least, Real(0));
+    result.normal = -out;
+    const Real gap = Real(1e-2) * result.depth + Real(16) * rounding_of(size);
+    const Vec3 apart = (result.depth + gap) * result.normal;
+    const GjkResult found = cores.search_moved(apart);
+    const Witnesses on = witnesses(found);
+    result.on_a = on.on_a;
+    result.on_b = on.on_b - apart;
+    return result;
+}
+
+} // namespace
+
 Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
     // A curved surface takes more vertices the closer it is followed, and around an axis of
     // symmetry everywhere at once: with this, 64 around each rim.
@@ -336,6 +367,9 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
         // the second limit is for coordinates beyond all sizes, whose products overflow.
         if (polytope.is_full() || result.iterations > 2 * Polytope::vertex_limit) {
             (void)PLUMB_RARELY("epa: vertex limit", true);
+            if (!cores.is_curved())
+                return across_the_nearest_face(cores, best_normal, least, size);
+            result.excess = std::max(least, Real(0)) - std::max(bound, Real(0));
             break;
         }
         if (!polytope.grow(nearest, vertex, size))
@@ -388,6 +422,7 @@ Proximity proximity(const CorePair &cores, Real far) {
         result.normal = deep.normal;
         result.on_a = deep.on_a + cores.radius_a() * deep.normal;
         result.on_b = deep.on_b - cores.radius_b() * deep.normal;
+        result.excess = deep.excess;
         result.iterations = deep.iterations;
     } else {
         const Witnesses on = witnesses(found);

@@ -14,11 +14,12 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 struct Penetration {
-    Real depth = Real(0); // >= 0
-    Vec3 normal{Real(0)}; // unit, from A to B: B moved by depth * normal just touches A
-    Vec3 on_a{Real(0)};   // the deepest point of A in B
-    Vec3 on_b{Real(0)};   // the deepest point of B in A: on_a - depth * normal
-    int iterations = 0;   // support points taken
+    Real depth = Real(0);  // >= 0
+    Vec3 normal{Real(0)};  // unit, from A to B: B moved by depth * normal just touches A
+    Vec3 on_a{Real(0)};    // the deepest point of A in B
+    Vec3 on_b{Real(0)};    // the deepest point of B in A: on_a - depth * normal
+    Real excess = Real(0); // by which `depth` may be more than the least; see below
+    int iterations = 0;    // support points taken
 };
 
 // The least translation that parts two convex shapes that overlap; none for shapes that do not
@@ -27,9 +28,10 @@ struct Penetration {
 // `depth` along `normal` parts them, and is the shortest way to, within the rounding of `distance`
 // (gjk.h) and relative 1e-5 in float, 1e-10 in double. Where cylinders are in each other (not where
 // a cylinder is in the radius of another shape only) the shortest way is found within 4e-3, and the
-// points may be as much off the surface. Where several ways are as short, one of them. Shapes that
-// are flat together, such as triangles in one plane, part across the plane with depth 0; concentric
-// points along +Y.
+// points may be as much off the surface. A cylinder and a hull with so many faces about as far out
+// that the search meets its limit miss that by at most `excess` (metres), zero for all others.
+// Where several ways are as short, one of them. Shapes that are flat together, such as triangles in
+// one plane, part across the plane with depth 0; concentric points along +Y.
 template <typename A, typename B>
 requires ConvexPair<A, B> std::optional<Penetration> penetration(const A &a, const B &b);
 
@@ -39,6 +41,7 @@ struct Proximity {
     Vec3 normal{Real(0)};      // unit, from A to B
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
+    Real excess = Real(0); // of a penetration
     int iterations = 0;
     bool is_beyond = false; // farther apart than was asked for; nothing else is known
 };
@@ -133,8 +136,8 @@ requires ConvexPair<A, B> std::optional<Penetration> penetration(const A &a, con
     const Proximity found = proximity(CorePair(core_a, core_b), Real(0));
     if (found.is_beyond || found.separation > Real(0))
         return std::nullopt;
-    return Penetration{-found.separation, found.normal, origin + found.on_a, origin + found.on_b,
-                       found.iterations};
+    return Penetration{-found.separation,   found.normal, origin + found.on_a,
+                       origin + found.on_b, found.excess, found.iterations};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -7,6 +7,7 @@
 // algorithm for faster and more reliable distance queries between convex objects".
 #pragma once
 
+#include "engine/geometry/gauss_map.h"
 #include "engine/geometry/support.h"
 
 #include <array>
@@ -31,8 +32,8 @@ struct ClosestPoints {
 // the largest coordinate of either shape, measured from A's place: what the shapes' own corners are
 // rounded by. Shapes that are closer may count as overlapping, and their normal is then no better
 // than that either. Axes along which all coordinates are small keep their own rounding: a box on a
-// ground of 200 km has its distance to 1e-6 m. Points, segments and shapes without thickness are
-// allowed, but not a point with a point.
+// ground of 200 km has its distance to 1e-6 m. For the range of sizes and distances see shapes.h.
+// Points, segments and shapes without thickness are allowed, but not a point with a point.
 template <typename A, typename B>
 requires ConvexPair<A, B> ClosestPoints distance(const A &a, const B &b);
 ClosestPoints distance(const Sphere &a, const Box &b);
@@ -165,7 +166,8 @@ class CorePair {
     template <typename CoreA, typename CoreB>
     CorePair(const CoreA &a, const CoreB &b)
         : a_(&a), b_(&b), gjk_(gjk_of<CoreA, CoreB>), support_(support_of<CoreA, CoreB>),
-          radius_a_(a.radius), radius_b_(b.radius), between_middles_(b.middle() - a.middle()),
+          moved_(moved_of<CoreA, CoreB>), maps_(maps_of<CoreA, CoreB>), radius_a_(a.radius),
+          radius_b_(b.radius), between_middles_(b.middle() - a.middle()),
           is_curved_(std::same_as<CoreA, CylinderCore> || std::same_as<CoreB, CylinderCore>) {
         if constexpr (HasNearestPoints<CoreA, CoreB>)
             closed_form_ = [](const void *of_a, const void *of_b) {
@@ -175,6 +177,10 @@ class CorePair {
     }
 
     GjkResult search(const Vec3 &guess, Real far) const { return gjk_(a_, b_, guess, far); }
+    // With B moved by that much.
+    GjkResult search_moved(const Vec3 &by) const { return moved_(a_, b_, by); }
+    // What the faces and edges of the two cores look like from everywhere.
+    std::pair<GaussMap, GaussMap> gauss_maps() const { return maps_(a_, b_); }
     bool has_closed_form() const { return closed_form_ != nullptr; }
     NearestPoints closed_form() const { return closed_form_(a_, b_); }
     // The point of the difference B - A farthest along a direction.
@@ -190,6 +196,18 @@ class CorePair {
         return gjk(*static_cast<const CoreA *>(a), *static_cast<const CoreB *>(b), guess, far);
     }
     template <typename CoreA, typename CoreB>
+    static GjkResult moved_of(const void *a, const void *b, const Vec3 &by) {
+        CoreB moved = *static_cast<const CoreB *>(b);
+        moved.move(by);
+        return gjk(*static_cast<const CoreA *>(a), moved, by,
+                   std::numeric_limits<Real>::infinity());
+    }
+    template <typename CoreA, typename CoreB>
+    static std::pair<GaussMap, GaussMap> maps_of(const void *a, const void *b) {
+        return {gauss_map(*static_cast<const CoreA *>(a)),
+                gauss_map(*static_cast<const CoreB *>(b))};
+    }
+    template <typename CoreA, typename CoreB>
     static SimplexVertex support_of(const void *a, const void *b, const Vec3 &direction) {
         const Vec3 on_a = static_cast<const CoreA *>(a)->support(-direction);
         const Vec3 on_b = static_cast<const CoreB *>(b)->support(direction);
@@ -200,6 +218,8 @@ class CorePair {
     const void *b_;
     GjkResult (*gjk_)(const void *, const void *, const Vec3 &, Real);
     SimplexVertex (*support_)(const void *, const void *, const Vec3 &);
+    GjkResult (*moved_)(const void *, const void *, const Vec3 &);
+    std::pair<GaussMap, GaussMap> (*maps_)(const void *, const void *);
     NearestPoints (*closed_form_)(const void *, const void *) = nullptr;
     Real radius_a_;
     Real radius_b_;
