@@ -25,9 +25,8 @@ void check_pose(const Transform &pose) {
     PLUMB_CHECK(is_finite(pose.position), "body position must be finite, got "
                                               << pose.position.x << ", " << pose.position.y << ", "
                                               << pose.position.z);
-    const Real length = glm::length(pose.rotation);
-    PLUMB_CHECK(std::abs(length - Real(1)) < Real(1e-3),
-                "body rotation must be of unit length, got " << length);
+    PLUMB_CHECK(is_unit(glm::dot(pose.rotation, pose.rotation)),
+                "body rotation must be of unit length, got " << glm::length(pose.rotation));
 }
 
 template <typename Item>

@@ -1,4 +1,4 @@
-// Closest points of segments and boxes.
+// Closest points of segments: a part of other queries, in hot code, so nothing is checked.
 #pragma once
 
 #include "engine/math/types.h"

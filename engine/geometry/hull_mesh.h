@@ -53,4 +53,8 @@ struct ConvexHull {
     Quat rotation = identity_rotation;
 };
 
+// A mesh that is missing or has no vertices, a position that is not finite, and a rotation that is
+// not of unit length (is_unit) fail a check: here, and in each query that takes a ConvexHull.
+void check_valid(const ConvexHull &hull);
+
 } // namespace plumb::inline PLUMB_PRECISION

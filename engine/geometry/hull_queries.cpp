@@ -145,25 +145,18 @@ Vec3 closest_local(const HullMesh &mesh, const Vec3 &p) {
     return best;
 }
 
-// Exact, for a ray that starts outside of a mesh with flat faces: whether it meets the solid.
-bool truly_meets(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction) {
-    // In front of a face and not coming closer to its plane.
-    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-        const auto &[a, b, c] = mesh.face_corners[face];
-        if (is_in_front(mesh, face, origin) &&
-            triple_sign(direction, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) >= 0)
-            return false;
-    }
-    // Else every face that the origin is in front of is ahead, so the solid is if the line meets
-    // it: if it passes all edges of a face on the same side. A face that the line lies in says
-    // nothing, but a line that meets such a face also meets another one that it does not lie in.
+// Exact, for a mesh with flat faces: whether a line meets the solid. It does if it passes all edges
+// of a face on the same side. A face that the line lies in says nothing, but a line that meets such
+// a face also meets another one that it does not lie in. `side_of` is the side on which the line
+// passes the edge between two vertices.
+template <typename SideOf> bool line_meets(const HullMesh &mesh, const SideOf &side_of) {
     for (const HullMesh::Face &loop : mesh.faces) {
         bool any_left = false;
         bool any_right = false;
         Index from = mesh.vertex_indices[loop.first + loop.count - 1];
         for (Index i = loop.first; i < loop.first + loop.count; ++i) {
             const Index to = mesh.vertex_indices[i];
-            const int side = triple_sign(direction, origin, mesh.vertices[from], mesh.vertices[to]);
+            const int side = side_of(mesh.vertices[from], mesh.vertices[to]);
             any_left |= side > 0;
             any_right |= side < 0;
             from = to;
@@ -174,12 +167,40 @@ bool truly_meets(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction
     return false;
 }
 
+// Exact, for a ray that starts outside of a mesh with flat faces: whether it meets the solid.
+bool truly_meets(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction) {
+    // In front of a face and not coming closer to its plane.
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        const auto &[a, b, c] = mesh.face_corners[face];
+        if (is_in_front(mesh, face, origin) &&
+            triple_sign(direction, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) >= 0)
+            return false;
+    }
+    // Else every face that the origin is in front of is ahead, so the solid is if the line meets
+    // it.
+    return line_meets(mesh, [&](const Vec3 &from, const Vec3 &to) {
+        return triple_sign(direction, origin, from, to);
+    });
+}
+
+// The same of a segment with both ends outside. From its ends, for their difference is rounded.
+bool segment_truly_meets(const HullMesh &mesh, const Vec3 &a, const Vec3 &b) {
+    // A solid that the line meets beyond one end has a face that both ends are in front of.
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face)
+        if (is_in_front(mesh, face, a) && is_in_front(mesh, face, b))
+            return false;
+    return line_meets(mesh,
+                      [&](const Vec3 &from, const Vec3 &to) { return orient3d(a, from, to, b); });
+}
+
 // The ray against the half-spaces of the faces (Cyrus, Beck 1978, "Generalized two- and
 // three-dimensional clipping"), each known but for the doubt: what is met even when all are moved
 // in by it is met, what is missed even when all are moved out is missed.
 struct Clip {
     Real enter = -infinity;
     Real exit = infinity;
+    Real late_enter = -infinity; // what `enter` may be at most, and at least
+    Real early_enter = -infinity;
     std::size_t face = 0; // that the ray enters by
     bool is_missed = false;
     bool is_doubtful = false;
@@ -193,7 +214,6 @@ Clip clip(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction) {
                      Real(2) * sum_of_magnitudes(mesh.box.min);
     const Real flat_climb = doubt / way * sum_of_magnitudes(direction);
     Clip result;
-    Real late_enter = -infinity, early_enter = -infinity;
     Real late_exit = infinity, early_exit = infinity;
     Real greatest = -infinity;
     std::size_t highest_face = 0;
@@ -219,20 +239,20 @@ Clip clip(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction) {
                 result.enter = t;
                 result.face = face;
             }
-            late_enter = std::max(late_enter, t + late);
-            early_enter = std::max(early_enter, t - late);
+            result.late_enter = std::max(result.late_enter, t + late);
+            result.early_enter = std::max(result.early_enter, t - late);
         } else {
             result.exit = std::min(result.exit, t);
             late_exit = std::min(late_exit, t + late);
             early_exit = std::min(early_exit, t - late);
         }
     }
-    result.is_missed = early_enter > late_exit || late_exit < Real(0);
-    result.is_doubtful |= !(late_enter <= early_exit && early_exit >= Real(0));
+    result.is_missed = result.early_enter > late_exit || late_exit < Real(0);
+    result.is_doubtful |= !(result.late_enter <= early_exit && early_exit >= Real(0));
     // A ray that touches an edge or a corner may seem to leave before it enters. Where all heights
     // are within the doubt, it is on the surface.
     if (result.enter > result.exit)
-        result.enter = result.exit = Real(0.5) * (early_enter + late_exit);
+        result.enter = result.exit = Real(0.5) * (result.early_enter + late_exit);
     if (!(result.enter > Real(0)))
         result.face = highest_face;
     return result;
@@ -246,8 +266,7 @@ void check_valid(const ConvexHull &hull) {
                     << (hull.mesh == nullptr ? "none" : "an empty one"));
     PLUMB_CHECK(is_finite(hull.position),
                 "hull position must be finite, got " << Printed{hull.position});
-    // Twice the 1e-3 by which the length may be off.
-    PLUMB_CHECK(std::abs(glm::dot(hull.rotation, hull.rotation) - Real(1)) <= Real(2e-3),
+    PLUMB_CHECK(is_unit(glm::dot(hull.rotation, hull.rotation)),
                 "hull rotation must have unit length, got (w, x, y, z) = ("
                     << hull.rotation.w << ", " << hull.rotation.x << ", " << hull.rotation.y << ", "
                     << hull.rotation.z << ')');
@@ -395,12 +414,23 @@ std::optional<RayInterval> ray_interval(const ConvexHull &hull, const Ray &ray) 
 }
 
 bool linetest(const ConvexHull &hull, const Vec3 &a, const Vec3 &b) {
+    check_valid(hull);
     check_point(a);
     check_point(b);
-    if (contains(hull, a) || contains(hull, b))
+    const MeshFrame frame(hull);
+    const HullMesh &mesh = *hull.mesh;
+    const Vec3 from = frame.local_point(a), to = frame.local_point(b);
+    if (contains_local(mesh, from) || contains_local(mesh, to))
         return true;
-    // With both ends outside, the solid is between them when it is ahead of both.
-    return a != b && ray_interval(hull, Ray{a, b - a}) && ray_interval(hull, Ray{b, a - b});
+    if (from == to)
+        return false;
+    // The rounded difference decides where it leaves no doubt.
+    const Clip through = clip(mesh, from, to - from);
+    if (through.is_missed || through.early_enter > Real(1))
+        return false;
+    if (!through.is_doubtful && through.late_enter <= Real(1))
+        return true;
+    return !mesh.has_flat_faces || segment_truly_meets(mesh, from, to);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

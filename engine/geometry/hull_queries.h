@@ -13,10 +13,6 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// A mesh that is missing or has no vertices, a position that is not finite, a rotation that is not
-// of unit length (within 1e-3) fail a check: here, and in each query below that takes a ConvexHull.
-void check_valid(const ConvexHull &hull);
-
 // The smallest axis-aligned box around the hull's vertices as placed in the world.
 Aabb bounds(const ConvexHull &hull);
 
@@ -60,12 +56,15 @@ PlaneTest classify(const Plane &plane, const ConvexHull &hull);
 // As for the other solids (raycast.h). Closed: a ray through an edge or a corner is never lost
 // between two faces. Where ray.origin and ray.direction are exact in the frame of the mesh, and its
 // faces exactly flat, hit or miss is exact but for the comparison of t_enter with max_t. Elsewhere
-// wrong only for rays whose distance from touching is within the doubt, and there it says hit. The
-// points at t_enter and t_exit are on the surface within twice the doubt.
+// wrong only for rays whose distance from touching is within the doubt: those of a mesh that is not
+// turned and has a face that is not flat hit, and of others either. The points at t_enter and
+// t_exit are on the surface within twice the doubt.
 std::optional<RayInterval> ray_interval(const ConvexHull &hull, const Ray &ray);
 
 // Whether the segment from a to b has a point in the hull. One wholly inside does; a == b asks
-// whether that point is inside. As exact as ray_interval, at both ends.
+// whether that point is inside. Exact where a - position and b - position are exact in the frame of
+// the mesh, and its faces exactly flat: a segment that crosses an edge or touches a corner meets.
+// Elsewhere as right as ray_interval.
 bool linetest(const ConvexHull &hull, const Vec3 &a, const Vec3 &b);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -162,9 +162,11 @@ PrincipalFrame principal_frame(const Mat3 &inertia) {
 MassProperties mass_properties(std::span<const Triangle> surface) {
     using Wide = glm::dvec3;
     Wide base{0.0};
-    for (const Triangle &triangle : surface)
+    for (const Triangle &triangle : surface) {
+        check_valid(triangle);
         base += (Wide(triangle.a) + Wide(triangle.b) + Wide(triangle.c)) /
                 (3.0 * double(surface.size()));
+    }
     double six_volumes = 0.0;
     Wide first{0.0};
     glm::dmat3 second(0.0);

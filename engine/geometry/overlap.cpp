@@ -197,6 +197,7 @@ bool overlaps(const Capsule &a, const Capsule &b) {
 }
 
 bool overlaps(const Capsule &capsule, const Sphere &sphere) {
+    check_valid(capsule);
     check_valid(sphere);
     return contains(Capsule{capsule.a, capsule.b, capsule.radius + sphere.radius}, sphere.center);
 }

@@ -24,35 +24,59 @@ void check_plane(const Vec3 &normal, Real offset, const char *shape) {
     PLUMB_CHECK(are_finite(offset), shape << " offset must be finite, got " << offset);
 }
 
+// Of what `placed` is given.
+template <typename Solid> void check_placing(const Solid &local, const Transform &pose) {
+    check_valid(local);
+    const Vec3 &p = pose.position;
+    const Quat &q = pose.rotation;
+    if (are_finite(p.x, p.y, p.z) && is_unit(glm::dot(q, q))) [[likely]]
+        return;
+    check_point(p, "pose position");
+    PLUMB_CHECK(false, "pose rotation must have unit length, got (w, x, y, z) = ("
+                           << q.w << ", " << q.x << ", " << q.y << ", " << q.z << ')');
+}
+
 } // namespace
 
 Sphere placed(const Sphere &local, const Transform &pose) {
+    check_placing(local, pose);
     return {to_world_point(pose, local.center), local.radius};
 }
 
+// Of the product of two roundings off unit length each the length may be off by more than a box
+// may have.
 Box placed(const Box &local, const Transform &pose) {
-    return {to_world_point(pose, local.center), pose.rotation * local.rotation, local.half_extents};
+    check_placing(local, pose);
+    return {to_world_point(pose, local.center), unit(pose.rotation * local.rotation),
+            local.half_extents};
 }
 
 Capsule placed(const Capsule &local, const Transform &pose) {
+    check_placing(local, pose);
     return {to_world_point(pose, local.a), to_world_point(pose, local.b), local.radius};
 }
 
 Cylinder placed(const Cylinder &local, const Transform &pose) {
+    check_placing(local, pose);
     return {to_world_point(pose, local.a), to_world_point(pose, local.b), local.radius};
 }
 
 Segment placed(const Segment &local, const Transform &pose) {
+    check_placing(local, pose);
     return {to_world_point(pose, local.a), to_world_point(pose, local.b)};
 }
 
 Triangle placed(const Triangle &local, const Transform &pose) {
+    check_placing(local, pose);
     return {to_world_point(pose, local.a), to_world_point(pose, local.b),
             to_world_point(pose, local.c)};
 }
 
 HalfSpace placed(const HalfSpace &local, const Transform &pose) {
-    const Vec3 normal = to_world_vector(pose, local.normal);
+    check_placing(local, pose);
+    Vec3 normal = to_world_vector(pose, local.normal);
+    if (!is_unit(glm::dot(normal, normal))) // as for a box
+        normal = glm::normalize(normal);
     return {normal, local.offset + glm::dot(normal, pose.position)};
 }
 
@@ -61,10 +85,12 @@ Shape placed(const Shape &local, const Transform &pose) {
 }
 
 Aabb bounds(const Sphere &sphere) {
+    check_valid(sphere);
     return {sphere.center - sphere.radius, sphere.center + sphere.radius};
 }
 
 Aabb bounds(const Box &box) {
+    check_valid(box);
     // The extent along a world axis is the sum of the projections of the three half edges
     // (Ericson 2005, "Real-Time Collision Detection", 4.2.6).
     const Mat3 rotation = glm::mat3_cast(box.rotation);
@@ -75,11 +101,13 @@ Aabb bounds(const Box &box) {
 }
 
 Aabb bounds(const Capsule &capsule) {
+    check_valid(capsule);
     return {glm::min(capsule.a, capsule.b) - capsule.radius,
             glm::max(capsule.a, capsule.b) + capsule.radius};
 }
 
 Aabb bounds(const Cylinder &cylinder) {
+    check_valid(cylinder);
     // A disc with the unit normal n reaches r sqrt(1 - n_i^2) along axis i; written without the
     // difference, which would cancel where the cylinder lies along an axis.
     const Vec3 axis = glm::normalize(cylinder.b - cylinder.a);
@@ -90,20 +118,18 @@ Aabb bounds(const Cylinder &cylinder) {
 }
 
 Aabb bounds(const Segment &segment) {
+    check_valid(segment);
     return {glm::min(segment.a, segment.b), glm::max(segment.a, segment.b)};
 }
 
-Aabb bounds(const Shape &shape) {
-    if (const auto *sphere = std::get_if<Sphere>(&shape))
-        return bounds(*sphere);
-    if (const auto *box = std::get_if<Box>(&shape))
-        return bounds(*box);
-    if (const auto *capsule = std::get_if<Capsule>(&shape))
-        return bounds(*capsule);
-    const HalfSpace &half_space = std::get<HalfSpace>(shape);
+Aabb bounds(const HalfSpace &half_space) {
     PLUMB_CHECK(false, "a half-space has no finite bounds; its normal is "
                            << Printed{half_space.normal} << " and its offset "
                            << half_space.offset);
+}
+
+Aabb bounds(const Shape &shape) {
+    return std::visit([](const auto &solid) { return bounds(solid); }, shape);
 }
 
 void refuse(const Sphere &sphere) {

@@ -124,11 +124,9 @@ void check_valid(const Rectangle &rectangle) {
 }
 
 void check_valid(const OrientedRectangle &rectangle) {
-    // Of the squared length: twice the 1e-3 by which the length may be off.
-    constexpr Real unit_tolerance = Real(2e-3);
     PLUMB_CHECK(is_finite(rectangle.center),
                 "rectangle centre must be finite, got " << Printed{rectangle.center});
-    PLUMB_CHECK(std::abs(glm::dot(rectangle.axis, rectangle.axis) - Real(1)) <= unit_tolerance,
+    PLUMB_CHECK(is_unit(glm::dot(rectangle.axis, rectangle.axis)),
                 "rectangle axis must have unit length, got " << Printed{rectangle.axis});
     PLUMB_CHECK(is_finite(rectangle.half_extents) && rectangle.half_extents.x >= Real(0) &&
                     rectangle.half_extents.y >= Real(0),

@@ -26,6 +26,7 @@ void check_valid(const TriangleMesh &mesh) {
 }
 
 Aabb bounds(const TriangleMesh &mesh) {
+    check_valid(mesh);
     Aabb box;
     for (const std::array<std::uint32_t, 3> &corners : mesh.triangles)
         for (const std::uint32_t corner : corners) {

@@ -3,9 +3,23 @@
 
 #include "engine/math/types.h"
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace plumb::inline PLUMB_PRECISION {
+
+// Whether the squared length is that of a vector or quaternion of unit length, but for roundings:
+// the length is off by at most 16 epsilon. That many a product of several rotations leaves; the
+// digits of one that was typed in by hand do not do.
+inline bool is_unit(Real squared_length) {
+    return std::abs(squared_length - Real(1)) <= Real(32) * std::numeric_limits<Real>::epsilon();
+}
+
+// The same rotation with unit length; itself, bit for bit, when it has that. q is not zero.
+inline Quat unit(const Quat &q) {
+    return is_unit(glm::dot(q, q)) ? q : glm::normalize(q);
+}
 
 // The matrix of q's rotation; a rotation also when q is off unit length, where glm::mat3_cast gives
 // a matrix that scales or shears. q is not zero.

@@ -12,7 +12,7 @@ namespace plumb::scene_file {
 
 namespace {
 
-constexpr double exactly_unit = 1e-6; // within this, a unit vector is taken as it is
+constexpr double exactly_unit = 5e-7; // within this, a rotation of a world in float, as written
 constexpr double nearly_unit = 1e-3;  // within this, it is taken as rounded by hand, and normalised
 
 // Keys that one looks for here but that belong elsewhere.

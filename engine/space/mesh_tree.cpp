@@ -258,9 +258,9 @@ bool overlaps(const MeshTree &mesh, const Aabb &box) {
 
 bool overlaps(const MeshTree &mesh, const Box &box) {
     check_valid(box);
-    // A rotation may be off unit length, and the box with it, by a thousandth.
-    const Real size = largest(box.half_extents);
-    const Real slack = Real(0.01) * size + Real(8) * epsilon * largest(box.center);
+    // A rotation may be off unit length by 16 epsilon, and a reach, of three parts, with it.
+    const Real slack =
+        Real(256) * epsilon * largest(box.half_extents) + Real(8) * epsilon * largest(box.center);
     return overlaps_within(mesh, grown(bounds(box), slack), box);
 }
 

@@ -24,7 +24,7 @@ void check_placement(const Placement &placement, const char *whose) {
                                                            << mesh_reach << " m, got "
                                                            << Printed{placement.position});
     const Quat &q = placement.rotation;
-    PLUMB_CHECK(std::abs(glm::dot(q, q) - Real(1)) <= Real(2e-3),
+    PLUMB_CHECK(is_unit(glm::dot(q, q)),
                 whose << " rotation must have unit length, got (w, x, y, z) = (" << q.w << ", "
                       << q.x << ", " << q.y << ", " << q.z << ')');
     PLUMB_CHECK(placement.scale >= Real(1e-6) && placement.scale <= Real(1e6),

@@ -26,7 +26,7 @@ void answer_models(Asking &ask) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const ProbeShapeDesc &shape = ask.probe.shapes[i];
         const auto parent = model_of.find(shape.parent);
-        const Placement local{Vec3{shape.position}, Quat{shape.orientation}, Real(1)};
+        const Placement local{Vec3{shape.position}, unit(Quat{shape.orientation}), Real(1)};
         models.push_back(scene.add(&meshes[i], local,
                                    parent == model_of.end() ? ModelScene::none : parent->second));
         if (!shape.name.empty())

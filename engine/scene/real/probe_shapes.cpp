@@ -258,7 +258,7 @@ AskedShape make(const ProbeShapeDesc &desc, std::unique_ptr<HullMesh> &hull) {
     using Kind = ProbeShapeKind;
     const Vec3 position{desc.position};
     const Vec3 half{desc.half_extents};
-    const Quat rotation{desc.orientation};
+    const Quat rotation = unit(Quat{desc.orientation});
     const Vec3 up = rotated(rotation, Vec3{Real(0), real(desc.half_height), Real(0)});
     switch (desc.kind) {
     case Kind::sphere:

@@ -207,7 +207,7 @@ std::size_t WorldSimulation::insert(const BodyDesc &desc) {
                        ? static_cast<Real>(mass_of(state_.scene, desc))
                        : static_cast<Real>(material.density) * volume(def.shape);
     def.material = {static_cast<Real>(material.friction), static_cast<Real>(material.restitution)};
-    def.pose = {Vec3{desc.position}, Quat{desc.orientation}};
+    def.pose = {Vec3{desc.position}, unit(Quat{desc.orientation})};
     def.velocity = Vec3{desc.velocity};
     def.angular_velocity = Vec3{desc.angular_velocity};
     const std::size_t index = state_.world.add_body(def).index;
