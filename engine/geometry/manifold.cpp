@@ -1,36 +1,24 @@
 #include "engine/geometry/manifold.h"
 
 #include "engine/core/check.h"
-#include "engine/geometry/manifold_pairs.h"
 
 #include <cmath>
 
 namespace plumb::inline PLUMB_PRECISION {
 
-namespace {
-
-// For a.index() <= b.index(), in the order of the variant: Sphere, Box, Capsule, HalfSpace.
-Manifold collide_ordered(const Shape &a, const Shape &b, Real margin) {
-    return std::visit(
-        [&](const auto &first, const auto &second) -> Manifold {
-            if constexpr (requires { collide_pair(first, second, margin); })
-                return collide_pair(first, second, margin);
-            else
-                return {};
-        },
-        a, b);
-}
-
-} // namespace
-
-Manifold collide(const Shape &a, const Shape &b, Real margin) {
+void check_margin(Real margin) {
     PLUMB_CHECK(margin >= Real(0) && std::isfinite(margin),
                 "contact margin must be finite and not negative, got " << margin);
-    check_valid(a);
-    check_valid(b);
-    if (a.index() > b.index())
-        return mirrored(collide_ordered(b, a, margin));
-    return collide_ordered(a, b, margin);
+}
+
+Manifold collide(const Shape &a, const Shape &b, Real margin) {
+    return std::visit(
+        [&]<typename A, typename B>(const A &first, const B &second) {
+            // A kind of shape without contacts would come back here.
+            static_assert(Collidable<A, B>, "each two kinds of Shape need unchecked::collide");
+            return collide(first, second, margin);
+        },
+        a, b);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

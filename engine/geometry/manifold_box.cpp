@@ -346,9 +346,11 @@ bool is_reference(const Vec3 &a, const Vec3 &b) {
 
 } // namespace
 
-Manifold collide_pair(const Box &a, const Box &b, Real margin) {
+namespace unchecked {
+
+Manifold collide(const Box &a, const Box &b, Real margin) {
     if (!is_reference(a.half_extents, b.half_extents))
-        return mirrored(collide_pair(b, a, margin));
+        return mirrored(collide(b, a, margin));
 
     const Vec3 &half_a = a.half_extents;
     const Vec3 &half_b = b.half_extents;
@@ -437,7 +439,7 @@ Manifold collide_pair(const Box &a, const Box &b, Real margin) {
 
 // --- Box against round shapes and half-space -----------------------------------------------------
 
-Manifold collide_pair(const Sphere &a, const Box &b, Real margin) {
+Manifold collide(const Sphere &a, const Box &b, Real margin) {
     const Vec3 center = glm::conjugate(b.rotation) * (a.center - b.center);
     const Vec3 on_box = glm::clamp(center, -b.half_extents, b.half_extents);
     const Vec3 outside = center - on_box;
@@ -480,7 +482,7 @@ Manifold collide_pair(const Sphere &a, const Box &b, Real margin) {
     return in_world(contact, normal, b, true);
 }
 
-Manifold collide_pair(const Box &a, const Capsule &b, Real margin) {
+Manifold collide(const Box &a, const Capsule &b, Real margin) {
     const Vec3 &half = a.half_extents;
     const Quat to_box = glm::conjugate(a.rotation);
     const Vec3 start = to_box * (b.a - a.center);
@@ -488,7 +490,7 @@ Manifold collide_pair(const Box &a, const Capsule &b, Real margin) {
     const Vec3 end = start + along;
     const Real length = glm::length(along);
     if (!(length >= std::sqrt(std::numeric_limits<Real>::min())))
-        return mirrored(collide_pair(Sphere{b.a, b.radius}, a, margin));
+        return mirrored(collide(Sphere{b.a, b.radius}, a, margin));
 
     // The separating axis test of a segment and a box: three face normals and three cross products.
     BoxAxis face;
@@ -649,7 +651,7 @@ Manifold collide_pair(const Box &a, const Capsule &b, Real margin) {
         // On the edge that is most nearly parallel there may be two contacts.
         const Edge box_edge = edge(half, supporting_edge(main_axis, surface));
         const Capsule as_capsule{box_edge.start, box_edge.start + box_edge.along, Real(0)};
-        const Manifold beside = collide_pair(as_capsule, Capsule{start, end, b.radius}, margin);
+        const Manifold beside = collide(as_capsule, Capsule{start, end, b.radius}, margin);
         if (beside.count == 2) {
             for (int i = 0; i < 2; ++i) {
                 const ManifoldPoint &point = beside.points[static_cast<std::size_t>(i)];
@@ -664,7 +666,7 @@ Manifold collide_pair(const Box &a, const Capsule &b, Real margin) {
     return in_world(contacts, normal, a, false);
 }
 
-Manifold collide_pair(const Box &a, const HalfSpace &b, Real margin) {
+Manifold collide(const Box &a, const HalfSpace &b, Real margin) {
     const Vec3 up = glm::conjugate(a.rotation) * b.normal; // in the box's frame
     const Real height = glm::dot(b.normal, a.center) - b.offset;
     Candidates corners;
@@ -689,5 +691,7 @@ Manifold collide_pair(const Box &a, const HalfSpace &b, Real margin) {
     }
     return in_world(corners, -up, a, false);
 }
+
+} // namespace unchecked
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,6 +1,6 @@
-#include "engine/geometry/manifold_convex.h"
-
+// Contacts of cylinders, convex hulls and triangles with every solid.
 #include "engine/geometry/epa.h"
+#include "engine/geometry/manifold_pairs.h"
 #include "engine/math/basis.h"
 
 #include <algorithm>
@@ -481,53 +481,63 @@ Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real ma
 
 } // namespace
 
-Manifold collide_pair(const Sphere &a, const Cylinder &b, Real margin) {
+namespace unchecked {
+
+Manifold collide(const Sphere &a, const Cylinder &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Sphere &a, const ConvexHull &b, Real margin) {
+Manifold collide(const Sphere &a, const ConvexHull &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Sphere &a, const Triangle &b, Real margin) {
+Manifold collide(const Sphere &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Box &a, const Cylinder &b, Real margin) {
+Manifold collide(const Box &a, const Cylinder &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Box &a, const ConvexHull &b, Real margin) {
+Manifold collide(const Box &a, const ConvexHull &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Box &a, const Triangle &b, Real margin) {
+Manifold collide(const Box &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Capsule &a, const Cylinder &b, Real margin) {
+Manifold collide(const Capsule &a, const Cylinder &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Capsule &a, const ConvexHull &b, Real margin) {
+Manifold collide(const Capsule &a, const ConvexHull &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Capsule &a, const Triangle &b, Real margin) {
+Manifold collide(const Capsule &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Cylinder &a, const Cylinder &b, Real margin) {
+Manifold collide(const Cylinder &a, const Cylinder &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Cylinder &a, const ConvexHull &b, Real margin) {
+Manifold collide(const Cylinder &a, const ConvexHull &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Cylinder &a, const Triangle &b, Real margin) {
+Manifold collide(const Cylinder &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const ConvexHull &a, const ConvexHull &b, Real margin) {
+Manifold collide(const ConvexHull &a, const ConvexHull &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const ConvexHull &a, const Triangle &b, Real margin) {
+Manifold collide(const ConvexHull &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide_pair(const Cylinder &a, const HalfSpace &b, Real margin) {
+Manifold collide(const Triangle &a, const Triangle &b, Real margin) {
+    return collide_convex(a, b, margin);
+}
+Manifold collide(const Cylinder &a, const HalfSpace &b, Real margin) {
     return collide_half_space(a, b, margin);
 }
-Manifold collide_pair(const ConvexHull &a, const HalfSpace &b, Real margin) {
+Manifold collide(const ConvexHull &a, const HalfSpace &b, Real margin) {
     return collide_half_space(a, b, margin);
 }
+Manifold collide(const Triangle &a, const HalfSpace &b, Real margin) {
+    return collide_half_space(a, b, margin);
+}
+
+} // namespace unchecked
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,27 +1,9 @@
-// The contact manifolds of the single pairs of shapes; `collide` chooses among them.
-//
-// Normals point from the first argument to the second. Shapes are valid and `margin` >= 0.
+// What the contacts of the single pairs of shapes have in common.
 #pragma once
 
 #include "engine/geometry/manifold.h"
 
 namespace plumb::inline PLUMB_PRECISION {
-
-Manifold collide_pair(const Sphere &a, const Sphere &b, Real margin);
-Manifold collide_pair(const Sphere &a, const Box &b, Real margin);
-Manifold collide_pair(const Sphere &a, const Capsule &b, Real margin);
-Manifold collide_pair(const Sphere &a, const HalfSpace &b, Real margin);
-Manifold collide_pair(const Box &a, const Box &b, Real margin);
-Manifold collide_pair(const Box &a, const Capsule &b, Real margin);
-Manifold collide_pair(const Box &a, const HalfSpace &b, Real margin);
-Manifold collide_pair(const Capsule &a, const Capsule &b, Real margin);
-Manifold collide_pair(const Capsule &a, const HalfSpace &b, Real margin);
-
-// The same contact seen from the other shape.
-inline Manifold mirrored(Manifold manifold) {
-    manifold.normal = -manifold.normal;
-    return manifold;
-}
 
 inline void add_point(Manifold &manifold, const Vec3 &position, Real separation,
                       std::uint32_t feature) {

@@ -59,7 +59,9 @@ Vec3 any_perpendicular(const Vec3 &axis) {
     return glm::normalize(pick - axis * (glm::dot(pick, axis) / squared));
 }
 
-Manifold collide_pair(const Sphere &a, const Sphere &b, Real margin) {
+namespace unchecked {
+
+Manifold collide(const Sphere &a, const Sphere &b, Real margin) {
     const Vec3 difference = b.center - a.center;
     const Real distance = glm::length(difference);
     const Vec3 normal = is_significant(difference, Real(0)) ? difference / distance
@@ -67,7 +69,7 @@ Manifold collide_pair(const Sphere &a, const Sphere &b, Real margin) {
     return ball_contact(a.center, a.radius, b.center, b.radius, normal, distance, margin);
 }
 
-Manifold collide_pair(const Sphere &a, const Capsule &b, Real margin) {
+Manifold collide(const Sphere &a, const Capsule &b, Real margin) {
     const Vec3 along = b.b - b.a;
     const Vec3 offset = b.a - a.center;
     const Real t = closest_parameter(offset, along, Vec3{Real(0)});
@@ -82,7 +84,7 @@ Manifold collide_pair(const Sphere &a, const Capsule &b, Real margin) {
     return ball_contact(a.center, a.radius, b.a + t * along, b.radius, normal, distance, margin);
 }
 
-Manifold collide_pair(const Sphere &a, const HalfSpace &b, Real margin) {
+Manifold collide(const Sphere &a, const HalfSpace &b, Real margin) {
     Manifold manifold;
     const Real height = glm::dot(b.normal, a.center) - b.offset;
     const Real separation = height - a.radius;
@@ -93,7 +95,7 @@ Manifold collide_pair(const Sphere &a, const HalfSpace &b, Real margin) {
     return manifold;
 }
 
-Manifold collide_pair(const Capsule &a, const HalfSpace &b, Real margin) {
+Manifold collide(const Capsule &a, const HalfSpace &b, Real margin) {
     Manifold manifold;
     manifold.normal = -b.normal;
     std::uint32_t feature = 0;
@@ -112,7 +114,7 @@ Manifold collide_pair(const Capsule &a, const HalfSpace &b, Real margin) {
     return manifold;
 }
 
-Manifold collide_pair(const Capsule &a, const Capsule &b, Real margin) {
+Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
     const Vec3 along_a = a.b - a.a;
     const Vec3 along_b = b.b - b.a;
     const Real squared_a = glm::dot(along_a, along_a);
@@ -120,7 +122,7 @@ Manifold collide_pair(const Capsule &a, const Capsule &b, Real margin) {
     // The longer one, then the thicker one, is the reference: a choice that does not change while
     // the bodies move, nor with the order of the arguments.
     if (squared_b > squared_a || (squared_b == squared_a && b.radius > a.radius))
-        return mirrored(collide_pair(b, a, margin));
+        return mirrored(collide(b, a, margin));
 
     const Vec3 offset = b.a - a.a;
     const Vec3 cross = glm::cross(along_a, along_b);
@@ -205,5 +207,7 @@ Manifold collide_pair(const Capsule &a, const Capsule &b, Real margin) {
         deepest = std::min(deepest, two.points[static_cast<std::size_t>(i)].separation);
     return is_straight && deepest <= one.points[0].separation + feature_tolerance ? two : one;
 }
+
+} // namespace unchecked
 
 } // namespace plumb::inline PLUMB_PRECISION

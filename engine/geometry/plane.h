@@ -17,10 +17,10 @@ struct PlaneTest {
 };
 
 // A shape that touches the plane is across it. The side of a point, a segment and a triangle is
-// exact for the numbers as they are given; that of a round shape or a box may be wrong where it is
-// nearer to touching than 8 epsilon times the largest coordinate or size. The distance is off by
-// no more. A shape or plane that is not valid, a point that is not finite, or an empty Aabb fails a
-// check.
+// exact for the numbers as they are given (range: shapes.h); that of a round shape or a box may be
+// wrong where it is nearer to touching than 8 epsilon times the largest coordinate or size. The
+// distance is off by no more. A shape or plane that is not valid, a point that is not finite, or an
+// empty Aabb fails a check.
 PlaneTest classify(const Plane &plane, const Vec3 &point);
 PlaneTest classify(const Plane &plane, const Sphere &sphere);
 PlaneTest classify(const Plane &plane, const Aabb &box);

@@ -18,7 +18,8 @@ struct RayInterval {
 
 // Empty when ray and solid have no common point. A ray that touches in one point gives
 // t_enter == t_exit. Starting inside (or on the surface, going in) gives t_enter == 0. A zero or
-// non-finite direction, or a NaN anywhere, fails a check.
+// non-finite direction, or a NaN anywhere, fails a check. For the range of what follows see
+// shapes.h.
 //
 // An Aabb, and a Box without rotation (whose faces are at center -+ half_extents, as rounded), are
 // never missed by a ray that truly meets them, in a face, an edge or a corner, and met wrongly only

@@ -8,10 +8,14 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-std::optional<CastHit> cast_cores(const CorePair &cores, const MovingCore &core_b,
-                                  const Vec3 &translation) {
+void check_translation(const Vec3 &translation) {
     PLUMB_CHECK(is_finite(translation),
                 "cast translation must be finite, got " << Printed{translation});
+}
+
+std::optional<CastHit> cast_cores(const CorePair &cores, const MovingCore &core_b,
+                                  const Vec3 &translation) {
+    check_translation(translation);
     const Real radii = cores.radius_a() + cores.radius_b();
     const Vec3 steps = glm::abs(translation);
     const Real reach = std::max({steps.x, steps.y, steps.z});

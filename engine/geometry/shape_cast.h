@@ -31,6 +31,9 @@ template <typename A, typename B>
 requires ConvexPair<A, B> std::optional<CastHit> cast(const A &a, const Vec3 &translation,
                                                       const B &b);
 
+// Fails a check when it is not finite.
+void check_translation(const Vec3 &translation);
+
 // How close is a touch, in metres, for coordinates of that size, from the start of the motion: 32
 // times what they are rounded by, so that the direction between the closest points means something.
 inline Real cast_target(Real size) {

@@ -1,7 +1,8 @@
 // Triangles: their points, their size, and where other points are seen from them.
 //
 // Corners on one line, or in one point, are allowed: such a triangle is flat, a segment or a point.
-// A corner or point that is not finite fails a check with the value in its message.
+// A corner or point that is not finite fails a check with the value in its message. For the range
+// of what is exact, and of the bounds, see shapes.h.
 #pragma once
 
 #include "engine/geometry/shapes.h"

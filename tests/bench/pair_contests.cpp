@@ -1,7 +1,6 @@
 #include "engine/geometry/epa.h"
 #include "engine/geometry/gjk.h"
 #include "engine/geometry/manifold.h"
-#include "engine/geometry/manifold_convex.h"
 #include "engine/geometry/overlap.h"
 #include "engine/geometry/sat.h"
 #include "engine/geometry/triangle_overlap.h"
@@ -144,7 +143,7 @@ std::vector<Contest> pair_contests() {
         return touches(collide(Shape{a}, Shape{b}, 0));
     }>("capsule, capsule: manifold", capsules, more_capsules));
     contests.push_back(contact_contest<[](const ConvexHull &a, const ConvexHull &b) {
-        return touches(collide_pair(a, b, 0));
+        return touches(collide(a, b, 0));
     }>("hull, hull: manifold", hulls, more_hulls));
     return contests;
 }

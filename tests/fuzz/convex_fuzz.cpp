@@ -1,6 +1,6 @@
 // libFuzzer target: GJK, EPA, casts and manifolds end, and do not contradict each other, whatever
 // the shapes.
-#include "engine/geometry/manifold_convex.h"
+#include "engine/geometry/manifold.h"
 #include "engine/geometry/quickhull.h"
 #include "engine/geometry/shape_cast.h"
 #include "tests/fuzz/input.h"
@@ -72,12 +72,6 @@ bool is_unit(const Vec3 &v) {
     return std::abs(glm::dot(v, v) - Real(1)) < Real(1e-3);
 }
 
-// Whether there is a manifold of the two in this order.
-template <typename A, typename B>
-concept Collided = requires(const A &a, const B &b) {
-    collide_pair(a, b, Real(0));
-};
-
 // The distance and the penetration of the two, and how far apart they are: negative when in each
 // other.
 template <typename A, typename B> Real check_pair(const A &a, const B &b) {
@@ -103,7 +97,7 @@ template <typename A, typename B> void check_cast(const A &a, const Vec3 &transl
 
 template <typename A, typename B> void check_collision(const A &a, const B &b, Real separation) {
     constexpr Real margin = Real(0.25);
-    const Manifold manifold = collide_pair(a, b, margin);
+    const Manifold manifold = collide(a, b, margin);
     FUZZ_ASSERT(manifold.count >= 0 && manifold.count <= 4);
     // In each other, they touch.
     FUZZ_ASSERT(manifold.count > 0 || separation > Real(0));
@@ -130,7 +124,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
             check_cast(first, translation, second);
             using A = std::decay_t<decltype(first)>;
             using B = std::decay_t<decltype(second)>;
-            if constexpr (Collided<A, B>)
+            if constexpr (Collidable<A, B>)
                 check_collision(first, second, separation);
         },
         a, b);

@@ -6,7 +6,6 @@
 #include "engine/geometry/epa.h"
 #include "engine/geometry/gjk.h"
 #include "engine/geometry/manifold.h"
-#include "engine/geometry/manifold_convex.h"
 #include "engine/geometry/shape_cast.h"
 
 #include <algorithm>
@@ -106,10 +105,6 @@ void answer_collide(Asking &ask) {
             const auto &solid_b = as_solid(b);
             if constexpr (requires { collide(solid_a, solid_b, margin); })
                 return collide(solid_a, solid_b, margin);
-            else if constexpr (requires { collide_pair(solid_a, solid_b, margin); })
-                return collide_pair(solid_a, solid_b, margin);
-            else if constexpr (requires { collide_pair(solid_b, solid_a, margin); })
-                return mirrored(collide_pair(solid_b, solid_a, margin));
             else
                 PLUMB_CHECK(false, "there are no contact points of these two kinds of shapes");
         },
