@@ -360,8 +360,11 @@ int bench(const BenchArguments &arguments, const Common &common) {
 // The command as it was typed, for a chart's footer.
 std::string command_text(int argc, char **argv) {
     std::string text = "plumb";
-    for (int i = 1; i < argc; ++i)
-        text += std::string(" ") + argv[i];
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        const bool plain = !argument.empty() && argument.find_first_of(" \t") == std::string::npos;
+        text += plain ? " " + argument : " \"" + argument + '"';
+    }
     return text;
 }
 
@@ -488,8 +491,10 @@ int main_with_errors(int argc, char **argv) {
                      "What to go through: substeps=1..16 (the default), iterations=1,2,8, "
                      "dt=1/240..1/30; may be given several times")
         ->allow_extra_args(false);
-    chart_command->add_option("--expect", chart.options.expect,
-                              "Name of the expectation to chart (the scene's first)");
+    chart_command->add_option(
+        "--expect", chart.options.expect,
+        "Name of one expectation to chart, in its own unit (the worst of all, "
+        "each in units of its tolerance)");
     chart_command->add_option("--repeats", chart.options.repeats, "Timings of each run")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

@@ -1,15 +1,12 @@
 #include "app/lab/chart.h"
 
 #include "app/lab/cpu_clock.h"
-#include "app/lab/csv.h"
 #include "app/lab/pareto.h"
 #include "app/lab/run_text.h"
 #include "engine/core/check.h"
-#include "engine/scene/expect.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -24,116 +21,22 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double shortest_timing = 0.01; // s
 constexpr int most_rounds = 1000;        // in one timing
 
-std::string explain(const ExpectDesc &expect, const std::string &unit) {
-    std::string text = expect.quantity + (expect.body.empty() ? "" : " of " + expect.body);
-    if (expect.reduce == "last")
-        text += " at " + with_unit(expect.to, "s");
-    else
-        text = expect.reduce + " of " + text + ", " + with_unit(expect.from, "s") + " to " +
-               with_unit(expect.to, "s");
-    switch (expect.relation) {
-    case ExpectDesc::Relation::equals:
-        text += "; truly " + with_unit(expect.value, unit);
-        break;
-    case ExpectDesc::Relation::at_most:
-        text += "; should be at most " + with_unit(expect.value, unit);
-        break;
-    case ExpectDesc::Relation::at_least:
-        text += "; should be at least " + with_unit(expect.value, unit);
-        break;
-    }
-    if (!expect.source.empty())
-        text += " (" + expect.source + ")";
-    return text;
-}
-
-ErrorMeasure measure_of(const SceneDesc &scene, std::size_t index) {
-    const ExpectDesc &expect = scene.expects[index];
-    const ExpectOutcome outcome = judge(expect, 0);
-    ErrorMeasure measure;
-    measure.kind = ErrorMeasure::Kind::expectation;
-    measure.expectation = index;
-    measure.name = expect.name;
-    measure.unit = outcome.unit;
-    measure.explanation = expect.name + ": " + explain(expect, outcome.unit);
-    measure.limit = outcome.limit;
-    const std::string limit = short_quantity(outcome.limit, outcome.unit);
-    switch (expect.relation) {
-    case ExpectDesc::Relation::equals:
-        measure.title = "Error: |measured − true|";
-        measure.limit_label = "tolerance " + limit;
-        break;
-    case ExpectDesc::Relation::at_most:
-        measure.title = expect.value > 0 ? "Measured: " + expect.quantity : "Excess over the bound";
-        measure.limit_label = "bound " + limit;
-        break;
-    case ExpectDesc::Relation::at_least:
-        measure.title = "Shortfall from the bound";
-        measure.limit_label = "bound";
-        break;
-    }
-    return measure;
-}
-
-// For scenes that expect nothing: the error that the scene can show.
-ErrorMeasure followed_measure(const SceneDesc &scene, bool had_contacts) {
-    ErrorMeasure measure;
-    if (!scene.joints.empty()) {
-        measure.kind = ErrorMeasure::Kind::joint_drift;
-        measure.name = "max_joint_drift";
-        measure.unit = "m";
-        measure.title = "Largest joint drift";
-        measure.explanation = "the largest joint drift of the run";
-    } else if (had_contacts) {
-        measure.kind = ErrorMeasure::Kind::penetration;
-        measure.name = "max_penetration";
-        measure.unit = "m";
-        measure.title = "Deepest penetration";
-        measure.explanation = "the deepest penetration of the run";
-    } else {
-        measure.kind = ErrorMeasure::Kind::energy;
-        measure.name = "max_energy_error";
-        measure.unit = "1";
-        measure.title = "Largest energy error";
-        measure.explanation = "the largest |E − E0| / (K0 + |U0|) of the run";
-    }
-    return measure;
-}
-
 void judge_error(const ErrorMeasure &measure, ChartRun &run) {
+    run.worst = worst_of(run.run.outcomes);
+    run.error = infinity;
     if (run.run.stopped) {
         run.status = ChartStatus::unfinished;
-        run.error = infinity;
         return;
     }
-    bool judged = !run.run.divergence;
-    switch (measure.kind) {
-    case ErrorMeasure::Kind::expectation:
-        // A window that ended before the divergence has a result, but the method has failed.
-        run.error = run.run.outcomes[measure.expectation].error;
-        break;
-    case ErrorMeasure::Kind::penetration:
-        run.error = run.run.max_penetration;
-        break;
-    case ErrorMeasure::Kind::joint_drift:
-        run.error = run.run.max_joint_drift;
-        break;
-    case ErrorMeasure::Kind::energy:
-        run.error = run.run.max_energy_error;
-        break;
-    }
-    if (!judged) {
+    // A window that ended before a divergence has a result, but the method has failed.
+    if (run.run.divergence) {
         run.status = ChartStatus::diverged;
-        run.error = infinity;
-    } else if (!std::isfinite(run.error)) {
-        run.status = ChartStatus::no_result;
-        run.error = infinity;
-    } else {
-        const bool outside = measure.kind == ErrorMeasure::Kind::expectation
-                                 ? !run.run.outcomes[measure.expectation].passed
-                                 : false;
-        run.status = outside ? ChartStatus::outside : ChartStatus::fine;
+        return;
     }
+    run.error = error_of(measure, run.run);
+    run.status = !std::isfinite(run.error) ? ChartStatus::no_result
+                 : run.run.all_met()       ? ChartStatus::fine
+                                           : ChartStatus::outside;
 }
 
 double median(std::vector<double> values) {
@@ -157,8 +60,10 @@ void set_cost(ChartRun &run) {
 
 void mark_front(SceneChart &chart) {
     std::vector<CostAndError> choices;
+    // What fails the scene is no choice, however cheap.
     for (const ChartRun &run : chart.runs)
-        choices.push_back({run.cost, run.error});
+        choices.push_back(run.status == ChartStatus::fine ? CostAndError{run.cost, run.error}
+                                                          : CostAndError{infinity, infinity});
     const std::vector<bool> front = pareto_front(choices);
     for (std::size_t i = 0; i < front.size(); ++i)
         chart.runs[i].pareto = front[i];
@@ -293,17 +198,7 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
         throw std::invalid_argument("repeats must be at least 1");
     if (!(options.timed > 0) || !(options.duration > 0))
         throw std::invalid_argument("durations must be above 0 s");
-    std::size_t expectation = 0;
-    if (!options.expect.empty()) {
-        while (expectation < scene.expects.size() &&
-               scene.expects[expectation].name != options.expect)
-            ++expectation;
-        if (expectation == scene.expects.size())
-            throw std::invalid_argument("scene " + scene.name + " has no expectation \"" +
-                                        options.expect + "\"");
-    }
-    chart.measure =
-        scene.expects.empty() ? followed_measure(scene, false) : measure_of(scene, expectation);
+    chart.measure = choose_measure(scene, options.expect);
     const std::vector<PlannedRun> planned = plan(scene, options, chart);
     chart.planned = planned.size();
     chart.repeats = options.repeats;
@@ -345,6 +240,7 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
                      run);
         };
         run.run = judge_run(*timer.simulation, scene, judging);
+        judge_probes(scene, run.resolved.precision, run.run.outcomes);
         set_cost(run);
         if (run.run.stopped)
             timer.saved.reset();
@@ -361,7 +257,7 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
                                : most_rounds;
         }
         had_contacts = had_contacts || run.run.had_contacts;
-        if (scene.expects.empty())
+        if (everything_expected(scene).empty())
             chart.measure = followed_measure(scene, had_contacts);
         timers.push_back(std::move(timer));
         chart.runs.push_back(std::move(run));
@@ -401,273 +297,6 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
     }
     chart.interrupted = stopped();
     return chart;
-}
-
-void write_chart_csv(std::ostream &out, const SceneChart &chart) {
-    CsvWriter csv(out);
-    for (const char *name : {"scene",
-                             "method",
-                             "precision",
-                             "dt_s",
-                             "substeps",
-                             "iterations",
-                             "gravity_x_m_s2",
-                             "gravity_y_m_s2",
-                             "gravity_z_m_s2",
-                             "speculative_distance_m",
-                             "penetration_slop_m",
-                             "baumgarte",
-                             "contact_frequency_ratio",
-                             "contact_damping_ratio",
-                             "joint_frequency_ratio",
-                             "joint_damping_ratio",
-                             "push_velocity_m_s",
-                             "restitution_threshold_m_s",
-                             "impact_sweeps",
-                             "gyroscopic_iterations",
-                             "status",
-                             "pareto",
-                             "cpu_s_per_s",
-                             "cpu_s_per_s_least",
-                             "cpu_s_per_s_greatest",
-                             "timings",
-                             "body_passes_per_s",
-                             "constraint_passes_per_s",
-                             "charted_error",
-                             "error",
-                             "end_s",
-                             "steps",
-                             "max_penetration_m",
-                             "max_joint_drift_m",
-                             "max_energy_change_J",
-                             "max_energy_error",
-                             "unresolved_impacts",
-                             "diverged_at_s",
-                             "diverged"})
-        csv.cell(name);
-    for (const ExpectDesc &expect : chart.scene.expects)
-        for (const char *column : {".measured", ".error", ".limit", ".passed"})
-            csv.cell(expect.name + column);
-    csv.end_row();
-    for (const ChartRun &run : chart.runs) {
-        const StepSettings &s = run.resolved.settings;
-        csv.cell(chart.scene.name)
-            .cell(run.resolved.method->name)
-            .cell(precision_name(run.resolved.precision))
-            .cell(s.dt)
-            .cell(s.substeps)
-            .cell(s.iterations)
-            .cell(s.gravity.x)
-            .cell(s.gravity.y)
-            .cell(s.gravity.z)
-            .cell(s.speculative_distance)
-            .cell(s.penetration_slop)
-            .cell(s.baumgarte)
-            .cell(s.contact_frequency_ratio)
-            .cell(s.contact_damping_ratio)
-            .cell(s.joint_frequency_ratio)
-            .cell(s.joint_damping_ratio)
-            .cell(s.push_velocity)
-            .cell(s.restitution_threshold)
-            .cell(s.impact_sweeps)
-            .cell(s.gyroscopic_iterations)
-            .cell(status_name(run.status))
-            .cell(run.pareto)
-            .cell(run.cost)
-            .cell(run.cost_low)
-            .cell(run.cost_high)
-            .cell(static_cast<std::uint64_t>(run.timings.size()))
-            .cell(run.body_passes)
-            .cell(run.constraint_passes)
-            .cell(chart.measure.name)
-            .cell(run.error)
-            .cell(run.run.time)
-            .cell(run.run.steps)
-            .cell(run.run.max_penetration)
-            .cell(run.run.max_joint_drift)
-            .cell(run.run.max_energy_change)
-            .cell(run.run.max_energy_error)
-            .cell(run.run.unresolved_impacts);
-        if (run.run.divergence)
-            csv.cell(run.run.divergence->time).cell(describe(*run.run.divergence));
-        else
-            csv.cell("").cell("");
-        for (const ExpectOutcome &outcome : run.run.outcomes) {
-            if (outcome.judged)
-                csv.cell(outcome.measured).cell(outcome.error);
-            else
-                csv.cell("").cell("");
-            csv.cell(outcome.limit);
-            if (outcome.judged)
-                csv.cell(outcome.passed);
-            else
-                csv.cell("");
-        }
-        csv.end_row();
-    }
-}
-
-void print(std::ostream &out, const SceneChart &chart) {
-    out << chart.scene.name << ": " << chart.measure.explanation;
-    if (chart.measure.limit) {
-        std::string label = chart.measure.limit_label;
-        std::replace(label.begin(), label.end(), raised_from, '^');
-        out << "; " << label;
-    }
-    out << '\n';
-    char line[256];
-    std::snprintf(line, sizeof line, "  %-22s %9s %9s %10s %14s %8s %14s  %s\n", "method",
-                  "substeps", "iteration", "dt", "CPU ms/s", "spread", "error", "");
-    out << line;
-    for (const ChartRun &run : chart.runs) {
-        char spread[24] = "-";
-        if (run.timings.size() > 1)
-            std::snprintf(spread, sizeof spread, "%.1f %%",
-                          100 * (run.cost_high - run.cost_low) / run.cost);
-        const std::string error =
-            std::isfinite(run.error) ? with_unit(run.error, chart.measure.unit) : "-";
-        std::snprintf(line, sizeof line, "  %-22.22s %9d %9d %10s %14.5g %8s %14s  %s%s\n",
-                      std::string(run.resolved.method->name).c_str(),
-                      run.resolved.settings.substeps, run.resolved.settings.iterations,
-                      format_dt(run.resolved.settings.dt).c_str(), 1e3 * run.cost, spread,
-                      error.c_str(), std::string(status_name(run.status)).c_str(),
-                      run.pareto ? ", Pareto front" : "");
-        out << line;
-        if (run.run.divergence)
-            out << "    " << describe(*run.run.divergence) << '\n';
-    }
-    for (const std::string &why : chart.left_out)
-        out << "  left out: " << why << '\n';
-    if (chart.interrupted)
-        out << "  interrupted: " << chart.runs.size() << " of " << chart.planned
-            << " runs were begun\n";
-}
-
-ChartContent chart_content(const SceneChart &chart, const std::string &command) {
-    ChartContent content;
-    content.title =
-        (chart.scene.title.empty() ? chart.scene.name : chart.scene.title) + ": what truth costs";
-    content.subtitle = chart.measure.explanation;
-    if (chart.interrupted) {
-        const auto finished =
-            std::count_if(chart.runs.begin(), chart.runs.end(), [](const ChartRun &run) {
-                return run.status != ChartStatus::unfinished;
-            });
-        content.subtitle = "INTERRUPTED: " + std::to_string(finished) + " of " +
-                           std::to_string(chart.planned) + " runs. " + content.subtitle;
-    }
-    content.cost_title = "CPU time per simulated second";
-    content.error_title = chart.measure.title;
-    // Where the numbers at the ticks have no unit of their own.
-    if (chart.measure.unit != "1" && !takes_prefix(chart.measure.unit))
-        content.error_title += " (" + chart.measure.unit + ")";
-    content.error_unit = chart.measure.unit;
-    content.label_meaning = sweep_label_meaning(chart.sweep);
-    content.limit = chart.measure.limit;
-    content.limit_label = chart.measure.limit_label;
-    content.left_out = chart.left_out;
-
-    const MethodInfo *method = nullptr;
-    SweepPoint others; // the point less its first axis: each has its own line
-    for (const ChartRun &run : chart.runs) {
-        if (run.status == ChartStatus::unfinished || !(run.cost > 0))
-            continue;
-        const SweepPoint rest(run.point.begin() + 1, run.point.end());
-        if (run.resolved.method != method) {
-            method = run.resolved.method;
-            ChartSeries series;
-            series.name = std::string(method->title);
-            for (std::size_t i = 0; i < method_infos().size(); ++i)
-                if (&method_infos()[i] == method)
-                    series.style = i;
-            content.series.push_back(std::move(series));
-            content.series.back().lines.emplace_back();
-            others = rest;
-        } else if (rest != others) {
-            content.series.back().lines.emplace_back();
-            others = rest;
-        }
-        content.series.back().lines.back().push_back(content.marks.size());
-        ChartMark mark;
-        mark.cost = run.cost;
-        mark.cost_low = run.cost_low;
-        mark.cost_high = run.cost_high;
-        mark.failed = !std::isfinite(run.error);
-        mark.error = mark.failed ? 0 : run.error;
-        mark.pareto = run.pareto;
-        mark.label = sweep_label(chart.sweep, run.point);
-        mark.series = content.series.size() - 1;
-        content.marks.push_back(std::move(mark));
-    }
-
-    // What was not swept, where it is the same for all.
-    std::string settings;
-    const auto swept = [&](SweepSetting setting) {
-        return std::any_of(chart.sweep.begin(), chart.sweep.end(),
-                           [&](const SweepAxis &axis) { return axis.setting == setting; });
-    };
-    const auto same = [&](auto value_of) {
-        return std::all_of(chart.runs.begin(), chart.runs.end(), [&](const ChartRun &run) {
-            return value_of(run) == value_of(chart.runs.front());
-        });
-    };
-    const auto add = [&](const std::string &text) {
-        settings += (settings.empty() ? "" : "  ·  ") + text;
-    };
-    if (!chart.runs.empty()) {
-        const ResolvedRun &first = chart.runs.front().resolved;
-        if (!swept(SweepSetting::dt))
-            add("dt " + format_dt(first.settings.dt));
-        const auto count = [&](SweepSetting setting, auto value_of) {
-            if (swept(setting))
-                return;
-            const std::string name(sweep_setting_name(setting));
-            if (same(value_of)) {
-                add(name + " " + std::to_string(value_of(chart.runs.front())));
-                return;
-            }
-            // Each value once, with the methods that have it.
-            std::vector<std::pair<int, std::string>> groups;
-            const MethodInfo *last = nullptr;
-            for (const ChartRun &run : chart.runs) {
-                if (run.resolved.method == last)
-                    continue;
-                last = run.resolved.method;
-                const int value = value_of(run);
-                const auto group = std::find_if(groups.begin(), groups.end(),
-                                                [&](const auto &g) { return g.first == value; });
-                if (group == groups.end())
-                    groups.emplace_back(value, last->title);
-                else
-                    group->second += ", " + std::string(last->title);
-            }
-            std::string each;
-            for (const auto &[value, titles] : groups)
-                each += (each.empty() ? "" : ", ") + std::to_string(value) + " (" + titles + ")";
-            add(name + " " + each);
-        };
-        count(SweepSetting::substeps,
-              [](const ChartRun &run) { return run.resolved.settings.substeps; });
-        count(SweepSetting::iterations,
-              [](const ChartRun &run) { return run.resolved.settings.iterations; });
-        add(std::string(precision_name(first.precision)) + " precision");
-        const bool timed = std::any_of(chart.runs.begin(), chart.runs.end(),
-                                       [](const ChartRun &run) { return !run.timings.empty(); });
-        if (timed) {
-            char text[160];
-            std::snprintf(text, sizeof text,
-                          "one thread, median of %d interleaved timings of the last %.4g s "
-                          "(spread %.0f %%)",
-                          chart.repeats, chart.timed, 100 * chart.median_spread());
-            add(text);
-        } else {
-            add("one thread, timed once");
-        }
-    }
-    content.footer.push_back(settings);
-    if (!command.empty())
-        content.footer.push_back(command);
-    return content;
 }
 
 } // namespace plumb

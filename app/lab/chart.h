@@ -2,8 +2,9 @@
 #pragma once
 
 #include "app/lab/chart_layout.h"
+#include "app/lab/error_measure.h"
 #include "app/lab/exit_code.h"
-#include "app/lab/expectation.h"
+#include "app/lab/judged_run.h"
 #include "app/lab/progress.h"
 #include "app/lab/sweep.h"
 #include "engine/scene/simulation.h"
@@ -25,7 +26,7 @@ struct ChartOptions {
     std::vector<std::string> methods; // empty: all that can run the scene
     std::vector<SweepAxis> sweep;     // empty: default_sweep()
     RunOptions base;                  // what is not swept; its method is not read
-    std::string expect;               // the expectation to chart; empty: the scene's first
+    std::string expect;               // to chart this one alone, in its own unit; empty: all
     double duration = 5;              // s, of scenes that expect nothing
     int repeats = 5;                  // timings of each run; their median counts
     double timed = 2;                 // s, simulated: the end of the run, which is timed
@@ -34,22 +35,9 @@ struct ChartOptions {
     MakeSimulation make; // empty: Simulation::create, on one thread
 };
 
-// Which error a chart shows.
-struct ErrorMeasure {
-    enum class Kind { expectation, penetration, joint_drift, energy };
-    Kind kind = Kind::energy;
-    std::size_t expectation = 0; // index into the scene's, when of that kind
-    std::string name;
-    std::string unit;
-    std::string title;       // for the axis
-    std::string explanation; // a sentence
-    std::optional<double> limit;
-    std::string limit_label;
-};
-
 enum class ChartStatus {
-    fine,    // within the tolerance, or there is none
-    outside, // of the tolerance
+    fine,    // all that the scene expects is met, as `check` says; or it expects nothing
+    outside, // something is missed, whether or not the chart shows it
     diverged,
     no_result, // it ran, but the quantity could not be measured: a period that never came, say
     unfinished // interrupted
@@ -63,6 +51,9 @@ struct ChartRun {
     JudgedRun run; // a full one from the start: chaos keeps errors of any other from comparing
     ChartStatus status = ChartStatus::unfinished;
     double error = 0; // in the measure's unit; infinite without a result
+    // The expectation with the largest error in units of its tolerance, as an index into
+    // run.outcomes; none when all errors are 0.
+    std::optional<std::size_t> worst;
     // CPU seconds of one thread per simulated second: of each repeat, and their median, least and
     // greatest. A run that could not be timed over its end (diverged, interrupted) has no repeats:
     // its cost is what its full run took.
@@ -70,7 +61,7 @@ struct ChartRun {
     double cost = 0, cost_low = 0, cost_high = 0;
     // Declared work per simulated second: passes over all bodies, over all constraints.
     double body_passes = 0, constraint_passes = 0;
-    bool pareto = false; // nothing cheaper is truer
+    bool pareto = false; // fine, and nothing cheaper that is fine is truer
 };
 
 struct SceneChart {

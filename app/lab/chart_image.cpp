@@ -19,6 +19,8 @@ using namespace chart_colour;
 
 namespace {
 
+constexpr float hollow_radius = chart_style::mark_radius - 2.4f;
+
 ImU32 series_colour(const ChartSeries &series) {
     return colour(series_colours[series.style % series_colours.size()]);
 }
@@ -106,6 +108,8 @@ void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &l
             pen.mark(p, series.style, mark_radius + 1.3f, paper);
         }
         pen.mark(p, series.style, mark_radius, series_colour(series));
+        if (mark.outside)
+            pen.mark(p, series.style, hollow_radius, paper);
     }
     for (const PlacedLabel &label : layout.labels)
         pen.text(label.box.min + glm::vec2(chart_style::label_margin, 0),
@@ -128,6 +132,9 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         y += row;
     }
     y += 12;
+    const auto any = [&](auto is_such) {
+        return std::any_of(content.marks.begin(), content.marks.end(), is_such);
+    };
     const auto entry = [&](const std::string &text) {
         pen.text({text_left, y}, text, Face::label, soft_ink, {0, 0.5f});
         y += 23;
@@ -143,28 +150,35 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         pen.cross({left + 12, y}, mark_radius - 1, soft_ink, 2.2f);
         entry("diverged, or no result");
     }
+    if (any([](const ChartMark &mark) { return mark.outside && !mark.failed; })) {
+        pen.mark({left + 12, y}, 0, mark_radius, soft_ink);
+        pen.mark({left + 12, y}, 0, hollow_radius, paper);
+        entry("misses what the scene expects");
+    }
     if (layout.limit_line) {
         pen.fill({{left, y - 7}, {left + 24, y + 7}}, fine_tint);
         pen.dashed({left, y - 7}, {left + 24, y - 7}, limit_ink, 1.5f, 6, 3);
         entry("true enough");
     }
     if (!content.label_meaning.empty()) {
-        // The first label as a sample, where it is not too long.
-        if (!content.marks.empty() &&
-            pen.text_size(content.marks.front().label, Face::label).x < 30)
-            pen.text({left + 12, y}, content.marks.front().label, Face::label, ink, {0.5f, 0.5f});
+        // A label as a sample, where it is not too long: of a run that has an error.
+        const auto mark = std::find_if(content.marks.begin(), content.marks.end(),
+                                       [](const ChartMark &m) { return !m.failed; });
+        if (mark != content.marks.end() && pen.text_size(mark->label, Face::label).x < 30)
+            pen.text({left + 12, y}, mark->label, Face::label, ink, {0.5f, 0.5f});
         entry("label: " + content.label_meaning);
     }
-    if (std::any_of(content.marks.begin(), content.marks.end(),
-                    [](const ChartMark &mark) { return mark.cost_high > mark.cost_low; })) {
+    if (any([](const ChartMark &mark) { return mark.cost_high > mark.cost_low; })) {
         pen.line({left, y}, {left + 24, y}, faint_ink, 1);
         entry("spread of the timings");
     }
-    if (!content.left_out.empty()) {
+    const auto list = [&](const char *title, const std::vector<std::string> &texts) {
+        if (texts.empty())
+            return;
         y += 12;
-        pen.text({left, y}, "Not on this chart", Face::label, soft_ink, {0, 0.5f});
+        pen.text({left, y}, title, Face::label, soft_ink, {0, 0.5f});
         y += 21;
-        for (const std::string &text : content.left_out)
+        for (const std::string &text : texts)
             for (const std::string &line :
                  pen.wrapped(text, Face::footer, layout.size.x - 20 - left)) {
                 if (y > layout.plot.max.y - 4)
@@ -172,7 +186,9 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
                 pen.text({left, y}, line, Face::footer, faint_ink, {0, 0.5f});
                 y += 16;
             }
-    }
+    };
+    list("Worst expectation", content.worst);
+    list("Not on this chart", content.left_out);
 }
 
 void draw_chart(ChartPen &pen, const ChartContent &content) {

@@ -111,9 +111,12 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         layout.failed_line = plot.min.y + strip / 2;
         layout.field.min.y += strip;
     }
-    if (any_zero) {
-        layout.zero_line = plot.max.y - strip / 2;
-        layout.field.max.y -= strip;
+    const bool zero_is_the_limit = content.limit && *content.limit == 0;
+    const bool any_above =
+        std::any_of(errors.begin(), errors.end(), [](double e) { return e > 0; });
+    if (any_zero || zero_is_the_limit) {
+        layout.field.max.y = any_above || any_failed ? plot.max.y - strip : layout.field.min.y;
+        layout.zero_line = 0.5f * (layout.field.max.y + plot.max.y);
     }
 
     const PixelBox &field = layout.field;
@@ -127,8 +130,9 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     };
     for (const Tick &tick : log_ticks(layout.cost_range, content.cost_unit, 9))
         layout.cost_ticks.push_back({x_of(tick.value), tick.decade, tick.label});
-    for (const Tick &tick : log_ticks(layout.error_range, content.error_unit, 10))
-        layout.error_ticks.push_back({y_of(tick.value), tick.decade, tick.label});
+    if (any_above)
+        for (const Tick &tick : log_ticks(layout.error_range, content.error_unit, 10))
+            layout.error_ticks.push_back({y_of(tick.value), tick.decade, tick.label});
 
     for (const ChartMark &mark : content.marks) {
         const float x = x_of(mark.cost);
@@ -138,8 +142,8 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     }
 
     std::vector<PixelBox> obstacles;
-    if (content.limit && *content.limit > 0) {
-        layout.limit_line = y_of(*content.limit);
+    if (content.limit) {
+        layout.limit_line = zero_is_the_limit ? field.max.y : y_of(*content.limit);
         const glm::vec2 text = text_size(content.limit_label, label_text);
         // At the right end above the line, or at the left or below it when marks are in the way.
         float best = std::numeric_limits<float>::infinity();

@@ -19,6 +19,7 @@ struct ChartMark {
     double cost_low = 0, cost_high = 0; // spread over the repeats
     double error = 0;                   // >= 0; not read when failed
     bool failed = false;                // diverged, or nothing could be measured
+    bool outside = false;               // it misses something that the scene expects
     bool pareto = false;
     std::string label; // its setting
     std::size_t series = 0;
@@ -37,11 +38,12 @@ struct ChartContent {
     std::string error_title;
     std::string cost_unit = "s";
     std::string error_unit = "1";
-    std::string label_meaning; // "substeps"
-    std::optional<double> limit;
+    std::string label_meaning;   // "substeps"
+    std::optional<double> limit; // true enough at most; 0 where only an error of exactly zero is
     std::string limit_label;
     std::vector<ChartSeries> series;
     std::vector<ChartMark> marks;
+    std::vector<std::string> worst;    // the expectations that are the worst of some run
     std::vector<std::string> left_out; // methods that are not here, and why
     std::vector<std::string> footer;
 };
@@ -77,13 +79,15 @@ struct ChartLayout {
     PixelBox plot;                    // the frame, strips included
     PixelBox field;                   // where the logarithmic scales hold
     std::optional<float> failed_line; // y of the failed runs' strip, above the field
-    std::optional<float> zero_line;   // y of the strip for errors of exactly zero, below the field
+    // y of the strip for errors of exactly zero, below the field; where there are no others, it
+    // takes the field's place, which then has no height.
+    std::optional<float> zero_line;
     LogRange cost_range, error_range;
     std::vector<PlacedTick> cost_ticks, error_ticks;
     std::vector<glm::vec2> marks;    // in the order of the content's
     std::vector<PlacedLabel> labels; // never over each other, a mark or the frame; some marks may
                                      // go without where there is no room
-    std::optional<float> limit_line; // y
+    std::optional<float> limit_line; // y; for a limit of 0 the top of the strip for zero
     PixelBox limit_text;
     std::vector<glm::vec2> pareto_steps; // a staircase through the front, in pixels
 };

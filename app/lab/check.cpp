@@ -14,34 +14,57 @@ namespace plumb {
 
 namespace {
 
-std::string demand(const ExpectOutcome &outcome) {
-    const ExpectDesc &desc = outcome.desc;
-    switch (desc.relation) {
-    case ExpectDesc::Relation::equals:
-        return "is " + with_unit(desc.value, outcome.unit) + " within " +
-               with_unit(desc.tolerance, outcome.unit);
-    case ExpectDesc::Relation::at_most:
-        return "at most " + with_unit(desc.value, outcome.unit);
-    case ExpectDesc::Relation::at_least:
-        return "at least " + with_unit(desc.value, outcome.unit);
+// How many runs came to what, and the words for it.
+class Tally {
+  public:
+    void add(const CheckOutcome &outcome) {
+        if (exit_code(outcome) != ExitCode::fine)
+            ++missed_;
+        else if (outcome.run.any_judged())
+            ++within_;
+        else
+            ++nothing_;
+    }
+
+    // "3 runs: 2 within tolerance, 1 with nothing to judge"
+    void print(std::ostream &out) const {
+        const std::size_t all = within_ + missed_ + nothing_;
+        if (all == 0) {
+            out << "nothing was checked\n";
+            return;
+        }
+        out << all << (all == 1 ? " run" : " runs");
+        const char *separator = ": ";
+        const auto say = [&](std::size_t count, const char *what) {
+            if (count == 0)
+                return;
+            out << separator << count << ' ' << what;
+            separator = ", ";
+        };
+        say(within_, "within tolerance");
+        say(missed_, "not within tolerance");
+        say(nothing_, "with nothing to judge");
+        out << '\n';
+    }
+
+  private:
+    std::size_t within_ = 0, missed_ = 0, nothing_ = 0;
+};
+
+const char *sign(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::met:
+        return "ok    ";
+    case Verdict::missed:
+        return "MISSED ";
+    case Verdict::pending:
+    case Verdict::unseen:
+        return "-     ";
     }
     return "";
 }
 
 } // namespace
-
-void judge_probe(const ProbeDesc &probe, Precision precision,
-                 std::vector<ExpectOutcome> &outcomes) {
-    const ProbeAnswer found = answer(probe, precision);
-    for (const ProbeExpectDesc &expect : probe.expects) {
-        ExpectDesc desc;
-        desc.name = probe.name + ", " + expect.value;
-        desc.value = expect.is;
-        desc.tolerance = probe.tolerance;
-        desc.source = probe.source;
-        outcomes.push_back(judge(desc, found.value(expect.value)));
-    }
-}
 
 CheckOutcome check_scene(const SceneDesc &scene, const RunOptions &options, TaskPool *tasks,
                          const JudgeOptions &judging) {
@@ -56,8 +79,7 @@ CheckOutcome check_scene(const SceneDesc &scene, const RunOptions &options, Task
         const auto simulation = Simulation::create(scene, options, tasks);
         outcome.run = judge_run(*simulation, scene, judging);
     }
-    for (const ProbeDesc &probe : scene.probes)
-        judge_probe(probe, outcome.resolved.precision, outcome.run.outcomes);
+    judge_probes(scene, outcome.resolved.precision, outcome.run.outcomes);
     return outcome;
 }
 
@@ -66,7 +88,7 @@ ExitCode exit_code(const CheckOutcome &outcome) {
         return ExitCode::bad_input;
     if (outcome.run.divergence)
         return ExitCode::diverged;
-    return outcome.run.all_passed() ? ExitCode::fine : ExitCode::outside_tolerance;
+    return outcome.run.all_met() ? ExitCode::fine : ExitCode::outside_tolerance;
 }
 
 void print(std::ostream &out, const CheckOutcome &outcome) {
@@ -80,15 +102,14 @@ void print(std::ostream &out, const CheckOutcome &outcome) {
                            : std::string(precision_name(outcome.resolved.precision))) +
         "]\n";
     for (const ExpectOutcome &expect : outcome.run.outcomes) {
-        const char *verdict = !expect.judged ? "-     " : expect.passed ? "ok    " : "MISSED";
-        out << verdict << (expect.judged && !expect.passed ? " " : "") << outcome.scene << "/"
-            << expect.desc.name << ": ";
-        if (!expect.judged)
-            out << "not measured, should be: ";
+        out << sign(expect.verdict) << outcome.scene << "/" << expect.desc.name << ": ";
+        if (expect.judged())
+            out << with_unit(expect.measured, expect.unit) << ", " << demand(expect);
+        else if (expect.verdict == Verdict::unseen)
+            out << "not judged, since this run goes on from a later state; " << demand(expect);
         else
-            out << with_unit(expect.measured, expect.unit) << ", ";
-        out << demand(expect);
-        if (expect.judged && expect.desc.relation == ExpectDesc::Relation::equals)
+            out << "not measured, should be: " << demand(expect);
+        if (expect.judged() && expect.desc.relation == ExpectDesc::Relation::equals)
             out << ", off by " << with_unit(expect.error, expect.unit);
         out << how;
     }
@@ -118,7 +139,7 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
 
     const InterruptGuard interrupt;
     ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());
-    std::size_t checked = 0, missed = 0;
+    Tally tally;
     const std::size_t total = loaded.scenes.size() * runs.size();
     std::size_t done = 0;
     for (const SceneDesc &scene : loaded.scenes)
@@ -143,9 +164,7 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
                     continue;
                 }
                 code = worse(code, exit_code(outcome));
-                ++checked;
-                if (exit_code(outcome) != ExitCode::fine)
-                    ++missed;
+                tally.add(outcome);
             } catch (const std::invalid_argument &error) {
                 line.clear();
                 err << scene.name << ": " << error.what() << '\n';
@@ -157,13 +176,7 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
                 return worse(code, ExitCode::outside_tolerance);
             }
         }
-    if (checked == 0)
-        out << "nothing was checked\n";
-    else
-        out << checked << (checked == 1 ? " run, " : " runs, ")
-            << (missed == 0 ? std::string("all within tolerance")
-                            : std::to_string(missed) + " not within tolerance")
-            << '\n';
+    tally.print(out);
     return code;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/lab/exit_code.h"
-#include "app/lab/expectation.h"
+#include "app/lab/judged_run.h"
 
 #include <filesystem>
 #include <functional>
@@ -22,9 +22,6 @@ struct CheckOutcome {
     JudgedRun run;
 };
 
-// Asks the probe, and adds what came of each of its expects.
-void judge_probe(const ProbeDesc &probe, Precision precision, std::vector<ExpectOutcome> &outcomes);
-
 // Throws std::invalid_argument as resolve_run does. `tasks` may be null. The expects of probes come
 // after the scene's own; a scene without a world is not run.
 [[nodiscard]] CheckOutcome check_scene(const SceneDesc &scene, const RunOptions &options,
@@ -43,7 +40,9 @@ struct CheckCommand {
     TaskPool *tasks = nullptr;
 };
 
-// Checks and prints; goes on after a scene that fails. Stops early on Ctrl-C, and says so.
+// Checks and prints; goes on after a scene that fails, and counts at the end how many runs were
+// within tolerance, how many were not, and how many had nothing to be held to. Stops early on
+// Ctrl-C, and says so.
 [[nodiscard]] ExitCode check_scenes(const CheckCommand &command, std::ostream &out,
                                     std::ostream &err);
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/lab/exit_code.h"
-#include "app/lab/expectation.h"
+#include "app/lab/judged_run.h"
 #include "engine/scene/simulation.h"
 
 #include <cstdint>

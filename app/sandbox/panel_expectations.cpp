@@ -1,8 +1,9 @@
-// The scene's title, its description, and what it can be held to.
+// The scene's title, its description, what it can be held to, and whether it holds.
 #include "app/sandbox/panel.h"
 #include "app/sandbox/widgets.h"
 
-#include "engine/scene/expect.h"
+#include <cmath>
+#include <string>
 
 #include <imgui/imgui.h>
 
@@ -21,27 +22,69 @@ std::string measured(const ExpectDesc &expect) {
     std::string text = expect.reduce + " of " + expect.quantity;
     if (!expect.body.empty())
         text += " of " + expect.body;
-    if (expect.from == expect.to)
+    if (expect.reduce == "last" || expect.from == expect.to)
         return text + " at " + number(expect.to, "s");
     return text + ", " + number(expect.from) + " to " + number(expect.to, "s");
 }
 
-// "= 1.4 ± 0.01 m". A period is in seconds and crossings are counted, whatever they are of.
-std::string demanded(const ExpectDesc &expect) {
-    const QuantityInfo *quantity = find_quantity(expect.quantity);
-    const std::string_view unit = expect.reduce == "period"           ? "s"
-                                  : expect.reduce == "crossings"      ? ""
-                                  : quantity && quantity->unit != "1" ? quantity->unit
-                                                                      : "";
+std::string_view unit_of(const ExpectOutcome &outcome) {
+    return outcome.unit == "1" ? std::string_view() : std::string_view(outcome.unit);
+}
+
+// "= 1.4 ± 0.01 m"
+std::string demanded(const ExpectOutcome &outcome) {
+    const ExpectDesc &expect = outcome.desc;
     switch (expect.relation) {
     case ExpectDesc::Relation::equals:
-        return "= " + number(expect.value) + " ± " + number(expect.tolerance, unit);
+        return "= " + number(expect.value) + " ± " + number(expect.tolerance, unit_of(outcome));
     case ExpectDesc::Relation::at_most:
-        return "≤ " + number(expect.value, unit);
+        return "≤ " + number(expect.value, unit_of(outcome));
     case ExpectDesc::Relation::at_least:
-        return "≥ " + number(expect.value, unit);
+        return "≥ " + number(expect.value, unit_of(outcome));
     }
     return "";
+}
+
+// "0.0031 m so far, expected ≤ 0.01 m"
+std::string found_and_demanded(const ExpectOutcome &outcome) {
+    std::string found = number(outcome.measured, unit_of(outcome));
+    if (outcome.verdict == Verdict::unseen)
+        found = "not judged, since the run goes on from a later state";
+    else if (!std::isfinite(outcome.measured))
+        found = outcome.verdict == Verdict::pending ? "nothing yet" : "nothing to measure";
+    else if (outcome.verdict == Verdict::pending)
+        found += " so far";
+    return found + ", expected " + demanded(outcome);
+}
+
+Colour colour_of(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::met:
+        return theme::good;
+    case Verdict::missed:
+        return theme::error;
+    case Verdict::pending:
+    case Verdict::unseen:
+        break;
+    }
+    return theme::dim;
+}
+
+// The name, wrapped beside the verdict at the right end. What was pending when the run stopped for
+// good stays without a verdict.
+void verdict_row(const ExpectOutcome &outcome, bool stopped) {
+    const bool cut_short = stopped && outcome.verdict == Verdict::pending;
+    const std::string verdict(cut_short ? "stopped" : verdict_name(outcome.verdict));
+    const float right = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+    const float at = right - ImGui::CalcTextSize(verdict.c_str()).x;
+    const ImVec2 start = ImGui::GetCursorPos();
+    ImGui::SetCursorPosX(at);
+    ImGui::TextColored(cut_short ? theme::error : colour_of(outcome.verdict), "%s",
+                       verdict.c_str());
+    ImGui::SetCursorPos(start);
+    ImGui::PushTextWrapPos(at - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::TextUnformatted(outcome.desc.name.c_str());
+    ImGui::PopTextWrapPos();
 }
 
 } // namespace
@@ -67,14 +110,22 @@ void expectations_panel(PanelContext &context) {
         return;
     heading(context.fonts, "Expected");
     if (scene.expects.empty())
-        ImGui::TextDisabled("This scene states no truth.");
-    for (const ExpectDesc &expect : scene.expects) {
-        value_row(expect.name, demanded(expect));
+        ImGui::TextDisabled("This scene expects nothing.");
+    else if (context.session.disturbed()) {
         ImGui::PushFont(context.fonts.small);
+        ImGui::PushStyleColor(ImGuiCol_Text, theme::warning);
+        wrapped("Changed in mid-run: this is what happened, not what a check of the scene says.");
+        ImGui::PopStyleColor();
+        ImGui::PopFont();
+    }
+    for (const ExpectOutcome &outcome : context.session.expectations()) {
+        verdict_row(outcome, context.session.stopped());
+        ImGui::PushFont(context.fonts.small);
+        wrapped(found_and_demanded(outcome));
         ImGui::PushStyleColor(ImGuiCol_Text, theme::dim);
-        wrapped(measured(expect));
-        if (!expect.source.empty())
-            wrapped(expect.source);
+        wrapped(measured(outcome.desc));
+        if (!outcome.desc.source.empty())
+            wrapped(outcome.desc.source);
         ImGui::PopStyleColor();
         ImGui::PopFont();
         ImGui::Spacing();

@@ -2,6 +2,7 @@
 
 #include "engine/scene/scene_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <fstream>
@@ -89,6 +90,10 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
         std::unique_ptr<Simulation> simulation = make_(scene, options, tasks_);
         if (settings)
             simulation->set_settings(*settings);
+        std::optional<ExpectationWatch> watch;
+        if (simulation->has_world())
+            watch.emplace(*simulation, scene.expects);
+        watch_ = std::move(watch);
         history_.clear(); // before the simulation that made it
         simulation_ = std::move(simulation);
     } catch (const std::exception &failure) {
@@ -102,6 +107,8 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     for (const ProbeDesc &probe : probes_)
         answers_.push_back(answer(probe, simulation_->precision()));
     stopped_ = false;
+    first_step_ = simulation_->step_count();
+    disturbed_from_.reset();
     grab_.reset();
     graphs_ = {};
     settle_poses();
@@ -113,8 +120,10 @@ bool Session::step() {
         return false;
     try {
         history_.remember(*simulation_);
-        if (grab_)
+        if (grab_) {
+            disturb(simulation_->step_count() + 1);
             simulation_->pull(grab_->body, grab_->local_point, grab_->target);
+        }
         simulation_->step();
     } catch (const std::exception &failure) {
         stopped_ = true;
@@ -138,6 +147,7 @@ bool Session::step() {
                         ". A shorter step or more substeps may hold it.");
         return false;
     }
+    watch_->sample(*simulation_);
     return true;
 }
 
@@ -149,6 +159,9 @@ bool Session::step_back() {
     try {
         if (!history_.recall(*simulation_))
             return false;
+        watch_->go_back(*simulation_);
+        if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
+            disturbed_from_.reset();
         if (simulation_->method().name != method)
             simulation_->set_method(method);
         simulation_->set_settings(settings);
@@ -181,6 +194,7 @@ bool Session::set_method(std::string_view name) {
         settings.iterations = run.settings.iterations;
         simulation_->set_method(name);
         simulation_->set_settings(settings);
+        settings_changed();
         return true;
     } catch (const std::exception &failure) {
         messages_.error("Cannot change the method to " + std::string(name) + ": " + failure.what());
@@ -193,6 +207,7 @@ bool Session::set_settings(const StepSettings &settings) {
         return false;
     try {
         simulation_->set_settings(settings);
+        settings_changed();
         return true;
     } catch (const std::exception &failure) {
         messages_.error(std::string("Cannot change the settings: ") + failure.what());
@@ -211,6 +226,7 @@ std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dve
     ball.velocity = velocity;
     try {
         const std::size_t body = simulation_->add_body(ball);
+        disturb(simulation_->step_count());
         settle_poses();
         return body;
     } catch (const std::exception &failure) {
@@ -268,6 +284,23 @@ bool Session::save_scene(const std::filesystem::path &path) {
         messages_.error(std::string("Cannot save the scene: ") + failure.what());
         return false;
     }
+}
+
+std::vector<ExpectOutcome> Session::expectations() const {
+    std::vector<ExpectOutcome> outcomes;
+    for (std::size_t i = 0; watch_ && i < watch_->size(); ++i)
+        outcomes.push_back(watch_->outcome(i));
+    return outcomes;
+}
+
+void Session::disturb(std::uint64_t first_step) {
+    disturbed_from_ = std::min(disturbed_from_.value_or(first_step), first_step);
+}
+
+// New settings stay when steps are taken back: only at its very start is the run all theirs.
+void Session::settings_changed() {
+    if (simulation_->step_count() > first_step_)
+        disturb(first_step_ + 1);
 }
 
 void Session::settle_poses() {

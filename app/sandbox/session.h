@@ -1,6 +1,7 @@
 // The scene that is running: opened, stepped, taken back, changed and saved.
 #pragma once
 
+#include "app/lab/expectation_watch.h"
 #include "app/sandbox/graphs.h"
 #include "app/sandbox/history.h"
 #include "app/sandbox/messages.h"
@@ -10,6 +11,7 @@
 #include "engine/scene/scene_desc.h"
 #include "engine/scene/simulation.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -73,6 +75,13 @@ class Session {
     // The last step failed; only going back or starting again helps.
     [[nodiscard]] bool stopped() const { return stopped_; }
 
+    // What has come so far of each of the scene's expectations, in its order: as `check` judges the
+    // run from its start to the present step. Empty for a scene that has only probes.
+    [[nodiscard]] std::vector<ExpectOutcome> expectations() const;
+    // Something other than steps has changed the run after its start (another method or setting, a
+    // shot, a grab): the expectations tell of what happened, not of what `check` would say.
+    [[nodiscard]] bool disturbed() const { return disturbed_from_.has_value(); }
+
     // The method, with the settings that the scene or else the method has for it.
     bool set_method(std::string_view name);
     bool set_settings(const StepSettings &settings);
@@ -106,6 +115,8 @@ class Session {
     bool start(const SceneDesc &scene, const RunOptions &options,
                const std::optional<StepSettings> &settings);
     void settle_poses();
+    void disturb(std::uint64_t first_step);
+    void settings_changed();
     void save_mesh_files(const std::filesystem::path &folder) const;
 
     RunOptions options_;
@@ -115,6 +126,9 @@ class Session {
     std::filesystem::path path_;
     std::unique_ptr<Simulation> simulation_;
     History history_; // saved by simulation_
+    std::optional<ExpectationWatch> watch_;
+    std::uint64_t first_step_ = 0;                // of the run
+    std::optional<std::uint64_t> disturbed_from_; // states from this step on
     std::optional<Grab> grab_;
     std::vector<ProbeDesc> probes_;
     std::vector<ProbeAnswer> answers_;

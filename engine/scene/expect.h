@@ -14,6 +14,7 @@ struct QuantityInfo {
     std::string_view unit;
     bool needs_body;
     std::string_view description;
+    bool since_start = false; // counted from t = 0
 };
 
 // All quantities, in the order in which they are to be listed.
@@ -40,6 +41,8 @@ struct ReductionInfo {
     Reduction reduction;
     bool uses_level;
     std::string_view description;
+    // Its value never falls (rises) as the window grows; not where `level` is left to min and max.
+    bool only_rises = false, only_falls = false;
 };
 
 std::span<const ReductionInfo> reductions();

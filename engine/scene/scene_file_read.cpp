@@ -41,6 +41,9 @@ SceneFileResult read_tables(const toml::table &root, const std::filesystem::path
     scene.probes = read_probes(reading.report, top, scene.world.precision, path.parent_path());
     read_one("state", read_state);
 
+    if (reading.report.error_count() == 0 && scene.bodies.empty() && scene.probes.empty())
+        reading.report.error({1, 1}, "the scene is empty: it has no body and no probe",
+                             "add a [[body]] or a [[probe]]");
     if (reading.report.error_count() == 0)
         for (SceneMessage &warning : scene_warnings(scene, reading.positions))
             reading.report.warning(std::move(warning));

@@ -141,6 +141,37 @@ TEST(ChartLayout, FailuresGoToTheTopAndZerosToTheBottom) {
     }
 }
 
+// A bound that every run keeps: the errors are exactly 0, and that is all there is to show.
+TEST(ChartLayout, NothingButZeros) {
+    ChartContent content;
+    content.limit = 0;
+    content.limit_label = "at least 1 rad";
+    content.series.push_back({"one", 0, {{0, 1}}});
+    content.marks.resize(2);
+    for (std::size_t i = 0; i < 2; ++i) {
+        content.marks[i].cost = 1 + static_cast<double>(i);
+        content.marks[i].label = "4";
+    }
+    const ChartLayout layout = lay_out(content, text_size);
+    ASSERT_TRUE(layout.zero_line && layout.limit_line);
+    EXPECT_EQ(*layout.zero_line, 0.5f * (layout.plot.min.y + layout.plot.max.y));
+    EXPECT_TRUE(layout.error_ticks.empty()); // there is no scale
+    EXPECT_FALSE(layout.cost_ticks.empty());
+    EXPECT_EQ(layout.labels.size(), 2U);
+    EXPECT_TRUE(layout.plot.contains(layout.limit_text));
+    for (const glm::vec2 &mark : layout.marks) {
+        EXPECT_EQ(mark.y, *layout.zero_line);
+        EXPECT_GT(mark.y, *layout.limit_line); // in the band of what is true enough
+    }
+    // One that falls short brings the scale back, and zeros go to the floor.
+    content.marks[0].error = 0.1;
+    const ChartLayout scale = lay_out(content, text_size);
+    EXPECT_FALSE(scale.error_ticks.empty());
+    EXPECT_LT(scale.marks[0].y, *scale.limit_line);
+    EXPECT_GT(scale.marks[1].y, *scale.limit_line);
+    EXPECT_EQ(*scale.limit_line, scale.field.max.y);
+}
+
 TEST(ChartLayout, NothingButFailures) {
     ChartContent content;
     content.series.push_back({"one", 0, {{0}}});

@@ -6,6 +6,7 @@
 #include "tests/lab/csv_reader.h"
 #include "tests/lab/fake_simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -189,6 +190,91 @@ TEST(Chart, WithoutExpectationsTheErrorThatAppliesIsCharted) {
     chart = chart_scene(scene, options);
     EXPECT_EQ(chart.measure.kind, ErrorMeasure::Kind::joint_drift);
     EXPECT_EQ(chart.runs.at(0).error, 0.25);
+}
+
+// As falling_scene, and the ball is not to go farther than 1.3 m: 1 substep misses both, 2 substeps
+// the way alone, at 1.5 of 1.3 m; 4 and 8 meet both.
+SceneDesc two_expectations() {
+    SceneDesc scene = falling_scene();
+    scene.expects[0].tolerance = 0.6;
+    ExpectDesc way = scene.expects[0];
+    way.name = "y";
+    way.relation = ExpectDesc::Relation::at_most;
+    way.quantity = "displacement";
+    way.value = 1.3;
+    way.tolerance = 0;
+    scene.expects.push_back(way);
+    return scene;
+}
+
+TEST(Chart, TheErrorIsTheWorstOfAllInUnitsOfItsTolerance) {
+    const SceneChart chart = chart_scene(two_expectations(), quick(fakes()));
+    EXPECT_EQ(chart.measure.kind, ErrorMeasure::Kind::worst);
+    EXPECT_EQ(chart.measure.limit, 1);
+    ASSERT_EQ(chart.runs.size(), 4U);
+    const auto expected_x = [](int n) { return 1.0 / n / 0.6; };
+    const auto expected_y = [](int n) { return (1 + 1.0 / n) / 1.3; };
+    for (const ChartRun &run : chart.runs) {
+        const int n = run.resolved.settings.substeps;
+        EXPECT_NEAR(run.error, std::max(expected_x(n), expected_y(n)), 1e-12) << n;
+        ASSERT_TRUE(run.worst) << n;
+        EXPECT_EQ(*run.worst, expected_x(n) > expected_y(n) ? 0U : 1U) << n;
+        EXPECT_EQ(run.status, n <= 2 ? ChartStatus::outside : ChartStatus::fine) << n;
+        EXPECT_TRUE(n > 2 || !run.pareto) << "what fails the scene is no choice";
+    }
+    std::ostringstream out;
+    write_chart_csv(out, chart);
+    const auto rows = read_csv(out.str());
+    const auto cell = [&](std::size_t row, const std::string &column) {
+        const auto found = std::find(rows[0].begin(), rows[0].end(), column);
+        EXPECT_NE(found, rows[0].end()) << column;
+        return rows[row].at(static_cast<std::size_t>(found - rows[0].begin()));
+    };
+    EXPECT_EQ(cell(1, "worst"), "x");
+    EXPECT_EQ(cell(2, "worst"), "y");
+    EXPECT_EQ(cell(2, "error_unit"), "tolerance");
+    EXPECT_EQ(cell(2, "error"), cell(2, "y.scaled_error"));
+    EXPECT_EQ(cell(2, "x.passed"), "1");
+    EXPECT_EQ(cell(2, "y.passed"), "0");
+    EXPECT_EQ(cell(2, "status"), "outside");
+    std::ostringstream table;
+    print(table, chart);
+    EXPECT_NE(table.str().find("outside; worst: y"), std::string::npos) << table.str();
+    // On the picture a letter each, and what the letters stand for.
+    const ChartContent content = chart_content(chart, "");
+    EXPECT_EQ(content.marks.at(0).label, "1 a");
+    EXPECT_EQ(content.marks.at(1).label, "2 b");
+    EXPECT_EQ(content.worst,
+              (std::vector<std::string>{"a  x: is 1 m within 0.6 m", "b  y: at most 1.3 m"}));
+    EXPECT_TRUE(content.marks[1].outside);
+    EXPECT_FALSE(content.marks[2].outside);
+}
+
+TEST(Chart, OneOfSeveralExpectationsIsInItsOwnUnitAndTheVerdictStaysTheScenes) {
+    ChartOptions options = quick(fakes());
+    options.expect = "x";
+    const SceneChart chart = chart_scene(two_expectations(), options);
+    EXPECT_EQ(chart.measure.unit, "m");
+    EXPECT_EQ(chart.measure.limit, 0.6);
+    for (const ChartRun &run : chart.runs) {
+        const int n = run.resolved.settings.substeps;
+        EXPECT_NEAR(run.error, 1.0 / n, 1e-12) << n;
+        EXPECT_EQ(run.status, n <= 2 ? ChartStatus::outside : ChartStatus::fine) << n;
+    }
+    const ChartContent content = chart_content(chart, "");
+    EXPECT_TRUE(content.worst.empty());
+    EXPECT_EQ(content.marks.at(1).label, "2");
+    EXPECT_TRUE(content.marks[1].outside); // below the line, and yet not true enough
+    EXPECT_LT(content.marks[1].error, *content.limit);
+    EXPECT_FALSE(content.marks[1].pareto);
+    options.expect = "z";
+    try {
+        (void)chart_scene(two_expectations(), options);
+        FAIL() << "charted what there is not";
+    } catch (const std::invalid_argument &refusal) {
+        EXPECT_NE(std::string(refusal.what()).find("it has \"x\", \"y\""), std::string::npos)
+            << refusal.what();
+    }
 }
 
 TEST(Chart, LinesJoinTheFirstAxisOfEachMethod) {

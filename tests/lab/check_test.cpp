@@ -101,6 +101,50 @@ TEST_F(LabCommands, BadInput) {
     EXPECT_EQ(measure_scene(measure, out_, err_), ExitCode::bad_input);
 }
 
+// Nothing was promised, so nothing was kept.
+TEST_F(LabCommands, CheckCountsScenesThatExpectNothingApart) {
+    const std::string ball = fall.substr(0, fall.find("[[expect]]"));
+    CheckCommand command;
+    command.scenes = {file("ball.toml", ball)};
+    EXPECT_EQ(check_scenes(command, out_, err_), ExitCode::fine) << err_.str();
+    EXPECT_NE(out_.str().find("ball: expects nothing"), std::string::npos) << out_.str();
+    EXPECT_EQ(out_.str().find("within tolerance"), std::string::npos) << out_.str();
+    EXPECT_NE(out_.str().find("1 run: 1 with nothing to judge"), std::string::npos) << out_.str();
+    out_.str("");
+    command.scenes.push_back(file("fall.toml", fall + "0.1\n"));
+    command.scenes.push_back(file("far.toml", fall + "1e-9\n"));
+    EXPECT_EQ(check_scenes(command, out_, err_), ExitCode::outside_tolerance) << err_.str();
+    EXPECT_NE(out_.str().find(
+                  "3 runs: 1 within tolerance, 1 not within tolerance, 1 with nothing to judge"),
+              std::string::npos)
+        << out_.str();
+}
+
+TEST_F(LabCommands, CheckDoesNotJudgeWhatASavedStateHasBehindIt) {
+    std::string saved = fall + "0.1\n[[expect]]\nname = \"way\"\nquantity = \"displacement\"\n"
+                               "body = \"ball\"\nto = 3\nat_most = 1e3\nsource = \"test\"\n";
+    saved += "[state]\nstep = 120\n"; // 2 s: the height was expected after 1 s
+    CheckCommand command;
+    command.scenes = {file("saved.toml", saved)};
+    EXPECT_EQ(check_scenes(command, out_, err_), ExitCode::fine) << err_.str() << out_.str();
+    EXPECT_NE(out_.str().find("-     saved/height: not judged"), std::string::npos) << out_.str();
+    EXPECT_NE(out_.str().find("-     saved/way: not judged"), std::string::npos) << out_.str();
+    EXPECT_NE(out_.str().find("1 run: 1 with nothing to judge"), std::string::npos) << out_.str();
+}
+
+TEST_F(LabCommands, CheckRefusesAnEmptyFile) {
+    CheckCommand command;
+    for (const char *text : {"", "# nothing yet\n", "title = \"empty\"\n[world]\ndt = 0.01\n"}) {
+        out_.str("");
+        err_.str("");
+        command.scenes = {file("empty.toml", text)};
+        EXPECT_EQ(check_scenes(command, out_, err_), ExitCode::bad_input) << text;
+        EXPECT_NE(err_.str().find("empty.toml:1:1: error: the scene is empty"), std::string::npos)
+            << err_.str();
+        EXPECT_EQ(std::ranges::count(err_.str(), '\n'), 1) << err_.str();
+    }
+}
+
 TEST(ExitCodes, OfOutcomes) {
     CheckOutcome outcome;
     EXPECT_EQ(exit_code(outcome), ExitCode::fine);

@@ -295,6 +295,126 @@ TEST(SessionWithFake, GraphsFollowStepsBothWays) {
     EXPECT_EQ(energy.at(energy.size() - 1), static_cast<double>(Graph::capacity + 9));
 }
 
+// Held to what two_balls does: "left" rises by 0.25 m/s.
+SceneDesc expecting() {
+    SceneDesc scene = two_balls();
+    scene.world.dt = 0.125;
+    const auto expect = [&](const char *name, const char *reduce, double to,
+                            ExpectDesc::Relation relation, double value) {
+        ExpectDesc desc;
+        desc.name = name;
+        desc.quantity = "position.y";
+        desc.body = "left";
+        desc.reduce = reduce;
+        desc.to = to;
+        desc.relation = relation;
+        desc.value = value;
+        desc.tolerance = relation == ExpectDesc::Relation::equals ? 0.01 : 0;
+        scene.expects.push_back(desc);
+    };
+    expect("height", "last", 1, ExpectDesc::Relation::equals, 0.25);
+    expect("never so high", "max", 2, ExpectDesc::Relation::at_most, 0.125);
+    expect("low", "last", 0.5, ExpectDesc::Relation::at_most, 0.0625);
+    return scene;
+}
+
+std::vector<Verdict> verdicts(const Session &session) {
+    std::vector<Verdict> all;
+    for (const ExpectOutcome &outcome : session.expectations())
+        all.push_back(outcome.verdict);
+    return all;
+}
+
+using enum Verdict;
+using Verdicts = std::vector<Verdict>;
+
+TEST(SessionWithFake, ExpectationsFollowTheRunBothWays) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(expecting()));
+    const auto expected_after = [](int steps) {
+        return Verdicts{steps < 8 ? pending : met, steps <= 4 ? pending : missed,
+                        steps < 4 ? pending : missed};
+    };
+    EXPECT_EQ(verdicts(session), expected_after(0));
+    for (int step = 1; step <= 20; ++step) {
+        ASSERT_TRUE(session.step());
+        ASSERT_EQ(verdicts(session), expected_after(step)) << step;
+        ASSERT_EQ(session.expectations()[0].measured, 0.03125 * std::min(step, 8));
+    }
+    for (int step = 19; step >= 0; --step) {
+        ASSERT_TRUE(session.step_back());
+        ASSERT_EQ(verdicts(session), expected_after(step)) << step;
+        ASSERT_EQ(session.expectations()[0].measured, 0.03125 * std::min(step, 8));
+    }
+    for (int step = 1; step <= 9; ++step)
+        session.step();
+    EXPECT_EQ(verdicts(session), expected_after(9));
+    ASSERT_TRUE(session.restart());
+    EXPECT_EQ(verdicts(session), expected_after(0));
+    EXPECT_FALSE(session.disturbed());
+}
+
+TEST(SessionWithFake, AnotherStepIsJudgedByTimeNotByCount) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(expecting()));
+    StepSettings settings = session.simulation()->settings();
+    settings.dt = 0.25; // before the first step: the whole run has it
+    ASSERT_TRUE(session.set_settings(settings));
+    EXPECT_FALSE(session.disturbed());
+    for (int step = 1; step <= 4; ++step)
+        ASSERT_TRUE(session.step());
+    EXPECT_EQ(verdicts(session), (Verdicts{met, missed, missed}));
+    ASSERT_TRUE(session.restart()); // with the step now chosen
+    EXPECT_EQ(verdicts(session), (Verdicts{pending, pending, pending}));
+    for (int step = 1; step <= 4; ++step)
+        ASSERT_TRUE(session.step());
+    EXPECT_EQ(verdicts(session), (Verdicts{met, missed, missed}));
+}
+
+TEST(SessionWithFake, ARunThatWasMeddledWithSaysSo) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(expecting()));
+    session.step();
+    session.step();
+    EXPECT_FALSE(session.disturbed());
+    session.shoot({0, 9, 0}, {0, 1, 0}, 0.1);
+    EXPECT_TRUE(session.disturbed());
+    session.step();
+    session.step_back(); // the ball is there still
+    EXPECT_TRUE(session.disturbed());
+    session.step_back();
+    EXPECT_FALSE(session.disturbed());
+    session.grab(Grab{0, {}, {0, 5, 0}});
+    EXPECT_FALSE(session.disturbed());
+    session.step();
+    EXPECT_TRUE(session.disturbed());
+    session.step_back();
+    EXPECT_FALSE(session.disturbed());
+    StepSettings settings = session.simulation()->settings();
+    settings.gravity = {0, -1, 0};
+    session.set_settings(settings);
+    EXPECT_TRUE(session.disturbed());
+    session.step_back(); // to the start: from here on all is under the new settings
+    EXPECT_FALSE(session.disturbed());
+    session.step();
+    session.set_settings(settings);
+    EXPECT_TRUE(session.disturbed());
+    ASSERT_TRUE(session.restart());
+    EXPECT_FALSE(session.disturbed());
+}
+
+TEST(SessionWithFake, WhatDivergesIsNotJudgedFurther) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(expecting()));
+    dynamic_cast<FakeSimulation &>(*session.simulation()).diverges_at = 2;
+    while (session.step()) {
+    }
+    EXPECT_TRUE(session.stopped());
+    EXPECT_EQ(verdicts(session), (Verdicts{pending, pending, pending}));
+    ASSERT_TRUE(session.step_back());
+    EXPECT_EQ(verdicts(session), (Verdicts{pending, pending, pending}));
+}
+
 TEST(History, KeepsTheNewestWithinItsMemory) {
     EXPECT_EQ(History::capacity(1), History::most_states);
     EXPECT_EQ(History::capacity(0), History::most_states);
