@@ -33,7 +33,8 @@ struct SceneFileResult {
 SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             const std::vector<std::string> &known_methods = {});
 
-// A file that cannot be read is one error message at line 0.
+// A file that cannot be read is one error message at line 0; one without a body or a probe is an
+// error too, for there is nothing to run, while parse_scene takes the text of such a scene.
 SceneFileResult load_scene(const std::filesystem::path &path,
                            const std::vector<std::string> &known_methods = {});
 

@@ -41,9 +41,6 @@ SceneFileResult read_tables(const toml::table &root, const std::filesystem::path
     scene.probes = read_probes(reading.report, top, scene.world.precision, path.parent_path());
     read_one("state", read_state);
 
-    if (reading.report.error_count() == 0 && scene.bodies.empty() && scene.probes.empty())
-        reading.report.error({1, 1}, "the scene is empty: it has no body and no probe",
-                             "add a [[body]] or a [[probe]]");
     if (reading.report.error_count() == 0)
         for (SceneMessage &warning : scene_warnings(scene, reading.positions))
             reading.report.warning(std::move(warning));
@@ -105,7 +102,12 @@ SceneFileResult load_scene(const std::filesystem::path &path,
                                    "check that it exists and that you may read it"});
         return result;
     }
-    return parse_scene(text.str(), path.string(), known_methods);
+    SceneFileResult result = parse_scene(text.str(), path.string(), known_methods);
+    if (result.ok() && result.scene.bodies.empty() && result.scene.probes.empty())
+        result.messages = {{SceneMessage::Severity::error, 1, 1,
+                            "the scene is empty: it has no body and no probe",
+                            "add a [[body]] or a [[probe]]"}};
+    return result;
 }
 
 std::string format_message(const std::string &path, const SceneMessage &message) {

@@ -328,12 +328,15 @@ TEST(ChartImage, IsDrawnAndDependsOnItsContent) {
     // The plot alone is white on the tinted background: 836 x 536 of 1200 x 800.
     EXPECT_GT(inked, 836U * 500U);
     EXPECT_GT(colours.size(), 100U); // smooth edges of lines and letters
-    // The first mark's own blue is there, at its place.
+    // The last mark's own blue is there, at its place.
     const ChartContent content = chart_content(chart, "command");
     const ChartLayout layout =
         lay_out(content, [](std::string_view, float) { return glm::vec2(10, 10); });
-    const glm::vec2 p = layout.marks[0];
-    EXPECT_EQ(image.at(static_cast<int>(p.x), static_cast<int>(p.y)), glm::u8vec3(0, 0x72, 0xb2));
+    const auto at_mark = [&](std::size_t i) {
+        return image.at(static_cast<int>(layout.marks[i].x), static_cast<int>(layout.marks[i].y));
+    };
+    EXPECT_EQ(at_mark(3), glm::u8vec3(0, 0x72, 0xb2));
+    EXPECT_EQ(at_mark(0), glm::u8vec3(255));  // hollow, for it is outside
     EXPECT_EQ(painter.paint(content), image); // the same again
     chart.runs[0].error *= 2;
     EXPECT_NE(painter.paint(chart_content(chart, "command")), image);

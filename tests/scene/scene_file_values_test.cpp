@@ -265,8 +265,23 @@ TEST(SceneFileValues, LoadReadsAFile) {
     EXPECT_TRUE(result.ok());
     EXPECT_EQ(result.scene.name, "plumb_scene_file_values");
     EXPECT_EQ(result.scene.bodies.size(), 1U);
-    std::ofstream(path, std::ios::trunc);
-    EXPECT_TRUE(load_scene(path).ok()); // an empty file is an empty scene
+    std::filesystem::remove(path);
+}
+
+TEST(SceneFileValues, LoadRefusesAFileWithNothingToRun) {
+    const std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) / "plumb_scene_file_nothing.toml";
+    for (const std::string text : {"", "# nothing\n", "title = \"T\"\n[world]\ndt = 0.01\n",
+                                   "[[material]]\nname = \"wood\"\n"}) {
+        std::ofstream(path) << text;
+        const SceneFileResult result = load_scene(path);
+        EXPECT_FALSE(result.ok());
+        ASSERT_EQ(result.messages.size(), 1U) << text;
+        EXPECT_EQ(format_message("s.toml", result.messages[0]),
+                  "s.toml:1:1: error: the scene is empty: it has no body and no probe; add a "
+                  "[[body]] or a [[probe]]");
+        EXPECT_TRUE(parse_scene(text, "s.toml").ok()); // as a text it is a scene
+    }
     std::filesystem::remove(path);
 }
 
