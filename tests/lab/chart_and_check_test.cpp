@@ -89,7 +89,7 @@ TEST(ChartAndCheck, AgreeOnAnythingThatABallIsHeldTo) {
         scene.name = "ball";
         BodyDesc ball;
         ball.name = "ball";
-        ball.shape = SphereDesc{0.5};
+        ball.colliders.emplace_back().shape = SphereDesc{0.5};
         ball.velocity = {1, 4, 0};
         scene.bodies.push_back(ball);
         for (int i = 0; i < 2; ++i) {
@@ -126,7 +126,7 @@ TEST(ChartAndCheck, AgreeOnProbes) {
     scene.name = "ball";
     BodyDesc ball;
     ball.name = "ball";
-    ball.shape = SphereDesc{0.5};
+    ball.colliders.emplace_back().shape = SphereDesc{0.5};
     scene.bodies.push_back(ball);
     ExpectDesc expect;
     expect.name = "falls";

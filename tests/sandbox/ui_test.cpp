@@ -96,6 +96,48 @@ TEST_F(UiTest, PanelsAreDrawnAndNothingOverlaps) {
     }
 }
 
+// Whether what a scene expects holds is said in the verdict's own colour, green or red, as soon as
+// it is known and only then.
+TEST_F(UiTest, ThePanelSaysWhatIsMetAndWhatIsMissed) {
+    struct Coloured {
+        std::size_t green = 0, red = 0;
+    };
+    const auto verdicts = [&](Sandbox &sandbox) {
+        std::vector<Ui::Panel> panels;
+        const Image image =
+            ui_snapshot(sandbox, *renderer, source / "shaders", {1280, 800}, 1, &panels);
+        const auto details = std::ranges::find(panels, std::string("details"), &Ui::Panel::name);
+        EXPECT_NE(details, panels.end());
+        Coloured seen;
+        const glm::ivec2 min(details->rect.min), max(details->rect.max());
+        for (int y = min.y; y < max.y; ++y)
+            for (int x = min.x; x < max.x; ++x) {
+                const glm::ivec3 c(image.at(x, y));
+                seen.green += c.g - c.r > 35 && c.g - c.b > 20 ? 1 : 0;
+                seen.red += c.r - c.g > 50 ? 1 : 0;
+            }
+        return seen;
+    };
+    SceneDesc scene = load_scene(scenes[0].path).scene; // free fall, 2 s
+    for (const bool right : {true, false}) {
+        if (!right)
+            scene.expects.at(0).value += 1;
+        Sandbox sandbox{Session()};
+        ASSERT_TRUE(sandbox.open(scene));
+        for (int i = 0; i < 119; ++i)
+            sandbox.session().step();
+        Coloured seen = verdicts(sandbox);
+        EXPECT_EQ(seen.green + seen.red, 0U) << "pending";
+        sandbox.session().step();
+        seen = verdicts(sandbox);
+        EXPECT_GT(right ? seen.green : seen.red, 10U);
+        EXPECT_EQ(right ? seen.red : seen.green, 0U);
+        sandbox.session().step_back();
+        seen = verdicts(sandbox);
+        EXPECT_EQ(seen.green + seen.red, 0U) << "pending again";
+    }
+}
+
 TEST_F(UiTest, TheSameStateGivesTheSamePicture) {
     const auto picture = [&] {
         Sandbox sandbox(Session(), scenes);
