@@ -1,6 +1,7 @@
 // The selected body.
 #include "app/sandbox/panel.h"
 #include "app/sandbox/widgets.h"
+#include "engine/scene/joint_type.h"
 
 #include <array>
 #include <cmath>
@@ -84,6 +85,64 @@ void contact_rows(const PanelContext &context, std::size_t body) {
     value_row("Normal forces", number(force, "N"));
 }
 
+// Of hinges and sliders: an angle in degrees, or a length.
+std::string place(const JointView &joint, double value, const char *rate = "") {
+    return joint.type == JointType::hinge ? number(glm::degrees(value), std::string("°") + rate)
+                                          : number(value, std::string("m") + rate);
+}
+
+// What the joint is held to and how it stands, a row each.
+void joint_rows(const JointView &joint) {
+    const bool has_axis = joint_type(joint.type).frames == JointTypeInfo::Frames::axis;
+    if (joint.broken) {
+        value_row("State", "broken");
+        return;
+    }
+    if (has_axis)
+        value_row(joint.type == JointType::hinge ? "Angle" : "Position",
+                  place(joint, joint.position));
+    else if (joint.type == JointType::distance)
+        value_row("Length", number(joint.position, "m"));
+    if (joint.limits && (*joint.limits)[0] == (*joint.limits)[1])
+        value_row("Held at", place(joint, (*joint.limits)[0]));
+    else if (joint.limits)
+        value_row("Limits",
+                  place(joint, (*joint.limits)[0]) + " to " + place(joint, (*joint.limits)[1]));
+    if (joint.motor_speed) {
+        const char *unit = joint.type == JointType::hinge ? "N m" : "N";
+        value_row("Motor", place(joint, *joint.motor_speed, "/s") + ", up to " +
+                               number(joint.max_motor_force, unit));
+        value_row("Motor gives", number(joint.motor_force, unit));
+        value_row("Speed", place(joint, joint.speed, "/s"));
+    }
+    if (joint.frequency > 0)
+        value_row("Spring", number(joint.frequency, "Hz"));
+    value_row("Error", number(joint.drift, "m"));
+    if (joint_type(joint.type).frames != JointTypeInfo::Frames::none)
+        value_row("Error of angle", number(glm::degrees(joint.angle_drift), "°"));
+    value_row("Force", number(glm::length(joint.force), "N") +
+                           (joint.break_force > 0 ? " of " + number(joint.break_force, "N") : ""));
+    if (glm::length(joint.torque) > 0)
+        value_row("Torque", number(glm::length(joint.torque), "N m"));
+}
+
+// Those that hold the body, each under its name and type.
+void joints_of(const PanelContext &context, std::size_t body) {
+    constexpr std::size_t shown_at_most = 8;
+    std::size_t count = 0;
+    for (const JointView &joint : context.session.simulation()->joints()) {
+        if (joint.body_a != body && joint.body_b != body)
+            continue;
+        if (++count > shown_at_most)
+            continue;
+        ImGui::Separator();
+        value_row(joint.name, std::string(joint_type(joint.type).name) + " joint");
+        joint_rows(joint);
+    }
+    if (count > shown_at_most)
+        value_row("More joints", std::to_string(count - shown_at_most));
+}
+
 } // namespace
 
 void inspector_panel(PanelContext &context) {
@@ -114,13 +173,16 @@ void inspector_panel(PanelContext &context) {
     ImGui::Separator();
     value_row("Position", triple(state.position) + " m");
     value_row("Turned", turn(state.orientation));
-    if (info.kind == BodyKind::fixed)
+    if (info.kind == BodyKind::fixed) {
+        joints_of(context, *body);
         return;
+    }
     value_row("Velocity", triple(state.velocity) + " m/s");
     value_row("Speed", number(glm::length(state.velocity), "m/s"));
     value_row("Spin", triple(state.angular_velocity) + " 1/s");
     ImGui::Separator();
     contact_rows(context, *body);
+    joints_of(context, *body);
 }
 
 } // namespace plumb

@@ -1,6 +1,7 @@
 #include "app/sandbox/world_draw.h"
 
 #include "app/render/palette.h"
+#include "app/sandbox/joint_draw.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#define GLM_ENABLE_EXPERIMENTAL // for glm::rotation, the shortest turn between two directions
-#include <glm/gtx/quaternion.hpp>
 
 namespace plumb {
 
@@ -152,46 +151,6 @@ void add_contacts(DrawList &list, const Simulation &simulation, double weight) {
     }
 }
 
-void add_joints(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses) {
-    for (const JointView &joint : simulation.joints()) {
-        for (const auto &[body, anchor] :
-             {std::pair{joint.body_a, joint.anchor_a}, std::pair{joint.body_b, joint.anchor_b}}) {
-            if (body && *body < poses.size())
-                add_line(list, poses[*body].position, anchor, colours::joint, 1.5f);
-            DrawPoint point;
-            point.position = glm::vec3(anchor);
-            point.colour = colours::joint;
-            list.points.push_back(point);
-        }
-        add_line(list, joint.anchor_a, joint.anchor_b, colours::joint, 3);
-    }
-}
-
-// A distance joint is a rod: part of the scene, drawn whether or not joints are looked at. Its ends
-// are those of the last step, moved along with the bodies that are shown.
-void add_rods(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses) {
-    const auto shown = [&](const std::optional<std::size_t> &body, const glm::dvec3 &anchor) {
-        return body ? anchor + poses[*body].position - simulation.body_state(*body).position
-                    : anchor;
-    };
-    for (const JointView &joint : simulation.joints()) {
-        if (joint.type != JointType::distance)
-            continue;
-        const glm::vec3 a(shown(joint.body_a, joint.anchor_a));
-        const glm::vec3 b(shown(joint.body_b, joint.anchor_b));
-        const float length = glm::distance(a, b);
-        if (!(length > 0.0f))
-            continue;
-        DrawShape rod;
-        rod.kind = DrawKind::capsule;
-        rod.position = 0.5f * (a + b);
-        rod.rotation = glm::rotation(glm::vec3(0, 1, 0), (b - a) / length);
-        rod.size = glm::vec3(0.006f * length, 0.5f * length, 0.0f);
-        rod.colour = colours::rod;
-        list.shapes.push_back(rod);
-    }
-}
-
 void add_bounds(DrawList &list, const Simulation &simulation) {
     for (const BoundsView &box : simulation.bounds()) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -224,6 +183,20 @@ double typical_weight(const Simulation &simulation) {
     return *middle * glm::length(simulation.settings().gravity);
 }
 
+void add_joints(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses,
+                bool all) {
+    const std::vector<JointView> joints = joints_at(simulation, poses);
+    if (joints.empty())
+        return;
+    std::vector<double> reaches;
+    for (std::size_t body = 0; body < simulation.body_count(); ++body)
+        reaches.push_back(reach(simulation.body_info(body)));
+    const JointSurroundings surroundings{poses, reaches, simulation.settings().gravity};
+    draw_links(list, joints, surroundings);
+    if (all)
+        draw_joints(list, joints, surroundings);
+}
+
 } // namespace
 
 Camera camera_of(const CameraDesc &camera) {
@@ -248,11 +221,9 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
     for (std::size_t body = 0; body < shown.size(); ++body)
         if (simulation.body_info(body).alive)
             add_body(list, simulation.body_info(body), shown[body], body, options);
-    add_rods(list, simulation, shown);
+    add_joints(list, simulation, shown, options.joints);
     if (options.contacts)
         add_contacts(list, simulation, typical_weight(simulation));
-    if (options.joints)
-        add_joints(list, simulation, shown);
     if (options.bounds)
         add_bounds(list, simulation);
     if (options.velocities)

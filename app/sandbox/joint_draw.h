@@ -1,0 +1,33 @@
+// Joints as a draw list.
+#pragma once
+
+#include "app/render/draw_list.h"
+#include "app/sandbox/pose_blend.h"
+#include "engine/scene/simulation.h"
+
+#include <span>
+#include <vector>
+
+namespace plumb {
+
+// What joints are drawn by, besides themselves.
+struct JointSurroundings {
+    std::span<const Pose> poses;   // of the bodies, as they are shown
+    std::span<const double> reach; // of each body's shape from its origin, m; 0: no matter
+    glm::dvec3 gravity{0, -9.81, 0};
+};
+
+// Of the last step, moved along with the bodies as they are shown.
+[[nodiscard]] std::vector<JointView> joints_at(const Simulation &simulation,
+                                               std::span<const Pose> poses);
+
+// Rods, ropes and springs: part of the scene, whether or not joints are looked at.
+void draw_links(DrawList &list, std::span<const JointView> joints,
+                const JointSurroundings &surroundings);
+
+// How each joint holds its bodies: its anchors, and what its type adds (a hinge's axis and arc, a
+// slider's rail, a fixed joint's cross), with limits and motor.
+void draw_joints(DrawList &list, std::span<const JointView> joints,
+                 const JointSurroundings &surroundings);
+
+} // namespace plumb
