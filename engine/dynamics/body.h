@@ -64,4 +64,9 @@ struct Motion {
     }
 };
 
+// Such a body is nowhere, and collides with nothing.
+inline bool has_diverged(const Motion &motion) {
+    return !is_finite(motion.position) || !is_unit(glm::dot(motion.rotation, motion.rotation));
+}
+
 } // namespace plumb::inline PLUMB_PRECISION

@@ -86,8 +86,8 @@ Measures World::measure() const {
             return placed(bodies_[body].shape,
                           Transform{motions_[body].position, motions_[body].rotation});
         };
-        if (!report_.finite)
-            break;
+        if (has_diverged(motions_[contact.a]) || has_diverged(motions_[contact.b]))
+            continue;
         const Manifold manifold = plumb::collide(shape_of(contact.a), shape_of(contact.b), Real(0));
         for (int k = 0; k < manifold.count; ++k) {
             const double depth =

@@ -134,6 +134,10 @@ void World::find_pairs() {
         Body &body = bodies_[i];
         if (!body.alive)
             continue;
+        if (has_diverged(motions_[i])) { // the report says so; nothing to collide any more
+            swept_[i] = Aabb{};
+            continue;
+        }
         placed_[i] = placed(body.shape, Transform{motions_[i].position, motions_[i].rotation});
         if (std::holds_alternative<HalfSpace>(body.shape))
             continue;
@@ -255,9 +259,8 @@ void World::finish() {
         const Motion &motion = motions_[i];
         const Vec3 linear = motion.position + motion.velocity;
         const Vec3 angular = motion.angular_velocity;
-        const Real sum =
-            linear.x + linear.y + linear.z + angular.x + angular.y + angular.z + motion.rotation.w;
-        report_.finite = report_.finite && std::isfinite(sum);
+        const Real sum = linear.x + linear.y + linear.z + angular.x + angular.y + angular.z;
+        report_.finite = report_.finite && std::isfinite(sum) && !has_diverged(motion);
         report_.energy += energy_of(bodies_[i], motion);
         if (bodies_[i].alive && bodies_[i].kind != BodyKind::fixed)
             ++report_.moving_bodies;

@@ -16,11 +16,6 @@ namespace {
 // longer before the tree changes, but more pairs are looked at. No result depends on it.
 constexpr Real tree_margin = Real(0.1);
 
-bool is_finite_pose(const Transform &pose) {
-    return is_finite(pose.position) &&
-           std::isfinite(pose.rotation.w + pose.rotation.x + pose.rotation.y + pose.rotation.z);
-}
-
 void check_pose(const Transform &pose) {
     PLUMB_CHECK(is_finite(pose.position), "body position must be finite, got "
                                               << pose.position.x << ", " << pose.position.y << ", "
@@ -243,9 +238,9 @@ std::optional<WorldHit> World::raycast(const Ray &ray) const {
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
         if (!bodies_[i].alive)
             continue;
+        if (has_diverged(motions_[i]))
+            continue; // it is nowhere
         const Transform pose{motions_[i].position, motions_[i].rotation};
-        if (!is_finite_pose(pose))
-            continue; // diverged: it is nowhere
         const std::optional<RayHit> hit = plumb::raycast(placed(bodies_[i].shape, pose), shortened);
         if (hit && (!nearest || hit->t < nearest->hit.t)) {
             nearest = WorldHit{body_id(i), *hit};

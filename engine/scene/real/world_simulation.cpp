@@ -382,6 +382,8 @@ std::vector<BoundsView> WorldSimulation::bounds() const {
         if (!body.alive || std::holds_alternative<HalfSpace>(body.shape))
             continue;
         const Motion &motion = state_.world.motions()[i];
+        if (has_diverged(motion))
+            continue;
         const Aabb box =
             plumb::bounds(placed(body.shape, Transform{motion.position, motion.rotation}));
         views.push_back({glm::dvec3{box.min}, glm::dvec3{box.max}});
