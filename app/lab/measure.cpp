@@ -56,7 +56,7 @@ void write_header(CsvWriter &csv) {
 }
 
 void write_row(CsvWriter &csv, std::uint64_t step, const Measures &m, double change, double error,
-               const StepReport &r) {
+               const StepReport &r, const StepTimes &times) {
     csv.cell(step)
         .cell(m.time)
         .cell(m.kinetic_energy)
@@ -77,11 +77,11 @@ void write_row(CsvWriter &csv, std::uint64_t step, const Measures &m, double cha
     for (const std::uint32_t count : {r.moving_bodies, r.pairs, r.contacts, r.contact_points,
                                       r.joints, r.impacts, r.unresolved_impacts})
         csv.cell(static_cast<std::uint64_t>(count));
-    csv.cell(r.find_pairs)
-        .cell(r.collide)
-        .cell(r.advance)
-        .cell(r.finish)
-        .cell(r.total())
+    csv.cell(times.find_pairs)
+        .cell(times.collide)
+        .cell(times.advance)
+        .cell(times.finish)
+        .cell(times.total())
         .cell(r.finite);
     csv.end_row();
 }
@@ -114,25 +114,26 @@ MeasureSummary measure_run(Simulation &simulation, const MeasureOptions &options
         return change;
     };
     note(start);
-    write_row(csv, simulation.step_count(), start, 0, 0, StepReport{});
+    write_row(csv, simulation.step_count(), start, 0, 0, StepReport{}, StepTimes{});
 
     for (; summary.steps < options.steps; ++summary.steps) {
         if (options.stop && options.stop()) {
             summary.stopped = true;
             break;
         }
+        StepTimes times;
         try {
-            simulation.step();
+            simulation.step(&times);
         } catch (const CheckFailure &failure) {
             summary.divergence = Divergence{simulation.step_count() + 1, simulation.time(), "",
                                             std::nullopt, failure.what()};
             break;
         }
         const StepReport &report = simulation.report();
-        summary.find_pairs += report.find_pairs;
-        summary.collide += report.collide;
-        summary.advance += report.advance;
-        summary.finish += report.finish;
+        summary.find_pairs += times.find_pairs;
+        summary.collide += times.collide;
+        summary.advance += times.advance;
+        summary.finish += times.finish;
         summary.most_contacts = std::max(summary.most_contacts, report.contacts);
         summary.impacts += report.impacts;
         summary.unresolved_impacts += report.unresolved_impacts;
@@ -150,7 +151,7 @@ MeasureSummary measure_run(Simulation &simulation, const MeasureOptions &options
         }
         const double change = note(now);
         write_row(csv, simulation.step_count(), now, change, relative_change(change, scale),
-                  report);
+                  report, times);
         if (!report.finite) {
             ++summary.steps;
             summary.divergence = find_divergence(simulation, simulation.step_count());

@@ -10,9 +10,13 @@ std::size_t History::capacity(std::size_t bodies) {
 }
 
 void History::remember(const Simulation &simulation) {
-    states_.push_back(simulation.save());
-    while (states_.size() > capacity(simulation.body_count()))
+    // The oldest one's memory is used again.
+    std::unique_ptr<Simulation::Saved> oldest;
+    while (states_.size() >= capacity(simulation.body_count())) {
+        oldest = std::move(states_.front());
         states_.pop_front();
+    }
+    states_.push_back(simulation.save(std::move(oldest)));
 }
 
 bool History::recall(Simulation &simulation) {

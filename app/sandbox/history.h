@@ -15,8 +15,8 @@ class History {
     // About what one history may take, and the most steps that it remembers.
     static constexpr std::size_t memory_limit = 256u << 20; // bytes
     static constexpr std::size_t most_states = 3600;        // a minute at 60 steps a second
-    // A generous estimate of what the state of one body with its contacts takes.
-    static constexpr std::size_t bytes_per_body = 1024;
+    // What the state of one resting body takes, its contacts and joints among it.
+    static constexpr std::size_t bytes_per_body = 300;
 
     // How many states of a world of this many bodies are kept; at least one.
     [[nodiscard]] static std::size_t capacity(std::size_t bodies);

@@ -17,18 +17,18 @@ namespace {
 struct Phase {
     const char *title;
     const Graph SessionGraphs::*graph;
-    double StepReport::*time;
+    double StepTimes::*time;
     Colour colour;
 };
 
 constexpr std::array phases{
     Phase{"Find pairs",
           &SessionGraphs::find_pairs,
-          &StepReport::find_pairs,
+          &StepTimes::find_pairs,
           {0.42f, 0.68f, 0.90f, 1}},
-    Phase{"Collide", &SessionGraphs::collide, &StepReport::collide, {0.90f, 0.64f, 0.42f, 1}},
-    Phase{"Advance", &SessionGraphs::advance, &StepReport::advance, {0.50f, 0.76f, 0.58f, 1}},
-    Phase{"Finish", &SessionGraphs::finish, &StepReport::finish, {0.72f, 0.62f, 0.86f, 1}},
+    Phase{"Collide", &SessionGraphs::collide, &StepTimes::collide, {0.90f, 0.64f, 0.42f, 1}},
+    Phase{"Advance", &SessionGraphs::advance, &StepTimes::advance, {0.50f, 0.76f, 0.58f, 1}},
+    Phase{"Finish", &SessionGraphs::finish, &StepTimes::finish, {0.72f, 0.62f, 0.86f, 1}},
 };
 
 struct Plot {
@@ -147,7 +147,7 @@ void energy_graph(const PanelContext &context, float height) {
     label(context.fonts, plot, false, number(low, "J", digits));
 }
 
-void legend(const PanelContext &context, const StepReport &report) {
+void legend(const PanelContext &context, const StepTimes &times) {
     const float half = ImGui::GetContentRegionAvail().x / 2;
     const float left = ImGui::GetCursorPosX();
     ImGui::PushFont(context.fonts.small);
@@ -164,7 +164,7 @@ void legend(const PanelContext &context, const StepReport &report) {
             {at.x, at.y + down}, {at.x + side, at.y + down + side}, packed(phase.colour), 2);
         ImGui::SetCursorPosX(start + side + 5);
         ImGui::TextUnformatted(phase.title);
-        const std::string time = context.frozen ? "-" : milliseconds(report.*phase.time);
+        const std::string time = context.frozen ? "-" : milliseconds(times.*phase.time);
         ImGui::SameLine();
         ImGui::SetCursorPosX(start + half - ImGui::CalcTextSize(time.c_str()).x -
                              (i % 2 == 0 ? 10.0f : 0.0f));
@@ -182,7 +182,7 @@ void statistics_panel(PanelContext &context) {
     const StepReport &report = simulation ? simulation->report() : nothing;
     const float height = ImGui::GetFontSize() * 3.0f;
     time_graph(context, height);
-    legend(context, report);
+    legend(context, context.session.times());
     ImGui::Spacing();
     heading(context.fonts, "Energy");
     energy_graph(context, height);

@@ -124,7 +124,8 @@ bool Session::step() {
             disturb(simulation_->step_count() + 1);
             simulation_->pull(grab_->body, grab_->local_point, grab_->target);
         }
-        simulation_->step();
+        times_ = StepTimes{};
+        simulation_->step(&times_);
     } catch (const std::exception &failure) {
         stopped_ = true;
         messages_.error("The step after " + std::to_string(simulation_->step_count()) +
@@ -133,11 +134,11 @@ bool Session::step() {
         return false;
     }
     const StepReport &report = simulation_->report();
-    graphs_.find_pairs.add(report.find_pairs);
-    graphs_.collide.add(report.collide);
-    graphs_.advance.add(report.advance);
-    graphs_.finish.add(report.finish);
-    graphs_.energy.add(report.energy);
+    graphs_.find_pairs.add(times_.find_pairs);
+    graphs_.collide.add(times_.collide);
+    graphs_.advance.add(times_.advance);
+    graphs_.finish.add(times_.finish);
+    graphs_.energy.add(simulation_->energy());
     previous_ = std::move(present_);
     present_ = poses_of(*simulation_);
     if (!report.finite) {
@@ -170,7 +171,7 @@ bool Session::step_back() {
         return false;
     }
     stopped_ = false;
-    grab_.reset(); // it may hold a body that does not exist yet
+    grab(std::nullopt); // it may hold a body that does not exist yet
     for (Graph *graph : {&graphs_.find_pairs, &graphs_.collide, &graphs_.advance, &graphs_.finish,
                          &graphs_.energy})
         graph->take_back();

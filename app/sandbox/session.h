@@ -86,7 +86,11 @@ class Session {
     bool set_method(std::string_view name);
     bool set_settings(const StepSettings &settings);
 
-    void grab(const std::optional<Grab> &grab) { grab_ = grab; }
+    void grab(const std::optional<Grab> &grab) {
+        if (!grab && simulation_)
+            simulation_->release();
+        grab_ = grab;
+    }
     [[nodiscard]] const std::optional<Grab> &grabbed() const { return grab_; }
     // Adds a ball, kg and m/s, in SI units; its index, or nothing with a message.
     std::optional<std::size_t> shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
@@ -108,6 +112,7 @@ class Session {
     [[nodiscard]] const std::vector<Pose> &previous_poses() const { return previous_; }
     [[nodiscard]] const std::vector<Pose> &present_poses() const { return present_; }
     [[nodiscard]] const SessionGraphs &graphs() const { return graphs_; }
+    [[nodiscard]] const StepTimes &times() const { return times_; } // of the last step's phases
     [[nodiscard]] Messages &messages() { return messages_; }
     [[nodiscard]] const Messages &messages() const { return messages_; }
 
@@ -135,6 +140,7 @@ class Session {
     bool stopped_ = false;
     std::vector<Pose> previous_, present_;
     SessionGraphs graphs_;
+    StepTimes times_;
     Messages messages_;
 };
 

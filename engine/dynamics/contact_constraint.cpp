@@ -1,28 +1,21 @@
 #include "engine/dynamics/contact_constraint.h"
 
+#include "engine/dynamics/method.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The part of a shape's surface distance that turning the body does not change.
-Real rounding_radius(const Shape &shape) {
-    if (const auto *sphere = std::get_if<Sphere>(&shape))
-        return sphere->radius;
-    if (const auto *capsule = std::get_if<Capsule>(&shape))
-        return capsule->radius;
-    return Real(0);
-}
-
-Vec3 relative_velocity(const Motion &a, const Motion &b, const ContactPointConstraint &point) {
+Vec3 relative_velocity(const SolverBody &a, const SolverBody &b,
+                       const ContactPointConstraint &point) {
     return b.velocity_at(point.r_b) - a.velocity_at(point.r_a);
 }
 
-void apply_pair_impulse(Motion &a, Motion &b, const ContactPointConstraint &point,
+void apply_pair_impulse(SolverBody &a, SolverBody &b, const ContactPointConstraint &point,
                         const Vec3 &impulse) {
     a.apply_impulse(-impulse, point.r_a);
     b.apply_impulse(impulse, point.r_b);
@@ -30,35 +23,29 @@ void apply_pair_impulse(Motion &a, Motion &b, const ContactPointConstraint &poin
 
 // K between two directions: u^T K v (Baraff 1996, "Linear-Time Dynamics using Lagrange
 // Multipliers").
-Real coupling(const Motion &a, const Motion &b, const ContactPointConstraint &point, const Vec3 &u,
-              const Vec3 &v) {
+Real coupling(const SolverBody &a, const SolverBody &b, const ContactPointConstraint &point,
+              const Vec3 &u, const Vec3 &v) {
     const Vec3 ua = glm::cross(point.r_a, u);
     const Vec3 ub = glm::cross(point.r_b, u);
-    return (a.inv_mass + b.inv_mass) * glm::dot(u, v) +
-           glm::dot(a.inv_inertia * ua, glm::cross(point.r_a, v)) +
+    const Real linear = a.has_locked_translation || b.has_locked_translation
+                            ? glm::dot(u, (a.inv_mass + b.inv_mass) * v)
+                            : (a.inv_mass.x + b.inv_mass.x) * glm::dot(u, v);
+    return linear + glm::dot(a.inv_inertia * ua, glm::cross(point.r_a, v)) +
            glm::dot(b.inv_inertia * ub, glm::cross(point.r_b, v));
 }
 
 } // namespace
 
-Softness make_soft(Real frequency, Real damping_ratio, Real h) {
-    const Real omega = Real(2) * std::numbers::pi_v<Real> * frequency;
-    const Real a1 = Real(2) * damping_ratio + h * omega;
-    const Real a2 = h * omega * a1;
-    const Real a3 = Real(1) / (Real(1) + a2);
-    return {omega / a1, a2 * a3, a3};
-}
-
-Real inverse_effective_mass(const Motion &a, const Motion &b, const Vec3 &r_a, const Vec3 &r_b,
-                            const Vec3 &direction) {
+Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
+                            const Vec3 &r_b, const Vec3 &direction) {
     const Vec3 ra = glm::cross(r_a, direction);
     const Vec3 rb = glm::cross(r_b, direction);
-    return a.inv_mass + b.inv_mass + glm::dot(a.inv_inertia * ra, ra) +
-           glm::dot(b.inv_inertia * rb, rb);
+    return a.inv_mass_along(direction) + b.inv_mass_along(direction) +
+           glm::dot(a.inv_inertia * ra, ra) + glm::dot(b.inv_inertia * rb, rb);
 }
 
-void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, Motion &a,
-                    Motion &b, Real limit) {
+void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, SolverBody &a,
+                    SolverBody &b, Real limit) {
     const Vec3 v = relative_velocity(a, b, point);
     Real new_1 = point.impulse.y - point.tangent_mass * glm::dot(v, contact.tangents.t1);
     Real new_2 = point.impulse.z - point.tangent_mass * glm::dot(v, contact.tangents.t2);
@@ -75,17 +62,21 @@ void solve_friction(const ContactConstraint &contact, ContactPointConstraint &po
     apply_pair_impulse(a, b, point, impulse);
 }
 
-std::vector<ContactConstraint> prepare_contacts(StepContext &context) {
-    std::vector<ContactConstraint> constraints(context.contacts.size());
-    for (std::size_t i = 0; i < constraints.size(); ++i) {
+void prepare_contacts(StepContext &context) {
+    std::vector<ContactConstraint> &constraints = context.scratch.contacts;
+    constraints.clear();
+    for (std::size_t i = 0; i < context.contacts.size(); ++i) {
         const Contact &contact = context.contacts[i];
-        ContactConstraint &out = constraints[i];
-        const Motion &a = context.motions[contact.a];
-        const Motion &b = context.motions[contact.b];
-        const Real rounding_a = rounding_radius(context.bodies[contact.a].shape);
-        const Real rounding_b = rounding_radius(context.bodies[contact.b].shape);
-        out.a = contact.a;
-        out.b = contact.b;
+        if (contact.sensor)
+            continue;
+        ContactConstraint &out = constraints.emplace_back();
+        const SolverBody &a = context.bodies[contact.key.a];
+        const SolverBody &b = context.bodies[contact.key.b];
+        const Real rounding_a = context.model.colliders[contact.collider_a].rounding;
+        const Real rounding_b = context.model.colliders[contact.collider_b].rounding;
+        out.contact = static_cast<std::uint32_t>(i);
+        out.a = contact.key.a;
+        out.b = contact.key.b;
         out.normal = contact.manifold.normal;
         out.tangents = tangent_basis(out.normal);
         out.friction = contact.friction;
@@ -117,18 +108,17 @@ std::vector<ContactConstraint> prepare_contacts(StepContext &context) {
             point.tangent_mass = k_largest > Real(0) ? Real(1) / k_largest : Real(0);
         }
     }
-    return constraints;
 }
 
 Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
-                        const Motion &a, const Motion &b) {
+                        const SolverBody &a, const SolverBody &b) {
     const Vec3 gap =
         (b.position - a.position) + (b.rotation * point.core_b - a.rotation * point.core_a);
     return glm::dot(gap, contact.normal) + point.rounding;
 }
 
-void remember_contacts(std::span<ContactConstraint> contacts) {
-    for (ContactConstraint &contact : contacts)
+void remember_contacts(StepContext &context) {
+    for (ContactConstraint &contact : context.scratch.contacts)
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
             point.remembered = point.impulse;
@@ -136,10 +126,10 @@ void remember_contacts(std::span<ContactConstraint> contacts) {
         }
 }
 
-void recall_contacts(StepContext &context, std::span<ContactConstraint> contacts, Real share) {
-    for (ContactConstraint &contact : contacts) {
-        Motion &a = context.motions[contact.a];
-        Motion &b = context.motions[contact.b];
+void recall_contacts(StepContext &context, Real share) {
+    for (ContactConstraint &contact : context.scratch.contacts) {
+        SolverBody &a = context.bodies[contact.a];
+        SolverBody &b = context.bodies[contact.b];
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
             const Vec3 recalled = share * point.remembered;
@@ -149,13 +139,14 @@ void recall_contacts(StepContext &context, std::span<ContactConstraint> contacts
                                    recalled.z * contact.tangents.t2);
         }
     }
+    context.report.constraint_passes += context.scratch.contacts.size();
 }
 
-void solve_contacts(StepContext &context, std::span<ContactConstraint> contacts,
-                    const ContactBias &bias, Real h) {
-    for (ContactConstraint &contact : contacts) {
-        Motion &a = context.motions[contact.a];
-        Motion &b = context.motions[contact.b];
+void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
+    context.report.constraint_passes += context.scratch.contacts.size();
+    for (ContactConstraint &contact : context.scratch.contacts) {
+        SolverBody &a = context.bodies[contact.a];
+        SolverBody &b = context.bodies[contact.b];
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
             const Real separation = present_separation(contact, point, a, b);
@@ -187,12 +178,52 @@ void solve_contacts(StepContext &context, std::span<ContactConstraint> contacts,
     }
 }
 
-void store_contacts(StepContext &context, std::span<const ContactConstraint> contacts) {
-    for (std::size_t i = 0; i < contacts.size(); ++i)
-        for (int k = 0; k < contacts[i].count; ++k) {
+void store_contacts(StepContext &context) {
+    for (const ContactConstraint &contact : context.scratch.contacts)
+        for (int k = 0; k < contact.count; ++k) {
             const auto index = static_cast<std::size_t>(k);
-            context.contacts[i].impulses[index] = contacts[i].points[index].impulse;
+            context.contacts[contact.contact].impulses[index] = contact.points[index].impulse;
         }
+}
+
+void note_approach(StepContext &context) {
+    for (ContactConstraint &contact : context.scratch.contacts)
+        for (int k = 0; k < contact.count; ++k) {
+            ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
+            point.approach = glm::dot(
+                relative_velocity(context.bodies[contact.a], context.bodies[contact.b], point),
+                contact.normal);
+        }
+}
+
+void note_loads(StepContext &context) {
+    for (ContactConstraint &contact : context.scratch.contacts)
+        for (int k = 0; k < contact.count; ++k) {
+            ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
+            point.largest = std::max(point.largest, point.impulse.x);
+        }
+}
+
+void restitute(StepContext &context, Real threshold) {
+    for (ContactConstraint &contact : context.scratch.contacts) {
+        if (contact.restitution == Real(0))
+            continue;
+        SolverBody &a = context.bodies[contact.a];
+        SolverBody &b = context.bodies[contact.b];
+        bool bounced = false;
+        for (int k = 0; k < contact.count; ++k) {
+            ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
+            if (point.approach > -threshold || point.largest == Real(0))
+                continue;
+            const Real speed = glm::dot(relative_velocity(a, b, point), contact.normal);
+            const Real change = -point.normal_mass * (speed + contact.restitution * point.approach);
+            const Real total = std::max(point.impulse.x + change, Real(0));
+            apply_pair_impulse(a, b, point, (total - point.impulse.x) * contact.normal);
+            point.impulse.x = total;
+            bounced = true;
+        }
+        context.report.impacts += bounced ? 1 : 0;
+    }
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,10 +1,12 @@
 // Contacts as velocity constraints: prepared once a step, solved many times.
 #pragma once
 
-#include "engine/dynamics/method.h"
+#include "engine/dynamics/body.h"
+#include "engine/dynamics/contact.h"
+#include "engine/dynamics/softness.h"
 #include "engine/math/basis.h"
 
-#include <vector>
+#include <array>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -25,9 +27,14 @@ struct ContactPointConstraint {
     Real tangent_mass = Real(0);
     Vec3 impulse{Real(0)};    // accumulated in this substep: normal, t1, t2 (N s)
     Vec3 remembered{Real(0)}; // of the substep before
+    Real approach = Real(0);  // relative normal velocity at the start of the step (m/s)
+    Real largest = Real(0);   // normal impulse of any substep so far (N s)
 };
 
+struct StepContext;
+
 struct ContactConstraint {
+    std::uint32_t contact = 0; // index in the context
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     Vec3 normal{Real(0)};
@@ -37,20 +44,6 @@ struct ContactConstraint {
     int count = 0;
     std::array<ContactPointConstraint, 4> points{};
 };
-
-// How hard a violated constraint pulls back (Catto 2011, "Soft Constraints", with the spring given
-// as natural frequency and damping ratio; a rigid constraint has bias_rate 0, mass 1 and impulse
-// 0).
-struct Softness {
-    Real bias_rate = Real(0); // 1/s
-    Real mass_scale = Real(1);
-    Real impulse_scale = Real(0);
-};
-
-// `frequency` in Hz; h is the substep (s). Catto 2024, "Solver2D": with zeta the damping ratio and
-// omega = 2 pi f, a1 = 2 zeta + h omega, a2 = h omega a1, bias omega / a1, mass a2 / (1 + a2),
-// impulse 1 / (1 + a2).
-Softness make_soft(Real frequency, Real damping_ratio, Real h);
 
 // What the bias of one solver pass does about penetration.
 struct ContactBias {
@@ -63,33 +56,40 @@ struct ContactBias {
 };
 
 // 1 / (K along n): the effective mass of two points against each other along a unit vector.
-Real inverse_effective_mass(const Motion &a, const Motion &b, const Vec3 &r_a, const Vec3 &r_b,
-                            const Vec3 &direction);
+Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
+                            const Vec3 &r_b, const Vec3 &direction);
 
 // Changes the tangential impulse of a point so that it stops sliding, the total cut to `limit` (N
 // s) in length: Coulomb's circular cone.
-void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, Motion &a,
-                    Motion &b, Real limit);
+void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, SolverBody &a,
+                    SolverBody &b, Real limit);
 
-std::vector<ContactConstraint> prepare_contacts(StepContext &context);
+// One constraint for each contact that is no sensor's, in order.
+void prepare_contacts(StepContext &context);
 // The separation of a point at the present poses (m).
 Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
-                        const Motion &a, const Motion &b);
+                        const SolverBody &a, const SolverBody &b);
 // Warm starting: a substep begins by remembering what the one before accumulated, and recalls it,
 // all at once or in shares: adds it to the accumulated impulses and applies it.
-void remember_contacts(std::span<ContactConstraint> contacts);
-void recall_contacts(StepContext &context, std::span<ContactConstraint> contacts, Real share);
+void remember_contacts(StepContext &context);
+void recall_contacts(StepContext &context, Real share);
 // One Gauss-Seidel pass. Points that are still apart may close the gap within h and no faster.
-void solve_contacts(StepContext &context, std::span<ContactConstraint> contacts,
-                    const ContactBias &bias, Real h);
+void solve_contacts(StepContext &context, const ContactBias &bias, Real h);
 // Hands the accumulated impulses back to the world's contacts for the next step.
-void store_contacts(StepContext &context, std::span<const ContactConstraint> contacts);
+void store_contacts(StepContext &context);
+
+// Bounces once a step, after its substeps (Catto 2024, "Solver2D"): a point that approached faster
+// than the threshold at the start, and bore something since, leaves at its restitution times that
+// speed.
+void note_approach(StepContext &context);
+void note_loads(StepContext &context);
+void restitute(StepContext &context, Real threshold);
 
 // Bounces: every contact with restitution that would be struck within the next h gets Newton's
 // impact law, one pair of bodies after another, until none approaches: so an impact runs through a
 // row of touching bodies as it does in a cradle. Where gravity acts along the way, the rebound
 // speed is the one that the body would have at its present height had it bounced at the surface:
-// energy is kept whatever h is. To be called at the start of a substep, before gravity is applied.
-void resolve_impacts(StepContext &context, std::span<const ContactConstraint> contacts, Real h);
+// energy is kept whatever h is. Comes at the start of a substep, before gravity is applied.
+void resolve_impacts(StepContext &context, Real h);
 
 } // namespace plumb::inline PLUMB_PRECISION

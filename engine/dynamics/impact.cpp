@@ -1,4 +1,4 @@
-#include "engine/dynamics/contact_constraint.h"
+#include "engine/dynamics/method.h"
 
 #include <algorithm>
 #include <array>
@@ -32,13 +32,31 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
     return {true, std::sqrt(back_squared)};
 }
 
+// The impact at the middle of where it acts.
+void record(StepContext &context, const ContactConstraint &contact,
+            const std::array<Real, 4> &normal_impulse) {
+    Impact impact;
+    impact.key = context.contacts[contact.contact].key;
+    impact.normal = contact.normal;
+    Vec3 sum{Real(0)};
+    for (int k = 0; k < contact.count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        impact.impulse += normal_impulse[index];
+        sum += normal_impulse[index] * contact.points[index].r_a;
+    }
+    if (!(impact.impulse > Real(0)))
+        return;
+    impact.position = context.bodies[contact.a].position + sum / impact.impulse;
+    context.impacts.push_back(impact);
+}
+
 // Newton's law for all points of one pair of bodies together. Returns whether anything was struck.
 bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
-    Motion &a = context.motions[contact.a];
-    Motion &b = context.motions[contact.b];
+    SolverBody &a = context.bodies[contact.a];
+    SolverBody &b = context.bodies[contact.b];
     const Vec3 gravity{context.settings.gravity};
-    const Vec3 pull_a = a.inv_mass > Real(0) ? gravity : Vec3{Real(0)};
-    const Vec3 pull_b = b.inv_mass > Real(0) ? gravity : Vec3{Real(0)};
+    const Vec3 pull_a = gravity_on(context.model.bodies[contact.a], gravity);
+    const Vec3 pull_b = gravity_on(context.model.bodies[contact.b], gravity);
     const Real pull = glm::dot(pull_b - pull_a, contact.normal);
 
     const auto normal_speed = [&](const ContactPointConstraint &point) {
@@ -83,23 +101,24 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             point.impulse = Vec3{normal_impulse[index], Real(0), Real(0)};
             solve_friction(contact, point, a, b, contact.friction * normal_impulse[index]);
         }
+    record(context, contact, normal_impulse);
     return true;
 }
 
 } // namespace
 
-void resolve_impacts(StepContext &context, std::span<const ContactConstraint> contacts, Real h) {
+void resolve_impacts(StepContext &context, Real h) {
     bool any = context.settings.impact_sweeps > 0;
     for (int sweep = 0; any && sweep < context.settings.impact_sweeps; ++sweep) {
         any = false;
-        for (const ContactConstraint &contact : contacts)
+        for (const ContactConstraint &contact : context.scratch.contacts)
             if (contact.restitution > Real(0) && strike(context, contact, h)) {
                 any = true;
-                ++context.impacts;
+                ++context.report.impacts;
             }
     }
     if (any)
-        ++context.unresolved_impacts;
+        ++context.report.unresolved_impacts;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,7 +1,10 @@
-// Joints as they persist in the world.
+// Joints: how two bodies hold on to each other.
 #pragma once
 
 #include "engine/dynamics/body.h"
+
+#include <array>
+#include <optional>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -11,17 +14,46 @@ struct JointId {
     friend auto operator<=>(const JointId &, const JointId &) = default;
 };
 
-struct JointDef {
-    JointType type = JointType::ball;
-    BodyId a; // a default BodyId is the world itself; its anchor is in world coordinates
-    BodyId b;
-    Vec3 anchor_a_local{Real(0)};
-    Vec3 anchor_b_local{Real(0)};
-    Real length = Real(0); // m, > 0; distance joints only
-    bool collide_connected = false;
-    Vec3 impulse{Real(0)}; // what the last step's solver remembers (N s); x alone for distance
+struct JointLimits {
+    Real lower = Real(0); // rad or m
+    Real upper = Real(0); // >= lower
+};
+// Drives towards `speed` with at most `max_force`.
+struct JointMotor {
+    Real speed = Real(0);     // rad/s or m/s
+    Real max_force = Real(0); // N m or N, >= 0
 };
 
+// What a joint remembers in its rows, in their order (joint_rows.h), N s or N m s.
+inline constexpr std::size_t joint_row_count = 8;
+struct JointMemory {
+    std::array<Real, joint_row_count> impulses{};
+    bool broken = false; // holds nothing any more
+};
+
+struct JointDef {
+    JointType type = JointType::ball;
+    BodyId a; // a default BodyId is the world itself; its anchor and frame are in world coordinates
+    BodyId b;
+    Vec3 anchor_a_local{Real(0)}; // in the bodies' own frames
+    Vec3 anchor_b_local{Real(0)};
+    // x is the axis of a hinge or slider; its angle or place is 0 where the frames agree.
+    Quat frame_a_local = identity_rotation;
+    Quat frame_b_local = identity_rotation;
+    Real min_length =
+        Real(0); // m; distance joints: a rod has both the same, a rope 0 and its length
+    Real max_length = Real(0);         // > 0
+    std::optional<JointLimits> limits; // hinge (within -pi..pi) and slider
+    std::optional<JointMotor> motor;   // hinge and slider
+    // Hz; above 0 the joint's own rows are a spring and a damper (Catto 2011, "Soft Constraints").
+    Real frequency = Real(0);
+    Real damping_ratio = Real(1);
+    Real break_force = Real(0); // N, of the rows that hold the anchors; 0: never
+    bool collide_connected = false;
+    JointMemory memory;
+};
+
+// As it is in the model. Anchors and frames are in the mass frames (Body).
 struct Joint {
     static constexpr std::uint32_t world = UINT32_MAX;
     JointType type = JointType::ball;
@@ -29,11 +61,32 @@ struct Joint {
     std::uint32_t b = world;
     Vec3 anchor_a_local{Real(0)};
     Vec3 anchor_b_local{Real(0)};
-    Real length = Real(0);
+    Quat frame_a_local = identity_rotation;
+    Quat frame_b_local = identity_rotation;
+    Real min_length = Real(0);
+    Real max_length = Real(0);
+    std::optional<JointLimits> limits;
+    std::optional<JointMotor> motor;
+    Real frequency = Real(0);
+    Real damping_ratio = Real(1);
+    Real break_force = Real(0);
     bool collide_connected = false;
-    Vec3 impulse{Real(0)};
     std::uint32_t generation = 0;
     bool alive = false;
+};
+
+// A hand that pulls a body's point to a target like a damped spring that is never stronger than
+// `max_force`. Part of the state: nothing but commands changes it.
+struct Grab {
+    std::uint32_t body = UINT32_MAX; // none: nothing is held
+    Vec3 point_local{Real(0)};       // in the mass frame
+    Vec3 target{Real(0)};            // world
+    Real max_force = Real(0);        // N
+    Real frequency = Real(5);        // Hz
+    Real damping_ratio = Real(1);
+    Vec3 impulse{Real(0)}; // what the solver remembers (N s)
+
+    bool is_holding() const { return body != UINT32_MAX; }
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,7 +1,11 @@
 #include "engine/dynamics/joint_constraint.h"
 
+#include "engine/dynamics/method.h"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -11,136 +15,307 @@ namespace {
 
 // K of a point-to-point constraint: (1/ma + 1/mb) 1 - [ra] Ia^-1 [ra] - [rb] Ib^-1 [rb]
 // (Catto 2009, "Modeling and Solving Constraints", slide 52, in 3D).
-Mat3 point_matrix(const Motion &a, const Motion &b, const Vec3 &r_a, const Vec3 &r_b) {
+Mat3 point_matrix(const SolverBody &a, const SolverBody &b, const Vec3 &r_a, const Vec3 &r_b) {
     const Mat3 ra = cross_matrix(r_a);
     const Mat3 rb = cross_matrix(r_b);
-    return Mat3{a.inv_mass + b.inv_mass} - ra * a.inv_inertia * ra - rb * b.inv_inertia * rb;
+    Mat3 linear{Real(0)};
+    for (int i = 0; i < 3; ++i)
+        linear[i][i] = a.inv_mass[i] + b.inv_mass[i];
+    return linear - ra * a.inv_inertia * ra - rb * b.inv_inertia * rb;
+}
+
+// K between two rows: u^T K v (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers").
+Real row_coupling(const RowBlock &rows, const SolverBody &a, const SolverBody &b, const Vec3 &u,
+                  const Vec3 &v) {
+    if (rows.kind == RowKind::angular)
+        return glm::dot(u, a.inv_inertia * v) + glm::dot(u, b.inv_inertia * v);
+    return glm::dot(u, (a.inv_mass + b.inv_mass) * v) +
+           glm::dot(a.inv_inertia * glm::cross(rows.r_a, u), glm::cross(rows.r_a, v)) +
+           glm::dot(b.inv_inertia * glm::cross(rows.r_b, u), glm::cross(rows.r_b, v));
+}
+
+// The inverse of a symmetric matrix that is not negative. Where nothing can move along some
+// direction (a locked axis), a trace's rounding stands for the zero: no impulse goes that way.
+Mat3 inverse_of(Mat3 k) {
+    const Real trace = k[0][0] + k[1][1] + k[2][2];
+    if (!(trace > Real(0)))
+        return Mat3{Real(0)};
+    const Real size = trace / Real(3);
+    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
+    if (!(glm::determinant(k) > least * size * size * size))
+        for (int i = 0; i < 3; ++i)
+            k[i][i] += Real(1e-3) * size;
+    return glm::inverse(k);
+}
+
+Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
+    if (rows.kind == RowKind::point)
+        return inverse_of(point_matrix(a, b, rows.r_a, rows.r_b));
+    if (rows.count == 1) {
+        const Real k = rows.kind == RowKind::linear
+                           ? inverse_effective_mass(a, b, rows.r_a, rows.r_b, rows.axes[0])
+                           : row_coupling(rows, a, b, rows.axes[0], rows.axes[0]);
+        Mat3 mass{Real(0)};
+        mass[0][0] = k > Real(0) ? Real(1) / k : Real(0);
+        return mass;
+    }
+    Mat3 k{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        for (int j = 0; j <= i; ++j)
+            k[i][j] = k[j][i] = row_coupling(rows, a, b, rows.axes[static_cast<std::size_t>(i)],
+                                             rows.axes[static_cast<std::size_t>(j)]);
+    Mat3 mass{Real(0)};
+    if (rows.count == 2) {
+        const Real determinant = k[0][0] * k[1][1] - k[1][0] * k[0][1];
+        const Real size = Real(0.5) * (k[0][0] + k[1][1]);
+        if (determinant > Real(1e-6) * size * size) {
+            mass[0][0] = k[1][1] / determinant;
+            mass[1][1] = k[0][0] / determinant;
+            mass[1][0] = mass[0][1] = -k[1][0] / determinant;
+        } else {
+            for (int i = 0; i < 2; ++i)
+                mass[i][i] = k[i][i] > Real(0) ? Real(1) / (k[0][0] + k[1][1]) : Real(0);
+        }
+    } else {
+        mass = inverse_of(k);
+    }
+    return mass;
 }
 
 Vec3 centripetal(const Vec3 &angular_velocity, const Vec3 &r) {
     return glm::cross(angular_velocity, glm::cross(angular_velocity, r));
 }
 
-void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
-    context.motion(joint.a).apply_impulse(-impulse, joint.r_a);
-    context.motion(joint.b).apply_impulse(impulse, joint.r_b);
+// How fast the rows' errors grow.
+Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                  const JointPass &pass) {
+    if (rows.kind == RowKind::angular) {
+        const Vec3 turning = b.angular_velocity - a.angular_velocity;
+        Vec3 v{Real(0)};
+        for (int i = 0; i < rows.count; ++i)
+            v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], turning);
+        return v;
+    }
+    Vec3 relative = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+    if (pass.to_second_order) {
+        // The mean over h of the anchors' relative velocity.
+        Vec3 curving =
+            centripetal(b.angular_velocity, rows.r_b) - centripetal(a.angular_velocity, rows.r_a);
+        if (rows.turns_with_a)
+            curving -= Real(2) * glm::cross(a.angular_velocity, relative);
+        relative += (Real(0.5) * pass.h) * curving;
+    }
+    if (rows.kind == RowKind::point)
+        return relative;
+    Vec3 v{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], relative);
+    if (pass.to_second_order && rows.swing_length > Real(0)) {
+        // How much longer the line between the anchors becomes while they swing aside.
+        const Real distance = rows.swing_length;
+        const Vec3 aside = pass.h * (relative - v.x * rows.axes[0]);
+        const Real squared = std::min(glm::dot(aside, aside), distance * distance);
+        v.x += squared / (distance + std::sqrt(distance * distance - squared)) / pass.h;
+    }
+    return v;
+}
+
+void apply(SolverBody &a, SolverBody &b, const RowBlock &rows, const Vec3 &impulse) {
+    if (rows.kind == RowKind::point) {
+        a.apply_impulse(-impulse, rows.r_a);
+        b.apply_impulse(impulse, rows.r_b);
+        return;
+    }
+    Vec3 sum = impulse.x * rows.axes[0];
+    for (int i = 1; i < rows.count; ++i)
+        sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
+    if (rows.kind == RowKind::angular) {
+        a.apply_angular_impulse(-sum);
+        b.apply_angular_impulse(sum);
+    } else {
+        a.apply_impulse(-sum, rows.r_a);
+        b.apply_impulse(sum, rows.r_b);
+    }
+}
+
+// The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
+// and -1 for an upper one.
+Real limit_change(const JointConstraint &joint, Real speed, const Softness &softness,
+                  const JointPass &pass, Real side) {
+    const Real gap = side * joint.rows.error.x;
+    const Real impulse = side * joint.impulse.x;
+    const bool is_off = gap > Real(0);
+    if (is_off && joint.is_spring())
+        return -joint.impulse.x; // a slack spring does not pull
+    if (is_off && pass.loaded_only && impulse == Real(0))
+        return Real(0);
+    const Softness used = is_off ? Softness{} : softness;
+    const Real target = is_off ? gap / pass.h : used.bias_rate * gap;
+    const Real change = -used.mass_scale * joint.mass[0][0] * (side * speed + target) -
+                        used.impulse_scale * impulse;
+    return side * (std::max(impulse + change, Real(0)) - impulse);
+}
+
+Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
+                    const JointPass &pass) {
+    const RowBlock &rows = joint.rows;
+    const Softness softness = joint.is_spring()
+                                  ? make_soft(rows.frequency, rows.damping_ratio, pass.spring_time)
+                                  : pass.softness;
+    const Vec3 v = row_velocity(rows, a, b, pass);
+    const auto towards = [&](const Vec3 &error) {
+        if (rows.count == 1)
+            return Vec3{-softness.mass_scale * joint.mass[0][0] *
+                                (v.x + softness.bias_rate * error.x) -
+                            softness.impulse_scale * joint.impulse.x,
+                        Real(0), Real(0)};
+        return -softness.mass_scale * (joint.mass * (v + softness.bias_rate * error)) -
+               softness.impulse_scale * joint.impulse;
+    };
+    switch (rows.bounds) {
+    case RowBounds::equal:
+        return towards(rows.error);
+    case RowBounds::at_least:
+        return {limit_change(joint, v.x, softness, pass, Real(1)), Real(0), Real(0)};
+    case RowBounds::at_most:
+        return {limit_change(joint, v.x, softness, pass, Real(-1)), Real(0), Real(0)};
+    case RowBounds::motor: {
+        const Real limit = rows.max_force * pass.h * pass.force_share;
+        const Real change = -joint.mass[0][0] * (v.x - rows.speed);
+        return {std::clamp(joint.impulse.x + change, -limit, limit) - joint.impulse.x, Real(0),
+                Real(0)};
+    }
+    case RowBounds::pull: {
+        const Real limit = rows.max_force * pass.h * pass.force_share;
+        Vec3 total = joint.impulse + towards(rows.error);
+        const Real length = glm::length(total);
+        if (length > limit)
+            total *= limit / length;
+        return total - joint.impulse;
+    }
+    }
+    return Vec3{Real(0)};
+}
+
+Vec3 memory_of(const StepContext &context, const JointConstraint &constraint) {
+    if (constraint.joint == JointConstraint::grab)
+        return context.grab.impulse;
+    const auto &impulses = context.joints[constraint.joint].impulses;
+    Vec3 memory{Real(0)};
+    for (int i = 0; i < constraint.rows.count; ++i)
+        memory[i] = impulses[constraint.rows.first_memory + static_cast<std::size_t>(i)];
+    return memory;
+}
+
+// Emits the rows of every joint that holds; calls use(joint, a, b) for each block, in order.
+template <typename Use> void emit_all(StepContext &context, Use &&use) {
+    std::vector<RowBlock> &rows = context.scratch.rows;
+    RowWriter writer(rows);
+    for (std::uint32_t i = 0; i < context.model.joints.size(); ++i) {
+        const Joint &joint = context.model.joints[i];
+        if (!joint.alive || context.joints[i].broken)
+            continue;
+        rows.clear();
+        emit_rows(joint, context.body(joint.a), context.body(joint.b), writer);
+        for (const RowBlock &block : rows)
+            use(i, joint.a, joint.b, block);
+    }
+    if (context.grab.is_holding()) {
+        rows.clear();
+        emit_rows(context.grab, context.world_frame, context.body(context.grab.body), writer);
+        for (const RowBlock &block : rows)
+            use(JointConstraint::grab, Joint::world, context.grab.body, block);
+    }
 }
 
 } // namespace
 
-std::vector<JointConstraint> prepare_joints(StepContext &context) {
-    std::vector<JointConstraint> constraints;
-    for (std::size_t i = 0; i < context.joints.size(); ++i) {
-        const Joint &joint = context.joints[i];
-        if (!joint.alive)
-            continue;
-        JointConstraint &out = constraints.emplace_back();
-        out.joint = static_cast<std::uint32_t>(i);
-        out.a = joint.a;
-        out.b = joint.b;
-        out.type = joint.type;
-        out.impulse = joint.impulse;
-    }
-    return constraints;
+void prepare_joints(StepContext &context) {
+    std::vector<JointConstraint> &constraints = context.scratch.joints;
+    constraints.clear();
+    if (context.model.alive_joints == 0 && !context.grab.is_holding())
+        return;
+    emit_all(context,
+             [&](std::uint32_t joint, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
+                 JointConstraint &out = constraints.emplace_back();
+                 out.joint = joint;
+                 out.a = a;
+                 out.b = b;
+                 out.rows = block;
+                 out.impulse = memory_of(context, out);
+             });
 }
 
-void refresh_joints(StepContext &context, std::span<JointConstraint> joints) {
-    for (JointConstraint &constraint : joints) {
-        const Joint &joint = context.joints[constraint.joint];
-        const Motion &a = context.motion(constraint.a);
-        const Motion &b = context.motion(constraint.b);
-        constraint.r_a = a.rotation * joint.anchor_a_local;
-        constraint.r_b = b.rotation * joint.anchor_b_local;
-        const Vec3 gap = (b.position - a.position) + (constraint.r_b - constraint.r_a);
-        switch (constraint.type) {
-        case JointType::ball: {
-            constraint.error = gap;
-            const Mat3 k = point_matrix(a, b, constraint.r_a, constraint.r_b);
-            constraint.mass = a.inv_mass + b.inv_mass > Real(0) ? glm::inverse(k) : Mat3{Real(0)};
-            break;
-        }
-        case JointType::distance: {
-            const Real distance = glm::length(gap);
-            // Anchors on top of each other: any direction parts them.
-            constraint.axis = distance > Real(0) ? gap / distance : Vec3{Real(0), Real(1), Real(0)};
-            constraint.error = Vec3{distance - joint.length, Real(0), Real(0)};
-            const Real k =
-                inverse_effective_mass(a, b, constraint.r_a, constraint.r_b, constraint.axis);
-            constraint.mass[0][0] = k > Real(0) ? Real(1) / k : Real(0);
-            break;
-        }
-        case JointType::hinge:
-        case JointType::slider:
-        case JointType::fixed:
-            break; // the world takes none
-        }
-    }
+void refresh_joints(StepContext &context) {
+    if (context.scratch.joints.empty())
+        return;
+    auto next = context.scratch.joints.begin();
+    emit_all(context, [&](std::uint32_t, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
+        next->rows = block;
+        next->mass = mass_of(block, context.body(a), context.body(b));
+        ++next;
+    });
 }
 
-void remember_joints(std::span<JointConstraint> joints) {
-    for (JointConstraint &joint : joints) {
+void remember_joints(StepContext &context) {
+    for (JointConstraint &joint : context.scratch.joints) {
         joint.remembered = joint.impulse;
         joint.impulse = Vec3{Real(0)};
     }
 }
 
-void recall_joints(StepContext &context, std::span<JointConstraint> joints, Real share) {
-    for (JointConstraint &joint : joints) {
+void recall_joints(StepContext &context, Real share, Springs springs) {
+    for (JointConstraint &joint : context.scratch.joints) {
+        if (springs == Springs::skip && joint.is_spring())
+            continue;
         const Vec3 recalled = share * joint.remembered;
         joint.impulse += recalled;
-        apply(context, joint, joint.type == JointType::ball ? recalled : recalled.x * joint.axis);
+        apply(context.body(joint.a), context.body(joint.b), joint.rows, recalled);
     }
+    context.report.constraint_passes += context.scratch.joints.size();
 }
 
-void solve_joints(StepContext &context, std::span<JointConstraint> joints, const Softness &softness,
-                  Real h) {
-    for (JointConstraint &joint : joints) {
-        const Motion &a = context.motion(joint.a);
-        const Motion &b = context.motion(joint.b);
-        const Vec3 curving =
-            centripetal(b.angular_velocity, joint.r_b) - centripetal(a.angular_velocity, joint.r_a);
-        // The anchors' mean relative velocity over h.
-        const Vec3 relative =
-            b.velocity_at(joint.r_b) - a.velocity_at(joint.r_a) + (Real(0.5) * h) * curving;
-        switch (joint.type) {
-        case JointType::ball: {
-            const Vec3 change = -softness.mass_scale *
-                                    (joint.mass * (relative + softness.bias_rate * joint.error)) -
-                                softness.impulse_scale * joint.impulse;
-            joint.impulse += change;
-            apply(context, joint, change);
-            break;
+void repeat_springs(StepContext &context) {
+    for (JointConstraint &joint : context.scratch.joints)
+        if (joint.is_spring()) {
+            apply(context.body(joint.a), context.body(joint.b), joint.rows, joint.impulse);
+            joint.impulse *= Real(2);
         }
-        case JointType::distance: {
-            // How much shorter the rod must become along its old axis while it swings aside.
-            const Real distance = context.joints[joint.joint].length + joint.error.x;
-            const Real along = glm::dot(relative, joint.axis);
-            const Vec3 aside = h * (relative - along * joint.axis);
-            const Real aside_squared = std::min(glm::dot(aside, aside), distance * distance);
-            const Real shortening =
-                h > Real(0) && distance > Real(0)
-                    ? aside_squared / (distance + std::sqrt(distance * distance - aside_squared)) /
-                          h
-                    : Real(0);
-            const Real speed = along + shortening;
-            const Real change = -softness.mass_scale * joint.mass[0][0] *
-                                    (speed + softness.bias_rate * joint.error.x) -
-                                softness.impulse_scale * joint.impulse.x;
-            joint.impulse.x += change;
-            apply(context, joint, change * joint.axis);
-            break;
-        }
-        case JointType::hinge:
-        case JointType::slider:
-        case JointType::fixed:
-            break; // the world takes none
-        }
-    }
 }
 
-void store_joints(StepContext &context, std::span<const JointConstraint> joints) {
-    for (const JointConstraint &joint : joints)
-        context.joints[joint.joint].impulse = joint.impulse;
+void solve_joints(StepContext &context, const JointPass &pass) {
+    for (JointConstraint &joint : context.scratch.joints) {
+        if (pass.springs == Springs::skip && joint.is_spring())
+            continue;
+        SolverBody &a = context.body(joint.a);
+        SolverBody &b = context.body(joint.b);
+        const Vec3 change = impulse_change(joint, a, b, pass);
+        joint.impulse += change;
+        apply(a, b, joint.rows, change);
+    }
+    context.report.constraint_passes += context.scratch.joints.size();
+}
+
+void store_joints(StepContext &context) {
+    const Real rate =
+        static_cast<Real>(context.settings.substeps) / static_cast<Real>(context.settings.dt);
+    for (const JointConstraint &joint : context.scratch.joints) {
+        const Vec3 &total = joint.impulse;
+        if (joint.joint == JointConstraint::grab) {
+            context.grab.impulse = total;
+            continue;
+        }
+        JointMemory &memory = context.joints[joint.joint];
+        for (int i = 0; i < joint.rows.count; ++i)
+            memory.impulses[joint.rows.first_memory + static_cast<std::size_t>(i)] = total[i];
+        const Real break_force = context.model.joints[joint.joint].break_force;
+        if (break_force > Real(0) && joint.rows.kind != RowKind::angular &&
+            joint.rows.bounds != RowBounds::motor && glm::length(total) * rate > break_force)
+            memory.broken = true;
+    }
+    for (JointMemory &memory : context.joints)
+        if (memory.broken)
+            memory.impulses = {};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,111 +1,109 @@
-// What can be read off a world: energies, momenta, errors, and the hash of its state.
+// What can be read off a world: energies, momenta, errors, loads.
+#include "engine/dynamics/surface_contact.h"
 #include "engine/dynamics/world.h"
-
-#include "engine/dynamics/motion.h"
 
 #include <algorithm>
 #include <cmath>
+
 #include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void add(StateHash &hash, const Vec3 &v) {
-    hash.add(v.x);
-    hash.add(v.y);
-    hash.add(v.z);
-}
+// Energies and momenta of one dynamic body.
+struct BodyMeasure {
+    double kinetic = 0;
+    double potential = 0;
+    glm::dvec3 momentum{0};
+    glm::dvec3 angular_momentum{0}; // about the world's origin
+};
 
-void add(StateHash &hash, const Quat &q) {
-    hash.add(q.w);
-    hash.add(q.x);
-    hash.add(q.y);
-    hash.add(q.z);
-}
-
-void add(StateHash &hash, const Shape &shape) {
-    hash.add(std::uint64_t{shape.index()});
-    if (const auto *sphere = std::get_if<Sphere>(&shape)) {
-        add(hash, sphere->center);
-        hash.add(sphere->radius);
-    } else if (const auto *box = std::get_if<Box>(&shape)) {
-        add(hash, box->center);
-        add(hash, box->rotation);
-        add(hash, box->half_extents);
-    } else if (const auto *capsule = std::get_if<Capsule>(&shape)) {
-        add(hash, capsule->a);
-        add(hash, capsule->b);
-        hash.add(capsule->radius);
-    } else {
-        const auto &half_space = std::get<HalfSpace>(shape);
-        add(hash, half_space.normal);
-        hash.add(half_space.offset);
-    }
+BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 &gravity) {
+    const double mass = static_cast<double>(body.mass);
+    const glm::dvec3 x{motion.position};
+    const glm::dvec3 v{motion.velocity};
+    const glm::dquat rotation{motion.rotation};
+    const glm::dvec3 spin = glm::conjugate(rotation) * glm::dvec3{motion.angular_velocity};
+    const glm::dvec3 spin_momentum = glm::dvec3{body.inertia} * spin;
+    return {0.5 * mass * glm::dot(v, v) + 0.5 * glm::dot(spin_momentum, spin),
+            -mass * static_cast<double>(body.gravity_scale) * glm::dot(gravity, x), mass * v,
+            mass * glm::cross(x, v) + rotation * spin_momentum};
 }
 
 } // namespace
 
-// Kinetic energy of translation and rotation, and potential energy in gravity; dynamic bodies.
-double World::energy_of(const Body &body, const Motion &motion) const {
-    if (body.kind != BodyKind::dynamic || !body.alive)
-        return 0;
-    const glm::dvec3 v{motion.velocity};
-    const glm::dvec3 spin =
-        glm::dquat{glm::conjugate(motion.rotation)} * glm::dvec3{motion.angular_velocity};
-    const double mass = body.mass;
-    return 0.5 * mass * glm::dot(v, v) + 0.5 * glm::dot(glm::dvec3{body.inertia} * spin, spin) -
-           mass * glm::dot(settings_.gravity, glm::dvec3{motion.position});
+double World::energy() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < bodies().size(); ++i)
+        if (bodies()[i].alive && bodies()[i].kind == BodyKind::dynamic) {
+            const BodyMeasure one = measure_of(bodies()[i], state_.motions[i], settings_.gravity);
+            sum += one.kinetic + one.potential;
+        }
+    return sum;
+}
+
+// The contact as it is at the present poses.
+Manifold World::present_manifold(const Contact &contact) const {
+    const auto place = [&](std::uint32_t collider, std::uint32_t body) {
+        const Motion &motion = state_.motions[body];
+        return placed(model_->colliders[collider].shape,
+                      Transform{motion.position, motion.rotation});
+    };
+    const Collider &a = model_->colliders[contact.collider_a];
+    const Collider &b = model_->colliders[contact.collider_b];
+    if (a.surface)
+        return plumb::collide(place(contact.collider_b, contact.key.b), *a.surface,
+                              surface_pose(a, state_.motions[contact.key.a]), contact.key.triangle,
+                              Real(0));
+    if (b.surface)
+        return plumb::collide(place(contact.collider_a, contact.key.a), *b.surface,
+                              surface_pose(b, state_.motions[contact.key.b]), contact.key.triangle,
+                              Real(0));
+    return plumb::collide(place(contact.collider_a, contact.key.a),
+                          place(contact.collider_b, contact.key.b), Real(0));
 }
 
 Measures World::measure() const {
     Measures m;
     m.time = time();
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const Body &body = bodies_[i];
-        if (!body.alive || body.kind != BodyKind::dynamic)
+    bool is_finite_world = true;
+    for (std::size_t i = 0; i < bodies().size(); ++i) {
+        if (!bodies()[i].alive || bodies()[i].kind != BodyKind::dynamic)
             continue;
-        const Motion &motion = motions_[i];
-        const double mass = body.mass;
-        const glm::dvec3 x{motion.position};
-        const glm::dvec3 v{motion.velocity};
-        const glm::dquat rotation{motion.rotation};
-        const glm::dvec3 spin = glm::conjugate(rotation) * glm::dvec3{motion.angular_velocity};
-        const glm::dvec3 spin_momentum = glm::dvec3{body.inertia} * spin;
-        const double potential = -mass * glm::dot(settings_.gravity, x);
-        m.kinetic_energy += 0.5 * mass * glm::dot(v, v) + 0.5 * glm::dot(spin_momentum, spin);
-        m.potential_energy += potential;
-        m.linear_momentum += mass * v;
-        m.angular_momentum += mass * glm::cross(x, v) + rotation * spin_momentum;
+        const BodyMeasure one = measure_of(bodies()[i], state_.motions[i], settings_.gravity);
+        m.kinetic_energy += one.kinetic;
+        m.potential_energy += one.potential;
+        m.linear_momentum += one.momentum;
+        m.angular_momentum += one.angular_momentum;
+        is_finite_world = is_finite_world && std::isfinite(one.kinetic + one.potential);
     }
     // The pairs of the last step, at the poses that it led to.
     double depth_sum = 0;
     int depth_count = 0;
-    for (const Contact &contact : contacts_) {
-        const auto shape_of = [&](std::uint32_t body) {
-            return placed(bodies_[body].shape,
-                          Transform{motions_[body].position, motions_[body].rotation});
-        };
-        if (has_diverged(motions_[contact.a]) || has_diverged(motions_[contact.b]))
-            continue;
-        const Manifold manifold = plumb::collide(shape_of(contact.a), shape_of(contact.b), Real(0));
-        for (int k = 0; k < manifold.count; ++k) {
-            const double depth =
-                -static_cast<double>(manifold.points[static_cast<std::size_t>(k)].separation);
-            if (depth <= 0)
+    if (is_finite_world)
+        for (const Contact &contact : contacts()) {
+            if (contact.sensor || has_diverged(state_.motions[contact.key.a]) ||
+                has_diverged(state_.motions[contact.key.b]))
                 continue;
-            m.max_penetration = std::max(m.max_penetration, depth);
-            depth_sum += depth;
-            ++depth_count;
+            const Manifold manifold = present_manifold(contact);
+            for (int k = 0; k < manifold.count; ++k) {
+                const double depth =
+                    -static_cast<double>(manifold.points[static_cast<std::size_t>(k)].separation);
+                if (depth <= 0)
+                    continue;
+                m.max_penetration = std::max(m.max_penetration, depth);
+                depth_sum += depth;
+                ++depth_count;
+            }
         }
-    }
     if (depth_count > 0)
         m.mean_penetration = depth_sum / depth_count;
     double drift_sum = 0;
     int drift_count = 0;
-    for (const Joint &joint : joints_)
-        if (joint.alive) {
-            const double drift = joint_drift(joint);
+    for (std::uint32_t i = 0; i < joints().size(); ++i)
+        if (joints()[i].alive && !state_.joints[i].broken) {
+            const double drift = static_cast<double>(joint_error(i));
             m.max_joint_drift = std::max(m.max_joint_drift, drift);
             drift_sum += drift;
             ++drift_count;
@@ -115,82 +113,46 @@ Measures World::measure() const {
     return m;
 }
 
+const Motion &World::joint_motion(std::uint32_t body) const {
+    static const Motion world;
+    return body == Joint::world ? world : state_.motions[body];
+}
+
 Vec3 World::anchor_a(const Joint &joint) const {
-    if (joint.a == Joint::world)
-        return joint.anchor_a_local;
-    const Motion &motion = motions_[joint.a];
+    const Motion &motion = joint_motion(joint.a);
     return motion.position + motion.rotation * joint.anchor_a_local;
 }
 
 Vec3 World::anchor_b(const Joint &joint) const {
-    if (joint.b == Joint::world)
-        return joint.anchor_b_local;
-    const Motion &motion = motions_[joint.b];
+    const Motion &motion = joint_motion(joint.b);
     return motion.position + motion.rotation * joint.anchor_b_local;
 }
 
-Real World::joint_drift(const Joint &joint) const {
-    const Real distance = glm::distance(anchor_a(joint), anchor_b(joint));
-    switch (joint.type) {
-    case JointType::ball:
-        return distance;
-    case JointType::distance:
-        return std::abs(distance - joint.length);
-    case JointType::hinge:
-    case JointType::slider:
-    case JointType::fixed:
-        break; // the world takes none
-    }
-    return Real(0);
+Real World::joint_error(std::uint32_t joint) const {
+    const Joint &one = joints()[joint];
+    return plumb::joint_error(one, joint_motion(one.a), joint_motion(one.b));
 }
 
-std::uint64_t World::hash() const {
-    StateHash hash;
-    hash_settings(hash, settings_);
-    for (const char c : method_->info.name)
-        hash.add(static_cast<std::uint64_t>(c));
-    hash.add(step_count_);
-    // Bodies are named by their rank among the living, so that holes do not count.
-    std::vector<std::uint64_t> rank(bodies_.size());
-    std::uint64_t alive = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        if (!bodies_[i].alive)
-            continue;
-        rank[i] = alive++;
-        const Body &body = bodies_[i];
-        hash.add(static_cast<std::uint64_t>(body.kind));
-        add(hash, body.shape);
-        hash.add(body.material.friction);
-        hash.add(body.material.restitution);
-        hash.add(body.mass);
-        const Motion &motion = motions_[i];
-        add(hash, motion.position);
-        add(hash, motion.rotation);
-        add(hash, motion.velocity);
-        add(hash, motion.angular_velocity);
-    }
-    for (const Joint &joint : joints_)
-        if (joint.alive) {
-            hash.add(joint.a == Joint::world ? std::uint64_t{Joint::world} : rank[joint.a]);
-            hash.add(joint.b == Joint::world ? std::uint64_t{Joint::world} : rank[joint.b]);
-            hash.add(static_cast<std::uint64_t>(joint.type));
-            add(hash, joint.anchor_a_local);
-            add(hash, joint.anchor_b_local);
-            hash.add(joint.length);
-            hash.add(std::uint64_t{joint.collide_connected ? 1U : 0U});
-            add(hash, joint.impulse);
+World::JointLoad World::joint_load(std::uint32_t joint) const {
+    const Joint &one = joints()[joint];
+    const JointMemory &memory = state_.joints[joint];
+    std::vector<RowBlock> blocks;
+    RowWriter writer(blocks);
+    emit_rows(one, joint_motion(one.a), joint_motion(one.b), writer);
+    JointLoad load;
+    const Real rate = static_cast<Real>(settings_.substeps) / static_cast<Real>(settings_.dt);
+    for (const RowBlock &block : blocks)
+        for (int i = 0; i < block.count; ++i) {
+            const auto index = static_cast<std::size_t>(i);
+            const Real amount = rate * memory.impulses[block.first_memory + index];
+            Vec3 axis = block.axes[index];
+            if (block.kind == RowKind::point) {
+                axis = Vec3{Real(0)};
+                axis[i] = Real(1);
+            }
+            (block.kind == RowKind::angular ? load.torque : load.force) += amount * axis;
         }
-    // A point that bears no load is not remembered.
-    for (const Contact &contact : contacts_)
-        for (int k = 0; k < contact.manifold.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            if (contact.impulses[index] == Vec3{Real(0)})
-                continue;
-            hash.add(rank[contact.a] << 32 | rank[contact.b]);
-            hash.add(std::uint64_t{contact.manifold.points[index].feature});
-            add(hash, contact.impulses[index]);
-        }
-    return hash.value();
+    return load;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,34 +1,48 @@
 // The seam between a world and the methods that advance it.
 #pragma once
 
-#include "engine/dynamics/body.h"
-#include "engine/dynamics/contact.h"
-#include "engine/dynamics/joint.h"
+#include "engine/dynamics/contact_constraint.h"
+#include "engine/dynamics/events.h"
+#include "engine/dynamics/joint_constraint.h"
 #include "engine/dynamics/method_info.h"
+#include "engine/dynamics/model.h"
+#include "engine/dynamics/motion.h"
 #include "engine/dynamics/settings.h"
+#include "engine/dynamics/state.h"
+#include "engine/dynamics/step_report.h"
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// What a method is given: the world's state, to be advanced by settings.dt. Contacts hold the
-// manifolds of the poses at the start of the step; removed bodies and joints are holes (alive ==
-// false).
+// Memory that a method uses within a step, kept from step to step so that nothing is allocated.
+struct SolverScratch {
+    std::vector<ContactConstraint> contacts;
+    std::vector<JointConstraint> joints;
+    std::vector<RowBlock> rows;
+    std::vector<FreeFlight> flights; // one for each moving body
+};
+
+// What a method is given: the world at the start of a step, to be advanced by settings.dt. Contacts
+// hold the manifolds of these poses. The method works on copies of the state: nothing of the world
+// has changed if it throws.
 struct StepContext {
+    const Model &model;
     const StepSettings &settings;
-    std::span<const Body> bodies;
-    std::span<Motion> motions;
-    std::span<Contact> contacts;
-    std::span<Joint> joints;
-    Motion &world_frame; // stands for the world in joints: it never moves
+    std::span<SolverBody> bodies;          // one for each body of the model, holes included
+    std::span<const std::uint32_t> moving; // dynamic and kinematic bodies, ascending
+    std::span<Contact> contacts;           // ascending by key
+    std::span<JointMemory> joints;         // one for each joint of the model
+    Grab &grab;
+    SolverBody &world_frame; // stands for the world in joints: it never moves
+    SolverScratch &scratch;
+    StepReport &report; // the method counts its work here
+    std::vector<Impact> &impacts;
 
-    // What the method reports.
-    std::uint32_t impacts = 0;
-    std::uint32_t unresolved_impacts = 0;
-
-    Motion &motion(std::uint32_t body) {
-        return body == Joint::world ? world_frame : motions[body];
+    SolverBody &body(std::uint32_t index) {
+        return index == Joint::world ? world_frame : bodies[index];
     }
 };
 

@@ -1,7 +1,9 @@
 #include "engine/dynamics/motion.h"
 
 #include "engine/core/check.h"
+#include "engine/dynamics/method.h"
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -70,21 +72,96 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
     return std::isfinite(after) && after > Real(0) ? std::sqrt(before / after) * end : spin;
 }
 
-FreeFlight begin_flight(Motion &motion, const Body &body, const Vec3 &gravity, Real h, Kick kick,
-                        int gyroscopic_iterations) {
+Vec3 gravity_on(const Body &body, const Vec3 &gravity) {
+    if (body.kind != BodyKind::dynamic)
+        return Vec3{Real(0)};
+    Vec3 felt = body.gravity_scale * gravity;
+    if (body.has_locks)
+        for (int i = 0; i < 3; ++i)
+            if (body.locked[static_cast<std::size_t>(i)])
+                felt[i] = Real(0);
+    return felt;
+}
+
+// With some rotations locked the others turn against the inertia's block of their own axes alone:
+// its inverse, and zeros elsewhere.
+Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation) {
+    const Mat3 free = world_inverse_inertia(rotation, body.inv_inertia);
+    if (!body.has_locks)
+        return free;
+    std::array<bool, 3> locked{body.locked[3], body.locked[4], body.locked[5]};
+    if (!locked[0] && !locked[1] && !locked[2])
+        return free;
+    Mat3 inertia = glm::inverse(free);
+    for (int i = 0; i < 3; ++i)
+        if (locked[static_cast<std::size_t>(i)])
+            for (int j = 0; j < 3; ++j)
+                inertia[i][j] = inertia[j][i] = i == j ? Real(1) : Real(0);
+    Mat3 inverse = glm::inverse(inertia);
+    for (int i = 0; i < 3; ++i)
+        if (locked[static_cast<std::size_t>(i)])
+            inverse[i][i] = Real(0);
+    return inverse;
+}
+
+bool has_gyroscopic_spin(const Body &body) {
+    const bool is_held = body.has_locks && (body.locked[3] || body.locked[4] || body.locked[5]);
+    return !is_isotropic(body.inertia) && !is_held;
+}
+
+namespace {
+
+// v' = g - c v over h, in closed form: what is left of v at the end, and the mean over h of v and
+// of what g adds (with c h -> 0: 1, 1, h / 2 and h).
+struct Damped {
+    Real kept = Real(1);        // e^(-c h)
+    Real mean_kept = Real(1);   // (1 - e^(-c h)) / (c h)
+    Real gained = Real(0);      // times g: at the end
+    Real mean_gained = Real(0); // times g: mean
+};
+
+Damped damped(Real rate, Real h) {
+    if (rate == Real(0))
+        return {Real(1), Real(1), h, Real(0.5) * h};
+    const double x = static_cast<double>(rate) * static_cast<double>(h);
+    const double lost = -std::expm1(-x);
+    const double mean = lost / x;
+    // (1 - mean) / x for small x by its series, where the difference would cancel.
+    const double rest = x > 1e-3 ? (1.0 - mean) / x : 0.5 - x / 6.0 + x * x / 24.0;
+    return {static_cast<Real>(1.0 - lost), static_cast<Real>(mean),
+            static_cast<Real>(mean * static_cast<double>(h)),
+            static_cast<Real>(rest * static_cast<double>(h))};
+}
+
+} // namespace
+
+FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
+                        Kick kick, int gyroscopic_iterations) {
     FreeFlight flight;
     flight.mean_velocity = motion.velocity;
     if (body.kind == BodyKind::dynamic) {
-        const Vec3 half_kick = (Real(0.5) * h) * gravity;
-        flight.mean_velocity += half_kick;
-        flight.late_velocity = kick == Kick::around ? half_kick : Vec3{Real(0)};
-        motion.velocity += h * gravity - flight.late_velocity;
-        if (!is_isotropic(body.inertia)) {
+        const Vec3 pull = gravity_on(body, gravity);
+        const Damped linear = damped(body.linear_damping, h);
+        const Damped angular = damped(body.angular_damping, h);
+        flight.mean_velocity = linear.mean_kept * motion.velocity + linear.mean_gained * pull;
+        const Vec3 late = (linear.kept - linear.mean_kept) * motion.velocity +
+                          (linear.gained - linear.mean_gained) * pull;
+        flight.late_velocity = kick == Kick::around ? late : Vec3{Real(0)};
+        motion.velocity = kick == Kick::around
+                              ? flight.mean_velocity
+                              : linear.kept * motion.velocity + linear.gained * pull;
+        if (has_gyroscopic_spin(body)) {
             const Vec3 spin = rotated(glm::conjugate(motion.rotation), motion.angular_velocity);
-            flight.end_spin = gyroscopic_spin(body.inertia, spin, h, gyroscopic_iterations);
-            flight.mean_spin = Real(0.5) * (spin + flight.end_spin);
+            const Vec3 undamped = gyroscopic_spin(body.inertia, spin, h, gyroscopic_iterations);
+            flight.end_spin = angular.kept * undamped;
+            flight.mean_spin = angular.mean_kept * (Real(0.5) * (spin + undamped));
             motion.angular_velocity =
                 rotated(motion.rotation, kick == Kick::around ? flight.mean_spin : flight.end_spin);
+        } else if (body.angular_damping > Real(0)) {
+            flight.late_spin = kick == Kick::around
+                                   ? (angular.kept - angular.mean_kept) * motion.angular_velocity
+                                   : Vec3{Real(0)};
+            motion.angular_velocity *= kick == Kick::around ? angular.mean_kept : angular.kept;
         }
     }
     flight.velocity = motion.velocity;
@@ -92,28 +169,79 @@ FreeFlight begin_flight(Motion &motion, const Body &body, const Vec3 &gravity, R
     return flight;
 }
 
-void move(Motion &motion, const Body &body, FreeFlight &flight, Real h) {
-    if (body.kind == BodyKind::fixed)
-        return;
+void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h) {
     flight.free =
         motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
     motion.position += h * (flight.free ? flight.mean_velocity : motion.velocity);
-    if (flight.free && !is_isotropic(body.inertia))
+    if (flight.free && body.kind == BodyKind::dynamic && has_gyroscopic_spin(body))
         motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
     else
         motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
-    if (body.kind == BodyKind::dynamic)
-        motion.inv_inertia = world_inverse_inertia(motion.rotation, body.inv_inertia);
+    if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
+        motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
 }
 
-void end_flight(Motion &motion, const Body &body, const FreeFlight &flight, Kick kick) {
+void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick) {
     motion.velocity += flight.late_velocity;
-    if (is_isotropic(body.inertia))
+    motion.angular_velocity += flight.late_spin;
+    if (body.kind != BodyKind::dynamic || !has_gyroscopic_spin(body))
         return;
     if (flight.free)
         motion.angular_velocity = rotated(motion.rotation, flight.end_spin);
     else if (kick == Kick::around)
         motion.angular_velocity += rotated(motion.rotation, flight.end_spin - flight.mean_spin);
+}
+
+void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick) {
+    std::vector<FreeFlight> &flights = context.scratch.flights;
+    flights.resize(context.moving.size());
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const std::uint32_t body = context.moving[i];
+        flights[i] = begin_flight(context.bodies[body], context.model.bodies[body], gravity, h,
+                                  kick, context.settings.gyroscopic_iterations);
+    }
+    context.report.body_passes += flights.size();
+}
+
+void end_flights(StepContext &context, Real h, Kick kick) {
+    std::vector<FreeFlight> &flights = context.scratch.flights;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+        const std::uint32_t body = context.moving[i];
+        move(context.bodies[body], context.model.bodies[body], flights[i], h);
+        end_flight(context.bodies[body], context.model.bodies[body], flights[i], kick);
+    }
+    context.report.body_passes += flights.size();
+}
+
+void kick(StepContext &context, const Vec3 &gravity, Real h) {
+    for (const std::uint32_t i : context.moving) {
+        const Body &body = context.model.bodies[i];
+        SolverBody &motion = context.bodies[i];
+        if (body.kind != BodyKind::dynamic)
+            continue;
+        motion.velocity =
+            damped(body.linear_damping, h).kept * motion.velocity + h * gravity_on(body, gravity);
+        if (has_gyroscopic_spin(body)) {
+            const Vec3 spin = rotated(glm::conjugate(motion.rotation), motion.angular_velocity);
+            motion.angular_velocity =
+                rotated(motion.rotation, gyroscopic_spin(body.inertia, spin, h,
+                                                         context.settings.gyroscopic_iterations));
+        }
+        motion.angular_velocity *= damped(body.angular_damping, h).kept;
+    }
+    context.report.body_passes += context.moving.size();
+}
+
+void drift(StepContext &context, Real h) {
+    for (const std::uint32_t i : context.moving) {
+        const Body &body = context.model.bodies[i];
+        SolverBody &motion = context.bodies[i];
+        motion.position += h * motion.velocity;
+        motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
+        if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
+            motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
+    }
+    context.report.body_passes += context.moving.size();
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

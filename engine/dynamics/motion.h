@@ -27,6 +27,17 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
 // all before it (semi-implicit Euler), or half before and half after the move (velocity Verlet).
 enum class Kick { before, around };
 
+// The acceleration of gravity that a body feels: none unless it is dynamic, and none along locked
+// axes.
+Vec3 gravity_on(const Body &body, const Vec3 &gravity);
+
+// The inverse inertia in world axes, without what a locked rotation keeps from turning.
+Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation);
+
+// Whether the spin of a body on which nothing acts is more than a constant world vector. One with a
+// locked rotation is held to the axes that it has left.
+bool has_gyroscopic_spin(const Body &body);
+
 // One body's substep, with a constraint solver's velocity changes in the middle:
 //
 //   FreeFlight flight = begin_flight(...)   velocities as the solver shall find them
@@ -35,8 +46,9 @@ enum class Kick { before, around };
 //   end_flight(...)                         velocities at the end of h
 //
 // A body whose velocities come back untouched flew free: its path is then exact under gravity,
-// x + v h + g h^2 / 2, and its torque-free turn keeps energy and world angular momentum. Otherwise
-// the pose follows the solver's velocities, which is what the constraints were solved for.
+// x + v h + g h^2 / 2, or with damping v' = g - c v the closed form of that, and its torque-free
+// turn keeps energy and world angular momentum. Otherwise the pose follows the solver's velocities,
+// which is what the constraints were solved for.
 struct FreeFlight {
     Vec3 velocity{Real(0)};         // what the solver was given
     Vec3 angular_velocity{Real(0)}; // likewise
@@ -45,13 +57,25 @@ struct FreeFlight {
     // Body frame, for bodies with unequal inertias: the mean over the substep, and at its end.
     Vec3 mean_spin{Real(0)};
     Vec3 end_spin{Real(0)};
-    bool free = false; // set by move
+    Vec3 late_spin{Real(0)}; // the part of damping that comes after the move, world
+    bool free = false;       // set by move
 };
 
-FreeFlight begin_flight(Motion &motion, const Body &body, const Vec3 &gravity, Real h, Kick kick,
-                        int gyroscopic_iterations);
-void move(Motion &motion, const Body &body, FreeFlight &flight, Real h);
-void end_flight(Motion &motion, const Body &body, const FreeFlight &flight, Kick kick);
+FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
+                        Kick kick, int gyroscopic_iterations);
+void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h);
+void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick);
+
+// The same for all moving bodies, with the flights kept in the context.
+struct StepContext;
+void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick);
+void end_flights(StepContext &context, Real h, Kick kick); // moves them, then ends the flights
+
+// The plain substep: gravity, damping and gyroscopic torque on the velocities, and, once the solver
+// is done, the move with the velocities that it left (semi-implicit Euler; Hairer, Lubich, Wanner
+// 2003, eq. 1.5).
+void kick(StepContext &context, const Vec3 &gravity, Real h);
+void drift(StepContext &context, Real h);
 
 // Whether all three moments are the same, so that a free body's spin is constant.
 inline bool is_isotropic(const Vec3 &inertia) {

@@ -97,7 +97,7 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"push_velocity", &StepSettings::push_velocity, "m/s", 0, 1e9, SettingGroup::constraints,
      "The fastest that overlapping bodies are pushed apart."},
     {"restitution_threshold", &StepSettings::restitution_threshold, "m/s", 0, 1e9,
-     SettingGroup::impacts, "Slower impacts do not bounce, so that bodies come to rest."},
+     SettingGroup::constraints, "Slower impacts do not bounce, so that bodies come to rest."},
     {"impact_lookahead", &StepSettings::impact_lookahead, "substeps", 0, 1000,
      SettingGroup::impacts,
      "An impact counts when it would happen within so many substeps: a hair less than one, and the "

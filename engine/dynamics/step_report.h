@@ -1,31 +1,32 @@
-// What one step did, and what it cost.
+// What one step did, and how long it took.
 #pragma once
 
 #include <cstdint>
 
 namespace plumb {
 
+// Work is counted as it is done.
 struct StepReport {
-    // Wall time of each phase (s).
-    double find_pairs = 0;
-    double collide = 0;
-    double advance = 0;
-    double finish = 0;
-    double total() const { return find_pairs + collide + advance + finish; }
-
+    std::uint64_t body_passes = 0;       // bodies moved, summed over substeps
+    std::uint64_t constraint_passes = 0; // contacts and joint blocks solved or warm-started
     std::uint32_t moving_bodies = 0;
     std::uint32_t pairs = 0;    // boxes overlap
     std::uint32_t contacts = 0; // shapes touch, or nearly
     std::uint32_t contact_points = 0;
     std::uint32_t joints = 0;
     std::uint32_t impacts = 0; // bounces resolved
-    std::uint32_t unresolved_impacts =
-        0; // substeps whose last allowed sweep still bounced something
-
-    double energy = 0; // kinetic and potential, J
-    double energy_gain =
-        0;              // over the step, J; with nothing driving the world, more than 0 is an error
+    // Substeps whose last allowed sweep still bounced something.
+    std::uint32_t unresolved_impacts = 0;
     bool finite = true; // all positions and velocities
+};
+
+// Wall time of each phase (s), for who asks.
+struct StepTimes {
+    double find_pairs = 0;
+    double collide = 0;
+    double advance = 0;
+    double finish = 0;
+    double total() const { return find_pairs + collide + advance + finish; }
 };
 
 } // namespace plumb

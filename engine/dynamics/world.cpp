@@ -1,20 +1,19 @@
+// Edits of a world, and what is asked of it between steps.
 #include "engine/dynamics/world.h"
 
 #include "engine/core/check.h"
-#include "engine/dynamics/motion.h"
-#include "engine/geometry/mass.h"
+#include "engine/dynamics/mass_frame.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-// How far the broad phase's boxes reach beyond what a step needs (m): larger, and bodies move
-// longer before the tree changes, but more pairs are looked at. No result depends on it.
-constexpr Real tree_margin = Real(0.1);
 
 void check_pose(const Transform &pose) {
     PLUMB_CHECK(is_finite(pose.position), "body position must be finite, got "
@@ -22,6 +21,53 @@ void check_pose(const Transform &pose) {
                                               << pose.position.z);
     PLUMB_CHECK(is_unit(glm::dot(pose.rotation, pose.rotation)),
                 "body rotation must be of unit length, got " << glm::length(pose.rotation));
+}
+
+void check_velocity(const Vec3 &velocity, const Vec3 &angular_velocity) {
+    PLUMB_CHECK(is_finite(velocity) && is_finite(angular_velocity), "body velocity must be finite");
+}
+
+void check_not_negative(const char *name, Real value) {
+    PLUMB_CHECK(std::isfinite(value) && value >= Real(0),
+                name << " must be finite and not negative, got " << value);
+}
+
+void check_collider(const ColliderDef &collider) {
+    if (!collider.surface)
+        check_valid(collider.shape);
+    PLUMB_CHECK(collider.material.friction >= 0 && std::isfinite(collider.material.friction),
+                "friction must not be negative, got " << collider.material.friction);
+    PLUMB_CHECK(collider.material.restitution >= 0 && collider.material.restitution <= 1,
+                "restitution must be 0 to 1, got " << collider.material.restitution);
+    PLUMB_CHECK(collider.filter.layer < 32, "a layer is 0 to 31, got " << collider.filter.layer);
+    check_not_negative("density", collider.density);
+}
+
+// The inverse of a mass frame: from the body's frame into it.
+Transform into(const Transform &frame) {
+    const Quat back = glm::conjugate(frame.rotation);
+    return {back * -frame.position, back};
+}
+
+// Products of rotations round; the next one starts anew.
+Shape with_unit_rotation(Shape shape) {
+    if (auto *box = std::get_if<Box>(&shape))
+        box->rotation = glm::normalize(box->rotation);
+    else if (auto *hull = std::get_if<ConvexHull>(&shape))
+        hull->rotation = glm::normalize(hull->rotation);
+    return shape;
+}
+
+bool is_identity(const Transform &frame) {
+    return frame.position == Vec3{Real(0)} && frame.rotation == identity_rotation;
+}
+
+Real rounding_of(const Shape &shape) {
+    if (const auto *sphere = std::get_if<Sphere>(&shape))
+        return sphere->radius;
+    if (const auto *capsule = std::get_if<Capsule>(&shape))
+        return capsule->radius;
+    return Real(0);
 }
 
 template <typename Item>
@@ -37,7 +83,8 @@ std::uint32_t take_slot(std::vector<Item> &items, std::vector<std::uint32_t> &fr
 
 } // namespace
 
-World::World(std::string_view method, const StepSettings &settings) : tree_(tree_margin) {
+World::World(std::string_view method, const StepSettings &settings)
+    : model_(std::make_shared<Model>()) {
     set_method(method);
     set_settings(settings);
 }
@@ -51,82 +98,160 @@ void World::set_method(std::string_view method) {
 void World::set_settings(const StepSettings &settings) {
     check_settings(settings);
     if (settings.dt != settings_.dt) {
-        time_before_ = time();
-        steps_before_ = step_count_;
+        state_.time_before = time();
+        state_.steps_before = state_.step_count;
     }
     settings_ = settings;
 }
 
-BodyId World::add_body(const BodyDef &def) {
-    check_valid(def.shape);
-    check_pose(def.pose);
-    PLUMB_CHECK(is_finite(def.velocity) && is_finite(def.angular_velocity),
-                "body velocity must be finite");
-    PLUMB_CHECK(def.material.friction >= 0 && std::isfinite(def.material.friction),
-                "friction must not be negative, got " << def.material.friction);
-    PLUMB_CHECK(def.material.restitution >= 0 && def.material.restitution <= 1,
-                "restitution must be 0 to 1, got " << def.material.restitution);
-    const bool dynamic = def.kind == BodyKind::dynamic;
-    const bool half_space = std::holds_alternative<HalfSpace>(def.shape);
-    PLUMB_CHECK(!(dynamic && half_space), "a half-space cannot be dynamic");
-    Vec3 inertia{Real(0)};
-    if (dynamic) {
-        PLUMB_CHECK(std::isfinite(def.mass) && def.mass > 0,
-                    "mass must be positive, got " << def.mass);
-        inertia = principal_inertia(def.shape, def.mass);
-        PLUMB_CHECK(is_finite(Real(1) / inertia) && is_finite(inertia),
-                    "a dynamic body needs an extent: its moments of inertia are "
-                        << inertia.x << ", " << inertia.y << ", " << inertia.z);
-    }
+Model &World::edit() {
+    if (model_.use_count() > 1)
+        model_ = std::make_shared<Model>(*model_);
+    scratch_.contacts_are_current = false;
+    return *model_;
+}
 
-    const std::uint32_t slot = take_slot(bodies_, free_bodies_);
-    motions_.resize(bodies_.size());
-    Body &body = bodies_[slot];
+BodyId World::add_body(const BodyDef &def) {
+    PLUMB_CHECK(!def.colliders.empty(), "a body needs a collider");
+    PLUMB_CHECK(def.colliders.size() <= UINT16_MAX,
+                "a body has at most " << UINT16_MAX << " colliders, got " << def.colliders.size());
+    for (const ColliderDef &collider : def.colliders)
+        check_collider(collider);
+    check_velocity(def.velocity, def.angular_velocity);
+    check_not_negative("linear_damping", def.linear_damping);
+    check_not_negative("angular_damping", def.angular_damping);
+    PLUMB_CHECK(std::isfinite(def.gravity_scale),
+                "gravity_scale must be finite, got " << def.gravity_scale);
+    check_pose(def.pose);
+    if (def.mass_pose)
+        check_pose(*def.mass_pose);
+    const bool dynamic = def.kind == BodyKind::dynamic;
+    const MassFrame mass = dynamic ? mass_frame(def) : MassFrame{};
+
+    Model &model = edit();
+    const std::uint32_t slot = take_slot(model.bodies, model.free_bodies);
+    state_.motions.resize(model.bodies.size());
+    Body &body = model.bodies[slot];
     body.kind = def.kind;
-    body.shape = def.shape;
-    body.material = def.material;
     body.alive = true;
-    Motion &motion = motions_[slot];
-    motion = Motion{};
+    body.mass_frame = mass.frame;
+    body.has_mass_frame = !is_identity(mass.frame);
     if (dynamic) {
-        body.mass = def.mass;
-        body.inertia = inertia;
-        body.inv_inertia = Real(1) / body.inertia;
-        motion.inv_mass = Real(1) / def.mass;
+        body.mass = mass.mass;
+        body.inertia = mass.inertia;
+        body.inv_inertia = Real(1) / mass.inertia;
+        body.locked = def.locked;
+        body.has_locks = std::ranges::find(def.locked, true) != def.locked.end();
+        body.gravity_scale = def.gravity_scale;
+        body.linear_damping = def.linear_damping;
+        body.angular_damping = def.angular_damping;
+        ++model.dynamic_bodies;
     }
-    if (half_space)
-        half_spaces_.insert(std::ranges::lower_bound(half_spaces_, slot), slot);
+    ++model.alive_bodies;
+    add_colliders(def, body, slot);
+
     const BodyId id{slot, body.generation};
-    set_motion(id, def.pose, def.kind == BodyKind::fixed ? Vec3{Real(0)} : def.velocity,
-               def.kind == BodyKind::fixed ? Vec3{Real(0)} : def.angular_velocity);
+    const bool is_fixed = def.kind == BodyKind::fixed;
+    set_motion(id, def.pose, is_fixed ? Vec3{Real(0)} : def.velocity,
+               is_fixed ? Vec3{Real(0)} : def.angular_velocity);
+    if (def.mass_pose) {
+        state_.motions[slot].position = def.mass_pose->position;
+        state_.motions[slot].rotation = def.mass_pose->rotation;
+    }
     return id;
+}
+
+// A body's colliders lie in a row: in the holes that its slot's predecessor left, or at the end.
+void World::add_colliders(const BodyDef &def, Body &body, std::uint32_t slot) {
+    Model &model = *model_;
+    const auto count = static_cast<std::uint32_t>(def.colliders.size());
+    if (body.collider_room < count) {
+        body.first_collider = static_cast<std::uint32_t>(model.colliders.size());
+        body.collider_room = count;
+        model.colliders.resize(model.colliders.size() + count);
+    }
+    body.collider_count = count;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const ColliderDef &from = def.colliders[i];
+        Collider &to = model.colliders[body.first_collider + i];
+        to = Collider{.shape = from.shape,
+                      .hull = from.hull,
+                      .surface = from.surface,
+                      .surface_pose = from.surface_pose,
+                      .material = from.material,
+                      .filter = from.filter,
+                      .sensor = from.sensor,
+                      .rounding = from.surface ? Real(0) : rounding_of(from.shape),
+                      .body = slot,
+                      .child = static_cast<std::uint16_t>(i)};
+        if (body.has_mass_frame)
+            to.shape = with_unit_rotation(placed(from.shape, into(body.mass_frame)));
+        if (to.is_half_space())
+            model.half_spaces.insert(
+                std::ranges::lower_bound(model.half_spaces, body.first_collider + i),
+                body.first_collider + i);
+    }
 }
 
 void World::remove_body(BodyId id) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
-    Body &body = bodies_[id.index];
-    if (body.leaf != DynamicTree::none)
-        tree_.remove(body.leaf);
-    std::erase(half_spaces_, id.index);
-    const auto touches = [&](std::uint64_t key) {
-        return key >> 32 == id.index || (key & 0xFFFFFFFFU) == id.index;
-    };
-    std::erase_if(fat_pairs_, touches);
-    std::erase_if(contacts_, [&](const Contact &c) { return touches(c.key()); });
-    for (std::uint32_t j = 0; j < joints_.size(); ++j)
-        if (joints_[j].alive && (joints_[j].a == id.index || joints_[j].b == id.index))
-            remove_joint({j, joints_[j].generation});
-    const std::uint32_t next_generation = body.generation + 1;
-    body = Body{};
-    body.generation = next_generation;
-    body.kind = BodyKind::fixed; // a hole is a static body that nothing touches
-    motions_[id.index] = Motion{};
-    free_bodies_.push_back(id.index);
+    Model &model = edit();
+    for (std::uint32_t j = 0; j < model.joints.size(); ++j)
+        if (model.joints[j].alive &&
+            (model.joints[j].a == id.index || model.joints[j].b == id.index))
+            remove_joint({j, model.joints[j].generation});
+    Body &body = model.bodies[id.index];
+    forget_places_of(body);
+    forget_contacts_of(id.index);
+    for (std::uint32_t i = 0; i < body.collider_count; ++i) {
+        std::erase(model.half_spaces, body.first_collider + i);
+        model.colliders[body.first_collider + i] = Collider{};
+    }
+    if (state_.grab.body == id.index)
+        release();
+    --model.alive_bodies;
+    if (body.kind == BodyKind::dynamic)
+        --model.dynamic_bodies;
+    const Body gone = body;
+    body = Body{}; // a hole is a static body that nothing touches
+    body.generation = gone.generation + 1;
+    body.first_collider = gone.first_collider;
+    body.collider_room = gone.collider_room;
+    state_.motions[id.index] = Motion{};
+    model.free_bodies.push_back(id.index);
 }
 
 bool World::is_alive(BodyId id) const {
-    return id.index < bodies_.size() && bodies_[id.index].alive &&
-           bodies_[id.index].generation == id.generation;
+    return id.index < bodies().size() && bodies()[id.index].alive &&
+           bodies()[id.index].generation == id.generation;
+}
+
+// Takes a body's colliders out of the broad phase: the next step finds their places anew.
+void World::forget_places_of(const Body &body) {
+    Scratch &s = scratch_;
+    bool any = false;
+    for (std::uint32_t i = body.first_collider; i < body.first_collider + body.collider_count;
+         ++i) {
+        if (i >= s.leaves.size() || s.leaves[i] == DynamicTree::none)
+            continue;
+        s.tree.remove(s.leaves[i]);
+        s.leaves[i] = DynamicTree::none;
+        any = true;
+    }
+    if (any)
+        std::erase_if(s.fat_pairs, [&](std::uint64_t key) {
+            const auto is_its = [&](std::uint64_t collider) {
+                return collider >= body.first_collider &&
+                       collider < body.first_collider + body.collider_count;
+            };
+            return is_its(key >> 32) || is_its(key & 0xFFFFFFFFU);
+        });
+}
+
+void World::forget_contacts_of(std::uint32_t body) {
+    std::erase_if(state_.contacts, [&](const ContactMemory &memory) {
+        return memory.key.a == body || memory.key.b == body;
+    });
 }
 
 JointId World::add_joint(const JointDef &def) {
@@ -141,113 +266,280 @@ JointId World::add_joint(const JointDef &def) {
     PLUMB_CHECK(a != b, "a joint needs two different bodies");
     PLUMB_CHECK(is_finite(def.anchor_a_local) && is_finite(def.anchor_b_local),
                 "joint anchors must be finite");
-    PLUMB_CHECK(def.type == JointType::ball || def.type == JointType::distance,
-                "only ball and distance joints can be run, got type "
-                    << static_cast<int>(def.type));
-    PLUMB_CHECK(def.type != JointType::distance || (def.length > 0 && std::isfinite(def.length)),
-                "a distance joint's length must be positive, got " << def.length);
+    for (const Quat &frame : {def.frame_a_local, def.frame_b_local})
+        PLUMB_CHECK(is_unit(glm::dot(frame, frame)), "a joint's frames must be of unit length");
+    PLUMB_CHECK(def.type != JointType::distance ||
+                    (def.max_length > 0 && std::isfinite(def.max_length) && def.min_length >= 0 &&
+                     def.min_length <= def.max_length),
+                "a distance joint's length must be positive, got " << def.min_length << " to "
+                                                                   << def.max_length);
+    check_not_negative("frequency", def.frequency);
+    check_not_negative("damping_ratio", def.damping_ratio);
+    check_not_negative("break_force", def.break_force);
+    if (def.limits)
+        PLUMB_CHECK(std::isfinite(def.limits->lower) && std::isfinite(def.limits->upper) &&
+                        def.limits->lower <= def.limits->upper,
+                    "a joint's limits must be in order, got " << def.limits->lower << " and "
+                                                              << def.limits->upper);
+    if (def.motor) {
+        PLUMB_CHECK(std::isfinite(def.motor->speed),
+                    "a motor's speed must be finite, got " << def.motor->speed);
+        check_not_negative("a motor's max_force", def.motor->max_force);
+    }
 
-    const std::uint32_t slot = take_slot(joints_, free_joints_);
-    Joint &joint = joints_[slot];
+    Model &model = edit();
+    const std::uint32_t slot = take_slot(model.joints, model.free_joints);
+    state_.joints.resize(model.joints.size());
+    state_.joints[slot] = def.memory;
+    Joint &joint = model.joints[slot];
     joint = Joint{.type = def.type,
                   .a = a,
                   .b = b,
                   .anchor_a_local = def.anchor_a_local,
                   .anchor_b_local = def.anchor_b_local,
-                  .length = def.length,
+                  .frame_a_local = def.frame_a_local,
+                  .frame_b_local = def.frame_b_local,
+                  .min_length = def.min_length,
+                  .max_length = def.max_length,
+                  .limits = def.limits,
+                  .motor = def.motor,
+                  .frequency = def.frequency,
+                  .damping_ratio = def.damping_ratio,
+                  .break_force = def.break_force,
                   .collide_connected = def.collide_connected,
-                  .impulse = def.impulse,
                   .generation = joint.generation,
                   .alive = true};
+    const auto into_mass_frame = [&](std::uint32_t index, Vec3 &anchor, Quat &frame) {
+        if (index == Joint::world || !model.bodies[index].has_mass_frame)
+            return;
+        const Transform back = into(model.bodies[index].mass_frame);
+        anchor = to_world_point(back, anchor);
+        frame = back.rotation * frame;
+    };
+    into_mass_frame(a, joint.anchor_a_local, joint.frame_a_local);
+    into_mass_frame(b, joint.anchor_b_local, joint.frame_b_local);
+    ++model.alive_joints;
     if (!def.collide_connected && a != Joint::world && b != Joint::world) {
-        const std::uint64_t key = Contact::pair_key(a, b);
-        joined_.insert(std::ranges::upper_bound(joined_, key), key);
+        const std::uint64_t key = body_pair(a, b);
+        model.joined.insert(std::ranges::upper_bound(model.joined, key), key);
     }
     return {slot, joint.generation};
 }
 
 void World::remove_joint(JointId id) {
     PLUMB_CHECK(is_alive(id), "joint " << id.index << " is not alive");
-    Joint &joint = joints_[id.index];
-    if (!joint.collide_connected && joint.a != Joint::world && joint.b != Joint::world) {
-        const std::uint64_t key = Contact::pair_key(joint.a, joint.b);
-        joined_.erase(std::ranges::lower_bound(joined_, key));
-    }
+    Model &model = edit();
+    Joint &joint = model.joints[id.index];
+    if (!joint.collide_connected && joint.a != Joint::world && joint.b != Joint::world)
+        model.joined.erase(std::ranges::lower_bound(model.joined, body_pair(joint.a, joint.b)));
     const std::uint32_t next_generation = joint.generation + 1;
     joint = Joint{};
     joint.generation = next_generation;
-    free_joints_.push_back(id.index);
+    --model.alive_joints;
+    state_.joints[id.index] = JointMemory{};
+    model.free_joints.push_back(id.index);
 }
 
 bool World::is_alive(JointId id) const {
-    return id.index < joints_.size() && joints_[id.index].alive &&
-           joints_[id.index].generation == id.generation;
+    return id.index < joints().size() && joints()[id.index].alive &&
+           joints()[id.index].generation == id.generation;
+}
+
+Transform World::pose_of(std::uint32_t body) const {
+    const Motion &motion = state_.motions[body];
+    const Body &what = bodies()[body];
+    if (!what.has_mass_frame)
+        return {motion.position, motion.rotation};
+    const Quat rotation = motion.rotation * glm::conjugate(what.mass_frame.rotation);
+    return {motion.position - rotation * what.mass_frame.position, rotation};
 }
 
 void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
                        const Vec3 &angular_velocity) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
-    PLUMB_CHECK(is_finite(velocity) && is_finite(angular_velocity), "body velocity must be finite");
+    check_velocity(velocity, angular_velocity);
     check_pose(pose);
-    Motion &motion = motions_[id.index];
-    motion.position = pose.position;
-    motion.rotation = pose.rotation;
-    motion.velocity = velocity;
-    motion.angular_velocity = angular_velocity;
-    motion.inv_inertia = world_inverse_inertia(pose.rotation, bodies_[id.index].inv_inertia);
+    const Body &body = bodies()[id.index];
+    Motion &motion = state_.motions[id.index];
+    motion = {pose.position, pose.rotation, velocity, angular_velocity};
+    if (body.has_mass_frame) {
+        motion.position += pose.rotation * body.mass_frame.position;
+        motion.rotation = glm::normalize(pose.rotation * body.mass_frame.rotation);
+    }
+    for (int i = 0; i < 3 && body.has_locks; ++i) {
+        if (body.locked[static_cast<std::size_t>(i)])
+            motion.velocity[i] = Real(0);
+        if (body.locked[static_cast<std::size_t>(i + 3)])
+            motion.angular_velocity[i] = Real(0);
+    }
+    forget_places_of(body);
+    scratch_.contacts_are_current = false;
 }
 
 void World::apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
     PLUMB_CHECK(is_finite(impulse) && is_finite(point), "an impulse must be finite");
-    Motion &motion = motions_[id.index];
-    motion.apply_impulse(impulse, point - motion.position);
+    const Body &body = bodies()[id.index];
+    if (body.kind != BodyKind::dynamic)
+        return;
+    Motion &motion = state_.motions[id.index];
+    Vec3 change = (Real(1) / body.mass) * impulse;
+    for (int i = 0; i < 3 && body.has_locks; ++i)
+        if (body.locked[static_cast<std::size_t>(i)])
+            change[i] = Real(0);
+    motion.velocity += change;
+    motion.angular_velocity += solver_inverse_inertia(body, motion.rotation) *
+                               glm::cross(point - motion.position, impulse);
+}
+
+void World::grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force) {
+    PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
+    PLUMB_CHECK(is_finite(point_local) && is_finite(target), "a grab must be finite");
+    check_not_negative("a grab's force", max_force);
+    const Body &body = bodies()[id.index];
+    if (body.kind != BodyKind::dynamic)
+        return;
+    state_.grab = Grab{};
+    state_.grab.body = id.index;
+    state_.grab.point_local =
+        body.has_mass_frame ? to_world_point(into(body.mass_frame), point_local) : point_local;
+    state_.grab.target = target;
+    state_.grab.max_force = max_force;
+}
+
+void World::move_grab(const Vec3 &target) {
+    PLUMB_CHECK(is_finite(target), "a grab must be finite");
+    if (state_.grab.is_holding())
+        state_.grab.target = target;
+}
+
+void World::release() {
+    state_.grab = Grab{};
 }
 
 void World::set_step_count(std::uint64_t count) {
-    step_count_ = count;
-    time_before_ = 0;
-    steps_before_ = 0;
+    state_.step_count = count;
+    state_.time_before = 0;
+    state_.steps_before = 0;
 }
 
-void World::remember_contact(BodyId a, BodyId b, std::span<const std::uint32_t> features,
-                             std::span<const Vec3> impulses) {
-    PLUMB_CHECK(is_alive(a) && is_alive(b), "a remembered contact names a body that is not alive");
-    PLUMB_CHECK(features.size() == impulses.size() && features.size() <= 4,
-                "a contact has at most 4 points, got " << features.size());
-    Contact contact;
-    contact.a = std::min(a.index, b.index);
-    contact.b = std::max(a.index, b.index);
-    contact.manifold.count = static_cast<int>(features.size());
-    for (std::size_t k = 0; k < features.size(); ++k) {
-        contact.manifold.points[k].feature = features[k];
-        contact.impulses[k] = impulses[k];
-    }
-    const auto place = std::ranges::lower_bound(contacts_, contact.key(), {}, &Contact::key);
-    if (place != contacts_.end() && place->key() == contact.key())
-        *place = contact;
+void World::remember_contact(const ContactKey &key, std::span<const PointMemory> points) {
+    PLUMB_CHECK(key.a < key.b && key.b < bodies().size() && bodies()[key.a].alive &&
+                    bodies()[key.b].alive,
+                "a remembered contact names a body that is not alive");
+    PLUMB_CHECK(!points.empty() && points.size() <= 4,
+                "a contact has 1 to 4 points, got " << points.size());
+    const ContactMemory memory{key, static_cast<std::uint32_t>(state_.points.size()),
+                               static_cast<std::uint32_t>(points.size())};
+    state_.points.insert(state_.points.end(), points.begin(), points.end());
+    const auto place = std::ranges::lower_bound(state_.contacts, key, {}, &ContactMemory::key);
+    if (place != state_.contacts.end() && place->key == key)
+        *place = memory;
     else
-        contacts_.insert(place, contact);
+        state_.contacts.insert(place, memory);
+    scratch_.contacts_are_current = false;
+}
+
+const std::vector<Contact> &World::contacts() const {
+    if (!scratch_.contacts_are_current) {
+        find_pairs();
+        collide(nullptr);
+        scratch_.contacts_are_current = true;
+    }
+    return scratch_.contacts;
+}
+
+void World::save(SavedWorld &into) const {
+    into.model = model_;
+    into.state = state_;
+    into.method = method_;
+    into.settings = settings_;
+}
+
+void World::restore(const SavedWorld &saved) {
+    PLUMB_CHECK(saved.model != nullptr, "nothing was saved");
+    if (saved.model != model_) {
+        // Edits copy a model that is shared, so this one is not changed while `saved` lives.
+        model_ = std::const_pointer_cast<Model>(saved.model);
+        scratch_ = Scratch{};
+    } else {
+        for (std::size_t i = 0; i < state_.motions.size(); ++i)
+            if (model_->bodies[i].kind == BodyKind::fixed &&
+                (state_.motions[i].position != saved.state.motions[i].position ||
+                 state_.motions[i].rotation != saved.state.motions[i].rotation))
+                forget_places_of(model_->bodies[i]);
+    }
+    state_ = saved.state;
+    method_ = saved.method;
+    settings_ = saved.settings;
+    scratch_.contacts_are_current = false;
+    scratch_.impacts.clear();
+    report_ = StepReport{};
 }
 
 std::optional<WorldHit> World::raycast(const Ray &ray) const {
-    // Every body in turn: the tree's boxes belong to the start of the last step, and a click is
+    // Every collider in turn: the tree's boxes belong to the start of the last step, and a click is
     // rare.
     std::optional<WorldHit> nearest;
     Ray shortened = ray;
-    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-        if (!bodies_[i].alive)
-            continue;
-        if (has_diverged(motions_[i]))
+    const auto meet = [&](std::uint32_t body, const Collider &collider,
+                          const std::optional<RayHit> &hit) {
+        if (!hit || (nearest && hit->t >= nearest->hit.t))
+            return;
+        nearest = WorldHit{body_id(body), collider.child, *hit};
+        shortened.max_t = hit->t;
+    };
+    for (std::uint32_t i = 0; i < bodies().size(); ++i) {
+        const Motion &motion = state_.motions[i];
+        const Transform pose{motion.position, motion.rotation};
+        const Body &body = bodies()[i];
+        if (!body.alive || has_diverged(motion))
             continue; // it is nowhere
-        const Transform pose{motions_[i].position, motions_[i].rotation};
-        const std::optional<RayHit> hit = plumb::raycast(placed(bodies_[i].shape, pose), shortened);
-        if (hit && (!nearest || hit->t < nearest->hit.t)) {
-            nearest = WorldHit{body_id(i), *hit};
-            shortened.max_t = hit->t;
+        for (std::uint32_t c = 0; c < body.collider_count; ++c) {
+            const Collider &collider = model_->colliders[body.first_collider + c];
+            if (collider.sensor)
+                continue;
+            if (!collider.surface) {
+                meet(i, collider, plumb::raycast(placed(collider.shape, pose), shortened));
+                continue;
+            }
+            const Transform frame = surface_pose(collider, motion);
+            Ray local = shortened;
+            local.origin = to_local_point(frame, ray.origin);
+            local.direction = to_local_vector(frame, ray.direction);
+            std::optional<RayHit> hit = plumb::raycast(*collider.surface, local);
+            if (hit) {
+                hit->point = to_world_point(frame, hit->point);
+                hit->normal = to_world_vector(frame, hit->normal);
+            }
+            meet(i, collider, hit);
         }
     }
     return nearest;
+}
+
+Aabb World::bounds_of(std::uint32_t body) const {
+    const Motion &motion = state_.motions[body];
+    const Body &what = bodies()[body];
+    Aabb all;
+    if (has_diverged(motion))
+        return all;
+    for (std::uint32_t c = 0; c < what.collider_count; ++c) {
+        const Collider &collider = model_->colliders[what.first_collider + c];
+        if (collider.is_half_space())
+            continue;
+        Aabb box;
+        if (collider.surface) {
+            const Aabb &local = collider.surface->bounds();
+            box = bounds(placed(Box{Real(0.5) * (local.min + local.max), identity_rotation,
+                                    Real(0.5) * (local.max - local.min)},
+                                surface_pose(collider, motion)));
+        } else {
+            box = bounds(placed(collider.shape, Transform{motion.position, motion.rotation}));
+        }
+        all = {glm::min(all.min, box.min), glm::max(all.max, box.max)};
+    }
+    return all;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,26 +1,36 @@
-// The world: bodies, joints and contacts, and the step that advances them.
+// The world: a model, a state, and the step that advances it.
 #pragma once
 
 #include "engine/core/hash.h"
 #include "engine/core/task_pool.h"
 #include "engine/dynamics/measures.h"
 #include "engine/dynamics/method.h"
-#include "engine/dynamics/step_report.h"
+#include "engine/dynamics/scratch.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Which body a ray meets first, and where.
+// Which body a ray meets first, which of its colliders, and where.
 struct WorldHit {
     BodyId body;
+    std::uint16_t child = 0;
     RayHit hit;
 };
 
-// A copy of a World is a complete save: it continues with the same bits, at any thread count.
-// What follows depends only on the poses, velocities, remembered impulses and settings, never on
-// the way that led there.
+// What decides the future: the model, which saves share until it is edited, and the state.
+struct SavedWorld {
+    std::shared_ptr<const Model> model;
+    State state;
+    const Method *method = nullptr;
+    StepSettings settings;
+};
+
+// Three things: the model (what only an edit changes), the state (all that survives a step), and
+// scratch, which may be thrown away between any two steps. What follows depends only on the first
+// two, the method and the settings, never on the way that led there.
 class World {
   public:
     // A method unknown to the registry, or settings out of range, fail a check.
@@ -31,8 +41,8 @@ class World {
     const Method &method() const { return *method_; }
     const StepSettings &settings() const { return settings_; }
 
-    // Fails a check on NaN, on a mass that is not positive, on a dynamic half-space, on a dynamic
-    // body without extent (a moment of inertia of 0).
+    // Fails a check on NaN, on a body without colliders, on a mass that is not positive, on a
+    // dynamic half-space or surface, on a dynamic body without extent (a moment of inertia of 0).
     BodyId add_body(const BodyDef &def);
     // Its contacts and joints go with it. An id no longer alive fails a check.
     void remove_body(BodyId id);
@@ -43,46 +53,74 @@ class World {
     void remove_joint(JointId id);
     bool is_alive(JointId id) const;
 
+    const Model &model() const { return *model_; }
+    const State &state() const { return state_; }
     // All slots, holes included (Body::alive, Joint::alive). Index i of each belongs together.
-    const std::vector<Body> &bodies() const { return bodies_; }
-    const std::vector<Motion> &motions() const { return motions_; }
-    const std::vector<Joint> &joints() const { return joints_; }
-    const std::vector<Contact> &contacts() const {
-        return contacts_;
-    } // of the last step, by (a, b)
-    BodyId body_id(std::uint32_t index) const { return {index, bodies_[index].generation}; }
+    const std::vector<Body> &bodies() const { return model_->bodies; }
+    const std::vector<Motion> &motions() const { return state_.motions; }
+    const std::vector<Joint> &joints() const { return model_->joints; }
+    BodyId body_id(std::uint32_t index) const { return {index, bodies()[index].generation}; }
 
+    // Of the last step, ascending by key; found again at the present poses when a world was
+    // restored or edited since.
+    const std::vector<Contact> &contacts() const;
+    const std::vector<Impact> &impacts() const { return scratch_.impacts; } // of the last step
+
+    // The pose of the body's own frame.
+    Transform pose_of(std::uint32_t body) const;
     // Sets pose and velocity of a body, as a tool or a test does.
     void set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
                     const Vec3 &angular_velocity);
     // Changes a dynamic body's velocity at once: `impulse` in N s at a world point. Others ignore
     // it.
     void apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point);
+    // Holds a point of a dynamic body (in its own frame) at the target, until release or until the
+    // body is removed; a second grab replaces the first. Others ignore it.
+    void grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force);
+    void move_grab(const Vec3 &target); // nothing held: does nothing
+    void release();
     // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
     // are known by feature; a contact that the next step does not find again is forgotten.
-    void remember_contact(BodyId a, BodyId b, std::span<const std::uint32_t> features,
-                          std::span<const Vec3> impulses);
+    void remember_contact(const ContactKey &key, std::span<const PointMemory> points);
+    void set_grab_memory(const Vec3 &impulse) { state_.grab.impulse = impulse; }
 
-    // Advances by settings().dt. `tasks` may be null: one thread. Same bits for any thread count.
-    void step(TaskPool *tasks);
+    // Advances by settings().dt. `tasks` may be null: one thread. Same bits for any thread count. A
+    // step that throws leaves the state as it was. `times`, when not null, gets the phases' times.
+    void step(TaskPool *tasks, StepTimes *times = nullptr);
     const StepReport &report() const { return report_; }
-    std::uint64_t step_count() const { return step_count_; }
+    std::uint64_t step_count() const { return state_.step_count; }
     // For a world that continues a saved one; all its steps count as of the present dt.
     void set_step_count(std::uint64_t count);
-    // Simulated time (s). A product, not a sum, of each dt that was set: step k is where it should
-    // be.
+    // Simulated time (s): step k is where it should be.
     double time() const {
-        return time_before_ + static_cast<double>(step_count_ - steps_before_) * settings_.dt;
+        return state_.time_before +
+               static_cast<double>(state_.step_count - state_.steps_before) * settings_.dt;
     }
 
-    // The nearest body; of two at the same t, the one with the lower index.
+    // Copies the state, and shares the model. `into` keeps its memory, so that a ring of saves
+    // allocates nothing once it is full.
+    void save(SavedWorld &into) const;
+    void restore(const SavedWorld &saved);
+
+    // The nearest body; of two at the same t, the one with the lower index. Sensors are not met.
     std::optional<WorldHit> raycast(const Ray &ray) const;
 
     Measures measure() const;
-    // Joint error at the present poses (m).
-    Real joint_drift(const Joint &joint) const;
+    double energy() const; // kinetic and potential, J
+    // How far a joint's rows are from holding (m; angles in rad count as metres).
+    Real joint_error(std::uint32_t joint) const;
+    // What it bore in the last substep: force at the anchor and torque, on b, in world axes.
+    struct JointLoad {
+        Vec3 force{Real(0)};  // N
+        Vec3 torque{Real(0)}; // N m
+    };
+    JointLoad joint_load(std::uint32_t joint) const;
     Vec3 anchor_a(const Joint &joint) const; // world
     Vec3 anchor_b(const Joint &joint) const;
+    const Motion &joint_motion(std::uint32_t body) const; // the world's is the identity
+    // Around all of its colliders but half-spaces, now; empty when there is none, or when it has
+    // diverged.
+    Aabb bounds_of(std::uint32_t body) const;
 
     // Of all that decides the future as long as no body is added. Holes do not count: a world saved
     // and loaded has the same. (A new body fills a hole, and so comes earlier in the solver's
@@ -90,37 +128,38 @@ class World {
     std::uint64_t hash() const;
 
   private:
-    void find_pairs();
-    void collide(TaskPool *tasks);
+    // The phases of a step; those that are const work on scratch alone.
+    void find_pairs() const;
+    void collide(TaskPool *tasks) const;
+    void load_bodies();
     void advance();
+    void gather_memory();
     void finish();
 
     bool needs_contacts() const;
-    Aabb swept_bounds(std::uint32_t body) const;
-    double energy_of(const Body &body, const Motion &motion) const;
+    bool place_colliders() const;
+    bool may_touch(std::uint32_t i, std::uint32_t j) const;
+    void add_candidate(std::uint32_t i, std::uint32_t j) const;
+    Aabb swept_bounds(const Aabb &box, std::uint32_t body) const;
+    Real contact_margin(const Candidate &candidate) const;
+    Manifold present_manifold(const Contact &contact) const;
+    void collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
+                           std::vector<std::uint32_t> &triangles) const;
+    void add_contact(const Candidate &candidate, std::uint32_t triangle, const Manifold &manifold,
+                     std::vector<Contact> &out) const;
+
+    // The model, to be changed; a copy of its own when saves share it.
+    Model &edit();
+    void add_colliders(const BodyDef &def, Body &body, std::uint32_t slot);
+    void forget_contacts_of(std::uint32_t body);
+    void forget_places_of(const Body &body);
 
     const Method *method_ = nullptr;
     StepSettings settings_;
-    std::vector<Body> bodies_;
-    std::vector<Motion> motions_;
-    std::vector<std::uint32_t> free_bodies_;
-    std::vector<Joint> joints_;
-    std::vector<std::uint32_t> free_joints_;
-    std::vector<std::uint64_t> joined_; // sorted pair keys that joints keep from colliding
-    DynamicTree tree_;
-    std::vector<std::uint32_t> half_spaces_;
-    std::vector<std::uint64_t> fat_pairs_; // sorted keys of bodies whose fat boxes touch
-    std::vector<Contact> contacts_;        // sorted by key
-    std::uint64_t step_count_ = 0;
-    double time_before_ = 0; // s, until dt was last changed
-    std::uint64_t steps_before_ = 0;
+    std::shared_ptr<Model> model_;
+    State state_;
     StepReport report_;
-
-    // Scratch of one step, kept for its memory.
-    std::vector<Shape> placed_;
-    std::vector<Aabb> swept_;
-    std::vector<std::uint8_t> moved_;
-    std::vector<std::uint64_t> candidates_;
+    mutable Scratch scratch_;
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -6,6 +6,7 @@
 #include "engine/geometry/contains.h"
 #include "engine/math/printed.h"
 #include "engine/math/vectors.h"
+#include "engine/geometry/hull_queries.h"
 
 #include <algorithm>
 #include <cmath>

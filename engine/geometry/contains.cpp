@@ -2,6 +2,7 @@
 
 #include "engine/geometry/check_query.h"
 #include "engine/math/predicates.h"
+#include "engine/geometry/hull_queries.h"
 
 #include <cmath>
 

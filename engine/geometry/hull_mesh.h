@@ -46,13 +46,6 @@ struct HullMesh {
     Mat3 inertia{Real(0)};      // about the centre, for a density of 1 kg/m^3
 };
 
-// A solid convex polyhedron. `mesh` is borrowed: it must outlive the value.
-struct ConvexHull {
-    const HullMesh *mesh = nullptr;
-    Vec3 position{Real(0)};
-    Quat rotation = identity_rotation;
-};
-
 // A mesh that is missing or has no vertices, a position that is not finite, and a rotation that is
 // not of unit length (is_unit) fail a check: here, and in each query that takes a ConvexHull.
 void check_valid(const ConvexHull &hull);

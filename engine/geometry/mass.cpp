@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -35,6 +36,10 @@ Real volume_of(const HalfSpace &) {
 
 Real volume_of(const Cylinder &cylinder) {
     return pi * cylinder.radius * cylinder.radius * glm::length(cylinder.b - cylinder.a);
+}
+
+Real volume_of(const ConvexHull &hull) {
+    return hull.mesh->volume;
 }
 
 void check_mass(Real mass) {
@@ -83,7 +88,68 @@ Vec3 inertia_of(const HalfSpace &half_space, Real mass) {
                            << half_space.offset << " and the mass asked for " << mass);
 }
 
+Vec3 inertia_of(const ConvexHull &hull, Real mass) {
+    return principal_frame(inertia(hull, mass)).moments;
+}
+
+// R I R^T.
+Mat3 turned_inertia(const Mat3 &inertia, const Quat &rotation) {
+    const Mat3 r = glm::mat3_cast(rotation);
+    return r * inertia * glm::transpose(r);
+}
+
+// Of a solid of revolution about the unit vector `axis`.
+Mat3 inertia_about(const Vec3 &axis, Real along, Real across) {
+    return Mat3{across} + (along - across) * glm::outerProduct(axis, axis);
+}
+
+MassProperties mass_properties_of(const Sphere &sphere) {
+    const Real v = volume_of(sphere);
+    return {v, sphere.center, Mat3{inertia_of(sphere, v).x}};
+}
+
+MassProperties mass_properties_of(const Box &box) {
+    const Real v = volume_of(box);
+    const Vec3 moments = inertia_of(box, v);
+    Mat3 local{Real(0)};
+    for (int i = 0; i < 3; ++i)
+        local[i][i] = moments[i];
+    return {v, box.center, turned_inertia(local, box.rotation)};
+}
+
+// A capsule or a cylinder.
+template <typename Round> MassProperties round_mass_properties(const Round &shape) {
+    const Real v = volume_of(shape);
+    const Vec3 moments = inertia_of(shape, v);
+    const Vec3 along = shape.b - shape.a;
+    const Real length = glm::length(along);
+    const Vec3 axis = length > Real(0) ? along / length : Vec3{Real(0), Real(1), Real(0)};
+    return {v, Real(0.5) * (shape.a + shape.b), inertia_about(axis, moments.y, moments.x)};
+}
+
+MassProperties mass_properties_of(const Capsule &capsule) {
+    return round_mass_properties(capsule);
+}
+
+MassProperties mass_properties_of(const Cylinder &cylinder) {
+    return round_mass_properties(cylinder);
+}
+
+MassProperties mass_properties_of(const ConvexHull &hull) {
+    return {hull.mesh->volume, hull.position + hull.rotation * hull.mesh->center,
+            turned_inertia(hull.mesh->inertia, hull.rotation)};
+}
+
+MassProperties mass_properties_of(const HalfSpace &half_space) {
+    PLUMB_CHECK(false, "a half-space has no mass; its offset is " << half_space.offset);
+}
+
 } // namespace
+
+MassProperties mass_properties(const Shape &shape) {
+    check_valid(shape);
+    return std::visit([](const auto &solid) { return mass_properties_of(solid); }, shape);
+}
 
 Real volume(const Shape &shape) {
     check_valid(shape);

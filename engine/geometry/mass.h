@@ -14,7 +14,8 @@ Real volume(const ConvexHull &hull);
 
 // Principal moments of inertia (kg m^2) about the centre of mass for a solid of that mass (kg) and
 // uniform density, in the shape's own principal frame: the local axes for a Box and a Sphere; for a
-// Capsule, y is along its axis. A half-space has none: fails a check.
+// Capsule and a Cylinder y is along the axis; those of a hull ascend. A half-space has none: fails
+// a check.
 Vec3 principal_inertia(const Shape &shape, Real mass);
 Vec3 principal_inertia(const Cylinder &cylinder, Real mass); // y along its axis
 
@@ -36,6 +37,9 @@ struct MassProperties {
     Vec3 center{Real(0)};
     Mat3 inertia{Real(0)}; // about the centre, for a density of 1 kg/m^3
 };
+
+// Of a solid where it is. A half-space fails a check.
+MassProperties mass_properties(const Shape &shape);
 
 // Of the solid within a closed surface of triangles, counter-clockwise from outside. Inside out the
 // volume is negative; a surface around no volume gives zeros. Computed in double; from the

@@ -6,6 +6,7 @@
 #include "engine/geometry/triangle_exact.h"
 #include "engine/math/predicates.h"
 #include "engine/math/rigid.h"
+#include "engine/geometry/hull_queries.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,7 @@
 #include "engine/geometry/shapes.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/hull_queries.h"
 #include "engine/math/printed.h"
 
 #include <cmath>
@@ -78,6 +79,10 @@ HalfSpace placed(const HalfSpace &local, const Transform &pose) {
     if (!is_unit(glm::dot(normal, normal))) // as for a box
         normal = glm::normalize(normal);
     return {normal, local.offset + glm::dot(normal, pose.position)};
+}
+
+ConvexHull placed(const ConvexHull &local, const Transform &pose) {
+    return {local.mesh, to_world_point(pose, local.position), pose.rotation * local.rotation};
 }
 
 Shape placed(const Shape &local, const Transform &pose) {

@@ -72,8 +72,16 @@ struct Triangle {
     Vec3 c{Real(0)};
 };
 
-// What dynamics moves.
-using Shape = std::variant<Sphere, Box, Capsule, HalfSpace>;
+// A solid convex polyhedron. `mesh` is borrowed: it must outlive the value (hull_mesh.h).
+struct HullMesh;
+struct ConvexHull {
+    const HullMesh *mesh = nullptr;
+    Vec3 position{Real(0)};
+    Quat rotation = identity_rotation;
+};
+
+// What dynamics moves. A pair of them is collided in this order (manifold_pairs.h).
+using Shape = std::variant<Sphere, Box, Capsule, Cylinder, ConvexHull, HalfSpace>;
 
 // An axis-aligned box; empty when min > max in any component.
 struct Aabb {
@@ -95,6 +103,7 @@ Sphere placed(const Sphere &local, const Transform &pose);
 Box placed(const Box &local, const Transform &pose);
 Capsule placed(const Capsule &local, const Transform &pose);
 HalfSpace placed(const HalfSpace &local, const Transform &pose);
+ConvexHull placed(const ConvexHull &local, const Transform &pose);
 Cylinder placed(const Cylinder &local, const Transform &pose);
 Segment placed(const Segment &local, const Transform &pose);
 Triangle placed(const Triangle &local, const Transform &pose);

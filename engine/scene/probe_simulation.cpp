@@ -16,11 +16,12 @@ class ProbeSimulation final : public Simulation {
         : scene_(std::move(scene)), run_(run) {}
 
     bool has_world() const override { return false; }
-    void step() override {}
+    void step(StepTimes *) override {}
     std::uint64_t step_count() const override { return 0; }
     double time() const override { return 0; }
     const StepReport &report() const override { return report_; }
     Measures measure() const override { return {}; }
+    double energy() const override { return 0; }
     // Nothing moves: what could differ is what the probes are answered.
     std::uint64_t hash() const override { return hash_of_answers(scene_.probes, run_.precision); }
 
@@ -34,7 +35,9 @@ class ProbeSimulation final : public Simulation {
     }
     void set_settings(const StepSettings &settings) override { run_.settings = settings; }
 
-    std::unique_ptr<Saved> save() const override { return std::make_unique<Saved>(); }
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
+        return std::make_unique<Saved>();
+    }
     void restore(const Saved &) override {}
 
     SceneDesc describe() const override {
@@ -54,12 +57,14 @@ class ProbeSimulation final : public Simulation {
     std::optional<std::size_t> find_body(std::string_view) const override { return {}; }
     std::vector<ContactView> contacts() const override { return {}; }
     std::vector<JointView> joints() const override { return {}; }
+    std::vector<ImpactView> impacts() const override { return {}; }
     std::vector<BoundsView> bounds() const override { return {}; }
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override { return {}; }
     void apply_impulse(std::size_t body, const glm::dvec3 &, const glm::dvec3 &) override {
         no_body(body);
     }
     void pull(std::size_t body, const glm::dvec3 &, const glm::dvec3 &) override { no_body(body); }
+    void release() override {}
     std::size_t add_body(const BodyDesc &) override {
         throw std::invalid_argument(
             "this scene has only probes, and no world that a body could be in");

@@ -52,7 +52,7 @@ struct ColliderDesc {
     bool sensor = false; // reports what it touches, and lets it pass
 };
 
-// Where the centre of mass is in the body's frame, and how the principal axes of inertia lie there.
+// Where the centre of mass is in the world, and how the principal axes of inertia lie there.
 struct MassPoseDesc {
     glm::dvec3 position{0};
     glm::dquat orientation{1, 0, 0, 0};
@@ -113,6 +113,9 @@ struct ExpectDesc {
 struct ContactStateDesc {
     std::string body_a;
     std::string body_b;
+    std::uint32_t child_a = 0; // which of the body's colliders
+    std::uint32_t child_b = 0;
+    std::optional<std::uint32_t> triangle; // of the one that is a mesh or a height field
     struct Point {
         std::uint32_t feature = 0;
         glm::dvec3 impulse{0}; // normal, two tangential (N s)

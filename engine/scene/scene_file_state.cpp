@@ -16,8 +16,8 @@ const toml::array *array_at(const Table &table, std::string_view key) {
 }
 
 void read_contact(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 4> keys{"body_a", "body_b", "features",
-                                                          "impulses"};
+    static constexpr std::array<std::string_view, 7> keys{
+        "body_a", "body_b", "child_a", "child_b", "triangle", "features", "impulses"};
     const Table table(reading.report, source, "[[state.contact]]", keys);
     ContactStateDesc contact;
     for (const auto &[key, name] :
@@ -27,6 +27,17 @@ void read_contact(Reading &reading, const toml::table &source) {
                 *name = reading.scene.bodies[*body].name;
     if (!contact.body_a.empty() && contact.body_a == contact.body_b)
         table.error("body_b", "a body is in contact with itself", "body_a and body_b must differ");
+    constexpr std::uint64_t most_children = std::numeric_limits<std::uint16_t>::max();
+    for (const auto &[key, child] :
+         {std::pair("child_a", &contact.child_a), std::pair("child_b", &contact.child_b)}) {
+        const std::uint64_t given = table.natural(key).value_or(0);
+        if (given > most_children)
+            table.error(key, "no body has a shape " + std::to_string(given),
+                        "a shape is counted from 0 to " + std::to_string(most_children));
+        *child = static_cast<std::uint32_t>(given);
+    }
+    if (const std::optional<std::uint64_t> triangle = table.natural("triangle"))
+        contact.triangle = static_cast<std::uint32_t>(*triangle);
     const toml::array *features = array_at(table, "features");
     const toml::array *impulses = array_at(table, "impulses");
     if (!features || !impulses)

@@ -351,6 +351,12 @@ class SceneWriter {
             header("[[state.contact]]");
             line("body_a", string(contact.body_a));
             line("body_b", string(contact.body_b));
+            if (contact.child_a != 0)
+                line("child_a", natural(contact.child_a));
+            if (contact.child_b != 0)
+                line("child_b", natural(contact.child_b));
+            if (contact.triangle)
+                line("triangle", natural(*contact.triangle));
             line("features", "[" + features + "]");
             line("impulses", "[" + impulses + "]");
         }

@@ -75,6 +75,15 @@ struct JointView {
     glm::dvec3 torque{0};
 };
 
+// A bounce within the last step.
+struct ImpactView {
+    std::size_t body_a = 0;
+    std::size_t body_b = 0;
+    glm::dvec3 position{0}; // world
+    glm::dvec3 normal{0};   // from a to b
+    double impulse = 0;     // N s
+};
+
 struct BoundsView {
     glm::dvec3 min{0}, max{0};
 };
@@ -119,11 +128,14 @@ class Simulation {
     // False when the scene has only probes: then a step does nothing, and the step count stays 0.
     virtual bool has_world() const { return true; }
 
-    virtual void step() = 0;
+    // `times`, when not null, gets the times of the phases added.
+    virtual void step(StepTimes *times) = 0;
+    void step() { step(nullptr); }
     virtual std::uint64_t step_count() const = 0;
     virtual double time() const = 0;              // s, since the start of the scene
     virtual const StepReport &report() const = 0; // of the last step
     virtual Measures measure() const = 0;
+    virtual double energy() const = 0; // kinetic and potential, J
     // Of everything that decides the future: poses, velocities, remembered impulses, settings.
     virtual std::uint64_t hash() const = 0;
 
@@ -139,7 +151,9 @@ class Simulation {
       public:
         virtual ~Saved() = default;
     };
-    virtual std::unique_ptr<Saved> save() const = 0;
+    // Into the memory of an older save of this simulation, if one is given.
+    virtual std::unique_ptr<Saved> save(std::unique_ptr<Saved> reuse) const = 0;
+    std::unique_ptr<Saved> save() const { return save(nullptr); }
     virtual void restore(const Saved &saved) = 0; // saved by this simulation
 
     // The present state as a scene that loads to the same hash, as long as nothing but what a scene
@@ -153,6 +167,7 @@ class Simulation {
 
     virtual std::vector<ContactView> contacts() const = 0; // of the last step
     virtual std::vector<JointView> joints() const = 0;
+    virtual std::vector<ImpactView> impacts() const = 0; // of the last step
     virtual std::vector<BoundsView> bounds() const = 0; // around each body, now; planes have none
 
     // The nearest body on the ray origin + t * direction, t >= 0.
@@ -161,10 +176,11 @@ class Simulation {
     // Changes a dynamic body's velocity at once (N s at a world point). Others ignore it.
     virtual void apply_impulse(std::size_t body, const glm::dvec3 &impulse,
                                const glm::dvec3 &point) = 0;
-    // Pulls a body's point to a target during the next step, like a critically damped spring that
-    // is scaled with the body's mass; call it before each step while grabbing.
+    // Holds a body's point (in its frame) at a target by a damped spring of limited strength, until
+    // release. Part of the state.
     virtual void pull(std::size_t body, const glm::dvec3 &local_point,
                       const glm::dvec3 &target) = 0;
+    virtual void release() = 0;
     // Adds a body; a name already taken gets a number. Returns its index. Throws
     // std::invalid_argument when the method knows no contacts.
     virtual std::size_t add_body(const BodyDesc &body) = 0;

@@ -52,7 +52,7 @@ World random_world(const std::string &method, std::uint64_t seed, bool holes = f
             joint.anchor_b_local = narrow(V{-0.25, 0, 0});
         else
             joint.anchor_b_local = Vec3{Real(0)};
-        joint.length = Real(0.25);
+        set_length(joint, Real(0.25));
         world.add_joint(joint);
         joint.a = link;
     }
@@ -96,9 +96,12 @@ World loaded(const World &from) {
         const Motion &motion = from.motions()[i];
         BodyDef def;
         def.kind = body.kind;
-        def.shape = body.shape;
-        def.mass = body.mass;
-        def.material = body.material;
+        const Collider &collider = from.model().colliders[body.first_collider];
+        ColliderDef &only = def.colliders.emplace_back();
+        only.shape = collider.shape;
+        only.material = collider.material;
+        if (body.kind == BodyKind::dynamic)
+            def.mass = body.mass;
         def.pose = {motion.position, motion.rotation};
         def.velocity = motion.velocity;
         def.angular_velocity = motion.angular_velocity;
@@ -110,18 +113,24 @@ World loaded(const World &from) {
         const auto end = [&](std::uint32_t body) {
             return body == Joint::world ? BodyId{} : ids[body];
         };
-        world.add_joint({joint.type, end(joint.a), end(joint.b), joint.anchor_a_local,
-                         joint.anchor_b_local, joint.length, joint.collide_connected,
-                         joint.impulse});
+        JointDef def;
+        def.type = joint.type;
+        def.a = end(joint.a);
+        def.b = end(joint.b);
+        def.anchor_a_local = joint.anchor_a_local;
+        def.anchor_b_local = joint.anchor_b_local;
+        def.min_length = joint.min_length;
+        def.max_length = joint.max_length;
+        def.collide_connected = joint.collide_connected;
+        def.memory = from.state().joints[std::size_t(&joint - from.joints().data())];
+        world.add_joint(def);
     }
-    for (const Contact &contact : from.contacts()) {
-        std::vector<std::uint32_t> features;
-        std::vector<Vec3> impulses;
-        for (std::size_t k = 0; k < std::size_t(contact.manifold.count); ++k) {
-            features.push_back(contact.manifold.points[k].feature);
-            impulses.push_back(contact.impulses[k]);
-        }
-        world.remember_contact(ids[contact.a], ids[contact.b], features, impulses);
+    for (const ContactMemory &memory : from.state().contacts) {
+        ContactKey key = memory.key;
+        key.a = ids[key.a].index;
+        key.b = ids[key.b].index;
+        world.remember_contact(
+            key, std::span(from.state().points).subspan(memory.first_point, memory.point_count));
     }
     world.set_step_count(from.step_count());
     return world;
@@ -215,21 +224,16 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
     EXPECT_GT(parts, 500);
     // Remembered impulses of contacts.
     int loaded_points = 0;
-    for (const Contact &contact : before.contacts())
-        for (std::size_t k = 0; k < std::size_t(contact.manifold.count); ++k)
+    for (const ContactMemory &memory : before.state().contacts)
+        for (std::size_t k = 0; k < memory.point_count; ++k)
             for (int axis = 0; axis < 3; ++axis) {
-                std::vector<std::uint32_t> features;
-                std::vector<Vec3> impulses;
-                for (std::size_t j = 0; j < std::size_t(contact.manifold.count); ++j) {
-                    features.push_back(contact.manifold.points[j].feature);
-                    impulses.push_back(contact.impulses[j]);
-                }
-                next(impulses[k][axis]);
+                const auto first = before.state().points.begin() + memory.first_point;
+                std::vector<PointMemory> points(first, first + memory.point_count);
+                loaded_points += points[k].impulse.x > 0 ? 1 : 0;
+                next(points[k].impulse[axis]);
                 World changed = before;
-                changed.remember_contact(changed.body_id(contact.a), changed.body_id(contact.b),
-                                         features, impulses);
+                changed.remember_contact(memory.key, points);
                 EXPECT_NE(changed.hash(), before.hash());
-                loaded_points += contact.impulses[k].x > 0 ? 1 : 0;
             }
     EXPECT_GT(loaded_points, 30);
     World changed = before;
@@ -263,7 +267,7 @@ TEST(Hash, ChangesWithBodiesAndJoints) {
     BodyDef body = dynamic_body(block(V{0.1, 0.2, 0.3}), 2, V{0});
     JointDef joint;
     joint.type = JointType::distance;
-    joint.length = Real(1);
+    set_length(joint, Real(1));
     const auto hash_of = [](const BodyDef &b, JointDef j) {
         World world("soft_step", StepSettings{});
         j.a = world.add_body(b);
@@ -279,13 +283,17 @@ TEST(Hash, ChangesWithBodiesAndJoints) {
         change(changed);
         return hash_of(changed, joint) != before;
     };
-    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.mass = next(b.mass); }));
-    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.material.friction = next(b.material.friction); }));
-    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.material.restitution = Real(0.5); }));
-    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.kind = BodyKind::kinematic; }));
-    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.shape = ball(0.2); }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.mass = next(*b.mass); }));
     EXPECT_TRUE(body_differs([&](BodyDef &b) {
-        Real &half = std::get<Box>(b.shape).half_extents.y;
+        Real &friction = b.colliders.front().material.friction;
+        friction = next(friction);
+    }));
+    EXPECT_TRUE(
+        body_differs([&](BodyDef &b) { b.colliders.front().material.restitution = Real(0.5); }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.kind = BodyKind::kinematic; }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) { b.colliders.front().shape = ball(0.2); }));
+    EXPECT_TRUE(body_differs([&](BodyDef &b) {
+        Real &half = std::get<Box>(b.colliders.front().shape).half_extents.y;
         half = next(half);
     }));
     const auto joint_differs = [&](const std::function<void(JointDef &)> &change) {
@@ -294,12 +302,13 @@ TEST(Hash, ChangesWithBodiesAndJoints) {
         return hash_of(body, changed) != before;
     };
     EXPECT_TRUE(joint_differs([&](JointDef &j) { j.type = JointType::ball; }));
-    EXPECT_TRUE(joint_differs([&](JointDef &j) { j.length = next(j.length); }));
+    EXPECT_TRUE(joint_differs([&](JointDef &j) { set_length(j, next(j.max_length)); }));
     EXPECT_TRUE(joint_differs([&](JointDef &j) { j.collide_connected = true; }));
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_TRUE(joint_differs([&](JointDef &j) { j.anchor_a_local[axis] = Real(1e-30); }));
         EXPECT_TRUE(joint_differs([&](JointDef &j) { j.anchor_b_local[axis] = Real(1e-30); }));
-        EXPECT_TRUE(joint_differs([&](JointDef &j) { j.impulse[axis] = Real(1e-30); }));
+        EXPECT_TRUE(joint_differs(
+            [&](JointDef &j) { j.memory.impulses[std::size_t(axis)] = Real(1e-30); }));
     }
 }
 

@@ -10,7 +10,8 @@ using namespace trial;
 class FreeMotion : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, FreeMotion, testing::ValuesIn(all_methods()), name_of);
 
-// x0 + v0 t + g t^2 / 2. A known failing: semi-implicit Euler falls g h t / 2 further, exactly.
+// x0 + v0 t + g t^2 / 2. A known failing: semi-implicit Euler, which TGS Soft moves by, falls
+// g h t / 2 further, exactly.
 TEST_P(FreeMotion, FallsInClosedForm) {
     StepSettings settings = settings_for(GetParam());
     settings.gravity = V{1, -9.81, 0.25};
@@ -22,7 +23,8 @@ TEST_P(FreeMotion, FallsInClosedForm) {
         const V v0{0.5, 8, -1};
         const BodyId id = world.add_body(dynamic_body(ball(0.25), 2, x0, v0));
         const double h = substep_of(world);
-        const double lag = GetParam() == "semi_implicit_euler" ? 1 : 0;
+        const bool is_euler = GetParam() == "semi_implicit_euler" || GetParam() == "tgs_soft";
+        const double lag = is_euler ? 1 : 0;
         for (int i = 1; i <= 128; ++i) {
             world.step(nullptr);
             const double t = i * settings.dt;
@@ -39,7 +41,7 @@ TEST_P(FreeMotion, FallsInClosedForm) {
 
 // The order in the substep on a brick's torque-free spin, against long double.
 TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
-    const bool first = GetParam() == "semi_implicit_euler";
+    const bool first = GetParam() == "semi_implicit_euler" || GetParam() == "tgs_soft";
     const bool fourth = GetParam() == "rk4";
     const double order = first ? 1 : fourth ? 4 : 2;
     const V half{0.1, 0.2, 0.4};
@@ -99,9 +101,14 @@ TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
         return;
     }
     // rk4 at |w| h = 0.05: 0.05^5 for 1200 steps is below 4e-4; roundings for the rest, a tenth of
-    // the worst sum of some 10 each in 4800 substeps.
+    // the worst sum of some 10 each in 4800 substeps. TGS Soft turns by the spin at the substep's
+    // end, which keeps the momentum to first order only.
     const double tolerance = (GetParam() == "rk4" ? 4e-4 : 0) + 0.1 * 4800 * 10 * epsilon;
     EXPECT_NEAR(gain, 0, tolerance);
+    if (GetParam() == "tgs_soft") {
+        EXPECT_LE(momentum_error, 0.01);
+        return;
+    }
     EXPECT_LE(momentum_error, tolerance);
 }
 

@@ -14,20 +14,20 @@ using L = long double;
 
 Body brick(const V &half_extents, double mass) {
     Body body;
-    body.shape = block(half_extents);
+    body.kind = BodyKind::dynamic;
     body.mass = Real(mass);
-    body.inertia = principal_inertia(body.shape, Real(mass));
+    body.inertia = principal_inertia(block(half_extents), Real(mass));
     body.inv_inertia = Real(1) / body.inertia;
     body.alive = true;
     return body;
 }
 
-Motion moving(const Body &body, const V &velocity, const V &spin, const glm::dquat &rotation) {
-    Motion motion;
+SolverBody moving(const Body &body, const V &velocity, const V &spin, const glm::dquat &rotation) {
+    SolverBody motion;
     motion.velocity = narrow(velocity);
     motion.angular_velocity = narrow(spin);
     motion.rotation = narrow(rotation);
-    motion.inv_mass = Real(1) / body.mass;
+    motion.inv_mass = Vec3{Real(1) / body.mass};
     motion.inv_inertia = world_inverse_inertia(motion.rotation, body.inv_inertia);
     return motion;
 }
@@ -182,7 +182,7 @@ TEST(GyroscopicSpin, ThreeIterationsAreEnoughForUsualSpins) {
     }
 }
 
-void fly(Motion &motion, const Body &body, const V &pull, double h, Kick kick) {
+void fly(SolverBody &motion, const Body &body, const V &pull, double h, Kick kick) {
     FreeFlight flight = begin_flight(motion, body, narrow(pull), Real(h), kick, 3);
     move(motion, body, flight, Real(h));
     EXPECT_TRUE(flight.free);
@@ -200,7 +200,7 @@ TEST_P(Flight, FollowsTheParabola) {
     const Body body = brick({0.1, 0.2, 0.3}, 2);
     const V start_velocity{3, 10, -1};
     const V pull{0.5, -9.81, 0};
-    Motion motion = moving(body, start_velocity, V{1, 2, 3}, glm::dquat(1, 0, 0, 0));
+    SolverBody motion = moving(body, start_velocity, V{1, 2, 3}, glm::dquat(1, 0, 0, 0));
     const double h = 1.0 / 256;
     const int steps = 512;
     for (int i = 1; i <= steps; ++i) {
@@ -221,7 +221,7 @@ TEST_P(Flight, KeepsEnergyAndAngularMomentum) {
     for (int trial = 0; trial < 10; ++trial) {
         const Body body = brick(
             {random.next_in(0.05, 0.5), random.next_in(0.05, 0.5), random.next_in(0.05, 0.5)}, 2);
-        Motion motion = moving(body, V{0}, any_vector(random, 10), any_rotation(random));
+        SolverBody motion = moving(body, V{0}, any_vector(random, 10), any_rotation(random));
         const auto momentum = [&] {
             const glm::dquat q = glm::normalize(wide(motion.rotation));
             return q * (wide(body.inertia) * (glm::conjugate(q) * wide(motion.angular_velocity)));
@@ -247,7 +247,7 @@ TEST_P(Flight, TorqueFreeSpinIsOfSecondOrder) {
         spin_reference(wide(body.inertia), widened(narrow(start)), WideQuat{1, 0, 0, 0}, 2, 20000);
     std::vector<double> errors;
     for (const int steps : {16, 32, 64}) {
-        Motion motion = moving(body, V{0}, start, glm::dquat(1, 0, 0, 0));
+        SolverBody motion = moving(body, V{0}, start, glm::dquat(1, 0, 0, 0));
         for (int i = 0; i < steps; ++i)
             fly(motion, body, V{0}, 2.0 / steps, GetParam());
         const WideVec spin = turn(exact.rotation, exact.spin);
@@ -267,7 +267,7 @@ TEST_P(Flight, SymmetricTopPrecesses) {
     ASSERT_EQ(body.inertia.x, body.inertia.z);
     // Spin about y mostly, tilted: w = (1, 10, 0) in the body.
     const V start{1, 10, 0};
-    Motion motion = moving(body, V{0}, start, glm::dquat(1, 0, 0, 0));
+    SolverBody motion = moving(body, V{0}, start, glm::dquat(1, 0, 0, 0));
     const V momentum = wide(body.inertia) * start;
     const double rate = glm::length(momentum) / double(body.inertia.x);
     const double h = 1.0 / 500;
@@ -294,7 +294,7 @@ TEST_P(Flight, SymmetricTopPrecesses) {
 // What a solver touched moves with the solver's velocities, and nothing else.
 TEST_P(Flight, ATouchedBodyFollowsTheSolver) {
     const Body body = brick({0.1, 0.2, 0.3}, 2);
-    Motion motion = moving(body, V{0}, V{0}, glm::dquat(1, 0, 0, 0));
+    SolverBody motion = moving(body, V{0}, V{0}, glm::dquat(1, 0, 0, 0));
     FreeFlight flight =
         begin_flight(motion, body, Vec3{0, Real(-10), 0}, Real(0.125), GetParam(), 3);
     motion.velocity = Vec3{Real(1), Real(0), Real(0)};
@@ -307,9 +307,8 @@ TEST_P(Flight, ATouchedBodyFollowsTheSolver) {
 TEST_P(Flight, KinematicBodiesKeepTheirVelocityAndStaticOnesTheirPlace) {
     Body body;
     body.kind = BodyKind::kinematic;
-    body.shape = ball(1);
     body.alive = true;
-    Motion motion;
+    SolverBody motion;
     motion.velocity = Vec3{Real(1), Real(2), Real(3)};
     motion.angular_velocity = Vec3{Real(0), Real(0), Real(0.5)};
     for (int i = 0; i < 100; ++i) {
@@ -325,7 +324,7 @@ TEST_P(Flight, KinematicBodiesKeepTheirVelocityAndStaticOnesTheirPlace) {
     EXPECT_NEAR(std::remainder(turn - 6.25, 2 * pi), 0, 100 * 4 * epsilon);
 
     body.kind = BodyKind::fixed;
-    motion = Motion{};
+    motion = SolverBody{};
     FreeFlight flight = begin_flight(motion, body, Vec3{0, Real(-10), 0}, Real(1), GetParam(), 3);
     move(motion, body, flight, Real(1));
     end_flight(motion, body, flight, GetParam());

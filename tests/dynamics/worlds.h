@@ -4,6 +4,7 @@
 #include "engine/core/random.h"
 #include "engine/dynamics/world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -76,26 +77,38 @@ inline Shape any_shape(Random &random) {
 inline BodyDef dynamic_body(const Shape &shape, double mass, const V &position,
                             const V &velocity = V{0}) {
     BodyDef def;
-    def.shape = shape;
+    def.colliders.emplace_back().shape = shape;
     def.mass = Real(mass);
     def.pose.position = narrow(position);
     def.velocity = narrow(velocity);
     return def;
 }
 inline BodyDef with_material(BodyDef def, double friction, double restitution) {
-    def.material = {Real(friction), Real(restitution)};
+    for (ColliderDef &collider : def.colliders)
+        collider.material = {Real(friction), Real(restitution)};
     return def;
 }
 inline BodyDef fixed_body(const Shape &shape, const V &position = V{0}) {
     BodyDef def;
     def.kind = BodyKind::fixed;
-    def.shape = shape;
+    def.colliders.emplace_back().shape = shape;
     def.pose.position = narrow(position);
     return def;
 }
 // The solid below the plane through the origin with the given normal.
 inline BodyDef ground(double friction, double restitution, const V &normal = V{0, 1, 0}) {
     return with_material(fixed_body(HalfSpace{narrow(normal), Real(0)}), friction, restitution);
+}
+
+// A rod or rope of one length.
+inline void set_length(JointDef &joint, Real length) {
+    joint.min_length = joint.max_length = length;
+}
+
+// What the solver remembers of the first rows of a joint (N s).
+inline V impulse_of(const World &world, std::size_t joint) {
+    const auto &impulses = world.state().joints[joint].impulses;
+    return {double(impulses[0]), double(impulses[1]), double(impulses[2])};
 }
 
 // Settings with the method's own substeps and iterations.
@@ -150,6 +163,14 @@ inline std::vector<std::string> joint_methods() {
     std::vector<std::string> names;
     for (const Method &method : methods())
         if (method.info.joints)
+            names.emplace_back(method.info.name);
+    return names;
+}
+// Those that resolve each impact by itself, and know free flight in closed form.
+inline std::vector<std::string> impact_methods() {
+    std::vector<std::string> names;
+    for (const Method &method : methods())
+        if (std::ranges::find(method.info.reads, SettingGroup::impacts) != method.info.reads.end())
             names.emplace_back(method.info.name);
     return names;
 }

@@ -28,7 +28,9 @@ class FakeSimulation : public Simulation {
     std::uint64_t throw_at_step = std::numeric_limits<std::uint64_t>::max();
     mutable int measure_calls = 0;
 
-    void step() override {
+    using Simulation::save;
+    using Simulation::step;
+    void step(StepTimes *) override {
         PLUMB_CHECK(steps_ + 1 != throw_at_step, "told to fail");
         ++steps_;
         report_.finite = steps_ < nan_from_step;
@@ -37,6 +39,7 @@ class FakeSimulation : public Simulation {
     std::uint64_t step_count() const override { return steps_; }
     double time() const override { return static_cast<double>(steps_) * settings_.dt; }
     const StepReport &report() const override { return report_; }
+    double energy() const override { return static_cast<double>(step_count()); }
     Measures measure() const override {
         ++measure_calls;
         Measures measures = measures_at(time());
@@ -53,7 +56,7 @@ class FakeSimulation : public Simulation {
     struct State : Saved {
         std::uint64_t steps = 0;
     };
-    std::unique_ptr<Saved> save() const override {
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
         auto saved = std::make_unique<State>();
         saved->steps = steps_;
         return saved;
@@ -74,12 +77,14 @@ class FakeSimulation : public Simulation {
     }
     std::vector<ContactView> contacts() const override { return {}; }
     std::vector<JointView> joints() const override { return {}; }
+    std::vector<ImpactView> impacts() const override { return {}; }
     std::vector<BoundsView> bounds() const override { return {}; }
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override {
         return std::nullopt;
     }
     void apply_impulse(std::size_t, const glm::dvec3 &, const glm::dvec3 &) override {}
     void pull(std::size_t, const glm::dvec3 &, const glm::dvec3 &) override {}
+    void release() override {}
     std::size_t add_body(const BodyDesc &) override { throw std::logic_error("not here"); }
     void remove_body(std::size_t) override { throw std::logic_error("not here"); }
 

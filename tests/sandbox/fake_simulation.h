@@ -25,7 +25,9 @@ class FakeSimulation final : public Simulation {
             add_body(body);
     }
 
-    void step() override {
+    using Simulation::save;
+    using Simulation::step;
+    void step(StepTimes *) override {
         if (throws_at == state_.steps)
             throw std::runtime_error("as told");
         for (std::size_t i = 0; i < state_.bodies.size(); ++i) {
@@ -39,11 +41,11 @@ class FakeSimulation final : public Simulation {
             report_.finite = false;
         }
         ++state_.steps;
-        report_.energy = static_cast<double>(state_.steps);
     }
     std::uint64_t step_count() const override { return state_.steps; }
     double time() const override { return static_cast<double>(state_.steps) * settings_.dt; }
     const StepReport &report() const override { return report_; }
+    double energy() const override { return static_cast<double>(step_count()); }
     Measures measure() const override { return {}; }
     std::uint64_t hash() const override {
         StateHash hash;
@@ -71,7 +73,7 @@ class FakeSimulation final : public Simulation {
         std::uint64_t steps = 0;
         std::vector<BodyState> bodies;
     };
-    std::unique_ptr<Saved> save() const override { return std::make_unique<State>(state_); }
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override { return std::make_unique<State>(state_); }
     void restore(const Saved &saved) override {
         state_ = dynamic_cast<const State &>(saved);
         infos_.resize(state_.bodies.size());
@@ -90,6 +92,7 @@ class FakeSimulation final : public Simulation {
     }
     std::vector<ContactView> contacts() const override { return {}; }
     std::vector<JointView> joints() const override { return {}; }
+    std::vector<ImpactView> impacts() const override { return {}; }
     std::vector<BoundsView> bounds() const override { return {}; }
 
     // Spheres only.
@@ -113,6 +116,7 @@ class FakeSimulation final : public Simulation {
     void pull(std::size_t, const glm::dvec3 &, const glm::dvec3 &target) override {
         pulls.push_back(target);
     }
+    void release() override {}
     std::size_t add_body(const BodyDesc &body) override {
         BodyInfo info;
         info.alive = true;

@@ -421,7 +421,7 @@ TEST(ProbeSimulation, HasNoWorldAndCostsNoStep) {
     simulation->step();
     EXPECT_EQ(simulation->step_count(), 0U);
     EXPECT_EQ(simulation->time(), 0);
-    EXPECT_EQ(simulation->report().total(), 0);
+    EXPECT_EQ(simulation->energy(), 0);
     EXPECT_EQ(simulation->hash(), before);
     EXPECT_EQ(simulation->body_count(), 0U);
     EXPECT_FALSE(simulation->pick({0, 0, 5}, {0, 0, -1}).has_value());

@@ -140,7 +140,12 @@ class Scenes {
             scene.expects.push_back(expect(scene));
         scene.step_count = one_in(3) ? random_.next_u64() : random_.next_index(1000);
         for (std::uint32_t i = random_.next_index(3); i > 0; --i) {
-            ContactStateDesc contact{scene.bodies[0].name, scene.bodies[i].name, {}};
+            ContactStateDesc contact;
+            contact.body_a = scene.bodies[0].name;
+            contact.body_b = scene.bodies[i].name;
+            contact.child_a = random_.next_index(3);
+            if (one_in(3))
+                contact.triangle = static_cast<std::uint32_t>(random_.next_u64());
             for (std::uint32_t k = random_.next_index(5); k > 0; --k)
                 contact.points.push_back(
                     {static_cast<std::uint32_t>(random_.next_u64()), vector()});

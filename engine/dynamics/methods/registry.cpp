@@ -8,6 +8,7 @@
 // row.
 #define PLUMB_METHODS(METHOD)                                                                      \
     METHOD(soft_step)                                                                              \
+    METHOD(tgs_soft)                                                                               \
     METHOD(sequential_impulses)                                                                    \
     METHOD(semi_implicit_euler)                                                                    \
     METHOD(rk4)

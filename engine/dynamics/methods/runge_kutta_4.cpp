@@ -30,27 +30,33 @@ FreeState operator*(Real scale, const FreeState &rate) {
 }
 
 FreeState rate_of(const FreeState &state, const Body &body, const Vec3 &gravity) {
-    const Vec3 torque_free = -body.inv_inertia * glm::cross(state.spin, body.inertia * state.spin);
+    const Vec3 torque_free =
+        has_gyroscopic_spin(body)
+            ? -body.inv_inertia * glm::cross(state.spin, body.inertia * state.spin)
+            : Vec3{Real(0)};
     // q' = q (0, w) / 2 with w in the body's axes.
     const Quat turning =
         Real(0.5) * (state.rotation * Quat{Real(0), state.spin.x, state.spin.y, state.spin.z});
-    return {state.velocity, gravity, turning, torque_free};
+    return {state.velocity, gravity - body.linear_damping * state.velocity, turning,
+            torque_free - body.angular_damping * state.spin};
 }
 
 void advance(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    context.report.body_passes +=
+        4 * context.moving.size() * static_cast<std::size_t>(settings.substeps);
     for (int substep = 0; substep < settings.substeps; ++substep)
-        for (std::size_t i = 0; i < context.motions.size(); ++i) {
-            const Body &body = context.bodies[i];
-            Motion &motion = context.motions[i];
+        for (const std::uint32_t i : context.moving) {
+            const Body &body = context.model.bodies[i];
+            SolverBody &motion = context.bodies[i];
             if (body.kind == BodyKind::kinematic) {
                 motion.position += h * motion.velocity;
                 motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
             }
             if (body.kind != BodyKind::dynamic)
                 continue;
-            const Vec3 gravity{settings.gravity};
+            const Vec3 gravity = gravity_on(body, Vec3{settings.gravity});
             const FreeState start{
                 motion.position, motion.velocity, motion.rotation,
                 rotated(glm::conjugate(motion.rotation), motion.angular_velocity)};
@@ -63,7 +69,7 @@ void advance(StepContext &context) {
             motion.velocity = end.velocity;
             motion.rotation = glm::normalize(end.rotation);
             motion.angular_velocity = rotated(motion.rotation, end.spin);
-            motion.inv_inertia = world_inverse_inertia(motion.rotation, body.inv_inertia);
+            motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
         }
 }
 

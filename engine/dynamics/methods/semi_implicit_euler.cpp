@@ -14,23 +14,28 @@ void advance(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Vec3 gravity{settings.gravity};
+    context.report.body_passes +=
+        context.moving.size() * static_cast<std::size_t>(settings.substeps);
     for (int substep = 0; substep < settings.substeps; ++substep)
-        for (std::size_t i = 0; i < context.motions.size(); ++i) {
-            const Body &body = context.bodies[i];
-            Motion &motion = context.motions[i];
-            if (body.kind == BodyKind::fixed)
-                continue;
+        for (const std::uint32_t i : context.moving) {
+            const Body &body = context.model.bodies[i];
+            SolverBody &motion = context.bodies[i];
             if (body.kind == BodyKind::dynamic) {
-                motion.velocity += h * gravity;
+                motion.velocity +=
+                    h * (gravity_on(body, gravity) - body.linear_damping * motion.velocity);
                 // Euler's equations in world axes: w' = -I^-1 (w x I w).
                 const Vec3 momentum =
                     spin_momentum(motion.rotation, body.inertia, motion.angular_velocity);
-                motion.angular_velocity -=
-                    h * (motion.inv_inertia * glm::cross(motion.angular_velocity, momentum));
+                const Vec3 torque_free =
+                    has_gyroscopic_spin(body)
+                        ? -(motion.inv_inertia * glm::cross(motion.angular_velocity, momentum))
+                        : Vec3{Real(0)};
+                motion.angular_velocity +=
+                    h * (torque_free - body.angular_damping * motion.angular_velocity);
             }
             motion.position += h * motion.velocity;
             motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
-            motion.inv_inertia = world_inverse_inertia(motion.rotation, body.inv_inertia);
+            motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
         }
 }
 

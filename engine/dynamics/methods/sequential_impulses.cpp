@@ -1,7 +1,6 @@
 // Sequential impulses: projected Gauss-Seidel on velocities with accumulated, warm-started
 // impulses, and Baumgarte's bias against drift. Catto 2005, "Iterative Dynamics with Temporal
 // Coherence"; Catto 2006, "Fast and Simple Physics using Sequential Impulses".
-#include "engine/dynamics/joint_constraint.h"
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 
@@ -17,31 +16,26 @@ void advance(StepContext &context) {
     const ContactBias contact_bias{rigid, static_cast<Real>(settings.push_velocity),
                                    static_cast<Real>(settings.penetration_slop)};
 
-    std::vector<ContactConstraint> contacts = prepare_contacts(context);
-    std::vector<JointConstraint> joints = prepare_joints(context);
-    std::vector<FreeFlight> flights(context.motions.size());
+    const JointPass joint_pass{.softness = rigid, .h = h, .spring_time = h};
 
+    prepare_contacts(context);
+    prepare_joints(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        resolve_impacts(context, contacts, h);
-        for (std::size_t i = 0; i < flights.size(); ++i)
-            flights[i] = begin_flight(context.motions[i], context.bodies[i], gravity, h,
-                                      Kick::before, settings.gyroscopic_iterations);
-        refresh_joints(context, joints);
-        remember_joints(joints);
-        remember_contacts(contacts);
-        recall_joints(context, joints, Real(1));
-        recall_contacts(context, contacts, Real(1));
+        resolve_impacts(context, h);
+        begin_flights(context, gravity, h, Kick::before);
+        refresh_joints(context);
+        remember_joints(context);
+        remember_contacts(context);
+        recall_joints(context, Real(1), Springs::solve);
+        recall_contacts(context, Real(1));
         for (int i = 0; i < settings.iterations; ++i) {
-            solve_joints(context, joints, rigid, Real(0));
-            solve_contacts(context, contacts, contact_bias, h);
+            solve_joints(context, joint_pass);
+            solve_contacts(context, contact_bias, h);
         }
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            move(context.motions[i], context.bodies[i], flights[i], h);
-            end_flight(context.motions[i], context.bodies[i], flights[i], Kick::before);
-        }
+        end_flights(context, h, Kick::before);
     }
-    store_joints(context, joints);
-    store_contacts(context, contacts);
+    store_joints(context);
+    store_contacts(context);
 }
 
 } // namespace

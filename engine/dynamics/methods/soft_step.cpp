@@ -7,7 +7,6 @@
 // relaxed with their lever arms there. That is the order of RATTLE (Andersen 1983), a scheme of
 // second order, at the price of one more pass over the bodies: a pendulum keeps its energy, which
 // the plain scheme loses at the rate omega^2 h.
-#include "engine/dynamics/joint_constraint.h"
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 
@@ -31,38 +30,41 @@ void advance(StepContext &context) {
     ContactBias relax_bias;
     relax_bias.loaded_only = true;
 
-    std::vector<ContactConstraint> contacts = prepare_contacts(context);
-    std::vector<JointConstraint> joints = prepare_joints(context);
-    std::vector<FreeFlight> flights(context.motions.size());
+    // First for the poses at the substep's end, with half of the forces and springs by the first
+    // half of the midpoint rule; then for the velocities there.
+    const JointPass holding{.softness = joint_softness,
+                            .h = h,
+                            .to_second_order = true,
+                            .spring_time = Real(0.5) * h,
+                            .force_share = Real(0.5)};
+    const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .loaded_only = true};
 
+    prepare_contacts(context);
+    prepare_joints(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        resolve_impacts(context, contacts, h);
-        for (std::size_t i = 0; i < flights.size(); ++i)
-            flights[i] = begin_flight(context.motions[i], context.bodies[i], gravity, h,
-                                      Kick::around, settings.gyroscopic_iterations);
-        refresh_joints(context, joints);
-        remember_joints(joints);
-        remember_contacts(contacts);
-        recall_joints(context, joints, Real(0.5));
-        recall_contacts(context, contacts, Real(0.5));
+        resolve_impacts(context, h);
+        begin_flights(context, gravity, h, Kick::around);
+        refresh_joints(context);
+        remember_joints(context);
+        remember_contacts(context);
+        recall_joints(context, Real(0.5), Springs::solve);
+        recall_contacts(context, Real(0.5));
         for (int i = 0; i < settings.iterations; ++i) {
-            solve_joints(context, joints, joint_softness, h);
-            solve_contacts(context, contacts, contact_bias, h);
+            solve_joints(context, holding);
+            solve_contacts(context, contact_bias, h);
         }
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            move(context.motions[i], context.bodies[i], flights[i], h);
-            end_flight(context.motions[i], context.bodies[i], flights[i], Kick::around);
-        }
-        refresh_joints(context, joints);
-        recall_joints(context, joints, Real(0.5));
-        recall_contacts(context, contacts, Real(0.5));
+        end_flights(context, h, Kick::around);
+        refresh_joints(context);
+        recall_joints(context, Real(0.5), Springs::skip);
+        recall_contacts(context, Real(0.5));
+        repeat_springs(context);
         for (int i = 0; i < settings.iterations; ++i) {
-            solve_joints(context, joints, Softness{}, Real(0));
-            solve_contacts(context, contacts, relax_bias, h);
+            solve_joints(context, relaxing);
+            solve_contacts(context, relax_bias, h);
         }
     }
-    store_joints(context, joints);
-    store_contacts(context, contacts);
+    store_joints(context);
+    store_contacts(context);
 }
 
 } // namespace

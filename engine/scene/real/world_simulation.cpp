@@ -3,12 +3,12 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/world.h"
-#include "engine/geometry/mass.h"
+#include "engine/geometry/quickhull.h"
 #include "engine/math/basis.h"
+#include "engine/scene/real/body_def.h"
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -18,80 +18,43 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-Shape make_shape(const ShapeDesc &desc) {
-    struct Maker {
-        Shape operator()(const SphereDesc &s) const {
-            return Sphere{Vec3{Real(0)}, static_cast<Real>(s.radius)};
-        }
-        Shape operator()(const BoxDesc &b) const {
-            return Box{Vec3{Real(0)}, identity_rotation, Vec3{b.half_extents}};
-        }
-        Shape operator()(const CapsuleDesc &c) const {
-            const auto half = static_cast<Real>(c.half_height);
-            return Capsule{Vec3{0, -half, 0}, Vec3{0, half, 0}, static_cast<Real>(c.radius)};
-        }
-        Shape operator()(const PlaneDesc &) const {
-            return HalfSpace{Vec3{Real(0), Real(1), Real(0)}, Real(0)};
-        }
-        Shape operator()(const CylinderDesc &) const { cannot("cylinders"); }
-        Shape operator()(const HullDesc &) const { cannot("hulls"); }
-        Shape operator()(const MeshDesc &) const { cannot("meshes"); }
-        Shape operator()(const HeightFieldDesc &) const { cannot("height fields"); }
-        [[noreturn]] static void cannot(const char *what) {
-            throw std::invalid_argument(std::string(what) + " cannot be bodies yet");
-        }
-    };
-    return std::visit(Maker{}, desc);
-}
-
-// The one shape of a body without anything that a world cannot run yet.
-Shape make_shape(const BodyDesc &body) {
-    const auto refuse = [&](bool has, const char *what) {
-        if (has)
-            throw std::invalid_argument("the body \"" + body.name + "\" has " + what +
-                                        ", which cannot be run yet");
-    };
-    refuse(body.colliders.size() != 1, "several shapes");
-    const ColliderDesc &collider = body.colliders.front();
-    refuse(collider.position != glm::dvec3(0) || collider.orientation != glm::dquat(1, 0, 0, 0),
-           "a shape with a place of its own");
-    refuse(!collider.material.empty() || collider.density, "a shape with a material of its own");
-    refuse(collider.filter.layer != 0 || collider.filter.ignores != 0, "a layer");
-    refuse(collider.sensor, "a sensor");
-    refuse(body.center_of_mass || body.inertia || body.mass_pose, "a centre of mass or inertia");
-    refuse(body.locked != std::array<bool, 6>{}, "locked axes");
-    refuse(body.gravity_scale != 1 || body.linear_damping != 0 || body.angular_damping != 0,
-           "a gravity scale or damping");
-    return make_shape(collider.shape);
-}
+// What files know of a world beyond the world itself; shared by saves until an edit.
+struct Book {
+    SceneDesc scene; // bodies by index, holes left as they were; joints by index
+    std::vector<BodyInfo> infos;
+    std::map<std::string, std::size_t, std::less<>> index_of;
+};
 
 class WorldSimulation final : public Simulation {
   public:
     WorldSimulation(const SceneDesc &scene, const ResolvedRun &run, TaskPool *tasks)
-        : tasks_(tasks),
-          precision_(run.precision), state_{World{run.method->name, run.settings}, scene, {}, {}} {
-        state_.scene.bodies.clear();
-        state_.scene.joints.clear();
+        : tasks_(tasks), precision_(run.precision), world_(run.method->name, run.settings),
+          book_(std::make_shared<Book>()) {
+        book_->scene = scene;
+        book_->scene.bodies.clear();
+        book_->scene.joints.clear();
+        book_->scene.contacts.clear();
         for (const BodyDesc &body : scene.bodies)
             insert(body);
         for (const JointDesc &joint : scene.joints)
             insert(joint);
         for (const ContactStateDesc &contact : scene.contacts)
             remember(contact);
-        state_.world.set_step_count(scene.step_count);
+        world_.set_step_count(scene.step_count);
     }
 
-    void step() override { state_.world.step(tasks_); }
-    std::uint64_t step_count() const override { return state_.world.step_count(); }
-    double time() const override { return state_.world.time(); }
-    const StepReport &report() const override { return state_.world.report(); }
-    Measures measure() const override { return state_.world.measure(); }
-    std::uint64_t hash() const override { return state_.world.hash(); }
+    void step(StepTimes *times) override { world_.step(tasks_, times); }
+    std::uint64_t step_count() const override { return world_.step_count(); }
+    double time() const override { return world_.time(); }
+    const StepReport &report() const override { return world_.report(); }
+    Measures measure() const override { return world_.measure(); }
+    double energy() const override { return world_.energy(); }
+    std::uint64_t hash() const override { return world_.hash(); }
 
     const MethodInfo &method() const override {
-        return *find_method_info(state_.world.method().info.name);
+        return *find_method_info(world_.method().info.name);
     }
-    const StepSettings &settings() const override { return state_.world.settings(); }
+    const StepSettings &settings() const override { return world_.settings(); }
     Precision precision() const override { return precision_; }
 
     void set_method(std::string_view name) override {
@@ -100,43 +63,55 @@ class WorldSimulation final : public Simulation {
             throw std::invalid_argument("no method is called '" + std::string(name) + "'");
         if (const std::string reason = why_not(*info, describe()); !reason.empty())
             throw std::invalid_argument(reason);
-        state_.world.set_method(name);
+        world_.set_method(name);
     }
     void set_settings(const StepSettings &settings) override {
         try {
-            state_.world.set_settings(settings);
+            world_.set_settings(settings);
         } catch (const CheckFailure &failure) {
             throw std::invalid_argument(failure.what());
         }
     }
 
-    std::unique_ptr<Saved> save() const override { return std::make_unique<SavedState>(state_); }
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved> reuse) const override {
+        auto *old = dynamic_cast<SavedState *>(reuse.get());
+        if (old == nullptr) {
+            reuse = std::make_unique<SavedState>();
+            old = static_cast<SavedState *>(reuse.get());
+        }
+        world_.save(old->world);
+        old->book = book_;
+        return reuse;
+    }
     void restore(const Saved &saved) override {
         const auto *state = dynamic_cast<const SavedState *>(&saved);
         PLUMB_CHECK(state != nullptr, "the saved state belongs to another kind of simulation");
-        state_ = state->state;
+        world_.restore(state->world);
+        book_ = state->book;
     }
 
     SceneDesc describe() const override;
 
-    std::size_t body_count() const override { return state_.infos.size(); }
-    const BodyInfo &body_info(std::size_t body) const override { return state_.infos.at(body); }
+    std::size_t body_count() const override { return book_->infos.size(); }
+    const BodyInfo &body_info(std::size_t body) const override { return book_->infos.at(body); }
     BodyState body_state(std::size_t body) const override {
-        const Motion &m = state_.world.motions().at(body);
-        return {glm::dvec3{m.position}, glm::dquat{m.rotation}, glm::dvec3{m.velocity},
+        const Motion &m = world_.motions().at(body);
+        const Transform pose = world_.pose_of(static_cast<std::uint32_t>(body));
+        return {glm::dvec3{pose.position}, glm::dquat{pose.rotation}, glm::dvec3{m.velocity},
                 glm::dvec3{m.angular_velocity}};
     }
     std::optional<std::size_t> find_body(std::string_view name) const override {
-        const auto found = state_.index_of.find(name);
-        return found == state_.index_of.end() ? std::nullopt : std::optional{found->second};
+        const auto found = book_->index_of.find(name);
+        return found == book_->index_of.end() ? std::nullopt : std::optional{found->second};
     }
 
     std::vector<ContactView> contacts() const override;
     std::vector<JointView> joints() const override;
+    std::vector<ImpactView> impacts() const override;
     std::vector<BoundsView> bounds() const override;
 
     std::optional<Pick> pick(const glm::dvec3 &origin, const glm::dvec3 &direction) const override {
-        const auto hit = state_.world.raycast(Ray{Vec3{origin}, Vec3{direction}});
+        const auto hit = world_.raycast(Ray{Vec3{origin}, Vec3{direction}});
         if (!hit)
             return std::nullopt;
         return Pick{hit->body.index, static_cast<double>(hit->hit.t), glm::dvec3{hit->hit.point},
@@ -144,44 +119,46 @@ class WorldSimulation final : public Simulation {
     }
     void apply_impulse(std::size_t body, const glm::dvec3 &impulse,
                        const glm::dvec3 &point) override {
-        state_.world.apply_impulse(id_of(body), Vec3{impulse}, Vec3{point});
+        world_.apply_impulse(id_of(body), Vec3{impulse}, Vec3{point});
     }
     void pull(std::size_t body, const glm::dvec3 &local_point, const glm::dvec3 &target) override;
+    void release() override { world_.release(); }
     std::size_t add_body(const BodyDesc &body) override {
-        if (!state_.world.method().info.contacts)
-            throw std::invalid_argument(std::string(state_.world.method().info.name) +
+        if (!world_.method().info.contacts)
+            throw std::invalid_argument(std::string(world_.method().info.name) +
                                         " knows no contacts, so no body can be added");
         BodyDesc named = body;
-        for (int number = 2; state_.index_of.contains(named.name); ++number)
+        for (int number = 2; book_->index_of.contains(named.name); ++number)
             named.name = body.name + "_" + std::to_string(number);
         return insert(named);
     }
     void remove_body(std::size_t body) override {
-        state_.world.remove_body(id_of(body));
-        state_.index_of.erase(state_.infos[body].name);
-        state_.infos[body].alive = false;
+        world_.remove_body(id_of(body));
+        Book &book = edit();
+        book.index_of.erase(book.infos[body].name);
+        book.infos[body].alive = false;
     }
 
   private:
-    // What save() copies: the world, and what files know of it beyond that.
-    struct State {
-        World world;
-        SceneDesc scene; // bodies by index, holes left as they were; joints by index
-        std::vector<BodyInfo> infos;
-        std::map<std::string, std::size_t, std::less<>> index_of;
-    };
     struct SavedState final : Saved {
-        explicit SavedState(State s) : state(std::move(s)) {}
-        State state;
+        SavedWorld world;
+        std::shared_ptr<Book> book;
     };
 
+    // The book, to be changed; a copy of its own when saves share it.
+    Book &edit() {
+        if (book_.use_count() > 1)
+            book_ = std::make_shared<Book>(*book_);
+        return *book_;
+    }
+
     BodyId id_of(std::size_t body) const {
-        PLUMB_CHECK(body < state_.infos.size() && state_.infos[body].alive,
+        PLUMB_CHECK(body < book_->infos.size() && book_->infos[body].alive,
                     "body " << body << " is not alive");
-        return state_.world.body_id(static_cast<std::uint32_t>(body));
+        return world_.body_id(static_cast<std::uint32_t>(body));
     }
     BodyId id_of(const std::string &name) const {
-        return name.empty() ? BodyId{} : id_of(state_.index_of.at(name));
+        return name.empty() ? BodyId{} : id_of(book_->index_of.at(name));
     }
     std::size_t insert(const BodyDesc &desc);
     void insert(const JointDesc &desc);
@@ -189,87 +166,77 @@ class WorldSimulation final : public Simulation {
 
     TaskPool *tasks_;
     Precision precision_;
-    State state_;
+    World world_;
+    std::shared_ptr<Book> book_;
+    // The grabbed point as it was asked for, so that the same one is moved and not grabbed anew.
+    glm::dvec3 grabbed_point_{0};
 };
 
 std::size_t WorldSimulation::insert(const BodyDesc &desc) {
-    static const MaterialDesc default_material;
-    const auto &materials = state_.scene.materials;
-    const auto named = std::ranges::find(materials, desc.material, &MaterialDesc::name);
-    const MaterialDesc &material =
-        desc.material.empty() || named == materials.end() ? default_material : *named;
-
-    BodyDef def;
-    def.kind = desc.kind;
-    def.shape = make_shape(desc);
-    if (desc.kind == BodyKind::dynamic)
-        def.mass = desc.mass || desc.density
-                       ? static_cast<Real>(mass_of(state_.scene, desc))
-                       : static_cast<Real>(material.density) * volume(def.shape);
-    def.material = {static_cast<Real>(material.friction), static_cast<Real>(material.restitution)};
-    def.pose = {Vec3{desc.position}, unit(Quat{desc.orientation})};
-    def.velocity = Vec3{desc.velocity};
-    def.angular_velocity = Vec3{desc.angular_velocity};
-    const std::size_t index = state_.world.add_body(def).index;
-
-    const Body &body = state_.world.bodies()[index];
+    const std::size_t index = world_.add_body(body_def(book_->scene, desc)).index;
+    const Body &body = world_.bodies()[index];
     BodyInfo info;
     info.alive = true;
     info.name = desc.name;
     info.kind = desc.kind;
     info.colliders = desc.colliders;
-    info.mass = body.mass;
+    info.mass = static_cast<double>(body.mass);
     info.inertia = glm::dvec3{body.inertia};
     info.material = desc.material;
-    info.colour = desc.colour ? desc.colour : material.colour;
-    state_.infos.resize(std::max(state_.infos.size(), index + 1));
-    state_.scene.bodies.resize(state_.infos.size());
-    state_.infos[index] = info;
-    state_.scene.bodies[index] = desc;
-    state_.index_of[desc.name] = index;
+    info.colour = desc.colour ? desc.colour : material_of(book_->scene, desc.material).colour;
+    Book &book = edit();
+    book.infos.resize(std::max(book.infos.size(), index + 1));
+    book.scene.bodies.resize(book.infos.size());
+    book.infos[index] = info;
+    book.scene.bodies[index] = desc;
+    book.index_of[desc.name] = index;
     return index;
 }
 
-// What the world cannot run yet is refused, by its name.
-void check_runnable(const JointDesc &joint) {
-    const bool is_rod = joint.type == JointType::distance && joint.min_length == joint.max_length;
-    const char *what = joint.type != JointType::ball && !is_rod ? "of its type"
-                       : joint.frequency > 0                    ? "that are springs"
-                       : joint.break_force > 0 || joint.broken  ? "that break"
-                                                                : nullptr;
-    if (what != nullptr)
-        throw std::invalid_argument("joint \"" + joint.name + "\": joints " + what +
-                                    " cannot be run yet, only ball joints and rods");
-}
-
 void WorldSimulation::insert(const JointDesc &desc) {
-    check_runnable(desc);
     JointDef def;
     def.type = desc.type;
     def.a = id_of(desc.body_a);
     def.b = id_of(desc.body_b);
     def.anchor_a_local = Vec3{desc.anchor_a_local};
     def.anchor_b_local = Vec3{desc.anchor_b_local};
-    def.length = static_cast<Real>(desc.max_length);
+    def.frame_a_local = unit(Quat{desc.frame_a_local});
+    def.frame_b_local = unit(Quat{desc.frame_b_local});
+    def.min_length = static_cast<Real>(desc.min_length);
+    def.max_length = static_cast<Real>(desc.max_length);
+    if (desc.limits)
+        def.limits = {static_cast<Real>((*desc.limits)[0]), static_cast<Real>((*desc.limits)[1])};
+    if (desc.motor_speed)
+        def.motor = {static_cast<Real>(*desc.motor_speed), static_cast<Real>(desc.max_motor_force)};
+    def.frequency = static_cast<Real>(desc.frequency);
+    def.damping_ratio = static_cast<Real>(desc.damping_ratio);
+    def.break_force = static_cast<Real>(desc.break_force);
     def.collide_connected = desc.collide_connected;
-    def.impulse = Vec3{glm::dvec3{desc.impulses[0], desc.impulses[1], desc.impulses[2]}};
-    state_.world.add_joint(def);
-    state_.scene.joints.push_back(desc);
+    for (std::size_t i = 0; i < joint_row_count; ++i)
+        def.memory.impulses[i] = static_cast<Real>(desc.impulses[i]);
+    def.memory.broken = desc.broken;
+    world_.add_joint(def);
+    edit().scene.joints.push_back(desc);
 }
 
 void WorldSimulation::remember(const ContactStateDesc &desc) {
-    std::vector<std::uint32_t> features;
-    std::vector<Vec3> impulses;
-    for (const ContactStateDesc::Point &point : desc.points) {
-        features.push_back(point.feature);
-        impulses.emplace_back(point.impulse);
+    std::vector<PointMemory> points;
+    for (const ContactStateDesc::Point &point : desc.points)
+        points.push_back({point.feature, Vec3{point.impulse}});
+    ContactKey key{id_of(desc.body_a).index, id_of(desc.body_b).index,
+                   static_cast<std::uint16_t>(desc.child_a),
+                   static_cast<std::uint16_t>(desc.child_b),
+                   desc.triangle.value_or(ContactKey::no_triangle)};
+    if (key.a > key.b) {
+        std::swap(key.a, key.b);
+        std::swap(key.child_a, key.child_b);
     }
-    state_.world.remember_contact(id_of(desc.body_a), id_of(desc.body_b), features, impulses);
+    world_.remember_contact(key, points);
 }
 
 SceneDesc WorldSimulation::describe() const {
-    const World &world = state_.world;
-    SceneDesc out = state_.scene;
+    const World &world = world_;
+    SceneDesc out = book_->scene;
     out.bodies.clear();
     out.joints.clear();
     out.contacts.clear();
@@ -284,14 +251,18 @@ SceneDesc WorldSimulation::describe() const {
     out.world.method = method;
     out.world.settings = {world.settings().substeps, world.settings().iterations};
     std::erase_if(out.expects, [this](const ExpectDesc &expect) {
-        return !expect.body.empty() && !state_.index_of.contains(expect.body);
+        return !expect.body.empty() && !book_->index_of.contains(expect.body);
     });
     out.world.precision = precision_;
-    for (std::size_t i = 0; i < state_.infos.size(); ++i) {
-        if (!state_.infos[i].alive)
+    for (std::size_t i = 0; i < book_->infos.size(); ++i) {
+        if (!book_->infos[i].alive)
             continue;
-        BodyDesc body = state_.scene.bodies[i];
+        BodyDesc body = book_->scene.bodies[i];
         const BodyState now = body_state(i);
+        if (world.bodies()[i].has_mass_frame) {
+            const Motion &motion = world.motions()[i];
+            body.mass_pose = {glm::dvec3{motion.position}, glm::dquat{motion.rotation}};
+        }
         body.position = now.position;
         body.orientation = now.orientation;
         body.velocity = now.velocity;
@@ -301,38 +272,42 @@ SceneDesc WorldSimulation::describe() const {
     for (std::size_t i = 0; i < world.joints().size(); ++i) {
         if (!world.joints()[i].alive)
             continue;
-        JointDesc joint = state_.scene.joints[i];
-        const glm::dvec3 impulse{world.joints()[i].impulse};
-        joint.impulses = {impulse.x, impulse.y, impulse.z};
+        JointDesc joint = book_->scene.joints[i];
+        const JointMemory &memory = world.state().joints[i];
+        for (std::size_t row = 0; row < joint_row_count; ++row)
+            joint.impulses[row] = static_cast<double>(memory.impulses[row]);
+        joint.broken = memory.broken;
         out.joints.push_back(std::move(joint));
     }
-    for (const Contact &contact : world.contacts()) {
-        ContactStateDesc state{state_.infos[contact.a].name, state_.infos[contact.b].name, {}};
-        for (int k = 0; k < contact.manifold.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            if (contact.impulses[index] != Vec3{Real(0)})
-                state.points.push_back(
-                    {contact.manifold.points[index].feature, glm::dvec3{contact.impulses[index]}});
+    for (const ContactMemory &memory : world.state().contacts) {
+        ContactStateDesc state{book_->infos[memory.key.a].name,
+                               book_->infos[memory.key.b].name,
+                               memory.key.child_a,
+                               memory.key.child_b,
+                               {},
+                               {}};
+        if (memory.key.triangle != ContactKey::no_triangle)
+            state.triangle = memory.key.triangle;
+        for (std::uint32_t k = 0; k < memory.point_count; ++k) {
+            const PointMemory &point = world.state().points[memory.first_point + k];
+            state.points.push_back({point.feature, glm::dvec3{point.impulse}});
         }
-        if (!state.points.empty())
-            out.contacts.push_back(std::move(state));
+        out.contacts.push_back(std::move(state));
     }
     return out;
 }
 
 std::vector<ContactView> WorldSimulation::contacts() const {
-    const World &world = state_.world;
+    const World &world = world_;
     const double rate = world.settings().substeps / world.settings().dt;
     std::vector<ContactView> views;
     for (const Contact &contact : world.contacts()) {
-        if (contact.manifold.normal == Vec3{Real(0)})
-            continue; // remembered from a file; where it is, the next step finds
         const TangentBasis basis = tangent_basis(contact.manifold.normal);
         for (int k = 0; k < contact.manifold.count; ++k) {
             const auto index = static_cast<std::size_t>(k);
             const ManifoldPoint &point = contact.manifold.points[index];
             const Vec3 &impulse = contact.impulses[index];
-            views.push_back({contact.a, contact.b, glm::dvec3{point.position},
+            views.push_back({contact.key.a, contact.key.b, glm::dvec3{point.position},
                              glm::dvec3{contact.manifold.normal},
                              static_cast<double>(point.separation),
                              static_cast<double>(impulse.x) * rate,
@@ -342,15 +317,32 @@ std::vector<ContactView> WorldSimulation::contacts() const {
     return views;
 }
 
+// Speed of b's anchor (or frame) against a's along the row that a hinge, slider or rod leaves free.
+double free_speed(const Joint &joint, const Motion &a, const Motion &b, const JointView &view) {
+    if (joint.type == JointType::hinge)
+        return static_cast<double>(
+            glm::dot(frame_a(joint, a)[0], b.angular_velocity - a.angular_velocity));
+    const Vec3 arm_b = b.rotation * joint.anchor_b_local;
+    const Vec3 place = b.position + arm_b;
+    const Vec3 relative = b.velocity + glm::cross(b.angular_velocity, arm_b) - a.velocity -
+                          glm::cross(a.angular_velocity, place - a.position);
+    if (joint.type == JointType::slider)
+        return static_cast<double>(glm::dot(frame_a(joint, a)[0], relative));
+    const glm::dvec3 way = view.anchor_b - view.anchor_a;
+    const double length = glm::length(way);
+    return length > 0 ? glm::dot(way / length, glm::dvec3{relative}) : 0;
+}
+
 std::vector<JointView> WorldSimulation::joints() const {
-    const World &world = state_.world;
-    const double rate = world.settings().substeps / world.settings().dt;
+    const World &world = world_;
     std::vector<JointView> views;
-    for (std::size_t i = 0; i < world.joints().size(); ++i) {
+    for (std::uint32_t i = 0; i < world.joints().size(); ++i) {
         const Joint &joint = world.joints()[i];
         if (!joint.alive)
             continue;
-        const JointDesc &desc = state_.scene.joints[i];
+        const JointDesc &desc = book_->scene.joints[i];
+        const Motion &a = world.joint_motion(joint.a);
+        const Motion &b = world.joint_motion(joint.b);
         JointView view;
         view.name = desc.name;
         view.type = joint.type;
@@ -360,57 +352,77 @@ std::vector<JointView> WorldSimulation::joints() const {
             view.body_b = joint.b;
         view.anchor_a = glm::dvec3{world.anchor_a(joint)};
         view.anchor_b = glm::dvec3{world.anchor_b(joint)};
-        view.drift = static_cast<double>(world.joint_drift(joint));
-        const glm::dvec3 impulse{joint.impulse};
-        if (joint.type == JointType::distance) {
-            const glm::dvec3 way = view.anchor_b - view.anchor_a;
-            view.position = glm::length(way);
+        view.frame_a = glm::dquat{a.rotation * joint.frame_a_local};
+        view.frame_b = glm::dquat{b.rotation * joint.frame_b_local};
+        view.limits = desc.limits;
+        view.motor_speed = desc.motor_speed;
+        view.max_motor_force = desc.max_motor_force;
+        view.frequency = desc.frequency;
+        view.break_force = desc.break_force;
+        view.broken = world.state().joints[i].broken;
+        view.drift = static_cast<double>(world.joint_error(i));
+        switch (joint.type) {
+        case JointType::ball:
+        case JointType::fixed:
+            break;
+        case JointType::distance:
+            view.position = glm::distance(view.anchor_a, view.anchor_b);
             view.limits = {desc.min_length, desc.max_length};
-            view.force = view.position > 0 ? impulse.x * rate / view.position * way : view.force;
-        } else {
-            view.force = rate * impulse;
+            view.speed = free_speed(joint, a, b, view);
+            break;
+        case JointType::hinge:
+            view.position = static_cast<double>(hinge_angle(joint, a, b));
+            view.speed = free_speed(joint, a, b, view);
+            break;
+        case JointType::slider:
+            view.position = static_cast<double>(slider_place(joint, a, b));
+            view.speed = free_speed(joint, a, b, view);
+            break;
         }
+        const World::JointLoad load = world.joint_load(i);
+        view.force = glm::dvec3{load.force};
+        view.torque = glm::dvec3{load.torque};
+        const double rate = world.settings().substeps / world.settings().dt;
+        view.motor_force = desc.motor_speed
+                               ? rate * static_cast<double>(world.state().joints[i].impulses.back())
+                               : 0;
         views.push_back(view);
     }
     return views;
 }
 
+std::vector<ImpactView> WorldSimulation::impacts() const {
+    std::vector<ImpactView> views;
+    for (const Impact &impact : world_.impacts())
+        views.push_back({impact.key.a, impact.key.b, glm::dvec3{impact.position},
+                         glm::dvec3{impact.normal}, static_cast<double>(impact.impulse)});
+    return views;
+}
+
 std::vector<BoundsView> WorldSimulation::bounds() const {
     std::vector<BoundsView> views;
-    for (std::size_t i = 0; i < state_.infos.size(); ++i) {
-        const Body &body = state_.world.bodies()[i];
-        if (!body.alive || std::holds_alternative<HalfSpace>(body.shape))
+    for (std::uint32_t i = 0; i < world_.bodies().size(); ++i) {
+        if (!world_.bodies()[i].alive)
             continue;
-        const Motion &motion = state_.world.motions()[i];
-        if (has_diverged(motion))
-            continue;
-        const Aabb box =
-            plumb::bounds(placed(body.shape, Transform{motion.position, motion.rotation}));
-        views.push_back({glm::dvec3{box.min}, glm::dvec3{box.max}});
+        const Aabb box = world_.bounds_of(i);
+        if (box.min.x <= box.max.x)
+            views.push_back({glm::dvec3{box.min}, glm::dvec3{box.max}});
     }
     return views;
 }
 
-// A critically damped spring of 4 Hz between a body's point and the target, as an impulse ahead of
-// the step, with the implicit damping that keeps any dt stable (Catto 2011, "Soft Constraints").
+// As strong as twenty times the weight of the body: it lifts what hangs on it, and tears nothing.
 void WorldSimulation::pull(std::size_t body, const glm::dvec3 &local_point,
                            const glm::dvec3 &target) {
     const BodyId id = id_of(body);
-    const Motion &motion = state_.world.motions()[body];
-    if (motion.inv_mass == Real(0))
+    if (world_.state().grab.body == id.index && grabbed_point_ == local_point) {
+        world_.move_grab(Vec3{target});
         return;
-    const double omega = 2.0 * std::numbers::pi * 4.0;
-    const double h = state_.world.settings().dt;
-    const glm::dvec3 r = glm::dquat{motion.rotation} * local_point;
-    const glm::dvec3 point = glm::dvec3{motion.position} + r;
-    const glm::dvec3 velocity = glm::dvec3{motion.velocity_at(Vec3{r})};
-    const double mass = state_.infos[body].mass;
-    const glm::dvec3 wanted = (velocity + h * omega * omega * (target - point)) /
-                              (1.0 + 2.0 * h * omega + h * h * omega * omega);
-    // Aim at the velocity that the spring would have after h; half of the mass, since turning the
-    // body takes part of the impulse.
-    const glm::dvec3 weight = -mass * h * state_.world.settings().gravity;
-    state_.world.apply_impulse(id, Vec3{0.5 * mass * (wanted - velocity) + weight}, Vec3{point});
+    }
+    constexpr double strength = 200; // m/s^2
+    world_.grab(id, Vec3{local_point}, Vec3{target},
+                static_cast<Real>(strength * book_->infos[body].mass));
+    grabbed_point_ = local_point;
 }
 
 } // namespace

@@ -1,0 +1,169 @@
+// The broad phase: which colliders may touch within a step.
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+bool touch(const Aabb &a, const Aabb &b) {
+    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
+           a.min.z <= b.max.z && b.min.z <= a.max.z;
+}
+
+// Whether a box reaches below a plane.
+bool touch(const Aabb &box, const HalfSpace &half_space) {
+    const Vec3 lowest = glm::mix(box.max, box.min, glm::greaterThan(half_space.normal, Vec3{0}));
+    return glm::dot(half_space.normal, lowest) <= half_space.offset;
+}
+
+bool is_finite_box(const Aabb &box) {
+    return std::isfinite(box.min.x + box.min.y + box.min.z + box.max.x + box.max.y + box.max.z);
+}
+
+Aabb surface_bounds(const Collider &collider, const Motion &motion) {
+    const Aabb &local = collider.surface->bounds();
+    const Transform pose = surface_pose(collider, motion);
+    return bounds(placed(Box{Real(0.5) * (local.min + local.max), identity_rotation,
+                             Real(0.5) * (local.max - local.min)},
+                         pose));
+}
+
+} // namespace
+
+// A world of one body, or a method that knows no contacts, pays for no collision detection.
+bool World::needs_contacts() const {
+    return method_->info.contacts && model_->dynamic_bodies > 0 && model_->alive_bodies >= 2;
+}
+
+// Everything that a collider of the body with these bounds may reach in this step, and half the
+// distance at which contacts are made.
+Aabb World::swept_bounds(const Aabb &box, std::uint32_t body) const {
+    const Body &what = model_->bodies[body];
+    const auto dt = static_cast<Real>(settings_.dt);
+    Real reach = static_cast<Real>(settings_.speculative_distance) / 2;
+    if (what.kind != BodyKind::fixed)
+        reach += glm::length(state_.motions[body].velocity) * dt;
+    if (what.kind == BodyKind::dynamic)
+        reach += glm::length(gravity_on(what, Vec3{settings_.gravity})) * dt * dt;
+    return {box.min - reach, box.max + reach};
+}
+
+// Places the colliders and sweeps their boxes; notes which left their fat box.
+bool World::place_colliders() const {
+    Scratch &s = scratch_;
+    const std::size_t count = model_->colliders.size();
+    s.placed.resize(count);
+    s.swept.resize(count);
+    s.leaves.resize(count, DynamicTree::none);
+    s.moved.assign(count, 0);
+    bool any_moved = false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Collider &collider = model_->colliders[i];
+        if (collider.body == no_body)
+            continue;
+        const bool stays = model_->bodies[collider.body].kind == BodyKind::fixed &&
+                           s.leaves[i] != DynamicTree::none;
+        if (stays)
+            continue;
+        const Motion &motion = state_.motions[collider.body];
+        if (has_diverged(motion)) { // diverged: the report says so; nothing to collide
+            s.swept[i] = Aabb{};
+            continue;
+        }
+        if (!collider.surface)
+            s.placed[i] = placed(collider.shape, Transform{motion.position, motion.rotation});
+        if (collider.is_half_space())
+            continue;
+        const Aabb box = collider.surface ? surface_bounds(collider, motion) : bounds(s.placed[i]);
+        s.swept[i] = swept_bounds(box, collider.body);
+        if (!is_finite_box(s.swept[i])) { // about to diverge
+            s.swept[i] = Aabb{};
+            continue;
+        }
+        if (s.leaves[i] == DynamicTree::none) {
+            s.leaves[i] = s.tree.insert(s.swept[i], i);
+            s.moved[i] = 1;
+        } else if (s.tree.update(s.leaves[i], s.swept[i])) {
+            s.moved[i] = 1;
+        }
+        any_moved = any_moved || s.moved[i] != 0;
+    }
+    return any_moved;
+}
+
+// Whether two colliders can ever matter to each other.
+bool World::may_touch(std::uint32_t i, std::uint32_t j) const {
+    const Collider &a = model_->colliders[i];
+    const Collider &b = model_->colliders[j];
+    return a.body != b.body &&
+           (model_->bodies[a.body].kind == BodyKind::dynamic ||
+            model_->bodies[b.body].kind == BodyKind::dynamic) &&
+           may_collide(a.filter, b.filter);
+}
+
+void World::add_candidate(std::uint32_t i, std::uint32_t j) const {
+    if (model_->colliders[i].body > model_->colliders[j].body)
+        std::swap(i, j);
+    const Collider &a = model_->colliders[i];
+    const Collider &b = model_->colliders[j];
+    if (!model_->joined.empty() &&
+        std::ranges::binary_search(model_->joined, body_pair(a.body, b.body)))
+        return;
+    scratch_.candidates.push_back({{a.body, b.body, a.child, b.child}, i, j});
+}
+
+// Candidates are the pairs whose swept boxes touch. The tree's fat boxes only save looking at all
+// of them: which pairs come out, and in which order, depends on the present poses alone.
+void World::find_pairs() const {
+    Scratch &s = scratch_;
+    s.candidates.clear();
+    if (!needs_contacts())
+        return;
+    const auto count = static_cast<std::uint32_t>(model_->colliders.size());
+    if (place_colliders()) {
+        std::erase_if(s.fat_pairs, [&](std::uint64_t key) {
+            return s.moved[key >> 32] != 0 || s.moved[key & 0xFFFFFFFFU] != 0;
+        });
+        for (std::uint32_t i = 0; i < count; ++i) {
+            if (s.moved[i] == 0)
+                continue;
+            s.tree.query(s.tree.fat_bounds(s.leaves[i]), [&](std::uint32_t other) {
+                const bool both_will_ask = s.moved[other] != 0 && other < i;
+                if (other != i && !both_will_ask && may_touch(i, other))
+                    s.fat_pairs.push_back(body_pair(i, other));
+                return true;
+            });
+        }
+        std::ranges::sort(s.fat_pairs);
+    }
+    for (const std::uint64_t key : s.fat_pairs) {
+        const auto i = static_cast<std::uint32_t>(key >> 32);
+        const auto j = static_cast<std::uint32_t>(key & 0xFFFFFFFFU);
+        if (touch(s.swept[i], s.swept[j]))
+            add_candidate(i, j);
+    }
+    for (const std::uint32_t plane : model_->half_spaces) {
+        const std::uint32_t body = model_->colliders[plane].body;
+        HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
+        reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;
+        if (model_->bodies[body].kind != BodyKind::fixed)
+            reached.offset +=
+                glm::length(state_.motions[body].velocity) * static_cast<Real>(settings_.dt);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Collider &other = model_->colliders[i];
+            if (other.body != no_body && !other.is_half_space() && may_touch(i, plane) &&
+                touch(s.swept[i], reached))
+                add_candidate(i, plane);
+        }
+    }
+    std::ranges::sort(s.candidates, {}, &Candidate::key);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

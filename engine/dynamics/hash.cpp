@@ -1,0 +1,163 @@
+// The hash of all that decides the future.
+#include "engine/dynamics/world.h"
+
+#include "engine/geometry/hull_mesh.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+void add(StateHash &hash, const Vec3 &v) {
+    hash.add(v.x);
+    hash.add(v.y);
+    hash.add(v.z);
+}
+
+void add(StateHash &hash, const Quat &q) {
+    hash.add(q.w);
+    hash.add(q.x);
+    hash.add(q.y);
+    hash.add(q.z);
+}
+
+void add(StateHash &hash, const Transform &pose) {
+    add(hash, pose.position);
+    add(hash, pose.rotation);
+}
+
+void add_shape(StateHash &hash, const Sphere &sphere) {
+    add(hash, sphere.center);
+    hash.add(sphere.radius);
+}
+void add_shape(StateHash &hash, const Box &box) {
+    add(hash, box.center);
+    add(hash, box.rotation);
+    add(hash, box.half_extents);
+}
+void add_shape(StateHash &hash, const Capsule &capsule) {
+    add(hash, capsule.a);
+    add(hash, capsule.b);
+    hash.add(capsule.radius);
+}
+void add_shape(StateHash &hash, const Cylinder &cylinder) {
+    add(hash, cylinder.a);
+    add(hash, cylinder.b);
+    hash.add(cylinder.radius);
+}
+void add_shape(StateHash &hash, const ConvexHull &hull) {
+    add(hash, hull.position);
+    add(hash, hull.rotation);
+    for (const Vec3 &vertex : hull.mesh->vertices)
+        add(hash, vertex);
+}
+void add_shape(StateHash &hash, const HalfSpace &half_space) {
+    add(hash, half_space.normal);
+    hash.add(half_space.offset);
+}
+
+void add(StateHash &hash, const Collider &collider) {
+    if (collider.surface) {
+        hash.add(collider.surface->content_hash());
+        add(hash, collider.surface_pose);
+    } else {
+        hash.add(std::uint64_t{collider.shape.index()});
+        std::visit([&](const auto &shape) { add_shape(hash, shape); }, collider.shape);
+    }
+    hash.add(collider.material.friction);
+    hash.add(collider.material.restitution);
+    hash.add(std::uint64_t{collider.filter.layer} << 32 | collider.filter.ignores);
+    hash.add(std::uint64_t{collider.sensor});
+}
+
+void add(StateHash &hash, const Body &body) {
+    hash.add(static_cast<std::uint64_t>(body.kind));
+    add(hash, body.mass_frame);
+    hash.add(body.mass);
+    add(hash, body.inertia);
+    for (const bool locked : body.locked)
+        hash.add(std::uint64_t{locked});
+    hash.add(body.gravity_scale);
+    hash.add(body.linear_damping);
+    hash.add(body.angular_damping);
+}
+
+void add(StateHash &hash, const Motion &motion) {
+    add(hash, motion.position);
+    add(hash, motion.rotation);
+    add(hash, motion.velocity);
+    add(hash, motion.angular_velocity);
+}
+
+void add(StateHash &hash, const Joint &joint) {
+    hash.add(static_cast<std::uint64_t>(joint.type));
+    add(hash, joint.anchor_a_local);
+    add(hash, joint.anchor_b_local);
+    add(hash, joint.frame_a_local);
+    add(hash, joint.frame_b_local);
+    hash.add(joint.min_length);
+    hash.add(joint.max_length);
+    const JointLimits limits = joint.limits.value_or(JointLimits{});
+    const JointMotor motor = joint.motor.value_or(JointMotor{});
+    hash.add(std::uint64_t{joint.limits.has_value()} << 1 | std::uint64_t{joint.motor.has_value()});
+    for (const Real value : {limits.lower, limits.upper, motor.speed, motor.max_force,
+                             joint.frequency, joint.damping_ratio, joint.break_force})
+        hash.add(value);
+    hash.add(std::uint64_t{joint.collide_connected});
+}
+
+} // namespace
+
+std::uint64_t World::hash() const {
+    StateHash hash;
+    hash_settings(hash, settings_);
+    for (const char c : method_->info.name)
+        hash.add(static_cast<std::uint64_t>(c));
+    hash.add(state_.step_count);
+    // Bodies are named by their rank among the living, so that holes do not count.
+    std::vector<std::uint64_t> rank(bodies().size());
+    std::uint64_t alive = 0;
+    for (std::size_t i = 0; i < bodies().size(); ++i) {
+        const Body &body = bodies()[i];
+        if (!body.alive)
+            continue;
+        rank[i] = alive++;
+        add(hash, body);
+        for (std::uint32_t c = 0; c < body.collider_count; ++c)
+            add(hash, model_->colliders[body.first_collider + c]);
+        add(hash, state_.motions[i]);
+    }
+    const auto rank_of = [&](std::uint32_t body) {
+        return body == Joint::world ? std::uint64_t{Joint::world} : rank[body];
+    };
+    for (std::size_t i = 0; i < joints().size(); ++i) {
+        const Joint &joint = joints()[i];
+        if (!joint.alive)
+            continue;
+        hash.add(rank_of(joint.a));
+        hash.add(rank_of(joint.b));
+        add(hash, joint);
+        for (const Real impulse : state_.joints[i].impulses)
+            hash.add(impulse);
+        hash.add(std::uint64_t{state_.joints[i].broken});
+    }
+    for (const ContactMemory &memory : state_.contacts) {
+        hash.add(rank[memory.key.a] << 32 | rank[memory.key.b]);
+        hash.add(std::uint64_t{memory.key.child_a} << 48 | std::uint64_t{memory.key.child_b} << 32 |
+                 memory.key.triangle);
+        for (std::uint32_t k = 0; k < memory.point_count; ++k) {
+            const PointMemory &point = state_.points[memory.first_point + k];
+            hash.add(std::uint64_t{point.feature});
+            add(hash, point.impulse);
+        }
+    }
+    if (state_.grab.is_holding()) {
+        hash.add(rank[state_.grab.body]);
+        add(hash, state_.grab.point_local);
+        add(hash, state_.grab.target);
+        hash.add(state_.grab.max_force);
+        add(hash, state_.grab.impulse);
+    }
+    return hash.value();
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,106 @@
+#include "engine/dynamics/joint_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+void emit_rows(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows) {
+    switch (joint.type) {
+    case JointType::ball:
+        return emit_ball(joint, a, b, rows);
+    case JointType::distance:
+        return emit_distance(joint, a, b, rows);
+    case JointType::hinge:
+        return emit_hinge(joint, a, b, rows);
+    case JointType::slider:
+        return emit_slider(joint, a, b, rows);
+    case JointType::fixed:
+        return emit_fixed(joint, a, b, rows);
+    }
+}
+
+Mat3 frame_a(const Joint &joint, const Motion &a) {
+    return glm::mat3_cast(a.rotation * joint.frame_a_local);
+}
+
+Mat3 frame_b(const Joint &joint, const Motion &b) {
+    return glm::mat3_cast(b.rotation * joint.frame_b_local);
+}
+
+Quat relative_turn(const Joint &joint, const Motion &a, const Motion &b) {
+    const Quat turn =
+        glm::conjugate(a.rotation * joint.frame_a_local) * (b.rotation * joint.frame_b_local);
+    return turn.w < Real(0) ? -turn : turn;
+}
+
+void emit_point(const Joint &joint, const Motion &a, const Motion &b, std::size_t first_memory,
+                RowWriter &rows) {
+    RowBlock &block = rows.add(RowKind::point, RowBounds::equal, 3, first_memory);
+    block.r_a = a.rotation * joint.anchor_a_local;
+    block.r_b = b.rotation * joint.anchor_b_local;
+    block.error = (b.position - a.position) + (block.r_b - block.r_a);
+    block.frequency = joint.frequency;
+    block.damping_ratio = joint.damping_ratio;
+}
+
+void emit_same_turn(const Joint &joint, const Motion &a, const Motion &b, std::size_t first_memory,
+                    RowWriter &rows) {
+    RowBlock &block = rows.add(RowKind::angular, RowBounds::equal, 3, first_memory);
+    const Mat3 axes = frame_a(joint, a);
+    block.axes = {axes[0], axes[1], axes[2]};
+    // The axis of the turn times twice the sine of half its angle: the angle itself to third order.
+    const Quat turn = relative_turn(joint, a, b);
+    block.error = Real(2) * Vec3{turn.x, turn.y, turn.z};
+    block.frequency = joint.frequency;
+    block.damping_ratio = joint.damping_ratio;
+}
+
+void emit_limits_and_motor(const Joint &joint, const RowBlock &row, Real place,
+                           std::size_t first_memory, RowWriter &rows) {
+    const auto add = [&](RowBounds bounds, std::size_t memory) -> RowBlock & {
+        RowBlock &block = rows.add(row.kind, bounds, 1, memory);
+        block.axes[0] = row.axes[0];
+        block.r_a = row.r_a;
+        block.r_b = row.r_b;
+        block.turns_with_a = row.turns_with_a;
+        return block;
+    };
+    if (joint.limits) {
+        add(RowBounds::at_least, first_memory).error.x = place - joint.limits->lower;
+        add(RowBounds::at_most, first_memory + 1).error.x = place - joint.limits->upper;
+    }
+    if (joint.motor) {
+        RowBlock &motor = add(RowBounds::motor, first_memory + 2);
+        motor.speed = joint.motor->speed;
+        motor.max_force = joint.motor->max_force;
+    }
+}
+
+Real joint_error(const Joint &joint, const Motion &a, const Motion &b) {
+    std::vector<RowBlock> blocks;
+    RowWriter writer(blocks);
+    emit_rows(joint, a, b, writer);
+    Real squared = Real(0);
+    for (const RowBlock &block : blocks)
+        switch (block.bounds) {
+        case RowBounds::equal:
+            for (int i = 0; i < block.count; ++i)
+                squared += block.error[i] * block.error[i];
+            break;
+        case RowBounds::at_least:
+            squared += std::min(block.error.x, Real(0)) * std::min(block.error.x, Real(0));
+            break;
+        case RowBounds::at_most:
+            squared += std::max(block.error.x, Real(0)) * std::max(block.error.x, Real(0));
+            break;
+        case RowBounds::motor:
+        case RowBounds::pull:
+            break;
+        }
+    return std::sqrt(squared);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,96 @@
+// What a joint asks of two bodies, as rows that every constrained method can run: each row is a
+// gradient (axis and lever arms), an error, bounds, and softness. No method knows a joint's type.
+#pragma once
+
+#include "engine/dynamics/joint.h"
+
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// point: three rows that hold anchor b on anchor a, along the world's axes. linear: rows along
+// `axes` between the same places. angular: rows about `axes`.
+enum class RowKind { point, linear, angular };
+
+// What impulses the rows may have. equal: any. at_least, at_most: the error may be positive
+// (negative) and then nothing pushes; otherwise only pushes up (down). motor: any up to max_force
+// in each row. pull: up to max_force in length.
+enum class RowBounds { equal, at_least, at_most, motor, pull };
+
+// One to three rows that are solved at once.
+struct RowBlock {
+    RowKind kind = RowKind::point;
+    RowBounds bounds = RowBounds::equal;
+    int count = 3;
+    std::size_t first_memory = 0; // of its rows among JointMemory::impulses
+
+    std::array<Vec3, 3> axes{}; // unit, world; linear and angular rows
+    Vec3 r_a{Real(0)};          // world, from the centres of mass to where the rows act
+    Vec3 r_b{Real(0)};
+    Vec3 error{Real(0)};      // of each row, at the present poses (m or rad)
+    Real speed = Real(0);     // motor: wanted (m/s or rad/s)
+    Real max_force = Real(0); // N or N m
+    Real frequency = Real(0); // Hz; 0: rigid
+    Real damping_ratio = Real(1);
+    // Of a row along the line between the anchors: their distance, about which they swing (m).
+    Real swing_length = Real(0);
+    // The axes turn with a, so what slides along a sees a Coriolis term.
+    bool turns_with_a = false;
+};
+
+// Collects the blocks of one joint.
+class RowWriter {
+  public:
+    explicit RowWriter(std::vector<RowBlock> &blocks) : blocks_(blocks) {}
+    RowBlock &add(RowKind kind, RowBounds bounds, int count, std::size_t first_memory) {
+        RowBlock &block = blocks_.emplace_back();
+        block.kind = kind;
+        block.bounds = bounds;
+        block.count = count;
+        block.first_memory = first_memory;
+        return block;
+    }
+
+  private:
+    std::vector<RowBlock> &blocks_;
+};
+
+// A joint at the present poses of its bodies (the world's is the identity): always the same blocks
+// in the same order.
+void emit_rows(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
+void emit_rows(const Grab &grab, const Motion &world, const Motion &body, RowWriter &rows);
+
+// One file each in joints/.
+void emit_ball(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
+void emit_distance(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
+void emit_hinge(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
+void emit_slider(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
+void emit_fixed(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
+
+// The parts that several joints are made of.
+//
+// The anchors at one point: three rows.
+void emit_point(const Joint &joint, const Motion &a, const Motion &b, std::size_t first_memory,
+                RowWriter &rows);
+// No turn of frame b against frame a: three rows about the axes of frame a.
+void emit_same_turn(const Joint &joint, const Motion &a, const Motion &b, std::size_t first_memory,
+                    RowWriter &rows);
+// Limits and motor of one degree of freedom, whose row is `row` and whose place (rad or m) is
+// `place`: two rows and one, as far as the joint has them.
+void emit_limits_and_motor(const Joint &joint, const RowBlock &row, Real place,
+                           std::size_t first_memory, RowWriter &rows);
+
+// World axes of a joint's frames.
+Mat3 frame_a(const Joint &joint, const Motion &a);
+Mat3 frame_b(const Joint &joint, const Motion &b);
+// The turn from frame a to frame b, in frame a.
+Quat relative_turn(const Joint &joint, const Motion &a, const Motion &b);
+// The angle of a hinge (rad, -pi..pi) and the place of a slider (m).
+Real hinge_angle(const Joint &joint, const Motion &a, const Motion &b);
+Real slider_place(const Joint &joint, const Motion &a, const Motion &b);
+
+// How far the joint's own rows, limits included, are from holding (m; angles times the distance of
+// one metre).
+Real joint_error(const Joint &joint, const Motion &a, const Motion &b);
+
+} // namespace plumb::inline PLUMB_PRECISION

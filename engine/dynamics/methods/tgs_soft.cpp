@@ -1,0 +1,67 @@
+// TGS Soft: small substeps, soft contacts and joints, and a relaxing pass that takes the softness'
+// push out of the velocities again; bounces once, at the end of the step. Catto 2024, "Solver2D";
+// Macklin et al. 2019, "Small Steps in Physics Simulation", for why substeps beat iterations.
+#include "engine/dynamics/method.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+void advance(StepContext &context) {
+    const StepSettings &settings = context.settings;
+    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real rate = Real(1) / h;
+    const Vec3 gravity{settings.gravity};
+    const Softness joint_softness =
+        make_soft(static_cast<Real>(settings.joint_frequency_ratio) * rate,
+                  static_cast<Real>(settings.joint_damping_ratio), h);
+    const ContactBias biased{make_soft(static_cast<Real>(settings.contact_frequency_ratio) * rate,
+                                       static_cast<Real>(settings.contact_damping_ratio), h),
+                             static_cast<Real>(settings.push_velocity), Real(0)};
+    const JointPass holding{.softness = joint_softness, .h = h, .spring_time = h};
+    const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .spring_time = h};
+
+    prepare_contacts(context);
+    prepare_joints(context);
+    note_approach(context);
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        kick(context, gravity, h);
+        refresh_joints(context);
+        remember_joints(context);
+        remember_contacts(context);
+        recall_joints(context, Real(1), Springs::solve);
+        recall_contacts(context, Real(1));
+        for (int i = 0; i < settings.iterations; ++i) {
+            solve_joints(context, holding);
+            solve_contacts(context, biased, h);
+        }
+        drift(context, h);
+        for (int i = 0; i < settings.iterations; ++i) {
+            solve_joints(context, relaxing);
+            solve_contacts(context, ContactBias{}, h);
+        }
+        note_loads(context);
+    }
+    restitute(context, static_cast<Real>(settings.restitution_threshold));
+    store_joints(context);
+    store_contacts(context);
+}
+
+} // namespace
+
+Method tgs_soft() {
+    return {{.name = "tgs_soft",
+             .title = "TGS Soft",
+             .source = "Catto 2024, Solver2D",
+             .contacts = true,
+             .joints = true,
+             .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::gyroscopic},
+             .default_substeps = 4,
+             .default_iterations = 1,
+             .body_passes = [](int substeps, int) { return 2 * substeps; },
+             .constraint_passes = [](int substeps,
+                                     int iterations) { return substeps * (1 + 2 * iterations); }},
+            advance};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

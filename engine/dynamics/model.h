@@ -1,0 +1,31 @@
+// What only an edit changes: bodies, colliders, joints.
+#pragma once
+
+#include "engine/dynamics/body.h"
+#include "engine/dynamics/joint.h"
+
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Shared by a world and everything saved of it; an edit of a shared model copies it first.
+struct Model {
+    std::vector<Body> bodies;        // holes included (Body::alive)
+    std::vector<Collider> colliders; // holes included (Collider::body); a body's are in a row
+    std::vector<Joint> joints;       // holes included
+    std::vector<std::uint32_t> free_bodies;
+    std::vector<std::uint32_t> free_joints;
+    // Pairs of bodies that a joint keeps from colliding, (lesser << 32 | greater), ascending; a
+    // pair comes as often as there are such joints.
+    std::vector<std::uint64_t> joined;
+    std::vector<std::uint32_t> half_spaces; // colliders, ascending
+    std::uint32_t alive_bodies = 0;
+    std::uint32_t dynamic_bodies = 0;
+    std::uint32_t alive_joints = 0;
+};
+
+inline std::uint64_t body_pair(std::uint32_t a, std::uint32_t b) {
+    return a < b ? (std::uint64_t{a} << 32 | b) : (std::uint64_t{b} << 32 | a);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

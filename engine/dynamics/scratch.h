@@ -1,0 +1,52 @@
+// What a world works with within a step. All of it may be thrown away between two steps; it is kept
+// for its memory, and because the tree's boxes change slowly. No result depends on it.
+#pragma once
+
+#include "engine/dynamics/method.h"
+#include "engine/space/dynamic_tree.h"
+
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Two colliders whose swept boxes touch, in the order of their bodies.
+struct Candidate {
+    ContactKey key; // without a triangle
+    std::uint32_t collider_a = 0;
+    std::uint32_t collider_b = 0;
+};
+
+// How far the broad phase's boxes reach beyond what a step needs (m): larger, and bodies move
+// longer before the tree changes, but more pairs are looked at.
+inline constexpr Real tree_margin = Real(0.1);
+
+struct Scratch {
+    // Broad phase, one for each collider of the model.
+    DynamicTree tree{tree_margin};
+    std::vector<DynamicTree::Leaf> leaves;
+    std::vector<Shape> placed; // in the world; of surfaces nothing
+    std::vector<Aabb> swept;
+    std::vector<std::uint8_t> moved;
+    std::vector<std::uint64_t> fat_pairs; // of colliders whose fat boxes touch, ascending
+    std::vector<Candidate> candidates;
+
+    // Contacts of the last step, or found again. `are_current`: of this model and these poses or of
+    // the step that led to them.
+    std::vector<Contact> contacts;
+    bool contacts_are_current = false;
+    std::vector<std::vector<Contact>> parts; // found by each part of a parallel loop
+    std::vector<std::vector<std::uint32_t>> triangles;
+    std::vector<ContactMemory> next_memory;
+    std::vector<PointMemory> next_points;
+
+    // The step's copy of the state, which becomes the state when the step has come to its end.
+    std::vector<SolverBody> bodies;
+    std::vector<std::uint32_t> moving;
+    std::vector<JointMemory> joints;
+    Grab grab;
+    SolverBody world_frame;
+    SolverScratch solver;
+    std::vector<Impact> impacts;
+};
+
+} // namespace plumb::inline PLUMB_PRECISION

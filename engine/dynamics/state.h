@@ -1,0 +1,25 @@
+// All that survives a step.
+#pragma once
+
+#include "engine/dynamics/body.h"
+#include "engine/dynamics/contact.h"
+#include "engine/dynamics/joint.h"
+
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Flat arrays of plain values: a save is a copy, and a copy continues with the same bits.
+struct State {
+    std::vector<Motion> motions;         // one for each body of the model
+    std::vector<JointMemory> joints;     // one for each joint of the model
+    std::vector<ContactMemory> contacts; // ascending by key
+    std::vector<PointMemory> points;
+    Grab grab;
+    std::uint64_t step_count = 0;
+    // Simulated time is a product, not a sum, of each dt that was set.
+    double time_before = 0; // s, until dt was last changed
+    std::uint64_t steps_before = 0;
+};
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,78 @@
+// Ground and walls of triangles, as bodies collide with them: a mesh or a height field whose
+// triangles know their neighbours.
+#pragma once
+
+#include "engine/geometry/height_field.h"
+#include "engine/space/mesh_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Which sides of the triangles are solid.
+enum class Sides { front, both };
+
+class TriangleSurface {
+  public:
+    // A mesh or field that is not valid fails a check.
+    TriangleSurface(TriangleMesh mesh, Sides sides);
+    TriangleSurface(HeightField field, Sides sides);
+
+    Sides sides() const { return sides_; }
+    const std::variant<MeshTree, HeightField> &source() const { return source_; }
+    const Aabb &bounds() const { return bounds_; }
+    std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(outer_edges_.size()); }
+    Triangle triangle(std::uint32_t index) const;
+
+    // Whether the surface turns away beyond the edge from corner `edge` to the next one: it is a
+    // border or a ridge. Over the others, which are flat or in a hollow, nothing can rest on the
+    // edge alone: what meets it there meets a face at the same time.
+    bool is_outer_edge(std::uint32_t triangle, int edge) const {
+        return (outer_edges_[triangle] >> edge & 1U) != 0;
+    }
+    // The unit normal of the triangle beyond an edge; the triangle's own at a border.
+    Vec3 normal_beyond(std::uint32_t triangle, int edge) const;
+
+    // Calls visit(index) for every triangle whose bounds touch the box, by ascending index.
+    template <typename Visit>
+    void each_touching(const Aabb &box, std::vector<std::uint32_t> &scratch, Visit &&visit) const {
+        if (const auto *field = std::get_if<HeightField>(&source_)) {
+            triangles_touching(*field, box, [&](std::uint32_t index, const Triangle &) {
+                visit(index);
+                return true;
+            });
+            return;
+        }
+        scratch.clear();
+        std::get<MeshTree>(source_).tree().query(box, [&](std::uint32_t index) {
+            scratch.push_back(index);
+            return true;
+        });
+        std::sort(scratch.begin(), scratch.end());
+        for (const std::uint32_t index : scratch)
+            visit(index);
+    }
+
+    // Of all numbers that a body can feel; for the hash of a world's state.
+    std::uint64_t content_hash() const { return content_hash_; }
+
+  private:
+    void link(const std::vector<std::array<std::uint32_t, 3>> &corners);
+
+    std::variant<MeshTree, HeightField> source_;
+    Sides sides_;
+    Aabb bounds_;
+    std::vector<std::uint8_t> outer_edges_; // three bits each
+    static constexpr std::uint32_t none = UINT32_MAX;
+    std::vector<std::array<std::uint32_t, 3>> neighbors_; // the triangle beyond each edge, or none
+    std::uint64_t content_hash_ = 0;
+};
+
+std::optional<RayHit> raycast(const TriangleSurface &surface, const Ray &ray);
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,168 @@
+// Saving, restoring, and what a step may not do.
+#include "tests/dynamics/worlds.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<std::uint64_t> allocations{0};
+
+void *counted(std::size_t size) {
+    ++allocations;
+    if (void *memory = std::malloc(size == 0 ? 1 : size))
+        return memory;
+    throw std::bad_alloc();
+}
+
+} // namespace
+
+// Counts what this program allocates.
+void *operator new(std::size_t size) {
+    return counted(size);
+}
+void *operator new[](std::size_t size) {
+    return counted(size);
+}
+void operator delete(void *memory) noexcept {
+    std::free(memory);
+}
+void operator delete[](void *memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void *memory, std::size_t) noexcept {
+    std::free(memory);
+}
+void operator delete[](void *memory, std::size_t) noexcept {
+    std::free(memory);
+}
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+World heap(const std::string &method, int bodies) {
+    Random random(4);
+    World world(method, settings_for(method));
+    world.add_body(ground(0.6, 0));
+    BodyId last;
+    for (int i = 0; i < bodies; ++i) {
+        const V at{0.7 * (i % 10), 0.4 + 0.8 * (i / 100), 0.7 * (i / 10 % 10)};
+        const BodyId id = world.add_body(dynamic_body(any_shape(random), 1, at));
+        if (i % 8 == 1) {
+            JointDef joint;
+            joint.a = last;
+            joint.b = id;
+            joint.anchor_a_local = narrow(V{0.35, 0, 0});
+            joint.anchor_b_local = narrow(V{-0.35, 0, 0});
+            world.add_joint(joint);
+        }
+        last = id;
+    }
+    return world;
+}
+
+class Saves : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Saves, testing::ValuesIn(all_methods()), name_of);
+
+TEST_P(Saves, RestoringGivesTheSameBits) {
+    if (!find_method(GetParam())->info.joints)
+        GTEST_SKIP() << "no joints";
+    World world = heap(GetParam(), 60);
+    run(world, 30);
+    SavedWorld saved;
+    world.save(saved);
+    const std::uint64_t at_save = world.hash();
+    run(world, 60);
+    const std::uint64_t after = world.hash();
+    for (int i = 0; i < 3; ++i) {
+        world.restore(saved);
+        ASSERT_EQ(world.hash(), at_save);
+        run(world, 60);
+        ASSERT_EQ(world.hash(), after);
+    }
+}
+
+// A save outlives edits of the world that it was made of.
+TEST_P(Saves, EditsDoNotReachWhatWasSaved) {
+    if (!find_method(GetParam())->info.joints)
+        GTEST_SKIP() << "no joints";
+    World world = heap(GetParam(), 20);
+    run(world, 10);
+    SavedWorld saved;
+    world.save(saved);
+    const std::uint64_t before = world.hash();
+    run(world, 20);
+    const std::uint64_t expected = world.hash();
+    world.restore(saved);
+    world.remove_body(world.body_id(5));
+    world.remove_body(world.body_id(0)); // the ground
+    world.add_body(dynamic_body(ball(0.5), 3, V{0, 9, 0}));
+    run(world, 20);
+    ASSERT_NE(world.hash(), expected);
+    world.restore(saved);
+    ASSERT_EQ(world.hash(), before);
+    run(world, 20);
+    ASSERT_EQ(world.hash(), expected);
+}
+
+TEST_P(Saves, ASettledStepAllocatesNothing) {
+    if (!find_method(GetParam())->info.joints)
+        GTEST_SKIP() << "no joints";
+    World world = heap(GetParam(), 100);
+    TaskPool tasks(3);
+    run(world, 240);
+    for (int i = 0; i < 5; ++i)
+        world.step(&tasks);
+    SavedWorld saved;
+    world.save(saved);
+    const std::uint64_t before = allocations;
+    for (int i = 0; i < 60; ++i)
+        world.step(nullptr);
+    EXPECT_EQ(allocations - before, 0U);
+    world.restore(saved);
+    for (int i = 0; i < 10; ++i)
+        world.step(&tasks);
+    const std::uint64_t with_threads = allocations;
+    for (int i = 0; i < 60; ++i)
+        world.step(&tasks);
+    EXPECT_EQ(allocations - with_threads, 0U);
+    world.save(saved);
+    const std::uint64_t before_save = allocations;
+    world.save(saved);
+    EXPECT_EQ(allocations - before_save, 0U);
+}
+
+// What rests takes little to save: 300 bytes a body, contacts and all.
+TEST(Saves, AreSmall) {
+    World world("soft_step", settings_for("soft_step"));
+    world.add_body(ground(0.6, 0));
+    for (int i = 0; i < 1000; ++i)
+        world.add_body(dynamic_body(
+            block(V{0.25}), 1, V{0.6 * (i % 20), 0.25 + 0.5 * (i / 400), 0.6 * (i / 20 % 20)}));
+    run(world, 120);
+    const State &state = world.state();
+    const std::size_t bytes =
+        state.motions.size() * sizeof(Motion) + state.contacts.size() * sizeof(ContactMemory) +
+        state.points.size() * sizeof(PointMemory) + state.joints.size() * sizeof(JointMemory);
+    EXPECT_GE(state.contacts.size(), 1000U);
+    EXPECT_LE(bytes, 1000U * (is_double ? 600U : 300U));
+}
+
+TEST(Contacts, AreFoundAgainAfterRestoring) {
+    World world = heap("soft_step", 40);
+    run(world, 60);
+    SavedWorld saved;
+    world.save(saved);
+    const Measures before = world.measure();
+    world.restore(saved);
+    EXPECT_NEAR(world.measure().max_penetration, before.max_penetration, 1e-6);
+    EXPECT_GE(world.contacts().size(), 20U);
+    for (const Contact &contact : world.contacts())
+        EXPECT_GT(contact.manifold.count, 0);
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,190 @@
+// Bodies on meshes and height fields.
+#include "engine/dynamics/surface_contact.h"
+#include "tests/dynamics/worlds.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+// A square of n x n cells of the given size, flat but for `height`, as a mesh.
+template <typename Height> TriangleMesh grid(int n, double cell, Height &&height) {
+    TriangleMesh mesh;
+    for (int row = 0; row <= n; ++row)
+        for (int column = 0; column <= n; ++column) {
+            const double x = (column - 0.5 * n) * cell, z = (row - 0.5 * n) * cell;
+            mesh.vertices.push_back(narrow(V{x, height(x, z), z}));
+        }
+    const auto at = [&](int row, int column) { return std::uint32_t(row * (n + 1) + column); };
+    for (int row = 0; row < n; ++row)
+        for (int column = 0; column < n; ++column) {
+            mesh.triangles.push_back(
+                {at(row, column), at(row + 1, column), at(row + 1, column + 1)});
+            mesh.triangles.push_back(
+                {at(row, column), at(row + 1, column + 1), at(row, column + 1)});
+        }
+    return mesh;
+}
+
+template <typename Height> HeightField field(int n, double cell, Height &&height) {
+    HeightField out;
+    out.rows = out.columns = n + 1;
+    out.spacing = Real(cell);
+    out.origin = narrow(V{-0.5 * n * cell, 0, -0.5 * n * cell});
+    for (int row = 0; row <= n; ++row)
+        for (int column = 0; column <= n; ++column)
+            out.heights.push_back(Real(height((column - 0.5 * n) * cell, (row - 0.5 * n) * cell)));
+    return out;
+}
+
+constexpr auto flat = [](double, double) { return 0.0; };
+
+BodyDef surface_body(std::shared_ptr<const TriangleSurface> surface, double friction) {
+    BodyDef def;
+    def.kind = BodyKind::fixed;
+    def.colliders.emplace_back().surface = std::move(surface);
+    return with_material(def, friction, 0);
+}
+
+std::shared_ptr<const TriangleSurface> flat_surface(bool as_field, Sides sides = Sides::front) {
+    return as_field ? std::make_shared<const TriangleSurface>(field(40, 0.5, flat), sides)
+                    : std::make_shared<const TriangleSurface>(grid(40, 0.5, flat), sides);
+}
+
+TEST(Surface, FlatEdgesAreInnerAndRidgesOuter) {
+    const TriangleSurface level(grid(4, 1, flat), Sides::front);
+    const TriangleSurface roof(grid(2, 1, [](double x, double) { return -std::abs(x); }),
+                               Sides::front);
+    const TriangleSurface ditch(grid(2, 1, [](double x, double) { return std::abs(x); }),
+                                Sides::front);
+    const auto outer = [](const TriangleSurface &surface) {
+        int count = 0;
+        for (std::uint32_t i = 0; i < surface.triangle_count(); ++i)
+            for (int edge = 0; edge < 3; ++edge)
+                count += surface.is_outer_edge(i, edge) ? 1 : 0;
+        return count;
+    };
+    EXPECT_EQ(outer(level), 16);   // the border
+    EXPECT_EQ(outer(ditch), 8);    // likewise
+    EXPECT_EQ(outer(roof), 8 + 4); // and both sides of two ridge edges
+}
+
+TEST(Surface, EverythingRestsAtItsHeight) {
+    for (const bool as_field : {false, true}) {
+        World world("soft_step", settings_for("soft_step"));
+        world.add_body(surface_body(flat_surface(as_field), 0.5));
+        std::vector<std::pair<BodyId, double>> bodies;
+        const std::vector<std::pair<Shape, double>> shapes{
+            {ball(0.3), 0.3},
+            {block(V{0.3, 0.2, 0.4}), 0.2},
+            {upright_capsule(0.4, 0.2), 0.6},
+            {Cylinder{Vec3{0, Real(-0.25), 0}, Vec3{0, Real(0.25), 0}, Real(0.4)}, 0.25}};
+        int i = 0;
+        for (const auto &[shape, height] : shapes) {
+            BodyDef def = dynamic_body(shape, 1, V{1.7 * i - 2.1, height + 0.01, 0.13 * i});
+            if (std::holds_alternative<Capsule>(shape))
+                def.locked = {false, false, false, true, true, true};
+            bodies.emplace_back(world.add_body(def), height);
+            ++i;
+        }
+        run(world, 240);
+        for (const auto &[id, height] : bodies) {
+            EXPECT_NEAR(position_of(world, id).y, height, 1e-3) << id.index;
+            EXPECT_LE(glm::length(velocity_of(world, id)), 2e-3) << id.index;
+        }
+    }
+}
+
+// A seam is nothing: what slides without friction keeps its speed, and does not hop.
+TEST(Surface, ABoxSlidesOverSeamsUnchanged) {
+    for (const bool as_field : {false, true})
+        for (const double speed : {0.5, 3.0, 8.0})
+            for (const double heading : {0.0, 0.4, 0.7853981}) {
+                World world("soft_step", settings_for("soft_step"));
+                world.add_body(surface_body(flat_surface(as_field), 0));
+                const V velocity = speed * V{std::cos(heading), 0, std::sin(heading)};
+                const BodyId id = world.add_body(with_material(
+                    dynamic_body(block(V{0.25}), 1, V{-4, 0.25, -3.9}, velocity), 0, 0));
+                double highest = 0;
+                for (int i = 0; i < 60; ++i) {
+                    world.step(nullptr);
+                    highest = std::max(highest, position_of(world, id).y);
+                }
+                EXPECT_LE(glm::distance(velocity_of(world, id), velocity), 2e-3 * speed)
+                    << speed << " at " << heading << (as_field ? " field" : " mesh");
+                EXPECT_LE(highest, 0.2505);
+            }
+}
+
+TEST(Surface, ABallRollsOverSeamsAsOnAPlane) {
+    for (const double speed : {1.0, 6.0}) {
+        std::vector<double> ends;
+        for (const bool on_mesh : {false, true}) {
+            World world("soft_step", settings_for("soft_step"));
+            if (on_mesh)
+                world.add_body(surface_body(flat_surface(false), 0.5));
+            else
+                world.add_body(ground(0.5, 0));
+            BodyDef def = with_material(
+                dynamic_body(ball(0.2), 1, V{-4, 0.2, 0.1}, V{speed, 0, 0.2 * speed}), 0.5, 0);
+            def.angular_velocity = narrow(V{0.2 * speed / 0.2, 0, -speed / 0.2});
+            const BodyId id = world.add_body(def);
+            run(world, 60);
+            ends.push_back(position_of(world, id).x);
+            EXPECT_NEAR(glm::length(velocity_of(world, id)), speed * std::sqrt(1.04), 0.01 * speed);
+        }
+        EXPECT_NEAR(ends[0], ends[1], 0.01 * speed);
+    }
+}
+
+TEST(Surface, OneSidedLetsPassFromBehindAndTwoSidedDoesNot) {
+    for (const Sides sides : {Sides::front, Sides::both}) {
+        World world("soft_step", weightless(settings_for("soft_step")));
+        world.add_body(surface_body(flat_surface(false, sides), 0.5));
+        const BodyId id = world.add_body(dynamic_body(ball(0.2), 1, V{0.1, -1, 0.17}, V{0, 2, 0}));
+        run(world, 90);
+        EXPECT_EQ(position_of(world, id).y > 1, sides == Sides::front);
+    }
+}
+
+// Into a bowl: whatever falls in stays in, and comes to rest at the bottom.
+TEST(Surface, ABallComesToRestInABowl) {
+    World world("soft_step", settings_for("soft_step"));
+    const auto bowl = [](double x, double z) { return 0.1 * (x * x + z * z); };
+    world.add_body(surface_body(
+        std::make_shared<const TriangleSurface>(field(40, 0.2, bowl), Sides::front), 0.5));
+    BodyDef def = dynamic_body(ball(0.25), 1, V{2, 1.2, -1});
+    def.angular_damping = Real(2);
+    const BodyId id = world.add_body(def);
+    run(world, 1200);
+    const V at = position_of(world, id);
+    EXPECT_LE(std::hypot(at.x, at.z), 0.3);
+    EXPECT_NEAR(at.y, 0.25, 0.02);
+}
+
+// On a mesh whose ground is tilted: no creep below the friction angle, the closed form above it.
+TEST(Surface, SlopesGripAndSlide) {
+    for (const double friction : {0.8, 0.2}) {
+        World world("soft_step", settings_for("soft_step"));
+        const double slope = std::tan(0.5);
+        BodyDef hill = surface_body(
+            std::make_shared<const TriangleSurface>(
+                grid(60, 0.5, [&](double x, double) { return slope * x; }), Sides::front),
+            friction);
+        world.add_body(hill);
+        const glm::dquat turn = glm::angleAxis(0.5, V{0, 0, 1});
+        BodyDef def =
+            with_material(dynamic_body(block(V{0.25}), 1, turn * V{0, 0.25, 0}), friction, 0);
+        def.pose.rotation = narrow(turn);
+        const BodyId id = world.add_body(def);
+        const V start = position_of(world, id);
+        run(world, 60);
+        const double gone = glm::distance(position_of(world, id), start);
+        const double expected =
+            std::max(0.0, 0.5 * gravity * (std::sin(0.5) - friction * std::cos(0.5)));
+        EXPECT_NEAR(gone, expected, 0.02 * expected + 1e-3) << friction;
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
