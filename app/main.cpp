@@ -55,8 +55,8 @@ struct Common {
     std::vector<SceneEntry> catalogue = find_scenes(data / "scenes");
     std::vector<std::string> scenes;
     std::string method, precision, gl = "auto", size;
-    std::string dt;
-    int substeps = 0, iterations = 0, threads = 1;
+    GivenSettings settings;
+    int threads = 1;
     std::filesystem::path out;
 
     std::vector<std::filesystem::path> scene_paths() const {
@@ -68,12 +68,7 @@ struct Common {
     RunOptions run() const {
         RunOptions options;
         options.method = method;
-        if (!dt.empty())
-            options.dt = parse_fraction(dt);
-        if (substeps != 0)
-            options.substeps = substeps;
-        if (iterations != 0)
-            options.iterations = iterations;
+        options.settings = settings;
         if (!precision.empty())
             options.precision = precision == "double" ? Precision::dual : Precision::single;
         return options;
@@ -98,17 +93,23 @@ CLI::Validator positive() {
             "POSITIVE"};
 }
 
-CLI::Validator time_step() {
-    return {[](std::string &text) {
-                try {
-                    const double dt = parse_fraction(text);
-                    if (dt >= 1e-9 && dt <= 1)
-                        return std::string();
-                } catch (const std::invalid_argument &) { // said below
-                }
-                return "must be 1e-9 to 1 s, like 0.01 or 1/60, got " + text;
+// An option that gives settings, each as `prefix` and what was typed.
+void add_setting(CLI::App &command, Common &common, const std::string &option,
+                 const std::string &prefix, const std::string &about, const std::string &type) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            option,
+            [&common, option, prefix](const std::vector<std::string> &texts) {
+                for (const std::string &text : texts)
+                    try {
+                        common.settings.give(parse_setting(prefix + text));
+                    } catch (const std::invalid_argument &error) {
+                        throw CLI::ValidationError(option, error.what());
+                    }
             },
-            ""};
+            about)
+        ->allow_extra_args(false)
+        ->type_name(type);
 }
 
 // Of options that count steps. CLI11 by itself reads -1 as the largest unsigned number.
@@ -127,13 +128,13 @@ void add_run_options(CLI::App &command, Common &common, bool chart = false) {
     if (!chart)
         command.add_option("--method", common.method,
                            "Instead of the scene's own: " + method_names());
-    command.add_option("--dt", common.dt, "Time step (s), 1e-9 to 1: 0.01, or 1/60")
-        ->check(time_step())
-        ->type_name("S");
-    command.add_option("--substeps", common.substeps, "Substeps a step")
-        ->check(CLI::Range(1, 10000));
-    command.add_option("--iterations", common.iterations, "Solver passes a substep")
-        ->check(CLI::Range(1, 10000));
+    add_setting(command, common, "--set", "",
+                "A setting from `plumb list --settings`, as in substeps=8, dt=1/120 or "
+                "gravity=0,-3,0; may be given several times",
+                "NAME=VALUE");
+    for (const char *name : {"dt", "substeps", "iterations"})
+        add_setting(command, common, std::string("--") + name, std::string(name) + "=",
+                    "The same as --set " + std::string(name) + "=VALUE", "VALUE");
     command.add_option("--precision", common.precision, "float or double")
         ->check(CLI::IsMember({"float", "double"}));
     if (chart) // timed on one thread
@@ -267,7 +268,11 @@ std::string json_string(const std::string &text) {
     return out + '"';
 }
 
-int list(const Common &common, bool json, bool keys, bool methods) {
+int list(const Common &common, bool json, bool keys, bool methods, bool settings) {
+    if (settings) {
+        std::cout << settings_as_markdown();
+        return 0;
+    }
     if (keys) {
         std::cout << keys_as_markdown();
         return 0;
@@ -447,12 +452,13 @@ int main_with_errors(int argc, char **argv) {
     add_run_options(*hash_command, common);
     hash_command->callback([&] { result = hash(common, hash_steps); });
 
-    bool json = false, keys = false, methods = false;
+    bool json = false, keys = false, methods = false, settings = false;
     CLI::App *list_command = app.add_subcommand("list", "Lists the scenes");
     list_command->add_flag("--json", json, "For programs");
     list_command->add_flag("--keys", keys, "Keys and mouse instead, as a table");
     list_command->add_flag("--methods", methods, "Methods instead");
-    list_command->callback([&] { result = list(common, json, keys, methods); });
+    list_command->add_flag("--settings", settings, "Settings instead, as a table");
+    list_command->callback([&] { result = list(common, json, keys, methods, settings); });
 
     std::uint64_t measure_steps = 600;
     std::filesystem::path csv;
@@ -488,8 +494,8 @@ int main_with_errors(int argc, char **argv) {
         ->delimiter(',');
     chart_command
         ->add_option("--sweep", sweeps,
-                     "What to go through: substeps=1..16 (the default), iterations=1,2,8, "
-                     "dt=1/240..1/30; may be given several times")
+                     "What to go through, any setting from `plumb list --settings`: substeps=1..16 "
+                     "(the default), iterations=1,2,8, dt=1/240..1/30; may be given several times")
         ->allow_extra_args(false);
     chart_command->add_option(
         "--expect", chart.options.expect,

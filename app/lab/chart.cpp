@@ -132,20 +132,7 @@ std::vector<PlannedRun> plan(const SceneDesc &scene, const ChartOptions &options
             run.options = options.base;
             run.options.method = std::string(method->name);
             run.point = point;
-            StepSettings swept;
-            apply(chart.sweep, point, swept);
-            for (const SweepAxis &axis : chart.sweep)
-                switch (axis.setting) {
-                case SweepSetting::substeps:
-                    run.options.substeps = swept.substeps;
-                    break;
-                case SweepSetting::iterations:
-                    run.options.iterations = swept.iterations;
-                    break;
-                case SweepSetting::dt:
-                    run.options.dt = swept.dt;
-                    break;
-                }
+            run.options.settings.give(given_by(chart.sweep, point));
             run.resolved = resolve_run(scene, run.options);
             const bool repeated = std::any_of(planned.begin() + static_cast<std::ptrdiff_t>(first),
                                               planned.end(), [&](const PlannedRun &other) {

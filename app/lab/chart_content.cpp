@@ -48,6 +48,45 @@ class WorstNames {
     std::vector<std::string> texts_;
 };
 
+// The step, substeps and iterations always; others where a run has another value than the default.
+bool is_worth_saying(const SceneChart &chart, SettingNumber number) {
+    const SettingMember &member = number.setting().member;
+    if (member == SettingMember(&StepSettings::dt) ||
+        member == SettingMember(&StepSettings::substeps) ||
+        member == SettingMember(&StepSettings::iterations))
+        return true;
+    return std::ranges::any_of(chart.runs, [&](const ChartRun &run) {
+        return reads(*run.resolved.method, number.setting()) &&
+               setting_value(run.resolved.settings, number) !=
+                   setting_value(default_settings(*run.resolved.method), number);
+    });
+}
+
+// "4", or "4 (Soft step), 1 (Runge-Kutta 4)" where methods differ: each value once.
+std::string values_by_method(const SceneChart &chart, SettingNumber number) {
+    std::vector<std::pair<std::string, std::string>> groups; // value, titles
+    const MethodInfo *last = nullptr;
+    for (const ChartRun &run : chart.runs) {
+        if (run.resolved.method == last)
+            continue;
+        last = run.resolved.method;
+        const std::string value =
+            setting_label(number, setting_value(run.resolved.settings, number));
+        const auto group =
+            std::ranges::find(groups, value, &std::pair<std::string, std::string>::first);
+        if (group == groups.end())
+            groups.emplace_back(value, last->title);
+        else
+            group->second += ", " + std::string(last->title);
+    }
+    if (groups.size() == 1)
+        return groups.front().first;
+    std::string each;
+    for (const auto &[value, titles] : groups)
+        each += (each.empty() ? "" : ", ") + value + " (" + titles + ")";
+    return each;
+}
+
 } // namespace
 
 ChartContent chart_content(const SceneChart &chart, const std::string &command) {
@@ -113,54 +152,17 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
 
     // What was not swept, where it is the same for all.
     std::string settings;
-    const auto swept = [&](SweepSetting setting) {
-        return std::any_of(chart.sweep.begin(), chart.sweep.end(),
-                           [&](const SweepAxis &axis) { return axis.setting == setting; });
-    };
-    const auto same = [&](auto value_of) {
-        return std::all_of(chart.runs.begin(), chart.runs.end(), [&](const ChartRun &run) {
-            return value_of(run) == value_of(chart.runs.front());
-        });
+    const auto swept = [&](SettingNumber number) {
+        return std::ranges::find(chart.sweep, number, &SweepAxis::setting) != chart.sweep.end();
     };
     const auto add = [&](const std::string &text) {
         settings += (settings.empty() ? "" : "  ·  ") + text;
     };
     if (!chart.runs.empty()) {
         const ResolvedRun &first = chart.runs.front().resolved;
-        if (!swept(SweepSetting::dt))
-            add("dt " + format_dt(first.settings.dt));
-        const auto count = [&](SweepSetting setting, auto value_of) {
-            if (swept(setting))
-                return;
-            const std::string name(sweep_setting_name(setting));
-            if (same(value_of)) {
-                add(name + " " + std::to_string(value_of(chart.runs.front())));
-                return;
-            }
-            // Each value once, with the methods that have it.
-            std::vector<std::pair<int, std::string>> groups;
-            const MethodInfo *last = nullptr;
-            for (const ChartRun &run : chart.runs) {
-                if (run.resolved.method == last)
-                    continue;
-                last = run.resolved.method;
-                const int value = value_of(run);
-                const auto group = std::find_if(groups.begin(), groups.end(),
-                                                [&](const auto &g) { return g.first == value; });
-                if (group == groups.end())
-                    groups.emplace_back(value, last->title);
-                else
-                    group->second += ", " + std::string(last->title);
-            }
-            std::string each;
-            for (const auto &[value, titles] : groups)
-                each += (each.empty() ? "" : ", ") + std::to_string(value) + " (" + titles + ")";
-            add(name + " " + each);
-        };
-        count(SweepSetting::substeps,
-              [](const ChartRun &run) { return run.resolved.settings.substeps; });
-        count(SweepSetting::iterations,
-              [](const ChartRun &run) { return run.resolved.settings.iterations; });
+        for (const SettingNumber number : setting_numbers())
+            if (!swept(number) && is_worth_saying(chart, number))
+                add(setting_name(number) + " " + values_by_method(chart, number));
         add(std::string(precision_name(first.precision)) + " precision");
         const bool timed = std::any_of(chart.runs.begin(), chart.runs.end(),
                                        [](const ChartRun &run) { return !run.timings.empty(); });

@@ -16,31 +16,27 @@ std::string error_unit(const ErrorMeasure &measure) {
     return measure.kind == ErrorMeasure::Kind::worst ? "tolerance" : measure.unit;
 }
 
+// "dt_s", "gravity_y_m_s2"
+std::string setting_column(SettingNumber number) {
+    std::string column = setting_name(number);
+    if (const std::string_view unit = number.setting().unit; !unit.empty())
+        column += "_" + std::string(unit);
+    std::erase(column, '^');
+    for (char &c : column)
+        if (c == '.' || c == '/')
+            c = '_';
+    return column;
+}
+
 } // namespace
 
 void write_chart_csv(std::ostream &out, const SceneChart &chart) {
     CsvWriter csv(out);
-    for (const char *name : {"scene",
-                             "method",
-                             "precision",
-                             "dt_s",
-                             "substeps",
-                             "iterations",
-                             "gravity_x_m_s2",
-                             "gravity_y_m_s2",
-                             "gravity_z_m_s2",
-                             "speculative_distance_m",
-                             "penetration_slop_m",
-                             "baumgarte",
-                             "contact_frequency_ratio",
-                             "contact_damping_ratio",
-                             "joint_frequency_ratio",
-                             "joint_damping_ratio",
-                             "push_velocity_m_s",
-                             "restitution_threshold_m_s",
-                             "impact_sweeps",
-                             "gyroscopic_iterations",
-                             "status",
+    for (const char *name : {"scene", "method", "precision"})
+        csv.cell(name);
+    for (const SettingNumber number : setting_numbers())
+        csv.cell(setting_column(number));
+    for (const char *name : {"status",
                              "pareto",
                              "cpu_s_per_s",
                              "cpu_s_per_s_least",
@@ -67,28 +63,12 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart) {
             csv.cell(expect.name + column);
     csv.end_row();
     for (const ChartRun &run : chart.runs) {
-        const StepSettings &s = run.resolved.settings;
         csv.cell(chart.scene.name)
             .cell(run.resolved.method->name)
-            .cell(precision_name(run.resolved.precision))
-            .cell(s.dt)
-            .cell(s.substeps)
-            .cell(s.iterations)
-            .cell(s.gravity.x)
-            .cell(s.gravity.y)
-            .cell(s.gravity.z)
-            .cell(s.speculative_distance)
-            .cell(s.penetration_slop)
-            .cell(s.baumgarte)
-            .cell(s.contact_frequency_ratio)
-            .cell(s.contact_damping_ratio)
-            .cell(s.joint_frequency_ratio)
-            .cell(s.joint_damping_ratio)
-            .cell(s.push_velocity)
-            .cell(s.restitution_threshold)
-            .cell(s.impact_sweeps)
-            .cell(s.gyroscopic_iterations)
-            .cell(status_name(run.status))
+            .cell(precision_name(run.resolved.precision));
+        for (const SettingNumber number : setting_numbers())
+            csv.cell(setting_value(run.resolved.settings, number));
+        csv.cell(status_name(run.status))
             .cell(run.pareto)
             .cell(run.cost)
             .cell(run.cost_low)

@@ -1,7 +1,6 @@
 #include "app/lab/sweep.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -10,61 +9,71 @@ namespace plumb {
 
 namespace {
 
-constexpr double largest_count = 1024;               // substeps or iterations in one step
-constexpr std::size_t most_values = 64;              // on one axis
-constexpr double smallest_dt = 1e-6, largest_dt = 1; // s
+constexpr std::size_t most_values = 64; // on one axis
 
 [[noreturn]] void refuse(std::string_view text, const std::string &why) {
     throw std::invalid_argument("sweep \"" + std::string(text) + "\": " + why);
 }
 
-double parse_plain_number(std::string_view whole, std::string_view text) {
+double parse_value(std::string_view whole, SettingNumber setting, std::string_view text) {
     double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || error != std::errc() || end != text.data() + text.size() ||
-        !std::isfinite(value))
-        refuse(whole, "\"" + std::string(text) + "\" is not a number");
+    try {
+        value = parse_number(text);
+    } catch (const std::invalid_argument &error) {
+        refuse(whole, error.what());
+    }
+    if (const std::string why = why_refused(setting, value); !why.empty())
+        refuse(whole, why);
     return value;
 }
 
-// "0.01" or "1/60".
-double parse_number(std::string_view whole, std::string_view text) {
-    const auto slash = text.find('/');
-    if (slash == std::string_view::npos)
-        return parse_plain_number(whole, text);
-    const double divisor = parse_plain_number(whole, text.substr(slash + 1));
-    if (divisor == 0)
-        refuse(whole, "division by zero in \"" + std::string(text) + "\"");
-    return parse_plain_number(whole, text.substr(0, slash)) / divisor;
+SettingNumber parse_name(std::string_view whole, std::string_view name) {
+    std::vector<SettingNumber> numbers;
+    try {
+        numbers = find_setting_numbers(name);
+    } catch (const std::invalid_argument &error) {
+        refuse(whole, error.what());
+    }
+    if (numbers.size() > 1)
+        refuse(whole, std::string(name) + " is three numbers; sweep one of them, as in " +
+                          setting_name(numbers[1]) + "=-20..-1");
+    return numbers.front();
 }
 
-void check_value(std::string_view whole, SweepSetting setting, double value) {
-    if (setting == SweepSetting::dt) {
-        if (!(value >= smallest_dt && value <= largest_dt))
-            refuse(whole, "dt must lie between 1e-6 and 1 s");
-    } else if (!(value >= 1 && value <= largest_count) || value != std::floor(value)) {
-        refuse(whole, std::string(sweep_setting_name(setting)) +
-                          " must be whole numbers between 1 and 1024");
+std::vector<double> values_between(SettingNumber setting, double low, double high) {
+    std::vector<double> values;
+    if (is_whole(setting.setting())) {
+        if (low == 0)
+            values.push_back(0);
+        for (double value = 1; value <= high; value *= 2)
+            if (value >= low)
+                values.push_back(value);
+    } else if (low > 0) {
+        // A little slack, so that 1/240..1/30 ends at 1/30 whatever the rounding.
+        for (double value = low; value <= high * (1 + 1e-9); value *= 2)
+            values.push_back(std::min(value, setting.setting().max));
+    } else {
+        for (int i = 0; i <= 4; ++i)
+            values.push_back(i == 4 ? high : low + i * (high - low) / 4);
     }
+    if (values.empty())
+        values = {low, high};
+    return values;
+}
+
+// The texts of whole numbers, multiplied, and then those of the others.
+template <typename Text>
+std::string whole_first(const std::vector<SweepAxis> &axes, const char *times, const Text &text) {
+    std::string counts, others;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        if (is_whole(axes[i].setting.setting()))
+            counts += (counts.empty() ? "" : times) + text(i);
+        else
+            others += (others.empty() ? "" : ", ") + text(i);
+    return counts + (!counts.empty() && !others.empty() ? ", " : "") + others;
 }
 
 } // namespace
-
-std::string_view sweep_setting_name(SweepSetting setting) {
-    switch (setting) {
-    case SweepSetting::substeps:
-        return "substeps";
-    case SweepSetting::iterations:
-        return "iterations";
-    case SweepSetting::dt:
-        return "dt";
-    }
-    return "";
-}
-
-double parse_fraction(std::string_view text) {
-    return parse_number(text, text);
-}
 
 SweepAxis parse_sweep(std::string_view text) {
     const auto equals = text.find('=');
@@ -73,62 +82,42 @@ SweepAxis parse_sweep(std::string_view text) {
     const std::string_view name = text.substr(0, equals);
     const std::string_view range = text.substr(equals + 1);
     SweepAxis axis;
-    if (name == "substeps")
-        axis.setting = SweepSetting::substeps;
-    else if (name == "iterations")
-        axis.setting = SweepSetting::iterations;
-    else if (name == "dt")
-        axis.setting = SweepSetting::dt;
-    else
-        refuse(text,
-               "\"" + std::string(name) + "\" cannot be swept; substeps, iterations and dt can");
+    axis.setting = parse_name(text, name);
     if (range.empty())
-        refuse(text, "no values; for example " + std::string(name) +
-                         (axis.setting == SweepSetting::dt ? "=1/240..1/30" : "=1..16"));
+        refuse(text, "no values; for example substeps=1..16 or dt=1/240..1/30");
 
     if (const auto dots = range.find(".."); dots != std::string_view::npos) {
-        const double low = parse_number(text, range.substr(0, dots));
-        const double high = parse_number(text, range.substr(dots + 2));
-        check_value(text, axis.setting, low);
-        check_value(text, axis.setting, high);
+        const double low = parse_value(text, axis.setting, range.substr(0, dots));
+        const double high = parse_value(text, axis.setting, range.substr(dots + 2));
         if (low > high)
             refuse(text, "the range must ascend");
-        // A little slack, so that 1/240..1/30 ends at 1/30 whatever the rounding.
-        const double end = high * (1 + 1e-9);
-        double value = axis.setting == SweepSetting::dt ? low : 1;
-        for (; value <= end; value *= 2)
-            if (value >= low)
-                axis.values.push_back(value);
-        if (axis.values.empty())
-            axis.values = low < high ? std::vector<double>{low, high} : std::vector<double>{low};
+        axis.values = values_between(axis.setting, low, high);
     } else {
         std::string_view rest = range;
         while (true) {
             const auto comma = rest.find(',');
-            const double value = parse_number(text, rest.substr(0, comma));
-            check_value(text, axis.setting, value);
-            axis.values.push_back(value);
+            axis.values.push_back(parse_value(text, axis.setting, rest.substr(0, comma)));
             if (comma == std::string_view::npos)
                 break;
             rest = rest.substr(comma + 1);
         }
-        std::sort(axis.values.begin(), axis.values.end());
-        axis.values.erase(std::unique(axis.values.begin(), axis.values.end()), axis.values.end());
-        if (axis.values.size() > most_values)
-            refuse(text, "at most 64 values");
     }
+    std::sort(axis.values.begin(), axis.values.end());
+    axis.values.erase(std::unique(axis.values.begin(), axis.values.end()), axis.values.end());
+    if (axis.values.size() > most_values)
+        refuse(text, "at most 64 values");
     return axis;
 }
 
 SweepAxis default_sweep() {
-    return {SweepSetting::substeps, {1, 2, 4, 8, 16}};
+    return parse_sweep("substeps=1..16");
 }
 
 std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis> &axes) {
     for (std::size_t i = 0; i < axes.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
             if (axes[i].setting == axes[j].setting)
-                throw std::invalid_argument(std::string(sweep_setting_name(axes[i].setting)) +
+                throw std::invalid_argument(setting_name(axes[i].setting) +
                                             " is swept twice; give all its values in one sweep");
     std::vector<SweepPoint> points{{}};
     // The last axis outermost: each axis before it repeats inside.
@@ -144,28 +133,29 @@ std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis> &axes) {
     return points;
 }
 
-void apply(const std::vector<SweepAxis> &axes, const SweepPoint &point, StepSettings &settings) {
+GivenSettings given_by(const std::vector<SweepAxis> &axes, const SweepPoint &point) {
+    GivenSettings given;
     for (std::size_t i = 0; i < axes.size(); ++i)
-        switch (axes[i].setting) {
-        case SweepSetting::substeps:
-            settings.substeps = static_cast<int>(point[i]);
-            break;
-        case SweepSetting::iterations:
-            settings.iterations = static_cast<int>(point[i]);
-            break;
-        case SweepSetting::dt:
-            settings.dt = point[i];
-            break;
-        }
+        given.give(axes[i].setting, point[i]);
+    return given;
 }
 
 bool same_work(const MethodInfo &method, const StepSettings &a, const StepSettings &b) {
-    const auto equal = [&](auto *passes) {
-        return passes == nullptr ||
-               passes(a.substeps, a.iterations) == passes(b.substeps, b.iterations);
-    };
-    return a.dt == b.dt && a.substeps == b.substeps && equal(method.body_passes) &&
-           equal(method.constraint_passes);
+    return std::ranges::all_of(setting_numbers(), [&](SettingNumber number) {
+        return !reads(method, number.setting()) ||
+               setting_value(a, number) == setting_value(b, number);
+    });
+}
+
+std::string setting_label(SettingNumber setting, double value) {
+    if (setting.setting().unit == "s")
+        return format_dt(value);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    std::string label = text;
+    if (!setting.setting().unit.empty())
+        label += " " + std::string(setting.setting().unit);
+    return label;
 }
 
 std::string format_dt(double dt) {
@@ -179,31 +169,12 @@ std::string format_dt(double dt) {
 }
 
 std::string sweep_label(const std::vector<SweepAxis> &axes, const SweepPoint &point) {
-    std::string counts, dt;
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        if (axes[i].setting == SweepSetting::dt) {
-            dt = format_dt(point[i]);
-            continue;
-        }
-        if (!counts.empty())
-            counts += "×";
-        counts += std::to_string(static_cast<int>(point[i]));
-    }
-    return counts + (!counts.empty() && !dt.empty() ? ", " : "") + dt;
+    return whole_first(axes, "×",
+                       [&](std::size_t i) { return setting_label(axes[i].setting, point[i]); });
 }
 
 std::string sweep_label_meaning(const std::vector<SweepAxis> &axes) {
-    std::string counts, dt;
-    for (const SweepAxis &axis : axes) {
-        if (axis.setting == SweepSetting::dt) {
-            dt = "dt";
-            continue;
-        }
-        if (!counts.empty())
-            counts += " × ";
-        counts += sweep_setting_name(axis.setting);
-    }
-    return counts + (!counts.empty() && !dt.empty() ? ", " : "") + dt;
+    return whole_first(axes, " × ", [&](std::size_t i) { return setting_name(axes[i].setting); });
 }
 
 } // namespace plumb

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/method_info.h"
-#include "engine/dynamics/settings.h"
+#include "engine/scene/given_settings.h"
 
 #include <string>
 #include <string_view>
@@ -10,22 +10,17 @@
 
 namespace plumb {
 
-enum class SweepSetting { substeps, iterations, dt };
-
-[[nodiscard]] std::string_view sweep_setting_name(SweepSetting setting);
-
 struct SweepAxis {
-    SweepSetting setting = SweepSetting::substeps;
-    std::vector<double> values; // ascending, distinct; whole numbers but for dt (s)
+    SettingNumber setting;
+    std::vector<double> values; // ascending, distinct, in the setting's range
 };
 
-// "substeps=1..16" goes through the powers of two from 1 to 16 (its ends, when no power of two lies
-// between them); "substeps=1,3,5" through these. "dt=1/240..1/30" doubles from the lower end.
-// Throws std::invalid_argument that says what is wrong and what would be right.
+// Any setting, or one number of a vector: "gravity.y". "substeps=1,3,5" goes through these values.
+// A range of whole numbers, "substeps=1..16", goes through the powers of two in it (and 0), or
+// through its ends where there is none; "dt=1/240..1/30" doubles from the lower end, and a range
+// that does not begin above 0, "gravity.y=-20..0", goes from end to end in four equal steps. Throws
+// std::invalid_argument that says what is wrong and what would be right.
 [[nodiscard]] SweepAxis parse_sweep(std::string_view text);
-
-// "0.01" or "1/60". Throws std::invalid_argument as above.
-[[nodiscard]] double parse_fraction(std::string_view text);
 
 // substeps=1..16
 [[nodiscard]] SweepAxis default_sweep();
@@ -37,19 +32,22 @@ using SweepPoint = std::vector<double>;
 // std::invalid_argument when two axes have the same setting.
 [[nodiscard]] std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis> &axes);
 
-// Overrides the swept settings.
-void apply(const std::vector<SweepAxis> &axes, const SweepPoint &point, StepSettings &settings);
+// The swept settings.
+[[nodiscard]] GivenSettings given_by(const std::vector<SweepAxis> &axes, const SweepPoint &point);
 
-// Whether two combinations make the method do the same, by its declared work: iterations mean
-// nothing to a method that has none.
+// Whether two combinations make the method do the same: they agree in all settings that it reads.
 [[nodiscard]] bool same_work(const MethodInfo &method, const StepSettings &a,
                              const StepSettings &b);
 
-// "4", "4×2", "1/120 s", "4×2, 1/120 s": the swept settings' values, for a label.
+// "4", "4×2", "1/120 s", "4×2, 1/120 s": the swept settings' values, for a label; whole numbers
+// come first.
 [[nodiscard]] std::string sweep_label(const std::vector<SweepAxis> &axes, const SweepPoint &point);
 
 // What such labels mean: "substeps × iterations".
 [[nodiscard]] std::string sweep_label_meaning(const std::vector<SweepAxis> &axes);
+
+// "4", "0.02 m", "1/120 s"
+[[nodiscard]] std::string setting_label(SettingNumber setting, double value);
 
 // "1/60 s" where 1/dt is a whole number, else "0.0123 s".
 [[nodiscard]] std::string format_dt(double dt);

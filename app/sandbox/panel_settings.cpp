@@ -1,4 +1,4 @@
-// Method, step, substeps, iterations and gravity of the running scene.
+// Method and settings of the running scene.
 #include "app/sandbox/panel.h"
 #include "app/sandbox/widgets.h"
 
@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -26,12 +27,18 @@ std::string step_text(double dt) {
     return text.data();
 }
 
-// The label in the left third, the control in the rest.
-void label(const char *text) {
+// The label at the left, the control at the right.
+struct Columns {
+    float label, control; // em; of the control, -1 is all that is left
+};
+constexpr Columns panel_columns{5.4f, -1}, popup_columns{12, 8};
+
+void label(const char *text, const Columns &columns) {
+    const float em = ImGui::GetFontSize();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", text);
-    ImGui::SameLine(ImGui::GetFontSize() * 5.4f);
-    ImGui::SetNextItemWidth(-1);
+    ImGui::SameLine(em * columns.label);
+    ImGui::SetNextItemWidth(columns.control < 0 ? -1 : em * columns.control);
 }
 
 void method_row(PanelContext &context, const Simulation &simulation) {
@@ -63,9 +70,9 @@ void method_row(PanelContext &context, const Simulation &simulation) {
     action_tooltip(Action::next_method);
 }
 
-// True when changed.
-bool step_row(StepSettings &settings) {
-    label("Step");
+// Each row is true when the setting was changed.
+bool step_row(const SettingRow &row, StepSettings &settings, const Columns &columns) {
+    label("Step", columns);
     bool changed = false;
     if (ImGui::BeginCombo("##dt", step_text(settings.dt).c_str())) {
         for (const int rate : {15, 30, 60, 120, 240, 480, 960, 1920}) {
@@ -77,7 +84,69 @@ bool step_row(StepSettings &settings) {
         }
         ImGui::EndCombo();
     }
-    tooltip("Time that one step takes in the world.");
+    tooltip(row.reason);
+    return changed;
+}
+
+// "Push velocity"
+std::string title_of(const SettingRow &row) {
+    std::string title(row.name);
+    std::ranges::replace(title, '_', ' ');
+    title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+    return title;
+}
+
+bool setting_row(const SettingRow &row, StepSettings &settings, const Columns &columns) {
+    if (row.member == SettingMember(&StepSettings::dt))
+        return step_row(row, settings, columns);
+    constexpr ImGuiSliderFlags flags =
+        ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat;
+    label(title_of(row).c_str(), columns);
+    const std::string id = "##" + std::string(row.name);
+    bool changed = false;
+    if (const auto *whole = std::get_if<int StepSettings::*>(&row.member)) {
+        changed = ImGui::SliderInt(id.c_str(), &(settings.**whole), static_cast<int>(row.min),
+                                   static_cast<int>(row.max), "%d",
+                                   ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    } else if (const auto *vector = std::get_if<glm::dvec3 StepSettings::*>(&row.member)) {
+        changed = ImGui::DragScalarN(id.c_str(), ImGuiDataType_Double, &(settings.**vector)[0], 3,
+                                     0.05f, &row.min, &row.max, "%.2f", flags);
+    } else {
+        double &value = settings.*std::get<double StepSettings::*>(row.member);
+        const auto speed = static_cast<float>(std::clamp(0.01 * value, 1e-5, 1e3));
+        changed = ImGui::DragScalar(id.c_str(), ImGuiDataType_Double, &value, speed, &row.min,
+                                    &row.max, "%.4g", flags);
+    }
+    tooltip(std::string(row.reason) + " " + title_of(row) + " is " + range_text(row) +
+            ". Drag, or Ctrl+click to type.");
+    return changed;
+}
+
+// Those that stand in the panel; the others open from a button.
+bool is_in_panel(const SettingRow &row) {
+    return row.group == SettingGroup::world || row.group == SettingGroup::step ||
+           row.member == SettingMember(&StepSettings::iterations);
+}
+
+bool rows_in_panel(const MethodInfo &method, StepSettings &settings) {
+    bool changed = false;
+    for (const SettingRow &row : setting_rows)
+        if (is_in_panel(row)) {
+            ImGui::BeginDisabled(!reads(method, row));
+            changed |= setting_row(row, settings, panel_columns);
+            ImGui::EndDisabled();
+        }
+    return changed;
+}
+
+bool more_rows(const MethodInfo &method, StepSettings &settings) {
+    if (!ImGui::BeginPopup("settings"))
+        return false;
+    bool changed = false;
+    for (const SettingRow &row : setting_rows)
+        if (!is_in_panel(row) && reads(method, row))
+            changed |= setting_row(row, settings, popup_columns);
+    ImGui::EndPopup();
     return changed;
 }
 
@@ -99,36 +168,26 @@ void settings_panel(PanelContext &context) {
     }
     method_row(context, *simulation);
     StepSettings settings = simulation->settings();
-    bool changed = step_row(settings);
-    label("Substeps");
-    changed |= ImGui::SliderInt("##substeps", &settings.substeps, 1, 64, "%d",
-                                ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    tooltip("Into how many parts a step is cut. Ctrl+click to type.");
-    label("Iterations");
-    changed |= ImGui::SliderInt("##iterations", &settings.iterations, 1, 64, "%d",
-                                ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    tooltip("Passes over all constraints in each substep. Ctrl+click to type.");
-    label("Gravity");
-    std::array gravity{static_cast<float>(settings.gravity.x),
-                       static_cast<float>(settings.gravity.y),
-                       static_cast<float>(settings.gravity.z)};
-    if (ImGui::DragFloat3("##gravity", gravity.data(), 0.05f, -100, 100, "%.2f",
-                          ImGuiSliderFlags_AlwaysClamp)) {
-        // The components that were not touched keep their bits.
-        for (int i = 0; i < 3; ++i) {
-            const float now = gravity[static_cast<std::size_t>(i)];
-            if (now != static_cast<float>(settings.gravity[i]))
-                settings.gravity[i] = static_cast<double>(now);
-        }
-        changed = true;
-    }
-    tooltip("x, y, z in m/s². Drag, or Ctrl+click to type.");
-    if (changed)
-        context.session.set_settings(settings);
+    const MethodInfo &method = simulation->method();
+    bool changed = rows_in_panel(method, settings);
 
-    if (ImGui::Button("As the scene says", {-1, 0}))
+    const bool has_more = std::ranges::any_of(setting_rows, [&](const SettingRow &row) {
+        return !is_in_panel(row) && reads(method, row);
+    });
+    const float spacing = ImGui::GetStyle().ItemSpacing.x;
+    const float half = 0.5f * (ImGui::GetContentRegionAvail().x - spacing);
+    if (ImGui::Button("As the scene says", {half, 0}))
         context.restart_as_written = true;
     tooltip("Starts again with the method and settings of the file and the command line.");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!has_more);
+    if (ImGui::Button("More settings", {half, 0}))
+        ImGui::OpenPopup("settings");
+    ImGui::EndDisabled();
+    tooltip("All others that this method reads.");
+    changed |= more_rows(method, settings);
+    if (changed)
+        context.session.set_settings(settings);
 }
 
 } // namespace plumb

@@ -185,14 +185,16 @@ bool Session::set_method(std::string_view name) {
     try {
         RunOptions options = options_;
         options.method = std::string(name);
-        options.substeps.reset(); // meant for the method of the command line
-        options.iterations.reset();
+        options.settings.erase_if([](const SettingRow &row) {
+            return row.group != SettingGroup::world; // meant for the method of the command line
+        });
         const ResolvedRun run = resolve_run(scene_, options);
         if (const std::string why = why_not(*run.method, scene_); !why.empty())
             throw std::invalid_argument(why);
-        StepSettings settings = simulation_->settings();
-        settings.substeps = run.settings.substeps;
-        settings.iterations = run.settings.iterations;
+        StepSettings settings = run.settings;
+        for (const SettingNumber number : setting_numbers())
+            if (number.setting().group == SettingGroup::world)
+                set_setting(settings, number, setting_value(simulation_->settings(), number));
         simulation_->set_method(name);
         simulation_->set_settings(settings);
         settings_changed();

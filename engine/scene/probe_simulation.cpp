@@ -42,11 +42,7 @@ class ProbeSimulation final : public Simulation {
 
     SceneDesc describe() const override {
         SceneDesc out = scene_;
-        out.world.method = run_.method->name;
-        out.world.dt = run_.settings.dt;
-        out.world.gravity = run_.settings.gravity;
-        out.world.settings = {run_.settings.substeps, run_.settings.iterations};
-        out.world.other_methods.erase(out.world.method);
+        set_run(out.world, *run_.method, run_.settings);
         out.world.precision = run_.precision;
         return out;
     }

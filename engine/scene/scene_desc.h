@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/kinds.h"
+#include "engine/scene/given_settings.h"
 #include "engine/scene/joint_desc.h"
 #include "engine/scene/probe_desc.h"
 #include "engine/scene/shape_desc.h"
@@ -21,7 +22,6 @@ namespace plumb {
 // Stated limits: beyond these a scene is refused.
 inline constexpr std::size_t max_scene_bodies = 200'000;
 inline constexpr std::size_t max_scene_joints = 200'000;
-inline constexpr int max_scene_substeps = 10'000; // and iterations
 // Each length, speed, density, mass and so on of a scene is at most this in magnitude, and those
 // that must be positive are at least 1 / this: their products then stay finite in float.
 inline constexpr double max_scene_magnitude = 1e9;
@@ -125,19 +125,13 @@ struct ContactStateDesc {
 
 enum class Precision { single, dual }; // "float", "double" in files
 
-// How a method is run. 0 means: the method's own default.
-struct MethodSettings {
-    int substeps = 0;
-    int iterations = 0;
-};
-
 struct WorldDesc {
-    glm::dvec3 gravity{0, -9.81, 0};
-    double dt = 1.0 / 60.0; // s
     std::string method = "soft_step";
-    MethodSettings settings;
-    // Settings with which the other methods meet this scene's tolerances.
-    std::map<std::string, MethodSettings> other_methods;
+    // Where they differ from the method's defaults. Gravity and dt (SettingGroup::world) hold for
+    // every method, the others for `method`.
+    GivenSettings settings;
+    // Settings with which the other methods meet this scene's tolerances, less those of the world.
+    std::map<std::string, GivenSettings> other_methods;
     Precision precision = Precision::single;
     std::uint64_t seed = 1;
 };

@@ -4,6 +4,7 @@
 #include "engine/geometry/manifold.h"
 #include "engine/scene/joint_type.h"
 #include "engine/scene/scene_file_number.h"
+#include "engine/scene/simulation.h"
 
 #include <algorithm>
 #include <array>
@@ -314,13 +315,13 @@ class Checker {
     }
 
     void check_dt() {
-        const double dt = scene_.world.dt;
-        // 0 is the method's own default, which is known for methods that are in the registry.
+        MethodInfo unknown;
+        unknown.name = scene_.world.method;
         const MethodInfo *method = find_method_info(scene_.world.method);
-        const int by_default = method != nullptr ? method->default_substeps : 1;
-        const int asked = scene_.world.settings.substeps;
-        const double substep = dt / (asked > 0 ? asked : by_default);
-        const double gravity = glm::length(scene_.world.gravity);
+        const StepSettings settings = settings_of(scene_.world, method ? *method : unknown);
+        const double dt = settings.dt;
+        const double substep = dt / settings.substeps;
+        const double gravity = glm::length(settings.gravity);
         double smallest = std::numeric_limits<double>::infinity();
         const BodyDesc *smallest_body = nullptr;
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {

@@ -1,52 +1,61 @@
 #include "engine/scene/scene_file_reading.h"
 #include "engine/scene/scene_file_spelling.h"
 
-#include <charconv>
+#include <algorithm>
+#include <stdexcept>
 
 namespace plumb::scene_file {
 
 namespace {
 
-// "a/b" with plain numbers.
-std::optional<double> parse_fraction(std::string_view text) {
-    const auto strip = [](std::string_view part) {
-        while (!part.empty() && part.front() == ' ')
-            part.remove_prefix(1);
-        while (!part.empty() && part.back() == ' ')
-            part.remove_suffix(1);
-        return part;
-    };
-    const auto parse = [](std::string_view part) -> std::optional<double> {
-        double value = 0;
-        const auto [end, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
-        const bool all = failure == std::errc{} && end == part.data() + part.size();
-        return all ? std::optional(value) : std::nullopt;
-    };
-    const std::size_t slash = text.find('/');
-    if (slash == std::string_view::npos)
-        return std::nullopt;
-    const std::optional<double> above = parse(strip(text.substr(0, slash)));
-    const std::optional<double> below = parse(strip(text.substr(slash + 1)));
-    return above && below ? std::optional(*above / *below) : std::nullopt;
+// Empty, having reported it, when it is not a number in the row's range. A fraction stands in
+// quotes: "1/60".
+std::optional<double> read_number(const Table &table, const SettingRow &row) {
+    const std::string wanted = range_text(row) + ", or a fraction in quotes such as \"1/60\"";
+    const toml::node *node = table.node(row.name);
+    const auto *text = node ? node->as_string() : nullptr;
+    if (!text)
+        return table.number(row.name, {row.min, row.max, wanted});
+    try {
+        const double value = parse_number(text->get());
+        if (value >= row.min && value <= row.max)
+            return value;
+    } catch (const std::invalid_argument &) { // said below
+    }
+    table.error(row.name, std::string(row.name) + " is " + in_quotes(text->get()),
+                "it must be " + wanted);
+    return std::nullopt;
 }
 
-void read_dt(Reading &reading, const Table &table) {
-    static constexpr Bounds step{1 / huge, 1,
-                                 "a number of seconds from 1e-9 to 1, or a "
-                                 "fraction in quotes such as \"1/60\""};
-    const toml::node *node = table.node("dt");
-    if (!node)
-        return;
-    if (const auto *text = node->as_string()) {
-        const std::optional<double> value = parse_fraction(text->get());
-        if (!value || !(*value >= step.min && *value <= step.max))
-            table.error("dt", "dt is " + in_quotes(text->get()),
-                        "it must be " + std::string(step.text));
-        else
-            reading.scene.world.dt = *value;
-        return;
+void read_setting(const Table &table, const SettingRow &row, GivenSettings &given) {
+    if (const auto *vector = std::get_if<glm::dvec3 StepSettings::*>(&row.member)) {
+        if (const std::optional value = table.vector(row.name, {row.min, row.max, range_text(row)}))
+            given.give(*vector, *value);
+    } else if (const auto *whole = std::get_if<int StepSettings::*>(&row.member)) {
+        if (const std::optional value = table.integer(row.name, static_cast<std::int64_t>(row.min),
+                                                      static_cast<std::int64_t>(row.max)))
+            given.give(*whole, static_cast<int>(*value));
+    } else if (const std::optional value = read_number(table, row)) {
+        given.give(std::get<double StepSettings::*>(row.member), *value);
     }
-    reading.scene.world.dt = table.number("dt", step).value_or(reading.scene.world.dt);
+}
+
+// The names of the settings, those of the world only where they are asked for, and `others`.
+std::vector<std::string_view> keys_with(bool of_world, Words others) {
+    std::vector<std::string_view> keys;
+    for (const SettingRow &row : setting_rows)
+        if (of_world || row.group != SettingGroup::world)
+            keys.push_back(row.name);
+    keys.insert(keys.end(), others.begin(), others.end());
+    return keys;
+}
+
+GivenSettings read_settings(const Table &table) {
+    GivenSettings given;
+    for (const SettingRow &row : setting_rows)
+        if (table.has(row.name))
+            read_setting(table, row, given);
+    return given;
 }
 
 void check_method(Reading &reading, const std::string &method, const FilePosition &at) {
@@ -57,24 +66,12 @@ void check_method(Reading &reading, const std::string &method, const FilePositio
                              did_you_mean(method, reading.known_methods));
 }
 
-MethodSettings read_settings(const Table &table) {
-    MethodSettings settings;
-    settings.substeps =
-        static_cast<int>(table.integer("substeps", 0, max_scene_substeps).value_or(0));
-    settings.iterations =
-        static_cast<int>(table.integer("iterations", 0, max_scene_substeps).value_or(0));
-    return settings;
-}
-
 } // namespace
 
 void read_world(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 7> keys{
-        "gravity", "dt", "method", "substeps", "iterations", "precision", "seed"};
-    const Table table(reading.report, source, "[world]", keys);
+    static constexpr std::array<std::string_view, 3> others{"method", "precision", "seed"};
+    const Table table(reading.report, source, "[world]", keys_with(true, others));
     WorldDesc &world = reading.scene.world;
-    world.gravity = table.vector("gravity", moderate).value_or(world.gravity);
-    read_dt(reading, table);
     if (const std::optional<std::string> method = table.string("method")) {
         check_method(reading, *method, table.position("method"));
         world.method = *method;
@@ -88,7 +85,6 @@ void read_world(Reading &reading, const toml::table &source) {
 }
 
 void read_methods(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 2> keys{"substeps", "iterations"};
     for (const auto &[key, value] : source) {
         const std::string name(key.str());
         check_method(reading, name, position_of(key.source()));
@@ -99,8 +95,8 @@ void read_methods(Reading &reading, const toml::table &source) {
                                  "it must be a table: [methods." + name + "]");
             continue;
         }
-        reading.scene.world.other_methods[name] =
-            read_settings(Table(reading.report, *settings, "[methods." + name + "]", keys));
+        reading.scene.world.other_methods[name] = read_settings(
+            Table(reading.report, *settings, "[methods." + name + "]", keys_with(false, {})));
     }
 }
 

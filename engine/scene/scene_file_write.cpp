@@ -43,14 +43,6 @@ std::string natural(std::uint64_t value) {
     return fits ? digits : '"' + digits + '"';
 }
 
-// 1/n where that is the very number.
-std::string step_length(double dt) {
-    const double n = std::round(1 / dt);
-    if (n >= 2 && n <= 100'000 && same_bits(1 / n, dt))
-        return "\"1/" + shortest(n) + '"';
-    return shortest(dt);
-}
-
 class SceneWriter {
   public:
     std::string write(const SceneDesc &scene) {
@@ -82,17 +74,21 @@ class SceneWriter {
         text_ += key + " = " + value + "\n";
     }
 
-    void write_settings(const MethodSettings &settings) {
-        if (settings.substeps != 0)
-            line("substeps", std::to_string(settings.substeps));
-        if (settings.iterations != 0)
-            line("iterations", std::to_string(settings.iterations));
+    void write_settings(const GivenSettings &given) {
+        const StepSettings settings = given.applied();
+        for (const SettingRow &row : setting_rows) {
+            if (!given.has(row))
+                continue;
+            const std::string value = setting_text(row, settings);
+            const bool is_fraction = value.find('/') != std::string::npos;
+            line(std::string(row.name), is_vector(row) ? '[' + value + ']'
+                                        : is_fraction  ? '"' + value + '"'
+                                                       : value);
+        }
     }
 
     void write_world(const WorldDesc &world) {
         header("[world]");
-        line("gravity", array3(world.gravity));
-        line("dt", step_length(world.dt));
         line("method", string(world.method));
         write_settings(world.settings);
         line("precision", world.precision == Precision::single ? "\"float\"" : "\"double\"");

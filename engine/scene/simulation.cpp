@@ -60,35 +60,37 @@ ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {
         text << did_you_mean(name, names);
         throw std::invalid_argument(text.str());
     }
-    MethodSettings chosen;
-    if (name == scene.world.method)
-        chosen = scene.world.settings;
-    else if (const auto other = scene.world.other_methods.find(name);
-             other != scene.world.other_methods.end())
-        chosen = other->second;
-    const auto pick = [](const std::optional<int> &asked, int from_scene, int by_default) {
-        return asked ? *asked : from_scene > 0 ? from_scene : by_default;
-    };
-    run.settings.gravity = scene.world.gravity;
-    run.settings.dt = options.dt.value_or(scene.world.dt);
-    run.settings.substeps = pick(options.substeps, chosen.substeps, run.method->default_substeps);
-    run.settings.iterations =
-        pick(options.iterations, chosen.iterations, run.method->default_iterations);
+    run.settings = settings_of(scene.world, *run.method);
+    options.settings.apply_to(run.settings);
+    for (const SettingNumber number : setting_numbers())
+        if (const std::string why = why_refused(number, setting_value(run.settings, number));
+            !why.empty())
+            throw std::invalid_argument(why);
     run.precision = options.precision.value_or(scene.world.precision);
-
-    const auto check_count = [](const char *what, int value) {
-        if (value < 1 || value > 10000)
-            throw std::invalid_argument(std::string(what) + " must be 1 to 10000, got " +
-                                        std::to_string(value));
-    };
-    check_count("substeps", run.settings.substeps);
-    check_count("iterations", run.settings.iterations);
-    if (!(run.settings.dt >= 1e-9 && run.settings.dt <= 1)) {
-        std::ostringstream text;
-        text << "dt must be 1e-9 to 1 s, got " << run.settings.dt;
-        throw std::invalid_argument(text.str());
-    }
     return run;
+}
+
+StepSettings settings_of(const WorldDesc &world, const MethodInfo &method) {
+    GivenSettings given = world.settings;
+    if (method.name != world.method) {
+        given.erase_if([](const SettingRow &row) { return row.group != SettingGroup::world; });
+        const auto other = world.other_methods.find(std::string(method.name));
+        if (other != world.other_methods.end())
+            given.give(other->second);
+    }
+    StepSettings settings = default_settings(method);
+    given.apply_to(settings);
+    return settings;
+}
+
+void set_run(WorldDesc &world, const MethodInfo &method, const StepSettings &settings) {
+    if (method.name != world.method) {
+        GivenSettings &left = world.other_methods[world.method] = world.settings;
+        left.erase_if([](const SettingRow &row) { return row.group == SettingGroup::world; });
+        world.method = method.name;
+        world.other_methods.erase(world.method);
+    }
+    world.settings = GivenSettings::differences(default_settings(method), settings);
 }
 
 std::string why_not(const MethodInfo &method, const SceneDesc &scene) {

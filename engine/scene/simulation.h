@@ -98,8 +98,7 @@ struct Pick {
 // How a scene is to be run, where that differs from the file.
 struct RunOptions {
     std::string method; // empty: the scene's own
-    std::optional<double> dt;
-    std::optional<int> substeps, iterations;
+    GivenSettings settings;
     std::optional<Precision> precision;
 };
 
@@ -112,6 +111,13 @@ struct ResolvedRun {
     Precision precision = Precision::single;
 };
 ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options);
+
+// What the scene says for that method, in full.
+StepSettings settings_of(const WorldDesc &world, const MethodInfo &method);
+
+// Makes that the world's method, with those settings; the one that it had becomes one of the
+// others.
+void set_run(WorldDesc &world, const MethodInfo &method, const StepSettings &settings);
 
 // Empty when the method can run the scene; else why not ("rk4 has no contacts, and ...").
 std::string why_not(const MethodInfo &method, const SceneDesc &scene);
@@ -156,8 +162,7 @@ class Simulation {
     std::unique_ptr<Saved> save() const { return save(nullptr); }
     virtual void restore(const Saved &saved) = 0; // saved by this simulation
 
-    // The present state as a scene that loads to the same hash, as long as nothing but what a scene
-    // says was changed in the settings: the solver's tolerances have no place in a file.
+    // The present state as a scene that loads to the same hash.
     virtual SceneDesc describe() const = 0;
 
     virtual std::size_t body_count() const = 0; // holes included

@@ -70,7 +70,7 @@ radus = 1
 )";
 
 TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
-    const std::vector<std::string> run{"--dt", "--substeps", "--iterations", "--precision",
+    const std::vector<std::string> run{"--set", "--dt", "--substeps", "--iterations", "--precision",
                                        "--threads"};
     struct Command {
         const char *name;
@@ -85,10 +85,10 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
          true},
         {"check", {"SCENE", "--method", "--all-methods"}, true},
         {"hash", {"SCENE", "--method", "--steps"}, true},
-        {"list", {"--json", "--keys", "--methods"}, false},
+        {"list", {"--json", "--keys", "--methods", "--settings"}, false},
         {"measure", {"SCENE", "--method", "--steps", "--csv"}, true},
         {"chart",
-         {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--dt", "--substeps",
+         {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--set", "--dt", "--substeps",
           "--iterations", "--precision"},
          false}, // timed on one thread: it has no --threads
         {"compare", {"A", "B", "--tolerance", "--difference"}, false},

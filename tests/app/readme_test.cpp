@@ -1,19 +1,35 @@
 // What the README repeats of the program is what the program says.
 #include "app/sandbox/keys.h"
+#include "engine/scene/given_settings.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
+#include <string>
 
 namespace plumb {
 
-TEST(Readme, HasTheTableOfKeys) {
-    std::ifstream file(PLUMB_SOURCE_DIR "/README.md");
+namespace {
+
+std::string text_of(const char *path) {
+    std::ifstream file(path);
     std::ostringstream text;
     text << file.rdbuf();
-    EXPECT_NE(text.str().find(keys_as_markdown()), std::string::npos)
+    return text.str();
+}
+
+} // namespace
+
+TEST(Readme, HasTheTableOfKeys) {
+    EXPECT_NE(text_of(PLUMB_SOURCE_DIR "/README.md").find(keys_as_markdown()), std::string::npos)
         << "paste what `plumb list --keys` prints into README.md";
+}
+
+TEST(Readme, OfScenesHasTheTableOfSettings) {
+    EXPECT_NE(text_of(PLUMB_SOURCE_DIR "/scenes/README.md").find(settings_as_markdown()),
+              std::string::npos)
+        << "paste what `plumb list --settings` prints into scenes/README.md";
 }
 
 } // namespace plumb

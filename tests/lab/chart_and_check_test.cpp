@@ -23,9 +23,8 @@ SceneDesc scene(const std::string &path) {
 RunOptions options_of(const ChartRun &run) {
     RunOptions options;
     options.method = std::string(run.resolved.method->name);
-    options.substeps = run.resolved.settings.substeps;
-    options.iterations = run.resolved.settings.iterations;
-    options.dt = run.resolved.settings.dt;
+    for (const SettingNumber number : setting_numbers())
+        options.settings.give(number, setting_value(run.resolved.settings, number));
     return options;
 }
 

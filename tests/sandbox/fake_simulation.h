@@ -19,8 +19,7 @@ class FakeSimulation final : public Simulation {
     std::vector<glm::dvec3> pulls;            // targets, in order
 
     explicit FakeSimulation(const SceneDesc &scene) {
-        settings_.gravity = scene.world.gravity;
-        settings_.dt = scene.world.dt;
+        scene.world.settings.apply_to(settings_);
         for (const BodyDesc &body : scene.bodies)
             add_body(body);
     }
@@ -151,7 +150,7 @@ inline Session::Make make_fake() {
 inline SceneDesc two_balls() {
     SceneDesc scene;
     scene.name = "two_balls";
-    scene.world.gravity = glm::dvec3(0);
+    scene.world.settings.give(&StepSettings::gravity, glm::dvec3(0));
     for (const double x : {0.0, 5.0}) {
         BodyDesc ball;
         ball.name = x == 0.0 ? "left" : "right";

@@ -268,7 +268,7 @@ TEST(SessionWithFake, AnExplosionSaysWhatWhereAndWhen) {
 TEST(SessionWithFake, PosesBeforeAndAfterTheLastStep) {
     Session session({}, nullptr, make_fake());
     SceneDesc scene = two_balls();
-    scene.world.dt = 0.5;
+    scene.world.settings.give(&StepSettings::dt, 0.5);
     ASSERT_TRUE(session.open(scene));
     EXPECT_EQ(session.previous_poses()[0].position, session.present_poses()[0].position);
     session.step();
@@ -298,7 +298,7 @@ TEST(SessionWithFake, GraphsFollowStepsBothWays) {
 // Held to what two_balls does: "left" rises by 0.25 m/s.
 SceneDesc expecting() {
     SceneDesc scene = two_balls();
-    scene.world.dt = 0.125;
+    scene.world.settings.give(&StepSettings::dt, 0.125);
     const auto expect = [&](const char *name, const char *reduce, double to,
                             ExpectDesc::Relation relation, double value) {
         ExpectDesc desc;

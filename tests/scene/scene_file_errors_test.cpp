@@ -32,7 +32,7 @@ title = @"b"
          R"([world]
 @zzzzzz = 1
 )",
-         {R"(unknown key "zzzzzz" in [world]; there are gravity, dt, method, substeps, iterations, precision, seed)"}},
+         {R"(unknown key "zzzzzz" in [world]; there are gravity, dt, substeps, iterations, speculative_distance, penetration_slop, baumgarte, contact_frequency_ratio, contact_damping_ratio, joint_frequency_ratio, joint_damping_ratio, push_velocity, restitution_threshold, impact_lookahead, impact_sweeps, impact_passes, gyroscopic_iterations, method, precision, seed)"}},
         {"UnknownTable",
          R"([@lights]
 )",
@@ -63,8 +63,8 @@ gravity = [0, @"x", 0]
 name = "a"
 )",
          {R"(unknown key "titel" in the top level of a scene; did you mean "title"?)",
-          R"(dt is -1; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")",
-          "gravity[1] is a string; it must be a number between -1e9 and 1e9",
+          R"(dt is -1; it must be a number from 1e-9 to 1 s, or a fraction in quotes such as "1/60")",
+          "gravity[1] is a string; it must be a number from -1e9 to 1e9 m/s^2",
           R"([[body]] "a" has no shape; shape = "sphere", "box", "capsule" or "plane")"}},
         {"StringWanted",
          R"(title = @3
@@ -182,17 +182,17 @@ restitution = @-0.5
          R"([world]
 dt = @0
 )",
-         {R"(dt is 0; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")"}},
+         {R"(dt is 0; it must be a number from 1e-9 to 1 s, or a fraction in quotes such as "1/60")"}},
         {"DtBadFraction",
          R"([world]
 dt = @"1/sixty"
 )",
-         {R"(dt is "1/sixty"; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")"}},
+         {R"(dt is "1/sixty"; it must be a number from 1e-9 to 1 s, or a fraction in quotes such as "1/60")"}},
         {"DtZeroFraction",
          R"([world]
 dt = @"1/0"
 )",
-         {R"(dt is "1/0"; it must be a number of seconds from 1e-9 to 1, or a fraction in quotes such as "1/60")"}},
+         {R"(dt is "1/0"; it must be a number from 1e-9 to 1 s, or a fraction in quotes such as "1/60")"}},
         {"UnknownMethod",
          R"([world]
 method = @"soft_stpe"
@@ -218,8 +218,18 @@ iterations = 4
 substeps = @-1
 iterations = @1.5
 )",
-         {"substeps is -1; it must be a whole number from 0 to 10000",
-          "iterations is 1.5; it must be a whole number from 0 to 10000"}},
+         {"substeps is -1; it must be a whole number from 1 to 10000",
+          "iterations is 1.5; it must be a whole number from 1 to 10000"}},
+        {"SettingOutOfRange",
+         R"([methods.pgs]
+baumgarte = @1.5
+)",
+         {R"(baumgarte is 1.5; it must be a number from 0 to 1, or a fraction in quotes such as "1/60")"}},
+        {"WorldSettingInMethods",
+         R"([methods.pgs]
+@dt = 0.01
+)",
+         {R"(unknown key "dt" in [methods.pgs]; dt belongs to [world]: it is the same for all methods)"}},
         {"UnknownPrecision",
          R"([world]
 precision = @"single"

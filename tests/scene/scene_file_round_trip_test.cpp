@@ -50,8 +50,9 @@ class Words {
     void add(const PlaneDesc &) {}
     void add(const MeshDesc &) {}
     void add(const HeightFieldDesc &) {}
-    void add(const MethodSettings &s) {
-        add(static_cast<double>(s.substeps)), add(static_cast<double>(s.iterations));
+    void add(const GivenSettings &given) {
+        for (const SettingNumber number : setting_numbers())
+            add(given.find(number));
     }
 
     const std::vector<std::string> &get() const { return words_; }
@@ -64,7 +65,7 @@ std::vector<std::string> words(const SceneDesc &scene) {
     Words w;
     w.add(scene.title), w.add(scene.description);
     const WorldDesc &world = scene.world;
-    w.add(world.gravity), w.add(world.dt), w.add(world.method), w.add(world.settings);
+    w.add(world.method), w.add(world.settings);
     for (const auto &[method, settings] : world.other_methods)
         w.add(method), w.add(settings);
     w.number(static_cast<std::uint64_t>(world.precision)), w.number(world.seed);
@@ -116,12 +117,10 @@ class Scenes {
         scene.title = text();
         scene.description = text();
         WorldDesc &world = scene.world;
-        world.gravity = vector();
-        world.dt = one_in(2) ? 1.0 / (2 + random_.next_index(1000)) : random_.next_in(1e-9, 1);
         world.method = text();
-        world.settings = settings();
+        world.settings = settings(true);
         for (std::uint32_t i = random_.next_index(3); i > 0; --i)
-            world.other_methods[text()] = settings();
+            world.other_methods[text()] = settings(false);
         world.precision = one_in(2) ? Precision::single : Precision::dual;
         world.seed = one_in(2) ? random_.next_u64() : random_.next_index(10);
         scene.camera.target = vector();
@@ -202,10 +201,21 @@ class Scenes {
         return glm::vec3(r, g, channel());
     }
 
-    MethodSettings settings() {
-        const auto count = [&] { return static_cast<int>(random_.next_index(50)); };
-        const int substeps = count();
-        return {substeps, count()};
+    // Half of the settings, somewhere in their ranges.
+    GivenSettings settings(bool of_world) {
+        GivenSettings given;
+        for (const SettingNumber number : setting_numbers()) {
+            const SettingRow &row = number.setting();
+            const bool chosen = number.component > 0 ? given.has(row) : one_in(2);
+            if (!chosen || (row.group == SettingGroup::world && !of_world))
+                continue;
+            double value = one_in(2) ? 1.0 / (2 + random_.next_index(1000))
+                                     : random_.next_in(row.min, row.max);
+            if (is_whole(row))
+                value = std::round(random_.next_in(row.min, row.max));
+            given.give(number, value);
+        }
+        return given;
     }
 
     BodyDesc body(const SceneDesc &scene) {
@@ -377,7 +387,7 @@ TEST(RoundTrip, RepeatsComeOutFlat) {
 TEST(RoundTrip, TextReadsWell) {
     SceneDesc scene;
     scene.title = "One ball";
-    scene.world.dt = 1.0 / 120;
+    scene.world.settings.give(&StepSettings::dt, 1.0 / 120);
     scene.camera.yaw = 30 * (3.14159265358979323846 / 180);
     BodyDesc &ball = scene.bodies.emplace_back();
     ball.name = "ball";

@@ -38,8 +38,7 @@ TEST(SceneFileValues, EmptyFileIsTheDefaultScene) {
     const SceneDesc scene = parse("");
     EXPECT_EQ(scene.name, "some scene");
     EXPECT_TRUE(scene.bodies.empty());
-    EXPECT_EQ(scene.world.gravity, glm::dvec3(0, -9.81, 0));
-    EXPECT_EQ(scene.world.dt, 1.0 / 60);
+    EXPECT_TRUE(scene.world.settings.empty());
 }
 
 TEST(SceneFileValues, World) {
@@ -63,18 +62,19 @@ iterations = 2
 )");
     EXPECT_EQ(scene.title, "T");
     EXPECT_EQ(scene.description, "two\nlines");
-    EXPECT_EQ(scene.world.gravity, glm::dvec3(1, -2.5, 3));
-    EXPECT_EQ(scene.world.dt, 1.0 / 120);
+    const StepSettings world = scene.world.settings.applied();
+    EXPECT_EQ(world.gravity, glm::dvec3(1, -2.5, 3));
+    EXPECT_EQ(world.dt, 1.0 / 120);
     EXPECT_EQ(scene.world.method, "pgs");
-    EXPECT_EQ(scene.world.settings.substeps, 3);
-    EXPECT_EQ(scene.world.settings.iterations, 40);
+    EXPECT_EQ(world.substeps, 3);
+    EXPECT_EQ(world.iterations, 40);
     EXPECT_EQ(scene.world.precision, Precision::dual);
     EXPECT_EQ(scene.world.seed, 18U);
     ASSERT_EQ(scene.world.other_methods.size(), 2U);
-    EXPECT_EQ(scene.world.other_methods.at("soft_step").substeps, 8);
-    EXPECT_EQ(scene.world.other_methods.at("xpbd").iterations, 2);
-    EXPECT_EQ(parse("[world]\ndt = 0.005\n").world.dt, 0.005);
-    EXPECT_EQ(parse("[world]\ndt = \" 0.5 / 60 \"\n").world.dt, 0.5 / 60);
+    EXPECT_EQ(scene.world.other_methods.at("soft_step").applied().substeps, 8);
+    EXPECT_EQ(scene.world.other_methods.at("xpbd").applied().iterations, 2);
+    EXPECT_EQ(parse("[world]\ndt = 0.005\n").world.settings.applied().dt, 0.005);
+    EXPECT_EQ(parse("[world]\ndt = \" 0.5 / 60 \"\n").world.settings.applied().dt, 0.5 / 60);
     EXPECT_EQ(parse("[world]\nseed = \"18446744073709551615\"\n").world.seed,
               18446744073709551615U);
 }

@@ -241,15 +241,7 @@ SceneDesc WorldSimulation::describe() const {
     out.joints.clear();
     out.contacts.clear();
     out.step_count = world.step_count();
-    out.world.gravity = world.settings().gravity;
-    out.world.dt = world.settings().dt;
-    const std::string method(world.method().info.name);
-    if (method != out.world.method) { // the scene's own becomes one of the others
-        out.world.other_methods[out.world.method] = out.world.settings;
-        out.world.other_methods.erase(method);
-    }
-    out.world.method = method;
-    out.world.settings = {world.settings().substeps, world.settings().iterations};
+    set_run(out.world, method(), world.settings());
     std::erase_if(out.expects, [this](const ExpectDesc &expect) {
         return !expect.body.empty() && !book_->index_of.contains(expect.body);
     });
