@@ -198,7 +198,8 @@ std::string number_or_fraction(double value) {
     const double n = std::round(1 / value);
     const bool exact = n >= 2 && n <= 100'000 && same_bits(1 / n, value);
     const std::string quotient = exact ? "1/" + shortest(n) : digits;
-    return quotient.size() < digits.size() ? quotient : digits;
+    constexpr std::size_t plain = 6; // "0.125" reads better than "1/8"
+    return digits.size() > plain && quotient.size() < digits.size() ? quotient : digits;
 }
 
 std::string settings_as_markdown() {

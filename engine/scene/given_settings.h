@@ -56,8 +56,8 @@ GivenSettings parse_setting(std::string_view text);
 // As parse_setting has it, after the "=".
 std::string setting_text(const SettingRow &row, const StepSettings &settings);
 
-// The fewest digits that read back to the same value, or 1/n where that is the very number and
-// shorter. May be read by parse_number.
+// The fewest digits that read back to the same value, or 1/n where that is the very number and the
+// digits are many. parse_number reads it.
 std::string number_or_fraction(double value);
 
 // The table for people: name, values, default, methods that read it, reason; in Markdown.

@@ -33,8 +33,7 @@ bool same(const StepSettings &a, const StepSettings &b) {
 
 SceneDesc parsed(const std::string &text) {
     const SceneFileResult result = parse_scene(text, "s.toml");
-    for (const SceneMessage &message : result.messages)
-        ADD_FAILURE() << format_message("s.toml", message) << '\n' << text;
+    EXPECT_TRUE(result.ok()) << format_message("s.toml", result.messages.front()) << '\n' << text;
     return result.scene;
 }
 
