@@ -187,9 +187,11 @@ GivenSettings parse_setting(std::string_view text) {
 std::string setting_text(const SettingRow &row, const StepSettings &settings) {
     std::string text;
     for (const SettingNumber number : setting_numbers())
-        if (&number.setting() == &row)
-            text +=
-                (text.empty() ? "" : ", ") + number_or_fraction(setting_value(settings, number));
+        if (&number.setting() == &row) { // an array in a file holds no fractions
+            const double value = setting_value(settings, number);
+            text += (text.empty() ? "" : ", ") +
+                    (is_vector(row) ? shortest(value) : number_or_fraction(value));
+        }
     return text;
 }
 
