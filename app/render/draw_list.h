@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
@@ -31,10 +32,17 @@ struct DrawShape {
     bool glass = false;       // what is behind or inside shows through
 };
 
-// Flat triangles, each three corners, seen from both sides.
+// Flat triangles, each three corners, in a frame of their own.
+using Corners = std::vector<glm::vec3>;
+
+// Seen from both sides. The renderer keeps what it made of the corners as long as they live: they
+// are not changed, and lists that show the same share them.
 struct DrawMesh {
-    std::vector<glm::vec3> corners;
+    std::shared_ptr<const Corners> corners; // never null
+    glm::vec3 position{0};
+    glm::quat rotation{1, 0, 0, 0}; // unit
     glm::vec3 colour{0.7f};
+    bool highlighted = false;
     bool glass = false;
 };
 

@@ -44,13 +44,14 @@ bool has_finite_pose(const DrawShape &shape) {
 DrawShape box_around(const DrawMesh &mesh) {
     glm::vec3 low(std::numeric_limits<float>::max());
     glm::vec3 high(std::numeric_limits<float>::lowest());
-    for (const glm::vec3 &corner : mesh.corners) {
+    for (const glm::vec3 &corner : *mesh.corners) {
         low = glm::min(low, corner);
         high = glm::max(high, corner);
     }
     DrawShape box;
     box.kind = DrawKind::box;
-    box.position = 0.5f * (low + high);
+    box.position = mesh.position + mesh.rotation * (0.5f * (low + high));
+    box.rotation = mesh.rotation;
     box.size = 0.5f * (high - low);
     return box;
 }
@@ -298,6 +299,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     if (!outlined.instances.empty())
         parts.draw_outlines(outlined);
     parts.marks.draw(list);
+    parts.meshes.forget_unused();
 
     glDisable(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_DEPTH_TEST);

@@ -79,24 +79,10 @@ ShapeInstance instance_of(const DrawShape &shape, const glm::vec3 &origin) {
 TriangleBatch triangle_batch(const std::vector<DrawMesh> &meshes, const glm::vec3 &origin,
                              bool glass) {
     TriangleBatch batch;
-    for (const DrawMesh &mesh : meshes) {
-        if (mesh.glass != glass)
-            continue;
-        const std::size_t first = batch.vertices.size();
-        for (std::size_t i = 0; i + 2 < mesh.corners.size(); i += 3) {
-            const std::array corners{mesh.corners[i], mesh.corners[i + 1], mesh.corners[i + 2]};
-            const glm::vec3 across = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-            const float twice_area = glm::length(across);
-            if (!(twice_area > 0) || !std::isfinite(twice_area))
-                continue;
-            for (const glm::vec3 &corner : corners)
-                batch.vertices.push_back({corner - origin, across / twice_area, 0});
-        }
-        const std::size_t count = batch.vertices.size() - first;
-        if (count > 0)
-            batch.parts.push_back({static_cast<GLint>(first), static_cast<GLsizei>(count),
-                                   linear_from_srgb(mesh.colour)});
-    }
+    for (const DrawMesh &mesh : meshes)
+        if (mesh.glass == glass && finite(mesh.position))
+            batch.parts.push_back({mesh.corners, mesh.position - origin, mesh.rotation,
+                                   linear_from_srgb(mesh.colour), mesh.highlighted ? 1.0f : 0.0f});
     return batch;
 }
 
@@ -127,12 +113,13 @@ ShapeMeshes::ShapeMeshes() {
     attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal), 0);
     attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, end), 0);
     glGenBuffers(1, &instances_);
-    glGenBuffers(1, &triangles_);
     glGenVertexArrays(1, &triangle_array_);
 }
 
 ShapeMeshes::~ShapeMeshes() {
-    const std::array buffers{vertices_, indices_, instances_, triangles_};
+    for (const auto &[corners, kept] : triangles_)
+        glDeleteBuffers(1, &kept.buffer);
+    const std::array buffers{vertices_, indices_, instances_};
     glDeleteBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
     const std::array arrays{shape_array_, triangle_array_};
     glDeleteVertexArrays(static_cast<GLsizei>(arrays.size()), arrays.data());
@@ -159,20 +146,55 @@ void ShapeMeshes::draw(const ShapeBatch &batch) const {
     }
 }
 
+const ShapeMeshes::Triangles &
+ShapeMeshes::triangles_of(const std::shared_ptr<const Corners> &corners) const {
+    Triangles &kept = triangles_[corners.get()];
+    if (kept.corners.lock() == corners)
+        return kept;
+    if (kept.buffer == 0) // else of others, at the same address
+        glGenBuffers(1, &kept.buffer);
+    std::vector<MeshVertex> vertices;
+    for (std::size_t i = 0; i + 2 < corners->size(); i += 3) {
+        const std::array three{(*corners)[i], (*corners)[i + 1], (*corners)[i + 2]};
+        const glm::vec3 across = glm::cross(three[1] - three[0], three[2] - three[0]);
+        const float twice_area = glm::length(across);
+        if (!(twice_area > 0) || !std::isfinite(twice_area))
+            continue;
+        for (const glm::vec3 &corner : three)
+            vertices.push_back({corner, across / twice_area, 0});
+    }
+    upload(kept.buffer, std::as_bytes(std::span(vertices)));
+    kept.corners = corners;
+    kept.count = static_cast<int>(vertices.size());
+    return kept;
+}
+
+void ShapeMeshes::forget_unused() {
+    for (auto kept = triangles_.begin(); kept != triangles_.end();)
+        if (kept->second.corners.expired()) {
+            glDeleteBuffers(1, &kept->second.buffer);
+            kept = triangles_.erase(kept);
+        } else {
+            ++kept;
+        }
+}
+
 void ShapeMeshes::draw(const TriangleBatch &batch) const {
-    if (batch.parts.empty())
-        return;
     glBindVertexArray(triangle_array_);
-    upload(triangles_, std::as_bytes(std::span(batch.vertices)));
-    attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position), 0);
-    attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal), 0);
-    attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, end), 0);
-    glVertexAttrib4f(3, 0, 0, 0, 0);
-    glVertexAttrib4f(4, 0, 0, 0, 1);
     glVertexAttrib4f(5, 1, 1, 1, mesh_kind);
     for (const TriangleBatch::Part &part : batch.parts) {
-        glVertexAttrib4f(6, part.colour.r, part.colour.g, part.colour.b, 0);
-        glDrawArrays(GL_TRIANGLES, part.first, part.count);
+        const Triangles &triangles = triangles_of(part.corners);
+        if (triangles.count == 0)
+            continue;
+        glBindBuffer(GL_ARRAY_BUFFER, triangles.buffer);
+        attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position), 0);
+        attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal), 0);
+        attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, end), 0);
+        glVertexAttrib4f(3, part.position.x, part.position.y, part.position.z, 0);
+        const glm::quat &q = part.rotation;
+        glVertexAttrib4f(4, q.x, q.y, q.z, q.w);
+        glVertexAttrib4f(6, part.colour.r, part.colour.g, part.colour.b, part.highlight);
+        glDrawArrays(GL_TRIANGLES, 0, triangles.count);
     }
 }
 

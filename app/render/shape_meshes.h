@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -66,13 +68,14 @@ ShapeBatch shape_batch(std::span<const DrawShape> shapes, const glm::vec3 &origi
     return batch;
 }
 
-// All meshes that are glass, or all that are not: their triangles one after the other.
+// All meshes that are glass, or all that are not.
 struct TriangleBatch {
-    std::vector<MeshVertex> vertices; // relative to the camera's target
     struct Part {
-        int first = 0;
-        int count = 0;
+        std::shared_ptr<const Corners> corners;
+        glm::vec3 position{0}; // relative to the camera's target
+        glm::quat rotation{1, 0, 0, 0};
         glm::vec3 colour{0}; // linear
+        float highlight = 0;
     };
     std::vector<Part> parts;
 };
@@ -91,7 +94,17 @@ class ShapeMeshes {
     void draw(const ShapeBatch &batch) const;
     void draw(const TriangleBatch &batch) const;
 
+    // Once a frame: gives back what was kept for corners that are no more.
+    void forget_unused();
+
   private:
+    struct Triangles {
+        std::weak_ptr<const Corners> corners;
+        unsigned buffer = 0;
+        int count = 0; // of vertices
+    };
+    const Triangles &triangles_of(const std::shared_ptr<const Corners> &corners) const;
+
     struct Range {
         std::size_t first_index = 0; // in bytes
         int index_count = 0;
@@ -102,8 +115,8 @@ class ShapeMeshes {
     unsigned indices_ = 0;
     unsigned instances_ = 0;
     unsigned shape_array_ = 0;
-    unsigned triangles_ = 0;
     unsigned triangle_array_ = 0;
+    mutable std::map<const Corners *, Triangles> triangles_; // kept from frame to frame
 };
 
 } // namespace plumb

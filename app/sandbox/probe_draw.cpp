@@ -1,6 +1,7 @@
 #include "app/sandbox/probe_draw.h"
 
 #include "app/render/palette.h"
+#include "app/sandbox/shape_draw.h"
 #include "engine/core/check.h"
 
 #include <algorithm>
@@ -44,35 +45,8 @@ glm::vec3 colour_of(ProbeTone tone, std::size_t number) {
     PLUMB_CHECK(false, "unknown tone " << static_cast<int>(tone));
 }
 
-void add_solid(DrawList &list, const ProbeSolid &solid) {
-    const ProbeShapeDesc &desc = solid.shape;
-    DrawShape shape;
-    shape.position = glm::vec3(desc.position);
-    shape.colour = colour_of(solid.tone, solid.number);
-    shape.glass = !solid.is_opaque;
-    const auto radius = static_cast<float>(desc.radius);
-    const auto half_height = static_cast<float>(desc.half_height);
-    switch (desc.kind) {
-    case ProbeShapeKind::sphere:
-        shape.kind = DrawKind::sphere;
-        shape.size = glm::vec3(radius);
-        break;
-    case ProbeShapeKind::box:
-    case ProbeShapeKind::aabb:
-        shape.kind = DrawKind::box;
-        shape.size = glm::vec3(desc.half_extents);
-        break;
-    case ProbeShapeKind::capsule:
-    case ProbeShapeKind::cylinder:
-        shape.kind = desc.kind == ProbeShapeKind::capsule ? DrawKind::capsule : DrawKind::cylinder;
-        shape.size = {radius, half_height, 0};
-        break;
-    default:
-        PLUMB_CHECK(false, "a " << probe_shape_name(desc.kind) << " is drawn as a surface");
-    }
-    if (desc.kind != ProbeShapeKind::aabb && desc.kind != ProbeShapeKind::sphere)
-        shape.rotation = glm::quat(desc.orientation);
-    list.shapes.push_back(shape);
+ShapeDesc shape_of(const ProbeSolid &solid) {
+    return std::visit([](const auto &shape) { return ShapeDesc(shape); }, solid.shape);
 }
 
 float width_of(const ProbeLine &line) {
@@ -105,13 +79,16 @@ void add_line(DrawList &list, const ProbeLine &line) {
 constexpr double stalk = 0.6;
 
 void add_answer(DrawList &list, const ProbeAnswer &answer) {
-    for (const ProbeSolid &solid : answer.solids)
-        add_solid(list, solid);
+    for (const ProbeSolid &solid : answer.solids) {
+        ShapeStyle style;
+        style.colour = colour_of(solid.tone, solid.number);
+        style.glass = !solid.is_opaque;
+        draw_shape(list, shape_of(solid), solid.position, solid.orientation, style);
+    }
     for (const ProbeSurface &surface : answer.surfaces) {
         DrawMesh mesh;
-        mesh.corners.reserve(surface.corners.size());
-        for (const glm::dvec3 &corner : surface.corners)
-            mesh.corners.emplace_back(corner);
+        mesh.corners =
+            std::make_shared<const Corners>(surface.corners.begin(), surface.corners.end());
         mesh.colour = colour_of(surface.tone, surface.number);
         mesh.glass = !surface.is_opaque;
         list.meshes.push_back(std::move(mesh));
@@ -124,14 +101,9 @@ void add_answer(DrawList &list, const ProbeAnswer &answer) {
 
 template <typename Visit> void for_each_place(const ProbeAnswer &answer, Visit &&visit) {
     for (const ProbeSolid &solid : answer.solids) {
-        const ProbeShapeDesc &shape = solid.shape;
-        const bool is_box = shape.kind == ProbeShapeKind::box || shape.kind == ProbeShapeKind::aabb;
-        const double reach = is_box ? glm::length(shape.half_extents)
-                             : shape.kind == ProbeShapeKind::sphere
-                                 ? shape.radius
-                                 : shape.radius + shape.half_height;
-        visit(shape.position - reach);
-        visit(shape.position + reach);
+        const double far = reach(shape_of(solid));
+        visit(solid.position - far);
+        visit(solid.position + far);
     }
     for (const ProbeSurface &surface : answer.surfaces)
         for (const glm::dvec3 &corner : surface.corners)

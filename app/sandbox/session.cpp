@@ -248,10 +248,15 @@ void Session::move_probe(std::size_t probe, std::size_t handle, const glm::dvec3
 // Brings the files that the scene names along, as it looks for them beside itself.
 void Session::save_mesh_files(const std::filesystem::path &folder) const {
     std::set<std::string> names;
+    const auto add = [&](const auto &of) {
+        if (const ShapeFile *file = shape_file(of.shape))
+            names.insert(file->name);
+    };
     for (const ProbeDesc &probe : probes_)
-        for (const ProbeShapeDesc &shape : probe.shapes)
-            if (!shape.file.empty())
-                names.insert(shape.file);
+        std::ranges::for_each(probe.shapes, add);
+    for (std::size_t body = 0; body < simulation_->body_count(); ++body)
+        if (simulation_->body_info(body).alive)
+            std::ranges::for_each(simulation_->body_info(body).colliders, add);
     for (const std::string &name : names) {
         const std::filesystem::path from = path_.parent_path() / name;
         const std::filesystem::path to = folder / name;

@@ -2,12 +2,12 @@
 
 #include "app/render/palette.h"
 #include "app/sandbox/joint_draw.h"
+#include "app/sandbox/shape_draw.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
-#include <variant>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -16,33 +16,7 @@ namespace plumb {
 
 namespace {
 
-template <typename... Cases> struct Overloaded : Cases... { using Cases::operator()...; };
-template <typename... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
-
-// Of a sphere about the shape's own origin that holds it; 0 for a plane.
-double reach(const ShapeDesc &shape) {
-    const auto farthest = [](const auto &points) {
-        double far = 0;
-        for (const glm::dvec3 &point : points)
-            far = std::max(far, glm::length(point));
-        return far;
-    };
-    return std::visit(
-        Overloaded{[](const SphereDesc &s) { return s.radius; },
-                   [](const BoxDesc &b) { return glm::length(b.half_extents); },
-                   [](const CapsuleDesc &c) { return c.half_height + c.radius; },
-                   [](const CylinderDesc &c) { return std::hypot(c.half_height, c.radius); },
-                   [&](const HullDesc &h) { return farthest(*h.points); },
-                   [](const PlaneDesc &) { return 0.0; },
-                   [&](const MeshDesc &m) { return farthest(m.data->vertices); },
-                   [](const HeightFieldDesc &f) {
-                       const BoundsDesc box = bounds(f, {}, {1, 0, 0, 0});
-                       return glm::length(glm::max(-box.min, box.max));
-                   }},
-        shape);
-}
-
-// Likewise about the body's origin.
+// Of a sphere about the body's origin that holds its shapes; 0 for a plane.
 double reach(const BodyInfo &body) {
     double far = 0;
     for (const ColliderDesc &collider : body.colliders)
@@ -68,45 +42,15 @@ glm::vec3 colour_of(const BodyInfo &body, std::size_t index) {
     return palette_colour(index);
 }
 
-void add_collider(DrawList &list, const ColliderDesc &collider, const Pose &pose, DrawShape shape) {
-    shape.position = glm::vec3(pose.position + pose.orientation * collider.position);
-    shape.rotation = glm::quat(pose.orientation * collider.orientation);
-    std::visit(
-        Overloaded{
-            [&](const SphereDesc &s) {
-                shape.kind = DrawKind::sphere;
-                shape.size = glm::vec3(static_cast<float>(s.radius));
-            },
-            [&](const BoxDesc &b) {
-                shape.kind = DrawKind::box;
-                shape.size = glm::vec3(b.half_extents);
-            },
-            [&](const CapsuleDesc &c) {
-                shape.kind = DrawKind::capsule;
-                shape.size = {static_cast<float>(c.radius), static_cast<float>(c.half_height), 0};
-            },
-            [&](const CylinderDesc &c) {
-                shape.kind = DrawKind::cylinder;
-                shape.size = {static_cast<float>(c.radius), static_cast<float>(c.half_height), 0};
-            },
-            [&](const HullDesc &) {},
-            [&](const PlaneDesc &) {
-                list.planes.push_back({shape.position, shape.rotation});
-            },
-            [&](const MeshDesc &) {}, [&](const HeightFieldDesc &) {}},
-        collider.shape);
-    if (!is_plane(collider.shape))
-        list.shapes.push_back(shape);
-}
-
 void add_body(DrawList &list, const BodyInfo &body, const Pose &pose, std::size_t index,
               const WorldDrawOptions &options) {
-    DrawShape shape;
-    shape.colour = colour_of(body, index);
-    shape.selected = options.selected == index;
-    shape.highlighted = options.hovered == index;
+    ShapeStyle style;
+    style.colour = colour_of(body, index);
+    style.selected = options.selected == index;
+    style.highlighted = options.hovered == index;
     for (const ColliderDesc &collider : body.colliders)
-        add_collider(list, collider, pose, shape);
+        draw_shape(list, collider.shape, pose.position + pose.orientation * collider.position,
+                   pose.orientation * collider.orientation, style);
 }
 
 void add_line(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, const glm::vec3 &colour,

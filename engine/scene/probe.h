@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -35,9 +36,11 @@ struct ProbeValue {
     Form form = Form::number;
 };
 
-// A sphere, box, aabb, capsule or cylinder.
+using SolidDesc = std::variant<SphereDesc, BoxDesc, CapsuleDesc, CylinderDesc>;
 struct ProbeSolid {
-    ProbeShapeDesc shape;
+    SolidDesc shape;
+    glm::dvec3 position{0};
+    glm::dquat orientation{1, 0, 0, 0};
     ProbeTone tone = ProbeTone::plain;
     std::size_t number = 0; // tells plain ones apart
     bool is_opaque = false;

@@ -1,7 +1,8 @@
 #include "engine/scene/probe_desc.h"
 
+#include "engine/scene/shape_kinds.h"
+
 #include <algorithm>
-#include <array>
 
 #include <glm/geometric.hpp>
 
@@ -9,26 +10,22 @@ namespace plumb {
 
 namespace {
 
-constexpr std::array<std::string_view, 16> shape_names{
-    "sphere",       "box",          "aabb",     "capsule",   "cylinder",
-    "plane",        "segment",      "triangle", "hull",      "mesh",
-    "height_field", "flat_segment", "circle",   "rectangle", "oriented_rectangle",
-    "compound"};
-
 // The places of the probe that can be moved, in the order of their handles. `visit` is given the
 // present place and a function that moves it; a probe that is const must not be moved.
 template <typename Probe, typename Visit> void for_each_handle(Probe &probe, Visit &&visit) {
     for (auto &point : probe.points)
         visit(point, [&](const auto &place) { point = place; });
-    for (auto &shape : probe.shapes) {
-        if (shape.kind == ProbeShapeKind::segment || shape.kind == ProbeShapeKind::flat_segment ||
-            shape.kind == ProbeShapeKind::triangle) {
-            for (auto &point : shape.points)
-                visit(point, [&](const auto &place) { point = place; });
-        } else if (probe.question != ProbeQuestion::models || shape.parent.empty()) {
-            visit(shape.position, [&](const auto &place) { shape.position = place; });
-        }
-    }
+    for (auto &placed : probe.shapes)
+        std::visit(
+            [&](auto &shape) {
+                if constexpr (requires { shape.points.front(); }) {
+                    for (auto &point : shape.points)
+                        visit(point, [&](const auto &place) { point = place; });
+                } else if (probe.question != ProbeQuestion::models || placed.parent.empty()) {
+                    visit(placed.position, [&](const auto &place) { placed.position = place; });
+                }
+            },
+            placed.shape);
     if (probe.question == ProbeQuestion::cast)
         visit(probe.shapes.front().position + probe.motion, [&](const auto &place) {
             if (place != probe.shapes.front().position)
@@ -226,23 +223,21 @@ const ProbeQuestionInfo &probe_question(ProbeQuestion question) {
     return probe_questions()[static_cast<std::size_t>(question)];
 }
 
-std::string_view probe_shape_name(ProbeShapeKind kind) {
-    return shape_names[static_cast<std::size_t>(kind)];
+std::string_view shape_name(const ProbeShape &shape) {
+    return std::visit(
+        []<typename Shape>(const Shape &) { return scene_file::Kind<Shape>::info.name; }, shape);
 }
 
-std::vector<std::string_view> probe_shape_names() {
-    return {shape_names.begin(), shape_names.end()};
-}
-
-bool is_flat(ProbeShapeKind kind) {
-    return kind >= ProbeShapeKind::flat_segment;
+bool is_flat(const ProbeShape &shape) {
+    return std::visit(
+        []<typename Shape>(const Shape &) { return scene_file::Kind<Shape>::info.is_flat; }, shape);
 }
 
 bool is_flat(const ProbeDesc &probe) {
     return probe.question == ProbeQuestion::enclose ||
            (probe.tree && *probe.tree == ProbeTree::quadtree) ||
            std::ranges::any_of(probe.shapes,
-                               [](const ProbeShapeDesc &shape) { return is_flat(shape.kind); });
+                               [](const ProbeShapeDesc &shape) { return is_flat(shape.shape); });
 }
 
 std::vector<glm::dvec3> probe_handles(const ProbeDesc &probe) {

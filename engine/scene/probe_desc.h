@@ -2,14 +2,15 @@
 // they are answered is probe.h's business. SI units, radians.
 #pragma once
 
-#include "engine/scene/obj_file.h"
+#include "engine/scene/shape_desc.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
@@ -22,45 +23,53 @@ namespace plumb {
 inline constexpr std::size_t max_scene_probes = 1000;
 inline constexpr std::size_t max_probe_shapes = 1000;
 inline constexpr std::size_t max_probe_points = 10'000;
-inline constexpr int max_probe_items = 20'000;                   // scattered
-inline constexpr std::size_t max_probe_mesh_triangles = 100'000; // from a file
+inline constexpr int max_probe_items = 20'000; // scattered
 
-enum class ProbeShapeKind {
-    sphere,
-    box,
-    aabb,
-    capsule,
-    cylinder,
-    plane,
-    segment,
-    triangle,
-    hull,
-    mesh,
-    height_field,
-    flat_segment, // from here on in the xy plane
-    circle,
-    rectangle,
-    oriented_rectangle,
-    compound,
+// Shapes that can be asked, besides those of bodies. A box whose axes are the world's:
+struct AabbDesc {
+    glm::dvec3 half_extents{0.5};
+};
+// In the world.
+struct SegmentDesc {
+    std::array<glm::dvec3, 2> points{};
+};
+struct TriangleDesc {
+    std::array<glm::dvec3, 3> points{};
+};
+// From here on in the xy plane.
+struct FlatSegmentDesc {
+    std::array<glm::dvec3, 2> points{};
+};
+struct CircleDesc {
+    double radius = 0.5;
+};
+struct RectangleDesc {
+    glm::dvec3 half_extents{0.5, 0.5, 0};
+};
+struct OrientedRectangleDesc {
+    glm::dvec3 half_extents{0.5, 0.5, 0};
+    double angle = 0; // counter-clockwise
+};
+using FlatPartShape = std::variant<CircleDesc, RectangleDesc, OrientedRectangleDesc>;
+struct FlatPartDesc {
+    FlatPartShape shape;
+    glm::dvec3 position{0}; // about the compound's
+};
+struct FlatCompoundDesc {
+    std::vector<FlatPartDesc> parts;
 };
 
-// Each kind reads what concerns it.
+// In the order in which messages list them.
+using ProbeShape =
+    std::variant<SphereDesc, BoxDesc, AabbDesc, CapsuleDesc, CylinderDesc, PlaneDesc, SegmentDesc,
+                 TriangleDesc, HullDesc, MeshDesc, HeightFieldDesc, FlatSegmentDesc, CircleDesc,
+                 RectangleDesc, OrientedRectangleDesc, FlatCompoundDesc>;
+
 struct ProbeShapeDesc {
-    ProbeShapeKind kind = ProbeShapeKind::sphere;
-    glm::dvec3 position{0}; // the centre; of a plane: a point of it
-    glm::dquat orientation{1, 0, 0, 0};
-    double angle = 0; // oriented_rectangle: counter-clockwise
-    double radius = 0.5;
-    double half_height = 0.5;       // along the own y axis, without the round ends
-    glm::dvec3 half_extents{0.5};   // of the whole model for a mesh or a height field
-    std::vector<glm::dvec3> points; // segments: 2, triangle: 3, world; hull: 4 or more, own frame
-    std::string model;              // mesh: "ball", "torus", "knot" or "bowl"; or else a file's:
-    std::string file;               // its name, beside the scene
-    std::shared_ptr<const ObjMesh> file_mesh; // what was in it when the scene was read
-    double scale = 1;                         // of the file's numbers
-    int detail = 8;                           // model, height_field: how finely it is cut
-    std::vector<ProbeShapeDesc> parts;        // compound: circles, rectangles, about its position
-    std::string name, parent;                 // in "models": parents come before their children
+    ProbeShape shape;
+    glm::dvec3 position{0};             // the centre; of a plane: a point of it
+    glm::dquat orientation{1, 0, 0, 0}; // identity for kinds that are not turned
+    std::string name{}, parent{};       // in "models": parents come before their children
 };
 
 // origin + t * direction, 0 <= t <= max_t; or, with an end, the segment to it.
@@ -158,10 +167,8 @@ struct ProbeQuestionInfo {
 const std::vector<ProbeQuestionInfo> &probe_questions(); // in the order of the enumeration
 const ProbeQuestionInfo &probe_question(ProbeQuestion question);
 
-// The name in files.
-std::string_view probe_shape_name(ProbeShapeKind kind);
-std::vector<std::string_view> probe_shape_names(); // in the order of the enumeration
-bool is_flat(ProbeShapeKind kind);                 // in the xy plane
+std::string_view shape_name(const ProbeShape &shape); // in files
+bool is_flat(const ProbeShape &shape);                // in the xy plane
 
 // Whether all of the probe lies in the xy plane.
 bool is_flat(const ProbeDesc &probe);

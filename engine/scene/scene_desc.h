@@ -21,6 +21,7 @@ namespace plumb {
 
 // Stated limits: beyond these a scene is refused.
 inline constexpr std::size_t max_scene_bodies = 200'000;
+inline constexpr std::size_t max_body_shapes = 1000;
 inline constexpr std::size_t max_scene_joints = 200'000;
 // Each length, speed, density, mass and so on of a scene is at most this in magnitude, and those
 // that must be positive are at least 1 / this: their products then stay finite in float.

@@ -1,5 +1,9 @@
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/scene_file_reading.h"
+#include "engine/scene/scene_file_spelling.h"
+#include "engine/scene/shape_kinds.h"
+
+#include <algorithm>
 
 namespace plumb::scene_file {
 
@@ -10,89 +14,99 @@ void add_body(Reading &reading, BodyDesc body, const FilePosition &at) {
     reading.positions.bodies.push_back(at);
 }
 
-bool read_shape(const Table &table, ShapeDesc &read) {
-    static constexpr std::array<std::string_view, 4> shapes{"sphere", "box", "capsule", "plane"};
-    if (!table.require("shape", R"(shape = "sphere", "box", "capsule" or "plane")"))
-        return false;
-    const std::optional<std::size_t> shape = table.choice("shape", shapes);
-    if (!shape)
-        return false;
-    switch (*shape) {
-    case 0: {
-        table.refuse({"half_extents", "half_height"}, "a sphere", "its size is its radius");
-        if (!table.require("radius", "radius = metres"))
-            return false;
-        const std::optional<double> radius = table.number("radius", positive);
-        read = SphereDesc{radius.value_or(1)};
-        return radius.has_value();
-    }
-    case 1: {
-        table.refuse({"radius", "half_height"}, "a box", "its size is half_extents");
-        if (!table.require("half_extents", "half_extents = [x, y, z] in metres"))
-            return false;
-        const std::optional<glm::dvec3> half = table.vector("half_extents", positive);
-        read = BoxDesc{half.value_or(glm::dvec3(1))};
-        return half.has_value();
-    }
-    case 2: {
-        table.refuse({"half_extents"}, "a capsule", "its size is half_height and radius");
-        const bool has_height =
-            table.require("half_height", "half_height = metres, without the round ends");
-        const bool has_radius = table.require("radius", "radius = metres");
-        const std::optional<double> height = table.number("half_height", positive);
-        const std::optional<double> radius = table.number("radius", positive);
-        read = CapsuleDesc{height.value_or(1), radius.value_or(1)};
-        return has_height && has_radius && height && radius;
-    }
-    default:
-        table.refuse({"radius", "half_extents", "half_height"}, "a plane",
-                     "it is infinite: the solid below y = 0 of its frame");
-        read = PlaneDesc{};
-        return true;
-    }
+// Of the kinds of the body's shapes, one that cannot move by forces; else the first.
+const KindInfo &least_movable(const BodyDesc &body) {
+    const KindInfo *least = &kind_info(body.colliders.front().shape);
+    for (const ColliderDesc &collider : body.colliders)
+        if (const KindInfo &info = kind_info(collider.shape); info.moves > least->moves)
+            least = &info;
+    return *least;
 }
 
 void read_kind(const Table &table, BodyDesc &body) {
     static constexpr std::array<std::string_view, 3> kinds{"static", "kinematic", "dynamic"};
-    const bool is_plane = has_plane(body);
-    body.kind = is_plane ? BodyKind::fixed : BodyKind::dynamic;
+    const KindInfo &info = least_movable(body);
+    body.kind = info.moves == Moves::by_forces ? BodyKind::dynamic : BodyKind::fixed;
     const std::optional<std::size_t> kind = table.choice("kind", kinds);
     if (!kind)
         return;
     body.kind = static_cast<BodyKind>(*kind);
-    if (is_plane && body.kind == BodyKind::dynamic)
-        table.error("kind", "a plane cannot be dynamic",
-                    R"(kind = "static", which is a plane's default, or "kinematic")");
+    const bool can = body.kind == BodyKind::fixed || info.moves == Moves::by_forces ||
+                     (body.kind == BodyKind::kinematic && info.moves == Moves::as_told);
+    const std::string name(info.with_article);
+    if (!can)
+        table.error("kind", name + " cannot be " + std::string(kinds[*kind]),
+                    "kind = \"static\", which is " + name + "'s default" +
+                        (info.moves == Moves::as_told ? ", or \"kinematic\"" : ""));
+}
+
+// Moments of inertia about three axes: none is more than the others together.
+void read_inertia(const Table &table, BodyDesc &body) {
+    body.inertia = table.vector("inertia", positive);
+    if (!body.inertia)
+        return;
+    const glm::dvec3 &i = *body.inertia;
+    const double most = std::max({i.x, i.y, i.z});
+    if (most > (i.x + i.y + i.z - most) * (1 + 1e-9))
+        table.error("inertia", "no body has these moments of inertia",
+                    "none can be more than the other two together");
 }
 
 void read_mass(Reading &reading, const Table &table, BodyDesc &body, bool has_shape) {
-    double density = MaterialDesc{}.density;
-    if (const std::optional<std::string> material = table.string("material")) {
-        body.material = *material;
-        if (const auto found = reading.densities.find(*material); found != reading.densities.end())
-            density = found->second;
-        else
-            table.error("material", "there is no material " + in_quotes(*material),
-                        reading.materials.suggestion(*material));
-    }
-    if (has_plane(body)) {
-        table.refuse({"mass", "density"}, "a plane", "it is infinite and never moves by itself");
+    body.material = read_material_name(reading, table);
+    if (const KindInfo &info = least_movable(body); info.moves != Moves::by_forces) {
+        table.refuse({"mass", "density", "center_of_mass", "inertia", "mass_pose"},
+                     std::string(info.with_article),
+                     info.moves == Moves::never ? "it never moves"
+                                                : "it is infinite and never moves by itself");
         return;
     }
     const std::string_view key = table.one_of({"mass", "density"}, false, "");
     const std::optional<double> value = key.empty() ? std::nullopt : table.number(key, positive);
-    if (key == "mass") {
-        body.mass = value;
-        return;
+    (key == "mass" ? body.mass : body.density) = value;
+    body.center_of_mass = table.vector("center_of_mass", moderate);
+    read_inertia(table, body);
+    if (const toml::table *source = table_at(reading.report, table, "mass_pose")) {
+        static constexpr std::array<std::string_view, 2> keys{"position", "orientation"};
+        const Table sub(reading.report, *source, "mass_pose of " + table.title(), keys);
+        MassPoseDesc pose;
+        pose.position = sub.vector("position", moderate).value_or(pose.position);
+        pose.orientation = sub.unit_quaternion("orientation").value_or(pose.orientation);
+        body.mass_pose = pose;
     }
-    if (!key.empty() && !value)
+    if (!has_shape || body.mass || (!key.empty() && !value) || body.kind != BodyKind::dynamic)
         return;
-    body.density = value;
-    const double mass = value.value_or(density) * volume(body.colliders.front().shape);
-    if (has_shape && !(mass >= positive.min && mass <= positive.max))
-        table.error(key.empty() ? "shape" : key,
+    const double mass = mass_of(reading.scene, body);
+    if (!(mass >= positive.min && mass <= positive.max))
+        table.error(!key.empty()          ? key
+                    : table.has("shapes") ? "shapes"
+                                          : "shape",
                     "density times volume makes a mass of " + shortest(mass) + " kg",
                     "it must be " + std::string(positive.text) + "; give a mass");
+}
+
+void read_freedom(const Table &table, BodyDesc &body) {
+    if (const toml::node *node = table.node("locked")) {
+        const toml::array *names = node->as_array();
+        if (!names)
+            table.wrong_type(*node, "locked", R"(an array: ["z", "rotation_x", ...])");
+        for (std::size_t i = 0; names && i < names->size(); ++i) {
+            const auto *name = names->get(i)->as_string();
+            const auto found =
+                name ? std::find(locked_names.begin(), locked_names.end(), name->get())
+                     : locked_names.end();
+            if (found == locked_names.end())
+                table.error("locked",
+                            name ? "unknown axis " + in_quotes(name->get())
+                                 : "locked holds " + std::string(type_name(*names->get(i))),
+                            did_you_mean(name ? name->get() : "", locked_names));
+            else
+                body.locked[static_cast<std::size_t>(found - locked_names.begin())] = true;
+        }
+    }
+    body.gravity_scale = table.number("gravity_scale", moderate).value_or(body.gravity_scale);
+    body.linear_damping = table.number("linear_damping", not_negative).value_or(0);
+    body.angular_damping = table.number("angular_damping", not_negative).value_or(0);
 }
 
 void read_velocity(Reading &reading, const Table &table, BodyDesc &body) {
@@ -188,36 +202,51 @@ void read_material(Reading &reading, const toml::table &source) {
 }
 
 void read_body(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 19> keys{"name",
-                                                           "kind",
-                                                           "shape",
-                                                           "radius",
-                                                           "half_extents",
-                                                           "half_height",
-                                                           "material",
-                                                           "mass",
-                                                           "density",
-                                                           "position",
-                                                           "rotation_deg",
-                                                           "axis",
-                                                           "angle_deg",
-                                                           "orientation",
-                                                           "velocity",
-                                                           "angular_velocity",
-                                                           "angular_velocity_deg",
-                                                           "color",
-                                                           "repeat"};
+    static const std::vector<std::string_view> keys = [] {
+        std::vector<std::string_view> all{"name", "kind", "shape", "shapes"};
+        all.insert(all.end(), body_shape_keys().begin(), body_shape_keys().end());
+        all.insert(all.end(), {"material",
+                               "mass",
+                               "density",
+                               "center_of_mass",
+                               "inertia",
+                               "layer",
+                               "ignores",
+                               "sensor",
+                               "position",
+                               "rotation_deg",
+                               "axis",
+                               "angle_deg",
+                               "orientation",
+                               "normal",
+                               "velocity",
+                               "angular_velocity",
+                               "angular_velocity_deg",
+                               "locked",
+                               "gravity_scale",
+                               "linear_damping",
+                               "angular_damping",
+                               "color",
+                               "repeat",
+                               "mass_pose"});
+        return all;
+    }();
     const Table table(reading.report, source, title_of("body", source), keys);
     BodyDesc body;
     const std::optional<std::string> name =
         read_name(reading.report, table, "body", reading.bodies);
     body.name = name.value_or("");
-    const bool has_shape = read_shape(table, body.colliders.emplace_back().shape);
+    const bool has_shape = read_colliders(reading, table, body);
     read_kind(table, body);
     read_mass(reading, table, body, has_shape);
     body.position = table.vector("position", moderate).value_or(body.position);
-    body.orientation = read_rotation(reading.report, table);
+    body.orientation =
+        table.has("shapes")
+            ? read_rotation(reading.report, table)
+            : read_shape_rotation(reading.report, table,
+                                  std::holds_alternative<PlaneDesc>(body.colliders.front().shape));
     read_velocity(reading, table, body);
+    read_freedom(table, body);
     body.colour = table.colour("color");
 
     if (table.has("repeat")) {

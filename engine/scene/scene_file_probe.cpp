@@ -4,8 +4,11 @@
 #include "engine/scene/scene_file_names.h"
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/scene_file_place.h"
-#include "engine/scene/scene_file_probe_shape.h"
+#include "engine/scene/scene_file_shape.h"
 #include "engine/scene/scene_file_spelling.h"
+#include "engine/scene/shape_kinds.h"
+
+#include <algorithm>
 
 namespace plumb {
 
@@ -17,8 +20,8 @@ constexpr std::array<std::string_view, 3> tree_names{"quadtree", "octree", "bvh"
 
 class ProbeReader {
   public:
-    ProbeReader(Report &report, Precision precision, const std::filesystem::path &folder)
-        : report_(report), precision_(precision), shape_reader_(report, folder) {}
+    ProbeReader(Report &report, Precision precision, ShapeFiles &files)
+        : report_(report), precision_(precision), files_(files) {}
 
     void read(const toml::table &source) {
         static constexpr std::array<std::string_view, 17> keys{
@@ -96,7 +99,7 @@ class ProbeReader {
         const toml::node *node = table.node("shapes");
         const toml::array *array = node ? node->as_array() : nullptr;
         if (node && !array)
-            table.wrong_type(*node, "shapes", R"(an array: [{ kind = "sphere", ... }, ...])");
+            table.wrong_type(*node, "shapes", R"(an array: [{ shape = "sphere", ... }, ...])");
         const std::size_t count = array ? array->size() : 0;
         if (count < info.shapes.min || count > info.shapes.max) {
             table.error("shapes",
@@ -106,9 +109,53 @@ class ProbeReader {
             return;
         }
         for (std::size_t i = 0; i < count; ++i)
-            if (auto shape = shape_reader_.read(*array->get(i), "shapes", table.title(),
-                                                probe_shape_names(), &probe))
-                probe.shapes.push_back(std::move(*shape));
+            read_shape(*array->get(i), table.title(), probe);
+    }
+
+    void read_shape(const toml::node &node, const std::string &of, ProbeDesc &probe) {
+        const std::optional<std::size_t> kind =
+            read_shape_kind(report_, node, "shapes", of, kind_names<ProbeShape>());
+        if (!kind)
+            return;
+        ProbeShapeDesc placed;
+        placed.shape = shape_of_kind<ProbeShape>(*kind);
+        const KindInfo &info = kind_info(placed.shape);
+        const bool is_turned = info.placing == Placing::position_and_rotation;
+        const bool is_plane = std::holds_alternative<PlaneDesc>(placed.shape);
+        const bool has_parent = probe.question == ProbeQuestion::models;
+        std::vector<std::string_view> keys{"shape"};
+        keys.insert(keys.end(), probe_shape_keys().begin(), probe_shape_keys().end());
+        if (info.placing != Placing::by_its_points)
+            keys.emplace_back("position");
+        if (is_turned)
+            keys.insert(keys.end(), {"rotation_deg", "axis", "angle_deg", "orientation", "normal"});
+        if (has_parent)
+            keys.insert(keys.end(), {"name", "parent"});
+        const toml::table &source = *node.as_table();
+        const Table table(report_, source, "the " + std::string(info.name) + " of " + of, keys);
+        read_shape_fields(report_, files_, precision_, table, placed.shape);
+        placed.position =
+            place(table, "position", info.is_flat, moderate).value_or(placed.position);
+        if (is_turned)
+            placed.orientation = read_shape_rotation(report_, table, is_plane);
+        if (has_parent)
+            read_parent(table, probe, placed);
+        probe.shapes.push_back(std::move(placed));
+    }
+
+    static void read_parent(const Table &table, const ProbeDesc &probe, ProbeShapeDesc &shape) {
+        shape.name = table.string("name").value_or("");
+        shape.parent = table.string("parent").value_or("");
+        const auto is_named = [&](const std::string &name) {
+            return std::ranges::find(probe.shapes, name, &ProbeShapeDesc::name) !=
+                   probe.shapes.end();
+        };
+        if (!shape.name.empty() && is_named(shape.name))
+            table.error("name", "another shape is named " + in_quotes(shape.name),
+                        "give it a name of its own");
+        if (!shape.parent.empty() && !is_named(shape.parent))
+            table.error("parent", "there is no shape " + in_quotes(shape.parent) + " before this",
+                        "parents come before their children");
     }
 
     void read_points(const Table &table, const ProbeQuestionInfo &info, const std::string &asked,
@@ -210,8 +257,8 @@ class ProbeReader {
         if (!info.does_take("scatter"))
             return;
         if (!table.has("scatter")) {
-            const bool is_mesh =
-                probe.shapes.size() == 1 && probe.shapes.front().kind == ProbeShapeKind::mesh;
+            const bool is_mesh = probe.shapes.size() == 1 &&
+                                 std::holds_alternative<MeshDesc>(probe.shapes.front().shape);
             if (probe.question == ProbeQuestion::enclose && probe.points.empty())
                 table.error("points", table.title() + " has neither points nor a scatter",
                             "points = [[x, y], ...]");
@@ -271,7 +318,7 @@ class ProbeReader {
 
     Report &report_;
     Precision precision_;
-    ProbeShapeReader shape_reader_;
+    ShapeFiles &files_;
     Names names_;
     std::vector<ProbeDesc> probes_;
 };
@@ -279,8 +326,8 @@ class ProbeReader {
 } // namespace
 
 std::vector<ProbeDesc> read_probes(Report &report, const Table &top, Precision precision,
-                                   const std::filesystem::path &folder) {
-    ProbeReader reader(report, precision, folder);
+                                   ShapeFiles &files) {
+    ProbeReader reader(report, precision, files);
     std::size_t count = 0;
     for_each(report, top, "probe", [&](const toml::table &table) {
         if (++count <= max_scene_probes)

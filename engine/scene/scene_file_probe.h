@@ -3,19 +3,18 @@
 
 #include "engine/scene/scene_desc.h"
 
-#include <filesystem>
 #include <vector>
 
 namespace plumb {
 
 namespace scene_file {
 class Report;
+class ShapeFiles;
 class Table;
 } // namespace scene_file
 
-// Reports every error. A probe that the geometry refuses to answer in that precision is one. Files
-// of meshes are looked for in the folder.
+// Reports every error. A probe that the geometry refuses to answer in that precision is one.
 std::vector<ProbeDesc> read_probes(scene_file::Report &report, const scene_file::Table &top,
-                                   Precision precision, const std::filesystem::path &folder);
+                                   Precision precision, scene_file::ShapeFiles &files);
 
 } // namespace plumb

@@ -19,6 +19,7 @@ SceneFileResult read_tables(const toml::table &root, const std::filesystem::path
         "body",  "joint",       "probe", "expect",  "state"};
     Reading reading;
     reading.known_methods.assign(known_methods.begin(), known_methods.end());
+    reading.files = ShapeFiles(path.parent_path());
     SceneDesc &scene = reading.scene;
     scene.name = path.stem().string();
     const Table top(reading.report, root, "the top level of a scene", keys);
@@ -38,7 +39,7 @@ SceneFileResult read_tables(const toml::table &root, const std::filesystem::path
     read_each("body", read_body);
     read_each("joint", read_joint);
     read_each("expect", read_expect);
-    scene.probes = read_probes(reading.report, top, scene.world.precision, path.parent_path());
+    scene.probes = read_probes(reading.report, top, scene.world.precision, reading.files);
     read_one("state", read_state);
 
     if (reading.report.error_count() == 0)

@@ -4,6 +4,7 @@
 
 #include "engine/scene/repeat.h"
 #include "engine/scene/scene_file_names.h"
+#include "engine/scene/scene_file_shape.h"
 #include "engine/scene/scene_file_table.h"
 
 #include <map>
@@ -20,6 +21,7 @@ struct BodyGroup {
 struct Reading {
     std::vector<std::string_view> known_methods;
     Report report;
+    ShapeFiles files;
     SceneDesc scene;
     ScenePositions positions;
     Names materials;
@@ -42,6 +44,13 @@ void read_body(Reading &reading, const toml::table &source);
 void read_joint(Reading &reading, const toml::table &source);
 void read_expect(Reading &reading, const toml::table &source);
 void read_state(Reading &reading, const toml::table &source);
+
+// The shape of a body, or its several shapes: one at least, usable even after an error. False when
+// there was one.
+bool read_colliders(Reading &reading, const Table &table, BodyDesc &body);
+
+// The name of a material that the scene has; else, having reported it, as it stands, or empty.
+std::string read_material_name(Reading &reading, const Table &table);
 
 // How the body of that title is repeated; empty, having reported it, when that cannot be said.
 std::optional<Repeat> read_repeat(Report &report, const toml::table &source,

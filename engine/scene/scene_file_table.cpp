@@ -22,8 +22,6 @@ std::optional<std::string> misplaced(std::string_view key, std::string_view titl
         return std::string(key) + " belongs to a [[material]], which the body then names";
     if (title.starts_with("[methods.") && find_setting(key) != nullptr)
         return std::string(key) + " belongs to [world]: it is the same for all methods";
-    if (key == "inertia" && is_body)
-        return "it follows from shape and mass";
     return std::nullopt;
 }
 

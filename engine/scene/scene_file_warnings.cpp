@@ -92,6 +92,13 @@ struct AsShape {
     Found operator()(const HeightFieldDesc &) const { return std::nullopt; }
 };
 
+bool do_collide(const ColliderDesc &a, const ColliderDesc &b) {
+    const auto ignores = [](const FilterDesc &one, const FilterDesc &other) {
+        return (one.ignores >> static_cast<unsigned>(other.layer) & 1U) != 0;
+    };
+    return !a.sensor && !b.sensor && !ignores(a.filter, b.filter) && !ignores(b.filter, a.filter);
+}
+
 // How deep the shapes of two bodies are in each other at the deepest (m), as far as they are less
 // than `margin` apart; empty if they are farther.
 std::optional<double> deepest(const BodyDesc &a, const BodyDesc &b, double margin) {
@@ -107,7 +114,7 @@ std::optional<double> deepest(const BodyDesc &a, const BodyDesc &b, double margi
         const std::optional<f32::Shape> shape_a = placed(a, collider_a);
         for (const ColliderDesc &collider_b : b.colliders) {
             const std::optional<f32::Shape> shape_b = placed(b, collider_b);
-            if (!shape_a || !shape_b)
+            if (!shape_a || !shape_b || !do_collide(collider_a, collider_b))
                 continue;
             const f32::Manifold manifold =
                 f32::collide(*shape_a, *shape_b, static_cast<float>(margin));

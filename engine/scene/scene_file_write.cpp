@@ -1,6 +1,8 @@
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_file_number.h"
+#include "engine/scene/scene_file_shape_write.h"
 #include "engine/scene/scene_file_text.h"
+#include "engine/scene/shape_kinds.h"
 
 #include <algorithm>
 #include <array>
@@ -118,135 +120,87 @@ class SceneWriter {
             line("color", array3(*material.colour));
     }
 
-    void write_shape(const SphereDesc &sphere) {
-        line("shape", "\"sphere\"");
-        line("radius", shortest(sphere.radius));
+    void lines(const std::vector<std::string> &fields) {
+        for (const std::string &field : fields)
+            text_ += field + "\n";
     }
-    void write_shape(const BoxDesc &box) {
-        line("shape", "\"box\"");
-        line("half_extents", array3(box.half_extents));
-    }
-    void write_shape(const CapsuleDesc &capsule) {
-        line("shape", "\"capsule\"");
-        line("half_height", shortest(capsule.half_height));
-        line("radius", shortest(capsule.radius));
-    }
-    void write_shape(const PlaneDesc &) { line("shape", "\"plane\""); }
-    void write_shape(const CylinderDesc &) {}
-    void write_shape(const HullDesc &) {}
-    void write_shape(const MeshDesc &) {}
-    void write_shape(const HeightFieldDesc &) {}
 
-    void write_body(const BodyDesc &body) {
-        constexpr std::array<const char *, 3> kinds{"\"static\"", "\"kinematic\"", "\"dynamic\""};
-        const ShapeDesc &shape = body.colliders.front().shape;
-        const bool is_plane = std::holds_alternative<PlaneDesc>(shape);
-        header("[[body]]");
-        line("name", string(body.name));
-        if (body.kind != (is_plane ? BodyKind::fixed : BodyKind::dynamic))
-            line("kind", kinds[static_cast<std::size_t>(body.kind)]);
-        std::visit([this](const auto &s) { write_shape(s); }, shape);
+    // Of one shape that has nothing of its own that the body does not have too.
+    static bool is_plain(const ColliderDesc &collider) {
+        return same_bits(collider.position, {0, 0, 0}) && is_identity(collider.orientation) &&
+               collider.material.empty() && !collider.density;
+    }
+    static bool is_identity(const glm::dquat &q) {
+        return same_bits(q.w, 1) && same_bits({q.x, q.y, q.z}, {0, 0, 0});
+    }
+
+    void write_shapes(const BodyDesc &body) {
+        if (body.colliders.size() == 1 && is_plain(body.colliders.front())) {
+            lines(shape_fields(body.colliders.front().shape));
+            return;
+        }
+        text_ += "shapes = [\n";
+        for (const ColliderDesc &collider : body.colliders)
+            text_ += "    " + collider_text(collider) + ",\n";
+        text_ += "]\n";
+    }
+
+    void write_mass(const BodyDesc &body) {
         if (!body.material.empty())
             line("material", string(body.material));
         if (body.mass)
             line("mass", shortest(*body.mass));
         if (body.density)
             line("density", shortest(*body.density));
+        if (body.center_of_mass)
+            line("center_of_mass", array3(*body.center_of_mass));
+        if (body.inertia)
+            line("inertia", array3(*body.inertia));
+        if (body.mass_pose)
+            line("mass_pose", "{ position = " + array3(body.mass_pose->position) +
+                                  ", orientation = " + rotation(body.mass_pose->orientation) +
+                                  " }");
+    }
+
+    void write_freedom(const BodyDesc &body) {
+        std::string locked;
+        for (std::size_t axis = 0; axis < body.locked.size(); ++axis)
+            if (body.locked[axis])
+                locked += (locked.empty() ? "" : ", ") + string(locked_names[axis]);
+        if (!locked.empty())
+            line("locked", "[" + locked + "]");
+        if (!same_bits(body.gravity_scale, 1))
+            line("gravity_scale", shortest(body.gravity_scale));
+        if (!same_bits(body.linear_damping, 0))
+            line("linear_damping", shortest(body.linear_damping));
+        if (!same_bits(body.angular_damping, 0))
+            line("angular_damping", shortest(body.angular_damping));
+    }
+
+    void write_body(const BodyDesc &body) {
+        constexpr std::array<const char *, 3> kinds{"\"static\"", "\"kinematic\"", "\"dynamic\""};
+        const bool can_be_dynamic =
+            std::ranges::all_of(body.colliders, [](const ColliderDesc &collider) {
+                return kind_info(collider.shape).moves == Moves::by_forces;
+            });
+        header("[[body]]");
+        line("name", string(body.name));
+        if (body.kind != (can_be_dynamic ? BodyKind::dynamic : BodyKind::fixed))
+            line("kind", kinds[static_cast<std::size_t>(body.kind)]);
+        write_shapes(body);
+        write_mass(body);
+        if (body.colliders.size() == 1 && is_plain(body.colliders.front()))
+            lines(filter_fields(body.colliders.front()));
         line("position", array3(body.position));
-        const glm::dquat &q = body.orientation;
-        if (!same_bits(q.w, 1) || !same_bits({q.x, q.y, q.z}, {0, 0, 0}))
-            line("orientation", rotation(q));
+        if (!is_identity(body.orientation))
+            line("orientation", rotation(body.orientation));
         if (!same_bits(body.velocity, {0, 0, 0}))
             line("velocity", array3(body.velocity));
         if (!same_bits(body.angular_velocity, {0, 0, 0}))
             line("angular_velocity", array3(body.angular_velocity));
+        write_freedom(body);
         if (body.colour)
             line("color", array3(*body.colour));
-    }
-
-    // A probe's point: two numbers where it lies in the xy plane.
-    static std::string place(const glm::dvec3 &v, bool flat) {
-        return flat ? "[" + shortest(v.x) + ", " + shortest(v.y) + "]" : array3(v);
-    }
-    static std::string places(const std::vector<glm::dvec3> &points, bool flat) {
-        std::string text;
-        for (const glm::dvec3 &point : points)
-            text += (text.empty() ? "" : ", ") + place(point, flat);
-        return "[" + text + "]";
-    }
-    static std::string probe_shape(const ProbeShapeDesc &shape) {
-        using Kind = ProbeShapeKind;
-        const bool flat = is_flat(shape.kind);
-        std::string text = "{ kind = " + string(probe_shape_name(shape.kind));
-        const auto add = [&](const std::string &key, const std::string &value) {
-            text += ", " + key + " = " + value;
-        };
-        if (!shape.name.empty())
-            add("name", string(shape.name));
-        if (!shape.parent.empty())
-            add("parent", string(shape.parent));
-        if (shape.kind != Kind::segment && shape.kind != Kind::flat_segment &&
-            shape.kind != Kind::triangle)
-            add("position", place(shape.position, flat));
-        switch (shape.kind) {
-        case Kind::sphere:
-        case Kind::circle:
-            add("radius", shortest(shape.radius));
-            break;
-        case Kind::capsule:
-        case Kind::cylinder:
-            add("half_height", shortest(shape.half_height));
-            add("radius", shortest(shape.radius));
-            add("orientation", rotation(shape.orientation));
-            break;
-        case Kind::aabb:
-        case Kind::rectangle:
-            add("half_extents", place(shape.half_extents, flat));
-            break;
-        case Kind::box:
-            add("half_extents", array3(shape.half_extents));
-            add("orientation", rotation(shape.orientation));
-            break;
-        case Kind::oriented_rectangle:
-            add("half_extents", place(shape.half_extents, flat));
-            text += ", " + angle_in_line("angle", shape.angle);
-            break;
-        case Kind::plane:
-            add("orientation", rotation(shape.orientation));
-            break;
-        case Kind::segment:
-        case Kind::flat_segment:
-        case Kind::triangle:
-            add("points", places(shape.points, flat));
-            break;
-        case Kind::hull:
-            add("points", places(shape.points, false));
-            add("orientation", rotation(shape.orientation));
-            break;
-        case Kind::mesh:
-            if (shape.file.empty()) {
-                add("model", string(shape.model));
-                add("half_extents", array3(shape.half_extents));
-                add("detail", std::to_string(shape.detail));
-            } else {
-                add("file", string(shape.file));
-                add("scale", shortest(shape.scale));
-            }
-            add("orientation", rotation(shape.orientation));
-            break;
-        case Kind::height_field:
-            add("half_extents", array3(shape.half_extents));
-            add("detail", std::to_string(shape.detail));
-            break;
-        case Kind::compound: {
-            std::string parts;
-            for (const ProbeShapeDesc &part : shape.parts)
-                parts += (parts.empty() ? "" : ", ") + probe_shape(part);
-            add("parts", "[" + parts + "]");
-            break;
-        }
-        }
-        return text + " }";
     }
 
     static std::string probe_camera(const ProbeCameraDesc &camera) {
@@ -273,26 +227,27 @@ class SceneWriter {
         if (!probe.shapes.empty()) {
             text_ += "shapes = [\n";
             for (const ProbeShapeDesc &shape : probe.shapes)
-                text_ += "    " + probe_shape(shape) + ",\n";
+                text_ += "    " + probe_shape_text(shape) + ",\n";
             text_ += "]\n";
         }
         if (!probe.points.empty())
-            line("points", places(probe.points, flat));
+            line("points", places_text(probe.points, flat));
         if (probe.ray && probe.ray->end)
-            line("segment", places({probe.ray->origin, *probe.ray->end}, flat));
+            line("segment", places_text({probe.ray->origin, *probe.ray->end}, flat));
         else if (probe.ray)
-            line("ray", "{ origin = " + place(probe.ray->origin, flat) +
-                            ", direction = " + place(probe.ray->direction, flat) +
+            line("ray", "{ origin = " + place_text(probe.ray->origin, flat) +
+                            ", direction = " + place_text(probe.ray->direction, flat) +
                             (probe.ray->max_t ? ", max_t = " + shortest(*probe.ray->max_t) : "") +
                             " }");
         if (probe.camera)
             line("camera", probe_camera(*probe.camera));
         if (probe.scatter)
-            line("scatter", "{ count = " + std::to_string(probe.scatter->count) +
-                                ", center = " + place(probe.scatter->center, flat) +
-                                ", half_extents = " + place(probe.scatter->half_extents, flat) +
-                                ", size = " + shortest(probe.scatter->size) +
-                                ", seed = " + natural(probe.scatter->seed) + " }");
+            line("scatter",
+                 "{ count = " + std::to_string(probe.scatter->count) +
+                     ", center = " + place_text(probe.scatter->center, flat) +
+                     ", half_extents = " + place_text(probe.scatter->half_extents, flat) +
+                     ", size = " + shortest(probe.scatter->size) +
+                     ", seed = " + natural(probe.scatter->seed) + " }");
         if (probe.tree)
             line("tree", trees[static_cast<std::size_t>(*probe.tree)]);
         if (info.does_take("level"))

@@ -90,6 +90,24 @@ using ShapeDesc = std::variant<SphereDesc, BoxDesc, CapsuleDesc, CylinderDesc, H
 // (row - (rows - 1) / 2) * spacing).
 glm::dvec3 sample_point(const HeightFieldDesc &field, int row, int column);
 
+// The file that a shape of any variant is from; null when it is from none.
+inline const ShapeFile *file_of(const HullDesc &hull) {
+    return hull.file ? &*hull.file : nullptr;
+}
+inline const ShapeFile *file_of(const MeshDesc &mesh) {
+    return std::get_if<ShapeFile>(&mesh.source);
+}
+template <typename... Kinds> const ShapeFile *shape_file(const std::variant<Kinds...> &shape) {
+    return std::visit(
+        [](const auto &of_kind) -> const ShapeFile * {
+            if constexpr (requires { file_of(of_kind); })
+                return file_of(of_kind);
+            else
+                return nullptr;
+        },
+        shape);
+}
+
 // m^3; infinite for a plane, 0 for what is a surface (meshes and height fields) and for points that
 // have no solid hull.
 double volume(const ShapeDesc &shape);

@@ -29,10 +29,11 @@ DrawList facing() {
 DrawMesh square(float z, bool turned) {
     DrawMesh mesh;
     mesh.colour = red;
-    mesh.corners = {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, -1, z}, {1, 1, z}, {-1, 1, z}};
+    Corners corners{{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, -1, z}, {1, 1, z}, {-1, 1, z}};
     if (turned)
-        for (std::size_t i = 0; i < mesh.corners.size(); i += 3)
-            std::swap(mesh.corners[i], mesh.corners[i + 1]);
+        for (std::size_t i = 0; i < corners.size(); i += 3)
+            std::swap(corners[i], corners[i + 1]);
+    mesh.corners = std::make_shared<const Corners>(std::move(corners));
     return mesh;
 }
 
@@ -90,7 +91,8 @@ TEST_F(OffScreen, FlatTrianglesWithoutAreaOrWithNumbersThatAreNoneAreLeftOut) {
     const Image nothing = render_image(renderer, list, size);
     DrawMesh mesh;
     const float nan = std::nanf("");
-    mesh.corners = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {nan, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.corners = std::make_shared<const Corners>(
+        Corners{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {nan, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     list.meshes.push_back(mesh);
     EXPECT_EQ(render_image(renderer, list, size), nothing);
 }

@@ -21,7 +21,7 @@ SceneDesc ray_at_ball() {
     probe.question = ProbeQuestion::raycast;
     probe.ray = ProbeRayDesc{{-2, 0, 0}, {1, 0, 0}, {}, {}};
     ProbeShapeDesc ball;
-    ball.radius = 1;
+    ball.shape = SphereDesc{1};
     probe.shapes.push_back(ball);
     probe.expects = {{"t", 1}};
     probe.source = "-2 + t = -1";
@@ -125,7 +125,7 @@ TEST_F(ProbeTest, ProbesAreDrawnOverALevelFloorUnlessTheyAreFlat) {
     EXPECT_LE(list.planes.front().position.y, -1.0f); // under the ball
 
     SceneDesc flat = ray_at_ball();
-    flat.probes.front().shapes.front().kind = ProbeShapeKind::circle;
+    flat.probes.front().shapes.front().shape = CircleDesc{1};
     ASSERT_TRUE(sandbox.open(flat));
     EXPECT_TRUE(sandbox.draw_list().planes.empty());
     EXPECT_EQ(sandbox.draw_list().meshes.size(), 1U);

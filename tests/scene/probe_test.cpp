@@ -66,7 +66,7 @@ constexpr const char *ray_and_sphere = R"([[probe]]
 name = "ray"
 ask = "raycast"
 ray = { origin = [-3, 0, 0], direction = [2, 0, 0] }
-shapes = [{ kind = "sphere", position = [0, 0, 0], radius = 1 }]
+shapes = [{ shape = "sphere", position = [0, 0, 0], radius = 1 }]
 )";
 
 // ---- answers ----
@@ -118,7 +118,7 @@ name = "tree"
 ask = "tree"
 tree = "octree"
 scatter = { count = 300, half_extents = [4, 3, 2], size = 0.3, seed = 9 }
-shapes = [{ kind = "sphere", position = [0.5, 0.25, 0], radius = 1.5 }]
+shapes = [{ shape = "sphere", position = [0.5, 0.25, 0], radius = 1.5 }]
 )");
     const ProbeAnswer found = answer(scene.probes.front(), Precision::dual);
     const glm::dvec3 center(0.5, 0.25, 0);
@@ -128,8 +128,8 @@ shapes = [{ kind = "sphere", position = [0.5, 0.25, 0], radius = 1.5 }]
         if (solid.tone == ProbeTone::query)
             continue; // the ball itself
         ++items;
-        const glm::dvec3 near = glm::clamp(center, solid.shape.position - solid.shape.half_extents,
-                                           solid.shape.position + solid.shape.half_extents);
+        const glm::dvec3 half = std::get<BoxDesc>(solid.shape).half_extents;
+        const glm::dvec3 near = glm::clamp(center, solid.position - half, solid.position + half);
         const bool touches = glm::distance(near, center) <= 1.5;
         touched += touches ? 1 : 0;
         EXPECT_EQ(solid.tone == ProbeTone::yes, touches);
@@ -153,9 +153,10 @@ scatter = { count = 500, half_extents = [6, 6, 6], size = 0.3, seed = 4 }
     for (const ProbeSolid &solid : found.solids) {
         int corners_in = 0;
         for (int corner = 0; corner < 8; ++corner) {
-            glm::dvec3 at = solid.shape.position;
+            const glm::dvec3 half = std::get<BoxDesc>(solid.shape).half_extents;
+            glm::dvec3 at = solid.position;
             for (int axis = 0; axis < 3; ++axis)
-                at[axis] += ((corner >> axis & 1) != 0 ? 1 : -1) * solid.shape.half_extents[axis];
+                at[axis] += ((corner >> axis & 1) != 0 ? 1 : -1) * half[axis];
             const double depth = 8 - at.z;
             if (depth > 1 && depth < 11 && std::abs(at.x) < slope * depth &&
                 std::abs(at.y) < slope * depth)
@@ -220,11 +221,10 @@ TEST(Probe, AMeshFromAFileStandsWhereItIsPut) {
 name = "ray"
 ask = "raycast"
 ray = { origin = [20, 0, 0.5], direction = [-1, 0, 0] }
-shapes = [{ kind = "mesh", file = "gear.obj", position = [3, 0, 0], scale = 4, axis = [0, 1, 0], angle_deg = 90 }]
+shapes = [{ shape = "mesh", file = "gear.obj", position = [3, 0, 0], scale = 4, axis = [0, 1, 0], angle_deg = 90 }]
 )");
     const ProbeDesc &probe = scene.probes.front();
-    ASSERT_TRUE(probe.shapes.front().file_mesh);
-    EXPECT_EQ(probe.shapes.front().file_mesh->vertices.size(), 96U);
+    EXPECT_EQ(std::get<MeshDesc>(probe.shapes.front().shape).data->vertices.size(), 96U);
     const ProbeAnswer found = answer(probe, Precision::dual);
     EXPECT_NEAR(found.value("x"), 4, 1e-9); // 0.25 thick to either side
     EXPECT_NEAR(found.value("normal_x"), 1, 1e-9);
@@ -232,9 +232,9 @@ shapes = [{ kind = "mesh", file = "gear.obj", position = [3, 0, 0], scale = 4, a
 
 // A compound is its parts, each of which is asked alone.
 TEST(Probe, ACompoundHoldsWhatItsPartsHold) {
-    const std::string parts = R"({ kind = "circle", position = [1, 0], radius = 0.5 },
-{ kind = "rectangle", position = [-1, 0.25], half_extents = [0.75, 0.5] },
-{ kind = "oriented_rectangle", position = [0, -1], half_extents = [0.75, 0.25], angle_deg = 45 })";
+    const std::string parts = R"({ shape = "circle", position = [1, 0], radius = 0.5 },
+{ shape = "rectangle", position = [-1, 0.25], half_extents = [0.75, 0.5] },
+{ shape = "oriented_rectangle", position = [0, -1], half_extents = [0.75, 0.25], angle_deg = 45 })";
     std::string points;
     for (int x = -16; x <= 16; ++x)
         for (int y = -16; y <= 16; ++y)
@@ -248,7 +248,7 @@ TEST(Probe, ACompoundHoldsWhatItsPartsHold) {
     };
     const double apart = inside(parts);
     EXPECT_GT(apart, 100);
-    EXPECT_EQ(inside(R"({ kind = "compound", position = [0, 0], parts = [)" + parts + "] }"),
+    EXPECT_EQ(inside(R"({ shape = "compound", position = [0, 0], parts = [)" + parts + "] }"),
               apart);
 }
 
@@ -284,29 +284,29 @@ ask = "raycst"
 [[probe]]
 name = "b"
 ask = "raycast"
-shapes = [{ kind = "spere", radius = 1 }]
+shapes = [{ shape = "spere", radius = 1 }]
 
 [[probe]]
 name = "b"
 ask = "contains"
-shapes = [{ kind = "sphere", radius = -1 }]
+shapes = [{ shape = "sphere", radius = -1 }]
 ray = { origin = [0, 0, 0], direction = [1, 0, 0] }
 points = []
 
 [[probe]]
 name = "c"
 ask = "overlap"
-shapes = [{ kind = "circle", radius = 1, position = [1, 2, 3] }]
+shapes = [{ shape = "circle", radius = 1, position = [1, 2, 3] }]
 expect = { overlaps = true }
 
 [[probe]]
 name = "d"
 ask = "pick"
-shapes = [{ kind = "box", radius = 1 }]
+shapes = [{ shape = "box", radius = 1 }]
 camera = { eye = [1, 1, 1], target = [1, 1, 1], near = 2, far = 1 }
 )");
     EXPECT_TRUE(has(all, R"(p.toml:3:7: error: unknown ask "raycst"; did you mean "raycast"?)"));
-    EXPECT_TRUE(has(all, R"(p.toml:8:20: error: unknown kind "spere" of shape; did you mean)"));
+    EXPECT_TRUE(has(all, R"(p.toml:8:21: error: unknown shape "spere"; did you mean "sphere"?)"));
     EXPECT_TRUE(has(all, "has none of ray and segment") || has(all, "ray = {")) << all;
     EXPECT_TRUE(has(all, R"(another probe is named "b" already, at line 6)"));
     EXPECT_TRUE(has(all, "radius is -1; it must be a positive number"));
@@ -315,7 +315,7 @@ camera = { eye = [1, 1, 1], target = [1, 1, 1], near = 2, far = 1 }
     EXPECT_TRUE(has(all, R"([[probe]] "c" has 1 shape; ask = "overlap" takes 2 to)"));
     EXPECT_TRUE(has(all, R"(ask = "overlap" has no value "overlaps"; did you mean "overlap"?)"));
     EXPECT_TRUE(has(all, "has no source"));
-    EXPECT_TRUE(has(all, R"(unknown key "radius" in the box of [[probe]] "d")"));
+    EXPECT_TRUE(has(all, "a box has no radius; its size is half_extents"));
     EXPECT_TRUE(has(all, "the camera looks at its own eye"));
     EXPECT_TRUE(has(all, "far must lie beyond near"));
     EXPECT_TRUE(has(all, "has no pixel"));
@@ -325,7 +325,7 @@ TEST(ProbeFile, AQuestionWithoutAnAnswerIsAnError) {
     const std::string all = said(R"([[probe]]
 name = "flat and solid"
 ask = "distance"
-shapes = [{ kind = "plane", position = [0, 0, 0] }, { kind = "sphere", radius = 1 }]
+shapes = [{ shape = "plane", position = [0, 0, 0] }, { shape = "sphere", radius = 1 }]
 )");
     EXPECT_TRUE(has(all, "has no answer: ")) << all;
     EXPECT_TRUE(has(all, "both shapes must be convex")) << all;
@@ -337,7 +337,7 @@ TEST(ProbeFile, AMeshFileThatCannotBeUsedIsAnErrorInTheSceneAndInTheFile) {
     std::ofstream(folder / "bad.obj") << "v 0 0 0\nv 1 0 0\nf 1 2 9\n";
     const auto said_of = [&](const std::string &mesh) {
         const std::string text = "[[probe]]\nname = \"a\"\nask = \"closest\"\npoint = [0, 0, 0]\n"
-                                 "shapes = [{ kind = \"mesh\", " +
+                                 "shapes = [{ shape = \"mesh\", " +
                                  mesh + " }]\n";
         std::string all;
         for (const SceneMessage &message :
@@ -346,7 +346,7 @@ TEST(ProbeFile, AMeshFileThatCannotBeUsedIsAnErrorInTheSceneAndInTheFile) {
         return all;
     };
     const std::string bad = said_of(R"(file = "bad.obj")");
-    EXPECT_TRUE(has(bad, "scene.toml:5:35: error: bad.obj:3: ")) << bad;
+    EXPECT_TRUE(has(bad, "scene.toml:5:36: error: bad.obj:3: ")) << bad;
     EXPECT_TRUE(
         has(said_of(R"(file = "none.obj")"), R"(cannot read "none.obj"; it must be a file)"));
     for (const char *name : {"/etc/passwd", "../gear.obj", "folder/gear.obj", "..", ".", ""}) {
@@ -357,26 +357,25 @@ TEST(ProbeFile, AMeshFileThatCannotBeUsedIsAnErrorInTheSceneAndInTheFile) {
     EXPECT_TRUE(has(said_of(R"(model = "ball", file = "bad.obj")"), "has both model and file"));
     EXPECT_TRUE(has(said_of("scale = 2"), "has none of model, file"));
     EXPECT_TRUE(has(said_of(R"(model = "ball", half_extents = [1, 1, 1], scale = 2)"),
-                    "a mesh without a file has no scale"));
-    EXPECT_TRUE(
-        has(said_of(R"(file = "bad.obj", detail = 4)"), "a mesh from a file has no detail"));
+                    "a mesh with model has no scale"));
+    EXPECT_TRUE(has(said_of(R"(file = "bad.obj", detail = 4)"), "a mesh with file has no detail"));
     fs::remove_all(folder);
 }
 
 TEST(ProbeFile, ACompoundIsMadeOfFlatSolids) {
     const auto said_of = [](const std::string &keys) {
         return said("[[probe]]\nname = \"a\"\nask = \"contains\"\npoint = [0, 0]\n"
-                    "shapes = [{ kind = \"compound\"" +
+                    "shapes = [{ shape = \"compound\"" +
                     keys + " }]\n");
     };
     EXPECT_TRUE(has(said_of(""), "has no parts"));
     EXPECT_TRUE(has(said_of(", parts = []"), "has 0 parts; it takes an array of 1 to"));
     EXPECT_TRUE(has(said_of(", parts = [3]"), "parts holds a number"));
-    EXPECT_TRUE(has(said_of(R"(, parts = [{ kind = "sphere", radius = 1 }])"),
-                    R"(unknown kind "sphere" of shape)"));
-    EXPECT_TRUE(has(said_of(R"(, parts = [{ kind = "compound", parts = [] }])"),
-                    R"(unknown kind "compound" of shape)"));
-    EXPECT_TRUE(has(said_of(R"(, parts = [{ kind = "circle", radius = -1 }])"), "radius is -1"));
+    EXPECT_TRUE(has(said_of(R"(, parts = [{ shape = "sphere", radius = 1 }])"),
+                    R"(unknown shape "sphere")"));
+    EXPECT_TRUE(has(said_of(R"(, parts = [{ shape = "compound", parts = [] }])"),
+                    R"(unknown shape "compound")"));
+    EXPECT_TRUE(has(said_of(R"(, parts = [{ shape = "circle", radius = -1 }])"), "radius is -1"));
 }
 
 // ---- handles ----

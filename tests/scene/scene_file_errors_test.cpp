@@ -65,7 +65,7 @@ name = "a"
          {R"(unknown key "titel" in the top level of a scene; did you mean "title"?)",
           R"(dt is -1; it must be a number from 1e-9 to 1 s, or a fraction in quotes such as "1/60")",
           "gravity[1] is a string; it must be a number from -1e9 to 1e9 m/s^2",
-          R"([[body]] "a" has no shape; shape = "sphere", "box", "capsule" or "plane")"}},
+          R"([[body]] "a" has no shape; shape = "sphere", "box", "capsule", "cylinder", "hull", "plane", "mesh" or "height_field")"}},
         {"StringWanted",
          R"(title = @3
 )",
@@ -347,7 +347,7 @@ material = @"stele"
          R"(@[[body]]
 name = "a"
 )",
-         {R"([[body]] "a" has no shape; shape = "sphere", "box", "capsule" or "plane")"}},
+         {R"([[body]] "a" has no shape; shape = "sphere", "box", "capsule", "cylinder", "hull", "plane", "mesh" or "height_field")"}},
         {"UnknownShape",
          R"([[body]]
 name = "a"

@@ -48,8 +48,21 @@ class Words {
             add(point);
     }
     void add(const PlaneDesc &) {}
-    void add(const MeshDesc &) {}
-    void add(const HeightFieldDesc &) {}
+    void add(const MeshDesc &m) {
+        for (const glm::dvec3 &vertex : m.data->vertices)
+            add(vertex);
+        for (const auto &triangle : m.data->triangles)
+            for (const std::uint32_t corner : triangle)
+                number(corner);
+        number(m.source.index()), number(m.both_sides);
+    }
+    void add(const HeightFieldDesc &f) {
+        for (const double height : *f.heights)
+            add(height);
+        number(static_cast<std::uint64_t>(f.rows)), number(static_cast<std::uint64_t>(f.columns));
+        add(f.spacing), number(f.hills.has_value());
+    }
+    void add(const MassPoseDesc &pose) { add(pose.position), add(pose.orientation); }
     void add(const GivenSettings &given) {
         for (const SettingNumber number : setting_numbers())
             add(given.find(number));
@@ -78,7 +91,14 @@ std::vector<std::string> words(const SceneDesc &scene) {
         for (const ColliderDesc &c : b.colliders) {
             w.number(c.shape.index());
             std::visit([&](const auto &shape) { w.add(shape); }, c.shape);
+            w.add(c.position), w.add(c.orientation), w.add(c.material), w.add(c.density);
+            w.number(static_cast<std::uint64_t>(c.filter.layer)), w.number(c.filter.ignores);
+            w.number(c.sensor);
         }
+        w.add(b.center_of_mass), w.add(b.inertia), w.add(b.mass_pose), w.add(b.gravity_scale);
+        w.add(b.linear_damping), w.add(b.angular_damping);
+        for (const bool is_locked : b.locked)
+            w.number(is_locked);
         w.add(b.material), w.add(b.mass), w.add(b.density), w.add(b.position), w.add(b.orientation);
         w.add(b.velocity), w.add(b.angular_velocity), w.add(b.colour);
     }
@@ -218,34 +238,100 @@ class Scenes {
         return given;
     }
 
+    glm::dquat rotation() {
+        // Drawn at once: the order of evaluation of arguments is not fixed.
+        double q[4];
+        for (double &part : q)
+            part = random_.next_in(-1, 1);
+        return glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
+    }
+
+    std::shared_ptr<const std::vector<glm::dvec3>> corners() {
+        const double size = 1 + random_.next_unit();
+        return std::make_shared<const std::vector<glm::dvec3>>(
+            std::vector<glm::dvec3>{{0, 0, 0}, {size, 0, 0}, {0, 1 / size, 0}, {0, 0, size}});
+    }
+
+    // Of the first kinds; the last three never move.
+    ShapeDesc shape(std::uint32_t kinds) {
+        const double x = positive();
+        const double y = positive();
+        switch (random_.next_index(kinds)) {
+        case 0:
+            return SphereDesc{x};
+        case 1:
+            return BoxDesc{{x, y, positive()}};
+        case 2:
+            return CapsuleDesc{x, y};
+        case 3:
+            return CylinderDesc{x, y};
+        case 4: {
+            HullDesc hull;
+            hull.points = corners();
+            return hull;
+        }
+        case 5:
+            return PlaneDesc{};
+        case 6: {
+            MeshDesc mesh;
+            mesh.data = std::make_shared<const MeshData>(MeshData{*corners(), {{0, 2, 1}}});
+            mesh.both_sides = one_in(2);
+            return mesh;
+        }
+        default: {
+            HeightFieldDesc field;
+            field.columns = 3;
+            field.spacing = x;
+            field.heights = std::make_shared<const std::vector<double>>(6, number());
+            return field;
+        }
+        }
+    }
+
+    void place(ColliderDesc &collider, const SceneDesc &scene) {
+        collider.position = vector();
+        collider.orientation = rotation();
+        if (one_in(2))
+            collider.material = scene.materials[random_.next_index(3)].name;
+        if (one_in(2) && collider.shape.index() < 5)
+            collider.density = positive();
+    }
+
     BodyDesc body(const SceneDesc &scene) {
         BodyDesc b;
         b.name = unique();
         b.kind = static_cast<BodyKind>(random_.next_index(3));
-        ShapeDesc &shape = b.colliders.emplace_back().shape;
-        switch (random_.next_index(4)) {
-        case 0:
-            shape = SphereDesc{positive()};
-            break;
-        case 1: {
-            const double x = positive();
-            const double y = positive();
-            shape = BoxDesc{{x, y, positive()}};
-            break;
+        const std::size_t shapes = one_in(2) ? 1 : 1 + random_.next_index(3);
+        for (std::size_t i = 0; i < shapes; ++i) {
+            ColliderDesc &collider = b.colliders.emplace_back();
+            collider.shape = shape(b.kind == BodyKind::fixed ? 8 : 5);
+            if (shapes > 1)
+                place(collider, scene);
+            if (one_in(3)) {
+                collider.filter.layer = static_cast<int>(random_.next_index(32));
+                collider.filter.ignores = static_cast<std::uint32_t>(random_.next_u64());
+                collider.sensor = one_in(2);
+            }
         }
-        case 2: {
-            const double h = positive();
-            shape = CapsuleDesc{h, positive()};
-            break;
-        }
-        default:
-            shape = PlaneDesc{};
-            if (b.kind == BodyKind::dynamic)
-                b.kind = BodyKind::fixed;
-        }
-        // A mass of its own, as the materials' densities may give too much for a scene.
-        if (!std::holds_alternative<PlaneDesc>(shape))
+        const bool can_move = std::ranges::all_of(
+            b.colliders, [](const ColliderDesc &c) { return c.shape.index() < 5; });
+        if (can_move) {
+            // A mass of its own, as the materials' densities may give too much for a scene.
             b.mass = positive();
+            if (one_in(3)) {
+                b.center_of_mass = vector();
+                const double i = positive();
+                b.inertia = glm::dvec3(i, i, 1.5 * i);
+                b.mass_pose = MassPoseDesc{vector(), rotation()};
+            }
+        }
+        for (bool &is_locked : b.locked)
+            is_locked = one_in(4);
+        if (one_in(3)) {
+            b.gravity_scale = number();
+            b.linear_damping = positive();
+            b.angular_damping = positive();
+        }
         if (!one_in(3))
             b.material = scene.materials[random_.next_index(3)].name;
         b.position = vector();

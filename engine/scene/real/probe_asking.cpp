@@ -11,9 +11,8 @@ namespace {
 
 ProbeShapeDesc box_desc(const Aabb &box) {
     ProbeShapeDesc desc;
-    desc.kind = ProbeShapeKind::aabb;
+    desc.shape = AabbDesc{0.5 * wide(box.max - box.min)};
     desc.position = 0.5 * wide(box.min + box.max);
-    desc.half_extents = 0.5 * wide(box.max - box.min);
     return desc;
 }
 
@@ -89,7 +88,9 @@ void draw_item(Asking &ask, const Aabb &box, ProbeTone tone) {
         draw_shape(ask.answer, box_desc(box), {item, nullptr}, tone, 0);
         ask.answer.surfaces.back().is_opaque = true;
     } else {
-        ask.answer.solids.push_back({box_desc(box), tone, 0, true});
+        const ProbeShapeDesc placed = box_desc(box);
+        ask.answer.solids.push_back({BoxDesc{std::get<AabbDesc>(placed.shape).half_extents},
+                                     placed.position, placed.orientation, tone, 0, true});
     }
 }
 

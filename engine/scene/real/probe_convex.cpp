@@ -143,9 +143,13 @@ void answer_cast(Asking &ask) {
     const double t = hit ? static_cast<double>(hit->t) : 1;
     ProbeShapeDesc there = from;
     there.position += t * ask.probe.motion;
-    for (glm::dvec3 &point : there.points)
-        if (from.kind != ProbeShapeKind::hull)
-            point += t * ask.probe.motion;
+    std::visit(
+        [&](auto &shape) { // what its own points place
+            if constexpr (requires { shape.points.size(); })
+                for (glm::dvec3 &point : shape.points)
+                    point += t * ask.probe.motion;
+        },
+        there.shape);
     ask.draw(0, ProbeTone::no);
     draw_shape(ask.answer, there, make_shape(there), hit ? ProbeTone::yes : ProbeTone::plain, 0);
     ask.draw(1, ProbeTone::plain);

@@ -13,8 +13,8 @@ void answer_models(Asking &ask) {
     // Meshes in their own frames; the models place them.
     std::vector<MeshTree> meshes;
     for (const ProbeShapeDesc &shape : ask.probe.shapes) {
-        PLUMB_CHECK(shape.kind == ProbeShapeKind::mesh,
-                    "a model has a mesh, and no " << probe_shape_name(shape.kind));
+        PLUMB_CHECK(std::holds_alternative<MeshDesc>(shape.shape),
+                    "a model has a mesh, and no " << shape_name(shape.shape));
         ProbeShapeDesc local = shape;
         local.position = glm::dvec3(0);
         local.orientation = glm::dquat(1, 0, 0, 0);
@@ -35,12 +35,10 @@ void answer_models(Asking &ask) {
     const std::optional<ModelScene::Hit> hit = scene.raycast(ray_of(*ask.probe.ray));
     std::vector<ModelScene::Model> touched;
     if (!ask.probe.points.empty()) {
-        ProbeShapeDesc ball;
-        ball.position = ask.probe.points.front();
-        ball.radius = ask.probe.margin;
-        touched =
-            scene.overlapping(Sphere{Vec3{ball.position}, static_cast<Real>(ask.probe.margin)});
-        ask.answer.solids.push_back({ball, ProbeTone::query, 0});
+        const glm::dvec3 &at = ask.probe.points.front();
+        touched = scene.overlapping(Sphere{Vec3{at}, static_cast<Real>(ask.probe.margin)});
+        ask.answer.solids.push_back(
+            {SphereDesc{ask.probe.margin}, at, {1, 0, 0, 0}, ProbeTone::query, 0});
         ask.count("found", touched.size());
     }
     for (std::size_t i = 0; i < models.size(); ++i) {

@@ -47,9 +47,8 @@ void answer_overlap(Asking &ask) {
                 std::visit([](const auto &a, const auto &b) { return common(a, b); },
                            ask.shapes[i].shape, ask.shapes[j].shape);
             PLUMB_CHECK(found.has_value(), "there is no test of "
-                                               << probe_shape_name(ask.probe.shapes[i].kind)
-                                               << " with "
-                                               << probe_shape_name(ask.probe.shapes[j].kind));
+                                               << shape_name(ask.probe.shapes[i].shape) << " with "
+                                               << shape_name(ask.probe.shapes[j].shape));
             if (*found) {
                 touched[i] = touched[j] = true;
                 ++pairs;

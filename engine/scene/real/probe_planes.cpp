@@ -13,7 +13,7 @@ namespace {
 
 const Plane &plane_of(const Asking &ask, std::size_t index) {
     const auto *plane = std::get_if<Plane>(&ask.shapes[index].shape);
-    PLUMB_CHECK(plane, "a " << probe_shape_name(ask.probe.shapes[index].kind)
+    PLUMB_CHECK(plane, "a " << shape_name(ask.probe.shapes[index].shape)
                             << " stands where a plane is due");
     return *plane;
 }
@@ -41,12 +41,16 @@ void answer_classify(Asking &ask) {
         ask.draw(s, tones[side]);
         last = static_cast<double>(test.distance);
         const ProbeShapeDesc &desc = ask.probe.shapes[s];
-        glm::dvec3 at = desc.position;
-        if (!desc.points.empty()) {
-            at = glm::dvec3(0);
-            for (const glm::dvec3 &point : desc.points)
-                at += point / static_cast<double>(desc.points.size());
-        }
+        // At its middle, where its own points place it.
+        const glm::dvec3 at = std::visit(
+            [&](const auto &shape) {
+                glm::dvec3 middle = desc.position;
+                if constexpr (requires { shape.points.size(); })
+                    for (const glm::dvec3 &point : shape.points)
+                        middle += point / static_cast<double>(shape.points.size());
+                return middle;
+            },
+            desc.shape);
         ask.answer.labels.push_back(
             {at, words[side] + (test.side == PlaneSide::across ? "" : short_number(last))});
     }

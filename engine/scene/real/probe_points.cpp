@@ -91,7 +91,7 @@ void answer_enclose(Asking &ask) {
     const Circle circle = containing_circle(points);
     const Rectangle rectangle = containing_rectangle(points);
     ProbeShapeDesc round;
-    round.kind = ProbeShapeKind::circle;
+    round.shape = CircleDesc{};
     draw_shape(ask.answer, round, {circle, nullptr}, ProbeTone::yes, 0);
     draw_shape(ask.answer, round, {rectangle, nullptr}, ProbeTone::plain, 0);
     for (const Vec2 &point : points)

@@ -2,9 +2,11 @@
 
 #include "engine/core/check.h"
 #include "engine/geometry/quickhull.h"
+#include "engine/scene/real/hull_measures.h"
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -19,105 +21,23 @@ Real real(double value) {
     return static_cast<Real>(value);
 }
 
-// A grid of points over [0, 1] x [0, 1], as triangles; a direction that closes has its last row at
-// its first. Points that coincide (the poles of a ball) are one vertex.
-template <typename Place>
-TriangleMesh grid(int rows, int columns, bool closes_u, bool closes_v, const Place &place) {
-    TriangleMesh mesh;
-    const int points_u = closes_u ? rows : rows + 1;
-    const int points_v = closes_v ? columns : columns + 1;
-    std::vector<std::uint32_t> vertex;
-    for (int u = 0; u < points_u; ++u)
-        for (int v = 0; v < points_v; ++v) {
-            const Vec3 point{
-                place(static_cast<double>(u) / rows, static_cast<double>(v) / columns)};
-            // Only neighbours in a row can coincide.
-            const bool is_new = v == 0 || mesh.vertices.back() != point;
-            if (is_new)
-                mesh.vertices.push_back(point);
-            vertex.push_back(static_cast<std::uint32_t>(mesh.vertices.size() - 1));
-        }
-    const auto at = [&](int u, int v) {
-        return vertex[static_cast<std::size_t>((u % points_u) * points_v + v % points_v)];
-    };
-    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        if (a != b && b != c && c != a)
-            mesh.triangles.push_back({a, b, c});
-    };
-    for (int u = 0; u < rows; ++u)
-        for (int v = 0; v < columns; ++v) {
-            add(at(u, v), at(u + 1, v), at(u + 1, v + 1));
-            add(at(u, v), at(u + 1, v + 1), at(u, v + 1));
-        }
-    return mesh;
+TriangleMesh as_mesh(const MeshDesc &mesh, const ProbeShapeDesc &placed) {
+    TriangleMesh result;
+    result.triangles = mesh.data->triangles;
+    for (const glm::dvec3 &vertex : mesh.data->vertices)
+        result.vertices.emplace_back(placed.position + placed.orientation * vertex);
+    return result;
 }
 
-// Within [-1, 1] on each axis; fronts outside.
-TriangleMesh unit_model(const std::string &model, int detail) {
-    const auto on_ball = [](double u, double v) {
-        // The poles are exact, so that their copies are one.
-        const double ring = u == 0 || u == 1 ? 0 : std::sin(pi * u);
-        return glm::dvec3(ring * std::sin(2 * pi * v), u == 1 ? -1 : std::cos(pi * u),
-                          ring * std::cos(2 * pi * v));
-    };
-    if (model == "ball")
-        return grid(detail, 2 * detail, false, true, on_ball);
-    if (model == "bowl")
-        return grid(detail, 2 * detail, false, true, [&](double u, double v) {
-            return -on_ball(0.5 * u, v) * glm::dvec3(1, 1, -1);
-        });
-    if (model == "torus")
-        return grid(2 * detail, detail, true, true, [](double u, double v) {
-            const double ring = 0.7 + 0.3 * std::cos(2 * pi * v);
-            return glm::dvec3(ring * std::sin(2 * pi * u), std::sin(2 * pi * v),
-                              ring * std::cos(2 * pi * u));
-        });
-    // A tube around a trefoil.
-    const auto on_knot = [](double u) {
-        const double t = 2 * pi * u;
-        return glm::dvec3(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t),
-                          -std::sin(3 * t)) /
-               3.0;
-    };
-    return grid(8 * detail, detail, true, true, [&](double u, double v) {
-        const glm::dvec3 along = glm::normalize(on_knot(u + 1e-4) - on_knot(u - 1e-4));
-        const glm::dvec3 side = glm::normalize(glm::cross(along, glm::dvec3(0, 0, 1)));
-        const glm::dvec3 up = glm::cross(side, along);
-        return 0.85 * on_knot(u) + 0.14 * (std::cos(2 * pi * v) * side + std::sin(2 * pi * v) * up);
-    });
-}
-
-TriangleMesh make_mesh(const ProbeShapeDesc &desc) {
-    if (desc.file_mesh) {
-        TriangleMesh mesh;
-        mesh.triangles = desc.file_mesh->triangles;
-        for (const glm::dvec3 &vertex : desc.file_mesh->vertices)
-            mesh.vertices.emplace_back(desc.position + desc.orientation * (desc.scale * vertex));
-        return mesh;
-    }
-    TriangleMesh mesh = unit_model(desc.model, desc.detail);
-    for (Vec3 &vertex : mesh.vertices)
-        vertex = Vec3{desc.position + desc.orientation * (glm::dvec3{vertex} * desc.half_extents)};
-    return mesh;
-}
-
-// Two waves across each other.
-HeightField make_hills(const ProbeShapeDesc &desc) {
+HeightField as_field(const HeightFieldDesc &desc, const glm::dvec3 &position) {
     HeightField field;
-    const double spacing = 2 * desc.half_extents.x / desc.detail;
-    field.columns = desc.detail + 1;
-    field.rows = std::max(2, static_cast<int>(std::round(2 * desc.half_extents.z / spacing)) + 1);
-    field.spacing = real(spacing);
+    field.columns = desc.columns;
+    field.rows = desc.rows;
+    field.spacing = real(desc.spacing);
     field.origin =
-        Vec3{desc.position - glm::dvec3(desc.half_extents.x, 0, 0.5 * spacing * (field.rows - 1))};
-    for (int row = 0; row < field.rows; ++row)
-        for (int column = 0; column < field.columns; ++column) {
-            const double x = column * spacing - desc.half_extents.x;
-            const double z = row * spacing - desc.half_extents.z;
-            field.heights.push_back(
-                real(desc.half_extents.y * (0.7 * std::sin(0.9 * x + 0.4 * z) * std::cos(0.8 * z) +
-                                            0.3 * std::sin(1.7 * z - 0.6 * x))));
-        }
+        Vec3{position - 0.5 * desc.spacing * glm::dvec3(desc.columns - 1, 0, desc.rows - 1)};
+    for (const double height : *desc.heights)
+        field.heights.push_back(real(height));
     return field;
 }
 
@@ -216,12 +136,18 @@ class Drawing {
         for (const Part2 &part : compound.parts())
             std::visit(*this, part);
     }
-    // Sphere, Box, Aabb, Capsule, Cylinder
-    template <typename Solid> void operator()(const Solid &) const {
-        answer_.solids.push_back({desc_, tone_, number_});
+    void operator()(const Sphere &) const { solid(std::get<SphereDesc>(desc_.shape)); }
+    void operator()(const Box &) const { solid(std::get<BoxDesc>(desc_.shape)); }
+    void operator()(const Aabb &) const {
+        solid(BoxDesc{std::get<AabbDesc>(desc_.shape).half_extents});
     }
+    void operator()(const Capsule &) const { solid(std::get<CapsuleDesc>(desc_.shape)); }
+    void operator()(const Cylinder &) const { solid(std::get<CylinderDesc>(desc_.shape)); }
 
   private:
+    void solid(const SolidDesc &shape) const {
+        answer_.solids.push_back({shape, desc_.position, desc_.orientation, tone_, number_});
+    }
     static void add(ProbeSurface &surface, const Triangle &t) {
         add_triangle(surface, wide(t.a), wide(t.b), wide(t.c));
     }
@@ -236,84 +162,92 @@ class Drawing {
     std::size_t number_;
 };
 
-Compound2 make_compound(const ProbeShapeDesc &desc) {
-    std::vector<Part2> parts;
-    for (const ProbeShapeDesc &part : desc.parts) {
-        ProbeShapeDesc placed = part;
-        placed.position += desc.position;
-        const AskedShape made = make_shape(placed).shape;
-        if (const auto *circle = std::get_if<Circle>(&made))
-            parts.emplace_back(*circle);
-        else if (const auto *rectangle = std::get_if<Rectangle>(&made))
-            parts.emplace_back(*rectangle);
-        else if (const auto *turned = std::get_if<OrientedRectangle>(&made))
-            parts.emplace_back(*turned);
-        else
-            PLUMB_CHECK(false, "a " << probe_shape_name(part.kind) << " is no part of a compound");
-    }
-    return Compound2(std::move(parts));
-}
+// In Real, where it is placed.
+class Maker {
+  public:
+    Maker(const ProbeShapeDesc &desc, std::unique_ptr<HullMesh> &hull)
+        : desc_(desc), position_(desc.position), rotation_(unit(Quat{desc.orientation})),
+          hull_(hull) {}
 
-AskedShape make(const ProbeShapeDesc &desc, std::unique_ptr<HullMesh> &hull) {
-    using Kind = ProbeShapeKind;
-    const Vec3 position{desc.position};
-    const Vec3 half{desc.half_extents};
-    const Quat rotation = unit(Quat{desc.orientation});
-    const Vec3 up = rotated(rotation, Vec3{Real(0), real(desc.half_height), Real(0)});
-    switch (desc.kind) {
-    case Kind::sphere:
-        return Sphere{position, real(desc.radius)};
-    case Kind::box:
-        return Box{position, rotation, half};
-    case Kind::aabb:
-        return Aabb{position - half, position + half};
-    case Kind::capsule:
-        return Capsule{position - up, position + up, real(desc.radius)};
-    case Kind::cylinder:
-        return Cylinder{position - up, position + up, real(desc.radius)};
-    case Kind::plane: {
-        const Vec3 normal = rotated(rotation, Vec3{Real(0), Real(1), Real(0)});
-        return Plane{normal, glm::dot(normal, position)};
+    AskedShape operator()(const SphereDesc &s) const { return Sphere{position_, real(s.radius)}; }
+    AskedShape operator()(const BoxDesc &b) const {
+        return Box{position_, rotation_, Vec3{b.half_extents}};
     }
-    case Kind::flat_segment:
-        return Segment2{flattened(desc.points[0]), flattened(desc.points[1])};
-    case Kind::segment:
-        return Segment{Vec3{desc.points[0]}, Vec3{desc.points[1]}};
-    case Kind::triangle:
-        return Triangle{Vec3{desc.points[0]}, Vec3{desc.points[1]}, Vec3{desc.points[2]}};
-    case Kind::hull: {
-        std::vector<Vec3> points;
-        for (const glm::dvec3 &point : desc.points)
-            points.emplace_back(point);
-        HullResult found = convex_hull(points, 256);
+    AskedShape operator()(const AabbDesc &b) const {
+        const Vec3 half{b.half_extents};
+        return Aabb{position_ - half, position_ + half};
+    }
+    AskedShape operator()(const CapsuleDesc &c) const {
+        const Vec3 up = along_y(c.half_height);
+        return Capsule{position_ - up, position_ + up, real(c.radius)};
+    }
+    AskedShape operator()(const CylinderDesc &c) const {
+        const Vec3 up = along_y(c.half_height);
+        return Cylinder{position_ - up, position_ + up, real(c.radius)};
+    }
+    AskedShape operator()(const PlaneDesc &) const {
+        const Vec3 normal = rotated(rotation_, Vec3{Real(0), Real(1), Real(0)});
+        return Plane{normal, glm::dot(normal, position_)};
+    }
+    AskedShape operator()(const SegmentDesc &s) const {
+        return Segment{Vec3{s.points[0]}, Vec3{s.points[1]}};
+    }
+    AskedShape operator()(const TriangleDesc &t) const {
+        return Triangle{Vec3{t.points[0]}, Vec3{t.points[1]}, Vec3{t.points[2]}};
+    }
+    AskedShape operator()(const HullDesc &h) const {
+        const std::vector<Vec3> points(h.points->begin(), h.points->end());
+        HullResult found = convex_hull(points, max_hull_vertices);
         PLUMB_CHECK(found.mesh.has_value(),
                     "these " << points.size() << " points have no solid hull");
-        hull = std::make_unique<HullMesh>(std::move(*found.mesh));
-        return ConvexHull{hull.get(), position, rotation};
+        hull_ = std::make_unique<HullMesh>(std::move(*found.mesh));
+        return ConvexHull{hull_.get(), position_, rotation_};
     }
-    case Kind::mesh:
-        return MeshTree(make_mesh(desc));
-    case Kind::height_field:
-        return make_hills(desc);
-    case Kind::circle:
-        return Circle{flattened(desc.position), real(desc.radius)};
-    case Kind::rectangle:
-        return Rectangle{flattened(desc.position - desc.half_extents),
-                         flattened(desc.position + desc.half_extents)};
-    case Kind::oriented_rectangle:
-        return oriented_rectangle(flattened(desc.position), real(desc.angle),
-                                  flattened(desc.half_extents));
-    case Kind::compound:
-        return make_compound(desc);
+    AskedShape operator()(const MeshDesc &m) const { return MeshTree(as_mesh(m, desc_)); }
+    AskedShape operator()(const HeightFieldDesc &f) const { return as_field(f, desc_.position); }
+    AskedShape operator()(const FlatSegmentDesc &s) const {
+        return Segment2{flattened(s.points[0]), flattened(s.points[1])};
     }
-    PLUMB_CHECK(false, "unknown kind of shape " << static_cast<int>(desc.kind));
-}
+    AskedShape operator()(const FlatCompoundDesc &c) const {
+        std::vector<Part2> parts;
+        for (const FlatPartDesc &part : c.parts)
+            std::visit(
+                [&](const auto &shape) {
+                    parts.emplace_back(flat(shape, part.position + desc_.position));
+                },
+                part.shape);
+        return Compound2(std::move(parts));
+    }
+    // CircleDesc, RectangleDesc, OrientedRectangleDesc
+    template <typename Flat> AskedShape operator()(const Flat &f) const {
+        return flat(f, desc_.position);
+    }
+
+  private:
+    static Circle flat(const CircleDesc &c, const glm::dvec3 &at) {
+        return Circle{flattened(at), real(c.radius)};
+    }
+    static Rectangle flat(const RectangleDesc &r, const glm::dvec3 &at) {
+        return Rectangle{flattened(at - r.half_extents), flattened(at + r.half_extents)};
+    }
+    static OrientedRectangle flat(const OrientedRectangleDesc &r, const glm::dvec3 &at) {
+        return oriented_rectangle(flattened(at), real(r.angle), flattened(r.half_extents));
+    }
+    Vec3 along_y(double height) const {
+        return rotated(rotation_, Vec3{Real(0), real(height), Real(0)});
+    }
+
+    const ProbeShapeDesc &desc_;
+    Vec3 position_;
+    Quat rotation_;
+    std::unique_ptr<HullMesh> &hull_;
+};
 
 } // namespace
 
 MadeShape make_shape(const ProbeShapeDesc &desc) {
     std::unique_ptr<HullMesh> hull;
-    AskedShape shape = make(desc, hull);
+    AskedShape shape = std::visit(Maker(desc, hull), desc.shape);
     return {std::move(shape), std::move(hull)};
 }
 

@@ -93,8 +93,8 @@ void answer_basis(Asking &ask) {
 
 void answer_transform(Asking &ask) {
     const ProbeShapeDesc &shape = ask.probe.shapes.front();
-    PLUMB_CHECK(shape.kind == ProbeShapeKind::box,
-                "a transform is shown on a box, not a " << probe_shape_name(shape.kind));
+    const auto *box = std::get_if<BoxDesc>(&shape.shape);
+    PLUMB_CHECK(box, "a transform is shown on a box, not a " << shape_name(shape.shape));
     const ScaledTransform made{Vec3{shape.position}, Quat{shape.orientation},
                                Vec3{ask.probe.scale}};
     const Mat4 matrix = to_matrix(made);
@@ -112,7 +112,7 @@ void answer_transform(Asking &ask) {
         arrow(ask.answer, made.position, through(matrix, axis) - made.position, tones[index],
               names[index]);
     }
-    const Vec3 half{shape.half_extents};
+    const Vec3 half{box->half_extents};
     const std::size_t first = ask.answer.lines.size();
     draw_edges(ask.answer, {-half, half}, ProbeTone::edge);
     for (std::size_t i = first, end = ask.answer.lines.size(); i < end; ++i) {
