@@ -1,34 +1,15 @@
 // Shapes of a scene file: those of bodies and those of probes. Not for users of the engine.
 #pragma once
 
+#include "engine/scene/scene_file_shape_files.h"
 #include "engine/scene/scene_file_table.h"
 
-#include <filesystem>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace plumb::scene_file {
-
-// The files that shapes are read from, each once.
-class ShapeFiles {
-  public:
-    // They are looked for in the folder.
-    explicit ShapeFiles(std::filesystem::path folder = {}) : folder_(std::move(folder)) {}
-
-    // Its triangles with the numbers scaled; null, having reported it, when it cannot be used.
-    std::shared_ptr<const MeshData> load(const Table &table, const ShapeFile &file);
-
-  private:
-    std::shared_ptr<const MeshData> read(const Table &table, const ShapeFile &file) const;
-
-    std::filesystem::path folder_;
-    std::map<std::pair<std::string, double>, std::shared_ptr<const MeshData>> loaded_;
-};
 
 // The keys that the sizes of any kind of shape are said with.
 const std::vector<std::string_view> &body_shape_keys();

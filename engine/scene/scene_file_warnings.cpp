@@ -1,10 +1,10 @@
 #include "engine/scene/scene_file_warnings.h"
 
 #include "engine/dynamics/method_info.h"
-#include "engine/geometry/manifold.h"
 #include "engine/scene/joint_type.h"
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/simulation.h"
+#include "engine/scene/start_overlaps.h"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +15,7 @@
 #include <numbers>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -63,69 +64,6 @@ class Kind {
     std::size_t count_ = 0;
     std::vector<SceneMessage> messages_;
 };
-
-// The shape with its origin moved to `position`, so that float keeps its digits far out. Nothing
-// for kinds that are not looked at.
-struct AsShape {
-    glm::dvec3 position;
-    glm::dquat orientation;
-
-    using Found = std::optional<f32::Shape>;
-    Found operator()(const SphereDesc &s) const {
-        return f32::Sphere{f32::Vec3(position), static_cast<float>(s.radius)};
-    }
-    Found operator()(const BoxDesc &b) const {
-        return f32::Box{f32::Vec3(position), f32::Quat(orientation), f32::Vec3(b.half_extents)};
-    }
-    Found operator()(const CapsuleDesc &c) const {
-        const glm::dvec3 up = orientation * glm::dvec3(0, c.half_height, 0);
-        return f32::Capsule{f32::Vec3(position - up), f32::Vec3(position + up),
-                            static_cast<float>(c.radius)};
-    }
-    Found operator()(const PlaneDesc &) const {
-        const glm::dvec3 normal = orientation * glm::dvec3(0, 1, 0);
-        return f32::HalfSpace{f32::Vec3(normal), static_cast<float>(glm::dot(normal, position))};
-    }
-    Found operator()(const CylinderDesc &) const { return std::nullopt; }
-    Found operator()(const HullDesc &) const { return std::nullopt; }
-    Found operator()(const MeshDesc &) const { return std::nullopt; }
-    Found operator()(const HeightFieldDesc &) const { return std::nullopt; }
-};
-
-bool do_collide(const ColliderDesc &a, const ColliderDesc &b) {
-    const auto ignores = [](const FilterDesc &one, const FilterDesc &other) {
-        return (one.ignores >> static_cast<unsigned>(other.layer) & 1U) != 0;
-    };
-    return !a.sensor && !b.sensor && !ignores(a.filter, b.filter) && !ignores(b.filter, a.filter);
-}
-
-// How deep the shapes of two bodies are in each other at the deepest (m), as far as they are less
-// than `margin` apart; empty if they are farther.
-std::optional<double> deepest(const BodyDesc &a, const BodyDesc &b, double margin) {
-    // Both relative to the first, or to the second when the first is a plane: it may be far away.
-    const glm::dvec3 origin = has_plane(a) ? b.position : a.position;
-    const auto placed = [&](const BodyDesc &body, const ColliderDesc &collider) {
-        return std::visit(AsShape{body.position - origin + body.orientation * collider.position,
-                                  body.orientation * collider.orientation},
-                          collider.shape);
-    };
-    std::optional<double> depth;
-    for (const ColliderDesc &collider_a : a.colliders) {
-        const std::optional<f32::Shape> shape_a = placed(a, collider_a);
-        for (const ColliderDesc &collider_b : b.colliders) {
-            const std::optional<f32::Shape> shape_b = placed(b, collider_b);
-            if (!shape_a || !shape_b || !do_collide(collider_a, collider_b))
-                continue;
-            const f32::Manifold manifold =
-                f32::collide(*shape_a, *shape_b, static_cast<float>(margin));
-            for (int i = 0; i < manifold.count; ++i)
-                depth = std::max(
-                    depth.value_or(0),
-                    -static_cast<double>(manifold.points[static_cast<std::size_t>(i)].separation));
-        }
-    }
-    return depth;
-}
 
 class Checker {
   public:
@@ -241,7 +179,7 @@ class Checker {
         if (std::binary_search(exempt_.begin(), exempt_.end(), std::pair(a, b)))
             return;
         const double limit = overlap_limit * std::min(widths_[a], widths_[b]);
-        const std::optional<double> depth = deepest(body_a, body_b, limit);
+        const std::optional<double> depth = start_overlaps_.deepest(body_a, body_b, limit);
         if (!depth)
             return;
         // The one further down in the file is the one to move.
@@ -384,6 +322,7 @@ class Checker {
     std::vector<double> masses_; // 0 unless dynamic
     std::vector<double> widths_;
     std::vector<BoundsDesc> bounds_;
+    StartOverlaps start_overlaps_;
     std::vector<std::pair<std::size_t, std::size_t>> exempt_; // sorted
 
     Kind overlaps_{"overlaps"};

@@ -26,6 +26,10 @@ std::string body(const std::string &name, const std::string &rest) {
 const std::string sphere = "shape = \"sphere\"\nradius = 0.5\n";
 const std::string box = "shape = \"box\"\nhalf_extents = [0.5, 0.5, 0.5]\n";
 const std::string capsule = "shape = \"capsule\"\nhalf_height = 0.5\nradius = 0.5\n";
+const std::string cylinder = "shape = \"cylinder\"\nhalf_height = 0.5\nradius = 0.5\n";
+const std::string cube = "shape = \"hull\"\npoints = [[-0.5, -0.5, -0.5], [0.5, -0.5, -0.5], "
+                         "[-0.5, 0.5, -0.5], [0.5, 0.5, -0.5], [-0.5, -0.5, 0.5], "
+                         "[0.5, -0.5, 0.5], [-0.5, 0.5, 0.5], [0.5, 0.5, 0.5]]\n";
 
 TEST(SceneWarnings, OverlapHasADepth) {
     // Spheres 1 m wide, 0.9 m apart; line 6 is where the second begins.
@@ -36,7 +40,7 @@ TEST(SceneWarnings, OverlapHasADepth) {
 }
 
 TEST(SceneWarnings, OverlapOfEveryPairOfShapes) {
-    const std::vector<std::string> shapes{sphere, box, capsule};
+    const std::vector<std::string> shapes{sphere, box, capsule, cylinder, cube};
     const std::string ground = body("ground", "shape = \"plane\"");
     for (const std::string &first : shapes) {
         for (const std::string &second : shapes) {
@@ -54,6 +58,20 @@ TEST(SceneWarnings, OverlapOfEveryPairOfShapes) {
         EXPECT_EQ(warnings(body("a", first + "position = [7, 0.3, 0]") + ground).size(), 1U);
         EXPECT_EQ(warnings(ground + body("a", first + "position = [7, 1.01, 0]")), None{});
     }
+}
+
+// A dumbbell of two balls with nothing between them but a third, which lets through.
+TEST(SceneWarnings, OverlapOfCompoundsIsThatOfTheirShapes) {
+    const auto dumbbell = [](const std::string &ends) {
+        return "shapes = [{ shape = \"sphere\", radius = 0.5, position = [-2, 0, 0]" + ends +
+               " }, { shape = \"sphere\", radius = 0.5, position = [2, 0, 0]" + ends +
+               " }, { shape = \"sphere\", radius = 0.5, sensor = true }]\n";
+    };
+    const std::string ball = body("ball", sphere);
+    EXPECT_EQ(warnings(ball + body("a", dumbbell(""))), None{});
+    EXPECT_EQ(warnings(ball + body("a", dumbbell("") + "position = [1.5, 0, 0]")).size(), 1U);
+    EXPECT_EQ(warnings(ball + body("a", dumbbell(", ignores = [0]") + "position = [1.5, 0, 0]")),
+              None{});
 }
 
 TEST(SceneWarnings, TouchingStacksAndTurnedBoxesAreFine) {
@@ -133,8 +151,9 @@ TEST(SceneWarnings, JointsThatMoveNothingOrJerk) {
 
 TEST(SceneWarnings, AnchorsThatEachTypeKeepsTogether) {
     const auto joint = [&](const std::string &keys) {
-        return warnings(body("a", sphere) + "[[joint]]\nname = \"j\"\nbody_a = \"a\"\n"
-                                            "anchor_a = [0, 0, 0]\nanchor_b = [0, 0.25, 0]\n" +
+        return warnings(body("a", sphere) +
+                        "[[joint]]\nname = \"j\"\nbody_a = \"a\"\n"
+                        "anchor_a = [0, 0, 0]\nanchor_b = [0, 0.25, 0]\n" +
                         keys);
     };
     EXPECT_EQ(joint("type = \"hinge\"\naxis = [0, 1, 0]\n").size(), 1U);
