@@ -432,7 +432,7 @@ TEST(ProbeSimulation, HasNoWorldAndCostsNoStep) {
 TEST(ProbeSimulation, AnotherAnswerIsAnotherHash) {
     SceneDesc scene = parsed(ray_and_sphere);
     const std::uint64_t before = Simulation::create(scene, {}, nullptr)->hash();
-    scene.probes.front().shapes.front().radius = 1.25;
+    scene.probes.front().shapes.front().shape = SphereDesc{1.25};
     EXPECT_NE(Simulation::create(scene, {}, nullptr)->hash(), before);
 }
 

@@ -401,14 +401,6 @@ class Scenes {
         j.*member = {std::min(a, b), std::max(a, b)};
     }
 
-    glm::dquat rotation() {
-        // Drawn at once: the order of evaluation of arguments is not fixed.
-        double q[4];
-        for (double &part : q)
-            part = random_.next_in(-1, 1);
-        return glm::normalize(glm::dquat(q[0], q[1], q[2], q[3]));
-    }
-
     ExpectDesc expect(const SceneDesc &scene) {
         ExpectDesc e;
         e.name = unique();
