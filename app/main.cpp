@@ -1,15 +1,16 @@
 // The command line.
+#include "app/files/output_file.h"
+#include "app/hash.h"
 #include "app/lab/chart.h"
 #include "app/lab/check.h"
 #include "app/lab/interrupt.h"
-#include "app/lab/load_scenes.h"
 #include "app/lab/measure.h"
 #include "app/lab/query_chart.h"
 #include "app/lab/run_text.h"
 #include "app/lab/sweep.h"
+#include "app/list.h"
 #include "app/render/compare_images.h"
 #include "app/render/png.h"
-#include "app/sandbox/keys.h"
 #include "app/sandbox/run_sandbox.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/snapshot.h"
@@ -19,10 +20,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
-#include <iomanip>
+#include <charconv>
 #include <iostream>
-#include <map>
+#include <new>
+#include <stdexcept>
 #include <system_error>
 #include <thread>
 
@@ -42,8 +43,9 @@ constexpr const char *exit_codes = "Exit codes:\n"
                                    "  2  a bad scene or argument\n"
                                    "  3  the world diverged\n"
                                    "  4  no GL context\n"
-                                   "130  interrupted by Ctrl-C; what was done is kept\n";
-constexpr int interrupted = 130; // 128 and the signal's number, as shells have it
+                                   "  5  output could not be written, or memory ran out\n"
+                                   "130  interrupted by Ctrl-C (143: by SIGTERM); what was done "
+                                   "is kept\n";
 
 int code_of(ExitCode code) {
     return static_cast<int>(code);
@@ -112,9 +114,39 @@ void add_setting(CLI::App &command, Common &common, const std::string &option,
         ->type_name(type);
 }
 
+// The items of an option's list; none may be empty.
+std::vector<std::string> parse_list(const std::string &text) {
+    std::vector<std::string> items;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        if (end == begin)
+            throw std::invalid_argument("'" + text + "' has nothing between two commas");
+        items.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return items;
+}
+
+constexpr std::uint64_t most_steps = 1'000'000'000;
+
+std::vector<std::uint64_t> parse_steps(const std::string &text) {
+    std::vector<std::uint64_t> steps;
+    for (const std::string &item : parse_list(text)) {
+        std::uint64_t step = 0;
+        const char *end = item.data() + item.size();
+        const auto read = std::from_chars(item.data(), end, step);
+        if (read.ec != std::errc{} || read.ptr != end || step > most_steps)
+            throw std::invalid_argument("--at: '" + item +
+                                        "' is no step; whole numbers up to 1000000000, like "
+                                        "0,60,240");
+        steps.push_back(step);
+    }
+    return steps;
+}
+
 // Of options that count steps. CLI11 by itself reads -1 as the largest unsigned number.
 CLI::Range step_range() {
-    return {0, 1'000'000'000};
+    return {0, static_cast<int>(most_steps)};
 }
 
 void add_scenes(CLI::App &command, Common &common) {
@@ -196,7 +228,7 @@ int run(const Common &common, const std::optional<int> &frames,
 }
 
 struct SnapshotArguments {
-    std::vector<std::uint64_t> at;
+    std::string at;
     std::uint64_t every = 0, steps = 0;
     bool panels = false;
     int samples = 4;
@@ -207,7 +239,8 @@ int snapshot(const Common &common, const SnapshotArguments &arguments) {
     SnapshotCommand command;
     command.scenes = common.scene_paths();
     command.run = common.run();
-    command.at = arguments.at;
+    if (!arguments.at.empty())
+        command.at = parse_steps(arguments.at);
     if (arguments.every > 0)
         for (std::uint64_t step = 0; step <= arguments.steps; step += arguments.every)
             command.at.push_back(step);
@@ -225,86 +258,6 @@ int snapshot(const Common &common, const SnapshotArguments &arguments) {
     command.gl = gl_choice_from_name(common.gl);
     command.tasks = &tasks;
     return code_of(make_snapshots(command, std::cout, std::cerr));
-}
-
-int hash(const Common &common, std::uint64_t steps) {
-    TaskPool tasks(common.threads);
-    const LoadedScenes loaded = load_scenes(common.scene_paths(), std::cerr);
-    ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
-    for (const SceneDesc &scene : loaded.scenes) {
-        std::unique_ptr<Simulation> simulation;
-        try {
-            simulation = Simulation::create(scene, common.run(), &tasks);
-        } catch (const std::invalid_argument &error) {
-            std::cerr << scene.name << ": " << error.what() << '\n';
-            code = worse(code, ExitCode::bad_input);
-            continue;
-        }
-        const bool has_world = simulation->has_world();
-        for (std::uint64_t step = 0; has_world && step < steps && simulation->report().finite;
-             ++step)
-            simulation->step();
-        std::cout << std::hex << std::setw(16) << std::setfill('0') << simulation->hash()
-                  << std::dec << "  " << scene.name << "  step " << simulation->step_count()
-                  << "\n";
-        if (!simulation->report().finite) {
-            std::cerr << scene.name << ": diverged at step " << simulation->step_count() << '\n';
-            code = worse(code, ExitCode::diverged);
-        }
-    }
-    return code_of(code);
-}
-
-std::string json_string(const std::string &text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\')
-            out += '\\';
-        if (static_cast<unsigned char>(c) < 0x20)
-            out += ' ';
-        else
-            out += c;
-    }
-    return out + '"';
-}
-
-int list(const Common &common, bool json, bool keys, bool methods, bool settings) {
-    if (settings) {
-        std::cout << settings_as_markdown();
-        return 0;
-    }
-    if (keys) {
-        std::cout << keys_as_markdown();
-        return 0;
-    }
-    if (methods) {
-        for (const MethodInfo &m : method_infos())
-            std::cout << std::left << std::setw(22) << m.name << std::setw(22) << m.title
-                      << (m.contacts ? "contacts, joints" : "free bodies     ") << "  " << m.source
-                      << '\n';
-        return 0;
-    }
-    if (json) {
-        std::cout << "[";
-        const char *separator = "\n";
-        for (const SceneEntry &s : common.catalogue) {
-            std::cout << separator << "  {\"subject\": " << json_string(s.subject)
-                      << ", \"name\": " << json_string(s.name)
-                      << ", \"title\": " << json_string(s.title)
-                      << ", \"path\": " << json_string(s.path.string()) << "}";
-            separator = ",\n";
-        }
-        std::cout << "\n]\n";
-        return 0;
-    }
-    std::string subject;
-    for (const SceneEntry &s : common.catalogue) {
-        if (s.subject != subject)
-            std::cout << (subject.empty() ? "" : "\n") << s.subject << '\n';
-        subject = s.subject;
-        std::cout << "  " << std::left << std::setw(20) << s.name << s.title << '\n';
-    }
-    return 0;
 }
 
 int compare(const std::filesystem::path &a_path, const std::filesystem::path &b_path, int tolerance,
@@ -402,9 +355,7 @@ int main_with_errors(int argc, char **argv) {
         app.add_subcommand("snapshot", "Draws scenes at given steps to numbered PNG files");
     add_scenes(*snapshot_command, common);
     auto *at = snapshot_command->add_option("--at", pictures.at, "Steps to draw: 0,60,240")
-                   ->allow_extra_args(false)
-                   ->check(step_range())
-                   ->delimiter(',');
+                   ->type_name("STEP,...");
     auto *every =
         snapshot_command->add_option("--every", pictures.every, "Draws every so many steps, from 0")
             ->check(positive())
@@ -450,15 +401,33 @@ int main_with_errors(int argc, char **argv) {
         ->check(step_range())
         ->required();
     add_run_options(*hash_command, common);
-    hash_command->callback([&] { result = hash(common, hash_steps); });
+    hash_command->callback([&] {
+        TaskPool tasks(common.threads);
+        HashCommand command;
+        command.scenes = common.scene_paths();
+        command.run = common.run();
+        command.steps = hash_steps;
+        command.tasks = &tasks;
+        result = code_of(hash_scenes(command, std::cout, std::cerr));
+    });
 
     bool json = false, keys = false, methods = false, settings = false;
     CLI::App *list_command = app.add_subcommand("list", "Lists the scenes");
     list_command->add_flag("--json", json, "For programs");
-    list_command->add_flag("--keys", keys, "Keys and mouse instead, as a table");
-    list_command->add_flag("--methods", methods, "Methods instead");
-    list_command->add_flag("--settings", settings, "Settings instead, as a table");
-    list_command->callback([&] { result = list(common, json, keys, methods, settings); });
+    auto *list_keys = list_command->add_flag("--keys", keys, "Keys and mouse instead, as a table");
+    auto *list_settings =
+        list_command->add_flag("--settings", settings, "Settings instead, as a table");
+    list_command->add_flag("--methods", methods, "Methods instead")
+        ->excludes(list_keys)
+        ->excludes(list_settings);
+    list_settings->excludes(list_keys);
+    list_command->callback([&] {
+        list(keys       ? Listed::keys
+             : methods  ? Listed::methods
+             : settings ? Listed::settings
+                        : Listed::scenes,
+             json, common.catalogue, std::cout);
+    });
 
     std::uint64_t measure_steps = 600;
     std::filesystem::path csv;
@@ -489,9 +458,9 @@ int main_with_errors(int argc, char **argv) {
         "chart", "Charts each method's cost against its error, as CSV and PNG: of scenes, or of "
                  "geometric queries (`plumb chart geometry`, with --repeats and --out alone)");
     add_scenes(*chart_command, common);
-    chart_command->add_option("--methods", chart.options.methods, "Of " + method_names() + " (all)")
-        ->allow_extra_args(false)
-        ->delimiter(',');
+    std::string chart_methods;
+    chart_command->add_option("--methods", chart_methods, "Of " + method_names() + " (all)")
+        ->type_name("METHOD,...");
     chart_command
         ->add_option("--sweep", sweeps,
                      "What to go through, any setting from `plumb list --settings`: substeps=1..16 "
@@ -519,6 +488,8 @@ int main_with_errors(int argc, char **argv) {
         }
         for (const std::string &sweep : sweeps)
             chart.options.sweep.push_back(parse_sweep(sweep));
+        if (!chart_methods.empty())
+            chart.options.methods = parse_list(chart_methods);
         chart.scenes = common.scene_paths();
         chart.options.base = common.run();
         chart.out_dir = common.out;
@@ -577,9 +548,29 @@ int main_with_errors(int argc, char **argv) {
     }
     if (app.get_subcommands().empty())
         result = run(common, frames, screenshot);
-    if (InterruptGuard::requested())
-        return interrupted;
     return result;
+}
+
+// What `work` returns, or the exit code of what kept it from doing so, which is said.
+template <typename Work> int reported(const Work &work) {
+    ExitCode code = ExitCode::bad_input;
+    std::string what;
+    try {
+        return work();
+    } catch (const ContextError &error) {
+        what = error.what();
+        code = ExitCode::no_gl_context;
+    } catch (const std::system_error &error) {
+        what = error.what();
+        code = exit_code(error);
+    } catch (const std::bad_alloc &) {
+        what = "out of memory; scenes/README.md says what a scene may ask for";
+        code = ExitCode::no_room;
+    } catch (const std::exception &error) {
+        what = error.what();
+    }
+    std::cerr << "plumb: " << what << '\n';
+    return code_of(code);
 }
 
 } // namespace
@@ -587,13 +578,13 @@ int main_with_errors(int argc, char **argv) {
 } // namespace plumb
 
 int main(int argc, char **argv) {
-    try {
-        return plumb::main_with_errors(argc, argv);
-    } catch (const plumb::ContextError &error) {
-        std::cerr << "plumb: " << error.what() << '\n';
-        return static_cast<int>(plumb::ExitCode::no_gl_context);
-    } catch (const std::exception &error) {
-        std::cerr << "plumb: " << error.what() << '\n';
-        return static_cast<int>(plumb::ExitCode::bad_input);
-    }
+    plumb::StandardOutput standard_output;
+    const int code = plumb::reported([&] { return plumb::main_with_errors(argc, argv); });
+    const int end = plumb::reported([&] {
+        standard_output.finish();
+        return 0;
+    });
+    if (plumb::InterruptGuard::requested())
+        return plumb::InterruptGuard::exit_code();
+    return code != 0 ? code : end;
 }

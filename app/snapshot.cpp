@@ -1,7 +1,9 @@
 #include "app/snapshot.h"
 
+#include "app/files/output_file.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/load_scenes.h"
+#include "app/lab/progress.h"
 #include "app/render/framebuffer.h"
 #include "app/render/png.h"
 #include "app/render/renderer.h"
@@ -21,6 +23,11 @@ namespace plumb {
 
 namespace {
 
+void print(std::ostream &err, const Messages &messages) {
+    for (const Message &message : messages.all())
+        err << message.text << '\n';
+}
+
 std::filesystem::path picture_path(const SnapshotCommand &command, const std::string &scene,
                                    std::uint64_t step) {
     if (!command.numbered)
@@ -33,29 +40,30 @@ std::filesystem::path picture_path(const SnapshotCommand &command, const std::st
 // One scene, stepped from picture to picture. The sandbox draws its panels around the same session
 // that a person would have.
 ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer &renderer,
-               std::ostream &out, std::ostream &err) {
+               ProgressLine &line, std::ostream &out, std::ostream &err) {
+    line.show(0, scene.name);
     Sandbox sandbox(Session(command.run, command.tasks), command.catalogue, command.out_dir);
     // The panels mark the scene in their list.
     const auto listed = std::ranges::find(command.catalogue, scene.name, &SceneEntry::name);
     const std::filesystem::path scene_path =
         listed == command.catalogue.end() ? std::filesystem::path() : listed->path;
     if (!sandbox.open(scene, scene_path)) {
-        for (const Message &message : sandbox.session().messages().all())
-            err << scene.name << ": " << message.text << '\n';
-        return ExitCode::bad_input;
+        line.clear();
+        print(err, sandbox.session().messages());
+        return sandbox.session().memory_ran_out() ? ExitCode::no_room : ExitCode::bad_input;
     }
     const Simulation &simulation = *sandbox.session().simulation();
     const std::uint64_t start = simulation.step_count();
+    const double last = std::max(1.0, static_cast<double>(command.at.back()));
     for (const std::uint64_t step : command.at) {
         const bool steps = simulation.has_world();
-        while (steps && simulation.step_count() - start < step && sandbox.session().step() &&
-               !InterruptGuard::requested()) {
-        }
-        const bool arrived = !steps || simulation.step_count() - start == step;
-        if (InterruptGuard::requested() && !arrived)
+        const auto done = [&] { return simulation.step_count() - start; };
+        while (steps && done() < step && !InterruptGuard::requested() && sandbox.session().step())
+            line.show(static_cast<double>(done()) / last, scene.name);
+        if (InterruptGuard::requested())
             return ExitCode::fine;
-        const std::filesystem::path path =
-            picture_path(command, scene.name, simulation.step_count() - start);
+        const bool arrived = !steps || done() == step;
+        const std::filesystem::path path = picture_path(command, scene.name, done());
         // Labels of probes are drawn as panels are.
         sandbox.view().panels = command.panels;
         if (command.panels || !scene.probes.empty())
@@ -64,13 +72,15 @@ ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer 
         else
             write_png(path, render_image(renderer, draw_world(simulation, camera_of(scene.camera)),
                                          command.size, command.samples));
+        line.clear();
         out << path.string() << std::endl;
+        line.show(static_cast<double>(done()) / last, scene.name);
         if (!steps)
             break; // every step looks the same
         if (!arrived || !simulation.report().finite) {
-            err << scene.name << ": diverged at step " << simulation.step_count() - start << '\n';
-            for (const Message &message : sandbox.session().messages().all())
-                err << message.text << '\n';
+            line.clear();
+            err << scene.name << ": diverged at step " << done() << '\n';
+            print(err, sandbox.session().messages());
             return ExitCode::diverged;
         }
     }
@@ -114,14 +124,11 @@ ExitCode make_snapshots(const SnapshotCommand &command, std::ostream &out, std::
     const ContextResult made = create_context(request);
     made.context->make_current();
     Renderer renderer(command.shader_dir);
-    std::error_code error;
-    std::filesystem::create_directories(command.out_dir, error);
-    if (error) {
-        err << command.out_dir.string() << ": " << error.message() << '\n';
-        return ExitCode::bad_input;
-    }
+    create_folder(command.out_dir);
+    ProgressLine line(err);
     for (const SceneDesc &scene : loaded.scenes) {
-        code = worse(code, shoot(command, scene, renderer, out, err));
+        code = worse(code, shoot(command, scene, renderer, line, out, err));
+        line.clear();
         if (InterruptGuard::requested()) {
             err << "interrupted; the pictures so far are complete\n";
             break;

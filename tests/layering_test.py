@@ -11,7 +11,7 @@ import sys
 
 # Each room may include itself and what stands before it.
 ENGINE_ROOMS = ["core", "math", "geometry", "space", "dynamics", "scene"]
-APP_ROOMS = ["render", "lab", "sandbox"]
+APP_ROOMS = ["files", "render", "lab", "sandbox"]
 
 # A library known to few files: header pattern, the files that may include it, and how many at most.
 LIBRARIES = [

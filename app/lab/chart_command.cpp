@@ -1,9 +1,9 @@
 #include "app/lab/chart.h"
 
+#include "app/files/output_file.h"
 #include "app/lab/chart_image.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/load_scenes.h"
-#include "app/lab/partial_file.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
 
@@ -51,15 +51,10 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
             err << "two scenes are called " << scene.name << "; chart them into two folders\n";
             return ExitCode::bad_input;
         }
-    std::error_code error;
-    fs::create_directories(command.out_dir, error);
-    if (error) {
-        err << command.out_dir.string() << ": " << error.message() << '\n';
-        return ExitCode::bad_input;
-    }
+    create_folder(command.out_dir);
 
     const InterruptGuard interrupt;
-    ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());
+    ProgressLine line(err);
     LazyPainter painter(command.shader_dir);
     for (const SceneDesc &scene : loaded.scenes) {
         if (InterruptGuard::requested())
@@ -74,15 +69,10 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
             options.progress = [&](double fraction, const std::string &what) {
                 line.show(fraction, what);
             };
-            PartialFile csv(command.out_dir / (scene.name + ".csv"));
-            const auto write_rows = [&](const SceneChart &chart) {
-                csv.restart();
-                write_chart_csv(csv.stream(), chart);
-                csv.flush();
-            };
-            const SceneChart chart = chart_scene(scene, options, write_rows);
-            write_rows(chart);
+            OutputFile csv(command.out_dir / (scene.name + ".csv"));
+            const SceneChart chart = chart_scene(scene, options);
             line.clear();
+            write_chart_csv(csv.stream(), chart);
             print(out, chart);
             out << std::flush;
             bool any_result = false;
@@ -96,10 +86,12 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
                     code = worse(code, ExitCode::diverged);
                 }
             }
-            if (!chart.interrupted)
+            if (chart.interrupted) {
+                err << "interrupted; rows so far: " << csv.keep_partial().string() << '\n';
+            } else {
                 csv.finish();
-            err << (chart.interrupted ? "interrupted; rows so far: " : "wrote ")
-                << (chart.interrupted ? csv.partial_path() : csv.path()).string() << '\n';
+                err << "wrote " << csv.path().string() << '\n';
+            }
             if (chart.runs.empty())
                 continue;
             if (ChartPainter *pen = painter.get(err)) {
@@ -113,10 +105,6 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
         } catch (const std::invalid_argument &failure) {
             line.clear();
             err << scene.name << ": " << failure.what() << '\n';
-            code = worse(code, ExitCode::bad_input);
-        } catch (const std::runtime_error &failure) {
-            line.clear();
-            err << failure.what() << '\n';
             code = worse(code, ExitCode::bad_input);
         }
     }

@@ -138,7 +138,7 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
         runs.push_back(command.run);
 
     const InterruptGuard interrupt;
-    ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());
+    ProgressLine line(err);
     Tally tally;
     const std::size_t total = loaded.scenes.size() * runs.size();
     std::size_t done = 0;
@@ -154,6 +154,7 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
                 line.show((static_cast<double>(done) + fraction) / static_cast<double>(total),
                           scene.name + (options.method.empty() ? "" : ", " + options.method));
             };
+            judging.progress(0);
             try {
                 const CheckOutcome outcome = check_scene(scene, options, command.tasks, judging);
                 line.clear();

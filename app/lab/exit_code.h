@@ -1,5 +1,7 @@
-// What the lab's commands tell the shell.
+// What commands tell the shell.
 #pragma once
+
+#include <system_error>
 
 namespace plumb {
 
@@ -9,10 +11,21 @@ enum class ExitCode {
     bad_input = 2, // a scene or an argument
     diverged = 3,
     no_gl_context = 4,
+    no_room = 5, // output could not be written, or memory ran out
 };
 
+// A place that nothing can be written to is a bad argument; a full disk is not.
+[[nodiscard]] inline ExitCode exit_code(const std::system_error &failure) {
+    for (const std::errc at_fault :
+         {std::errc::no_space_on_device, std::errc::file_too_large, std::errc::io_error,
+          std::errc::broken_pipe, std::errc::not_enough_memory})
+        if (failure.code() == at_fault)
+            return ExitCode::no_room;
+    return ExitCode::bad_input;
+}
+
 // Of several outcomes, the one to report. What keeps a result from being worth anything comes
-// first: bad input, then no picture, then divergence, then a missed tolerance.
+// first: bad input, then no room, then no picture, then divergence, then a missed tolerance.
 [[nodiscard]] constexpr ExitCode worse(ExitCode a, ExitCode b) {
     constexpr auto rank = [](ExitCode code) {
         switch (code) {
@@ -24,10 +37,12 @@ enum class ExitCode {
             return 2;
         case ExitCode::no_gl_context:
             return 3;
-        case ExitCode::bad_input:
+        case ExitCode::no_room:
             return 4;
+        case ExitCode::bad_input:
+            return 5;
         }
-        return 4;
+        return 5;
     };
     return rank(a) >= rank(b) ? a : b;
 }

@@ -4,29 +4,35 @@ namespace plumb {
 
 namespace {
 
-volatile std::sig_atomic_t interrupt_noted = 0;
+volatile std::sig_atomic_t noted_signal = 0;
 
-extern "C" void note_interrupt(int) {
-    interrupt_noted = 1;
+extern "C" void note_signal(int signal) {
+    noted_signal = signal;
 }
 
 } // namespace
 
 InterruptGuard::InterruptGuard() {
-    interrupt_noted = 0;
+    noted_signal = 0;
     struct sigaction action {};
-    action.sa_handler = note_interrupt;
+    action.sa_handler = note_signal;
     action.sa_flags = static_cast<int>(SA_RESETHAND); // the second ends the program
     sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, &previous_);
+    sigaction(SIGINT, &action, &previous_interrupt_);
+    sigaction(SIGTERM, &action, &previous_terminate_);
 }
 
 InterruptGuard::~InterruptGuard() {
-    sigaction(SIGINT, &previous_, nullptr);
+    sigaction(SIGINT, &previous_interrupt_, nullptr);
+    sigaction(SIGTERM, &previous_terminate_, nullptr);
 }
 
 bool InterruptGuard::requested() {
-    return interrupt_noted != 0;
+    return noted_signal != 0;
+}
+
+int InterruptGuard::exit_code() {
+    return requested() ? 128 + noted_signal : 0;
 }
 
 } // namespace plumb

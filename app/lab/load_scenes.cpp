@@ -1,5 +1,6 @@
 #include "app/lab/load_scenes.h"
 
+#include "app/lab/progress.h"
 #include "engine/dynamics/method_info.h"
 #include "engine/scene/scene_file.h"
 
@@ -24,7 +25,7 @@ LoadedScenes load_scenes(const std::vector<std::filesystem::path> &paths, std::o
         std::vector<fs::path> below;
         for (auto entry = fs::recursive_directory_iterator(path, error);
              !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
-            if (entry->path().extension() == ".toml")
+            if (entry->path().extension() == ".toml" && entry->is_regular_file(error))
                 below.push_back(entry->path());
         std::sort(below.begin(), below.end());
         files.insert(files.end(), below.begin(), below.end());
@@ -38,8 +39,11 @@ LoadedScenes load_scenes(const std::vector<std::filesystem::path> &paths, std::o
         err << '\n';
         loaded.all_fine = false;
     }
+    ProgressLine line(err);
     for (const fs::path &file : files) {
+        line.show(0, "reading " + file.string());
         SceneFileResult result = load_scene(file, methods);
+        line.clear();
         for (const SceneMessage &message : result.messages)
             err << format_message(file.string(), message) << '\n';
         if (result.ok())

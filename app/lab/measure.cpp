@@ -1,9 +1,9 @@
 #include "app/lab/measure.h"
 
+#include "app/files/output_file.h"
 #include "app/lab/csv.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/load_scenes.h"
-#include "app/lab/partial_file.h"
 #include "app/lab/progress.h"
 #include "app/lab/run_text.h"
 #include "engine/core/check.h"
@@ -222,7 +222,7 @@ ExitCode measure_scene(const MeasureCommand &command, std::ostream &out, std::os
     try {
         const ResolvedRun resolved = resolve_run(scene, command.run);
         if (!has_world(scene)) {
-            std::optional<PartialFile> file;
+            std::optional<OutputFile> file;
             if (!command.out.empty())
                 file.emplace(command.out);
             measure_probes(scene.probes, resolved.precision, file ? file->stream() : out);
@@ -232,37 +232,34 @@ ExitCode measure_scene(const MeasureCommand &command, std::ostream &out, std::os
                                << ": only probes, and no world to step; wrote their values\n";
             return ExitCode::fine;
         }
-        const auto simulation = Simulation::create(scene, command.run, command.tasks);
         const InterruptGuard interrupt;
-        ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());
+        ProgressLine line(err);
+        line.show(0, scene.name);
+        const auto simulation = Simulation::create(scene, command.run, command.tasks);
         MeasureOptions options;
         options.steps = command.steps;
         options.stop = InterruptGuard::requested;
         options.progress = [&](double fraction) { line.show(fraction, scene.name); };
-        std::optional<PartialFile> file;
+        std::optional<OutputFile> file;
         if (!command.out.empty())
             file.emplace(command.out);
         const MeasureSummary summary =
             measure_run(*simulation, options, file ? file->stream() : out);
         line.clear();
-        if (file) {
-            if (summary.stopped)
-                file->flush();
-            else
-                file->finish();
-        }
+        std::filesystem::path partial;
+        if (file && summary.stopped)
+            partial = file->keep_partial();
+        else if (file)
+            file->finish();
         std::ostream &text = file ? out : err;
         text << scene.name << "  [" << run_text(resolved) << "]\n";
         print(text, summary);
         if (summary.stopped)
-            text << "interrupted"
-                 << (file ? "; rows so far: " + file->partial_path().string() : std::string())
+            text << "interrupted" << (file ? "; rows so far: " + partial.string() : std::string())
                  << '\n';
         return summary.divergence ? ExitCode::diverged : ExitCode::fine;
     } catch (const std::invalid_argument &error) {
         err << scene.name << ": " << error.what() << '\n';
-    } catch (const std::runtime_error &error) {
-        err << error.what() << '\n';
     }
     return ExitCode::bad_input;
 }

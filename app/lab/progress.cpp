@@ -2,53 +2,74 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iostream>
+#include <utility>
 
 #include <unistd.h>
 
 namespace plumb {
 
-ProgressLine::ProgressLine(std::ostream &out, bool terminal)
-    : out_(out), terminal_(terminal), start_(std::chrono::steady_clock::now()), last_(start_) {}
+ProgressLine::ProgressLine(std::ostream &err)
+    : ProgressLine(err, &err == &std::cerr && isatty(STDERR_FILENO) != 0) {}
+
+ProgressLine::ProgressLine(std::ostream &err, bool terminal)
+    : err_(err), terminal_(terminal), ticker_([this](const std::stop_token &stop) { tick(stop); }) {
+}
 
 ProgressLine::~ProgressLine() {
     clear();
 }
 
-void ProgressLine::show(double fraction, const std::string &what) {
-    using namespace std::chrono;
-    const auto now = steady_clock::now();
-    const auto pause = terminal_ ? duration<double>(0.1) : duration<double>(10);
-    if (now - last_ < pause)
-        return;
-    last_ = now;
-    char percent[16];
-    std::snprintf(percent, sizeof percent, "%3.0f %%", 100 * std::clamp(fraction, 0.0, 1.0));
-    std::string line = std::string(percent) + "  " + what;
-    if (fraction > 0.02) {
-        const double elapsed = duration<double>(now - start_).count();
+void ProgressLine::tick(const std::stop_token &stop) {
+    std::unique_lock lock(mutex_);
+    while (!stop.stop_requested()) {
+        wake_.wait_until(lock, stop, next_, [] { return false; });
+        const Clock::time_point now = Clock::now();
+        if (now < next_)
+            continue;
+        next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(5));
+        if (showing_)
+            print(now);
+    }
+}
+
+void ProgressLine::show(double fraction, std::string what) {
+    const std::scoped_lock lock(mutex_);
+    showing_ = true;
+    fraction_ = std::clamp(fraction, 0.0, 1.0);
+    what_ = std::move(what);
+}
+
+void ProgressLine::print(Clock::time_point now) {
+    std::string line = what_;
+    if (fraction_ > 0) {
+        char percent[32];
+        std::snprintf(percent, sizeof percent, ", %.0f %%", 100 * fraction_);
+        line += percent;
+    }
+    if (fraction_ > 0.02) {
+        const double elapsed = std::chrono::duration<double>(now - start_).count();
         char left[32];
-        std::snprintf(left, sizeof left, "  (%.0f s left)", elapsed / fraction - elapsed);
+        std::snprintf(left, sizeof left, " (%.0f s left)", elapsed / fraction_ - elapsed);
         line += left;
     }
     if (terminal_) {
         const std::size_t length = line.size();
-        if (length < shown_)
-            line.append(shown_ - length, ' ');
-        shown_ = length;
-        out_ << '\r' << line << std::flush;
+        if (length < printed_)
+            line.append(printed_ - length, ' ');
+        printed_ = length;
+        err_ << '\r' << line << std::flush;
     } else {
-        out_ << line << std::endl;
+        err_ << line << std::endl;
     }
 }
 
 void ProgressLine::clear() {
-    if (shown_ > 0)
-        out_ << '\r' << std::string(shown_, ' ') << '\r' << std::flush;
-    shown_ = 0;
-}
-
-bool stderr_is_terminal() {
-    return isatty(STDERR_FILENO) != 0;
+    const std::scoped_lock lock(mutex_);
+    showing_ = false;
+    if (printed_ > 0)
+        err_ << '\r' << std::string(printed_, ' ') << '\r' << std::flush;
+    printed_ = 0;
 }
 
 } // namespace plumb

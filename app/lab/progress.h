@@ -2,38 +2,51 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <ostream>
 #include <string>
+#include <thread>
 
 namespace plumb {
 
 // Called with the fraction done (0..1) and what is being done.
 using Progress = std::function<void(double fraction, const std::string &what)>;
 
-// Prints progress: on a terminal one line that is rewritten up to ten times a second; elsewhere a
-// line at most every ten seconds.
+// Prints what takes longer than two seconds, even while a single step does: on a terminal, one line
+// that is rewritten ten times a second; elsewhere, a line every five seconds.
 class ProgressLine {
   public:
-    // `out` must outlive it.
-    ProgressLine(std::ostream &out, bool terminal);
+    // `err` must outlive it. A terminal is asked for only when it is std::cerr.
+    explicit ProgressLine(std::ostream &err);
+    ProgressLine(std::ostream &err, bool terminal);
     ~ProgressLine(); // clears the line
     ProgressLine(const ProgressLine &) = delete;
     ProgressLine &operator=(const ProgressLine &) = delete;
 
-    void show(double fraction, const std::string &what);
+    // From now on, until clear(), it may print at any time from a thread of its own.
+    void show(double fraction, std::string what);
     // Clears the line, so that something else can be printed.
     void clear();
 
   private:
-    std::ostream &out_;
-    bool terminal_;
-    std::size_t shown_ = 0; // characters on the line
-    std::chrono::steady_clock::time_point start_;
-    std::chrono::steady_clock::time_point last_;
-};
+    using Clock = std::chrono::steady_clock;
 
-// Whether standard error is a terminal.
-[[nodiscard]] bool stderr_is_terminal();
+    void tick(const std::stop_token &stop);
+    void print(Clock::time_point now);
+
+    std::ostream &err_;
+    const bool terminal_;
+    const Clock::time_point start_ = Clock::now();
+    std::mutex mutex_; // of all below
+    std::condition_variable_any wake_;
+    bool showing_ = false;
+    double fraction_ = 0;
+    std::string what_;
+    std::size_t printed_ = 0; // characters on the line
+    Clock::time_point next_ = start_ + std::chrono::seconds(2);
+    std::jthread ticker_; // last: it stops before the rest goes
+};
 
 } // namespace plumb

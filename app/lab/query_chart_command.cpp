@@ -1,38 +1,31 @@
 #include "app/lab/query_chart.h"
 
+#include "app/files/output_file.h"
 #include "app/lab/chart_image.h"
 #include "app/lab/interrupt.h"
-#include "app/lab/partial_file.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
 
 #include <iostream>
-#include <system_error>
 
 namespace plumb {
 
 ExitCode chart_geometry(const QueryChartCommand &command, std::ostream &out, std::ostream &err) {
-    std::error_code error;
-    std::filesystem::create_directories(command.out_dir, error);
-    if (error) {
-        err << command.out_dir.string() << ": " << error.message() << '\n';
-        return ExitCode::bad_input;
-    }
+    create_folder(command.out_dir);
     const InterruptGuard interrupt;
-    ProgressLine line(err, &err == &std::cerr && stderr_is_terminal());
+    ProgressLine line(err);
     QueryChartOptions options = command.options;
     options.stop = InterruptGuard::requested;
     options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
 
-    PartialFile csv(command.out_dir / "geometry.csv");
+    OutputFile csv(command.out_dir / "geometry.csv");
     const QueryChart chart = chart_queries(options);
     line.clear();
     write_query_csv(csv.stream(), chart);
     print(out, chart);
     out << std::flush;
     if (chart.interrupted) {
-        csv.flush();
-        err << "interrupted; rows so far: " << csv.partial_path().string() << '\n';
+        err << "interrupted; rows so far: " << csv.keep_partial().string() << '\n';
         return ExitCode::fine;
     }
     csv.finish();

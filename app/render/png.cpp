@@ -1,14 +1,12 @@
 #include "app/render/png.h"
 
-#include <cerrno>
 #include <cstddef>
-#include <cstring>
-#include <fstream>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 
+#include "app/files/output_file.h"
 #include "engine/core/check.h"
 
 #define STBI_ONLY_PNG
@@ -35,27 +33,17 @@ namespace plumb {
 void write_png(const std::filesystem::path &path, const Image &image) {
     PLUMB_CHECK(image.width > 0 && image.height > 0,
                 "cannot write a picture of " << image.width << " x " << image.height << " pixels");
-    std::filesystem::path part = path;
-    part += ".part";
-    std::error_code error;
-    std::ofstream file(part, std::ios::binary);
-    const auto append = [](void *to, void *bytes, int count) {
-        static_cast<std::ofstream *>(to)->write(static_cast<const char *>(bytes), count);
+    std::string bytes;
+    const auto append = [](void *to, void *more, int count) {
+        static_cast<std::string *>(to)->append(static_cast<const char *>(more),
+                                               static_cast<std::size_t>(count));
     };
-    const int encoded = stbi_write_png_to_func(append, &file, image.width, image.height, 3,
-                                               image.pixels.data(), 3 * image.width);
-    file.close();
-    if (encoded == 0 || !file) { // a full disk shows when the file is closed
-        const std::string reason = std::strerror(errno);
-        std::filesystem::remove(part, error);
-        throw std::runtime_error(path.string() + ": cannot write the picture: " + reason);
-    }
-    std::filesystem::rename(part, path, error);
-    if (error) {
-        const std::string reason = error.message();
-        std::filesystem::remove(part, error);
-        throw std::runtime_error(path.string() + ": cannot write the picture: " + reason);
-    }
+    if (stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.pixels.data(),
+                               3 * image.width) == 0)
+        throw std::bad_alloc(); // the only way in which it fails
+    OutputFile file(path);
+    file.stream() << bytes;
+    file.finish();
 }
 
 Image read_png(const std::filesystem::path &path) {

@@ -7,8 +7,7 @@
 
 namespace plumb {
 
-// Writes beside the file and renames, so that a reader sees the old picture or the whole new one.
-// Creates no folders. Throws std::runtime_error with the path and the reason.
+// As an OutputFile: a reader sees the old picture or the whole new one. Throws std::system_error.
 void write_png(const std::filesystem::path &path, const Image &image);
 
 // Greyscale and alpha are converted to RGB (alpha is dropped). Throws std::runtime_error.

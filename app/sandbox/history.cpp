@@ -4,15 +4,17 @@
 
 namespace plumb {
 
-std::size_t History::capacity(std::size_t bodies) {
-    const std::size_t fits = memory_limit / (bytes_per_body * std::max<std::size_t>(bodies, 1));
+std::size_t History::capacity(std::size_t bodies, std::size_t contacts) {
+    const std::size_t state =
+        std::max(bytes_per_body * std::max<std::size_t>(bodies, 1), bytes_per_contact * contacts);
+    const std::size_t fits = memory_limit / state;
     return std::clamp<std::size_t>(fits, 1, most_states);
 }
 
 void History::remember(const Simulation &simulation) {
     // The oldest one's memory is used again.
     std::unique_ptr<Simulation::Saved> oldest;
-    while (states_.size() >= capacity(simulation.body_count())) {
+    while (states_.size() >= capacity(simulation.body_count(), simulation.report().contacts)) {
         oldest = std::move(states_.front());
         states_.pop_front();
     }

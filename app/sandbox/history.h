@@ -17,9 +17,11 @@ class History {
     static constexpr std::size_t most_states = 3600;        // a minute at 60 steps a second
     // What the state of one resting body takes, its contacts and joints among it.
     static constexpr std::size_t bytes_per_body = 300;
+    // Of one contact, for heaps where these outnumber the bodies by far.
+    static constexpr std::size_t bytes_per_contact = 160;
 
-    // How many states of a world of this many bodies are kept; at least one.
-    [[nodiscard]] static std::size_t capacity(std::size_t bodies);
+    // How many states of a world of this many bodies and contacts are kept; at least one.
+    [[nodiscard]] static std::size_t capacity(std::size_t bodies, std::size_t contacts = 0);
 
     void clear() { states_.clear(); }
     [[nodiscard]] std::size_t size() const { return states_.size(); }

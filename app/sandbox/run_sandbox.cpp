@@ -1,6 +1,9 @@
 #include "app/sandbox/run_sandbox.h"
 
+#include "app/files/output_file.h"
 #include "app/lab/exit_code.h"
+#include "app/lab/interrupt.h"
+#include "app/lab/progress.h"
 #include "app/render/framebuffer.h"
 #include "app/render/imgui_renderer.h"
 #include "app/render/png.h"
@@ -74,7 +77,7 @@ void write_screenshot(Sandbox &sandbox, const Framebuffer &target) {
     const std::filesystem::path path = sandbox.new_file(".png");
     try {
         if (path.has_parent_path())
-            std::filesystem::create_directories(path.parent_path());
+            create_folder(path.parent_path());
         write_png(path, target.read());
         sandbox.session().messages().note("Wrote " + path.string());
     } catch (const std::exception &failure) {
@@ -88,7 +91,8 @@ int finish(const SandboxOptions &options, const Sandbox &sandbox, const Stage &s
     if (options.max_frames && !sandbox.session().running()) {
         for (const Message &message : sandbox.session().messages().all())
             std::cerr << message.text << '\n';
-        return static_cast<int>(ExitCode::bad_input);
+        return static_cast<int>(sandbox.session().memory_ran_out() ? ExitCode::no_room
+                                                                   : ExitCode::bad_input);
     }
     return 0;
 }
@@ -96,12 +100,18 @@ int finish(const SandboxOptions &options, const Sandbox &sandbox, const Stage &s
 int run_off_screen(const SandboxOptions &options) {
     Sandbox sandbox = make_sandbox(options);
     Stage stage(options, 1, options.size);
-    for (int frame = 0; frame < *options.max_frames && !sandbox.quit_requested(); ++frame) {
+    const InterruptGuard interrupt;
+    ProgressLine line(std::cerr);
+    for (int frame = 0;
+         frame < *options.max_frames && !sandbox.quit_requested() && !InterruptGuard::requested();
+         ++frame) {
+        line.show(static_cast<double>(frame) / *options.max_frames, "drawing frames");
         sandbox.advance(1'000'000'000 / 60);
         stage.ui.fill_input(glm::vec2(options.size), 1.0f / 60);
         stage.ui.begin_frame();
         stage.draw(sandbox);
     }
+    line.clear();
     return finish(options, sandbox, stage);
 }
 

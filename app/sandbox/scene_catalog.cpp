@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <tuple>
@@ -18,7 +19,12 @@ namespace fs = std::filesystem;
 
 // The title's line alone: a list of scenes shall not parse them all.
 std::string read_title(const fs::path &path) {
-    std::ifstream file(path);
+    constexpr std::size_t head_bytes = 1U << 16U; // where a title stands
+    std::string head(head_bytes, '\0');
+    std::ifstream whole(path, std::ios::binary);
+    whole.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(whole.gcount()));
+    std::istringstream file(head);
     for (std::string line; std::getline(file, line) && !line.starts_with('[');)
         if (line.starts_with("title")) {
             const std::size_t begin = line.find('"');

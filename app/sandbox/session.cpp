@@ -1,5 +1,6 @@
 #include "app/sandbox/session.h"
 
+#include "app/files/output_file.h"
 #include "engine/scene/scene_file.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <exception>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -35,7 +37,15 @@ std::string where_not_finite(const Simulation &simulation) {
 
 std::string text_of(const std::filesystem::path &path) {
     std::ifstream file(path, std::ios::binary);
+    if (!std::filesystem::is_regular_file(path) || !file)
+        throw std::runtime_error(path.string() + " cannot be read");
     return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_whole(const std::filesystem::path &path, const std::string &text) {
+    OutputFile file(path);
+    file.stream() << text;
+    file.finish();
 }
 
 } // namespace
@@ -44,7 +54,13 @@ Session::Session(RunOptions options, TaskPool *tasks, Make make)
     : options_(std::move(options)), tasks_(tasks), make_(std::move(make)) {}
 
 bool Session::open(const std::filesystem::path &path) {
-    const SceneFileResult file = load_scene(path);
+    SceneFileResult file;
+    try {
+        file = load_scene(path);
+    } catch (const std::bad_alloc &failure) {
+        messages_.error(path.filename().string() + ": " + reason(failure));
+        return false;
+    }
     for (const SceneMessage &message : file.messages)
         messages_.say(message.severity == SceneMessage::Severity::error
                           ? Message::Severity::error
@@ -90,22 +106,23 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
         std::unique_ptr<Simulation> simulation = make_(scene, options, tasks_);
         if (settings)
             simulation->set_settings(*settings);
+        std::vector<ProbeAnswer> answers;
+        for (const ProbeDesc &probe : scene.probes)
+            answers.push_back(answer(probe, simulation->precision()));
         std::optional<ExpectationWatch> watch;
         if (simulation->has_world())
             watch.emplace(*simulation, scene.expects);
+        answers_ = std::move(answers);
         watch_ = std::move(watch);
         history_.clear(); // before the simulation that made it
         simulation_ = std::move(simulation);
     } catch (const std::exception &failure) {
         messages_.error((scene.name.empty() ? "The scene" : scene.name) +
-                        " cannot run: " + failure.what());
+                        " cannot run: " + reason(failure));
         return false;
     }
     scene_ = scene;
     probes_ = scene.probes;
-    answers_.clear();
-    for (const ProbeDesc &probe : probes_)
-        answers_.push_back(answer(probe, simulation_->precision()));
     stopped_ = false;
     first_step_ = simulation_->step_count();
     disturbed_from_.reset();
@@ -129,7 +146,7 @@ bool Session::step() {
     } catch (const std::exception &failure) {
         stopped_ = true;
         messages_.error("The step after " + std::to_string(simulation_->step_count()) +
-                        " failed: " + failure.what());
+                        " failed: " + reason(failure));
         settle_poses();
         return false;
     }
@@ -167,7 +184,7 @@ bool Session::step_back() {
             simulation_->set_method(method);
         simulation_->set_settings(settings);
     } catch (const std::exception &failure) {
-        messages_.error(std::string("Cannot step back: ") + failure.what());
+        messages_.error("Cannot step back: " + reason(failure));
         return false;
     }
     stopped_ = false;
@@ -200,7 +217,8 @@ bool Session::set_method(std::string_view name) {
         settings_changed();
         return true;
     } catch (const std::exception &failure) {
-        messages_.error("Cannot change the method to " + std::string(name) + ": " + failure.what());
+        messages_.error("Cannot change the method to " + std::string(name) + ": " +
+                        reason(failure));
         return false;
     }
 }
@@ -213,7 +231,7 @@ bool Session::set_settings(const StepSettings &settings) {
         settings_changed();
         return true;
     } catch (const std::exception &failure) {
-        messages_.error(std::string("Cannot change the settings: ") + failure.what());
+        messages_.error("Cannot change the settings: " + reason(failure));
         return false;
     }
 }
@@ -233,7 +251,7 @@ std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dve
         settle_poses();
         return body;
     } catch (const std::exception &failure) {
-        messages_.error(std::string("Cannot add a ball: ") + failure.what());
+        messages_.error("Cannot add a ball: " + reason(failure));
         return {};
     }
 }
@@ -261,7 +279,7 @@ void Session::save_mesh_files(const std::filesystem::path &folder) const {
         const std::filesystem::path from = path_.parent_path() / name;
         const std::filesystem::path to = folder / name;
         if (!std::filesystem::exists(to))
-            std::filesystem::copy_file(from, to);
+            write_whole(to, text_of(from));
         else if (text_of(from) != text_of(to))
             throw std::runtime_error(to.string() + " is another mesh already");
     }
@@ -274,22 +292,17 @@ bool Session::save_scene(const std::filesystem::path &path) {
         SceneDesc present = simulation_->describe();
         present.probes = probes_;
         const std::string text = write_scene(present);
+        if (text.size() > max_scene_file_bytes)
+            throw std::runtime_error("it would be larger than a scene file may be, " +
+                                     std::to_string(max_scene_file_bytes >> 20U) + " MiB");
         if (path.has_parent_path())
-            std::filesystem::create_directories(path.parent_path());
+            create_folder(path.parent_path());
         save_mesh_files(path.parent_path());
-        std::filesystem::path beside = path;
-        beside += ".part";
-        {
-            std::ofstream file(beside, std::ios::binary);
-            file << text << std::flush;
-            if (!file)
-                throw std::runtime_error("cannot write " + beside.string());
-        }
-        std::filesystem::rename(beside, path);
+        write_whole(path, text);
         messages_.note("Saved " + path.string());
         return true;
     } catch (const std::exception &failure) {
-        messages_.error(std::string("Cannot save the scene: ") + failure.what());
+        messages_.error("Cannot save the scene: " + reason(failure));
         return false;
     }
 }
@@ -309,6 +322,13 @@ void Session::disturb(std::uint64_t first_step) {
 void Session::settings_changed() {
     if (simulation_->step_count() > first_step_)
         disturb(first_step_ + 1);
+}
+
+std::string Session::reason(const std::exception &failure) {
+    if (dynamic_cast<const std::bad_alloc *>(&failure) == nullptr)
+        return failure.what();
+    memory_ran_out_ = true;
+    return "memory ran out";
 }
 
 void Session::settle_poses() {

@@ -103,9 +103,8 @@ class Session {
     // restart brings the scene's own places back, and what is expected there.
     void move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place);
 
-    // Writes the present state as a scene file: beside the file first, then renamed. Makes the
-    // folder, and copies the meshes' files into it; one that has another file of a mesh's name is
-    // an error.
+    // Writes the present state as a scene file, as an OutputFile. Makes the folder, and copies the
+    // meshes' files into it; one that has another file of a mesh's name is an error.
     bool save_scene(const std::filesystem::path &path);
 
     // Before and after the last step; the same after anything but a step.
@@ -113,12 +112,15 @@ class Session {
     [[nodiscard]] const std::vector<Pose> &present_poses() const { return present_; }
     [[nodiscard]] const SessionGraphs &graphs() const { return graphs_; }
     [[nodiscard]] const StepTimes &times() const { return times_; } // of the last step's phases
+    // Whether that is why something in messages() failed, once at least.
+    [[nodiscard]] bool memory_ran_out() const { return memory_ran_out_; }
     [[nodiscard]] Messages &messages() { return messages_; }
     [[nodiscard]] const Messages &messages() const { return messages_; }
 
   private:
     bool start(const SceneDesc &scene, const RunOptions &options,
                const std::optional<StepSettings> &settings);
+    [[nodiscard]] std::string reason(const std::exception &failure);
     void settle_poses();
     void disturb(std::uint64_t first_step);
     void settings_changed();
@@ -138,6 +140,7 @@ class Session {
     std::vector<ProbeDesc> probes_;
     std::vector<ProbeAnswer> answers_;
     bool stopped_ = false;
+    bool memory_ran_out_ = false;
     std::vector<Pose> previous_, present_;
     SessionGraphs graphs_;
     StepTimes times_;

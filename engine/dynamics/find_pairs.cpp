@@ -35,6 +35,18 @@ Aabb surface_bounds(const Collider &collider, const Motion &motion) {
                          pose));
 }
 
+// Far more than a pile has: a world that flies apart reaches for all that there is in one step, and
+// memory would end first. Of pairs that are only near each other little is kept.
+constexpr std::size_t most_near_pairs = 100'000'000;
+constexpr std::size_t most_candidates = 6'000'000;
+
+void refuse_more_than(std::size_t limit, std::size_t pairs, Scratch &scratch) {
+    if (pairs <= limit)
+        return;
+    scratch = Scratch{}; // what was found is only a part
+    PLUMB_CHECK(false, "more than " << limit << " pairs of shapes come near each other");
+}
+
 } // namespace
 
 // A world of one body, or a method that knows no contacts, pays for no collision detection.
@@ -140,6 +152,7 @@ void World::find_pairs() const {
                     s.fat_pairs.push_back(body_pair(i, other));
                 return true;
             });
+            refuse_more_than(most_near_pairs, s.fat_pairs.size(), s);
         }
         std::ranges::sort(s.fat_pairs);
     }
@@ -163,6 +176,7 @@ void World::find_pairs() const {
                 add_candidate(i, plane);
         }
     }
+    refuse_more_than(most_candidates, s.candidates.size(), s);
     std::ranges::sort(s.candidates, {}, &Candidate::key);
 }
 

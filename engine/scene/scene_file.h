@@ -20,6 +20,11 @@ struct SceneMessage {
     std::string suggestion; // what would be right; may be empty
 };
 
+// Stated limits: a larger file is refused; of one with more mistakes the first are listed, and how
+// many more there are.
+inline constexpr std::size_t max_scene_file_bytes = 64U << 20U;
+inline constexpr std::size_t max_listed_mistakes = 50;
+
 struct SceneFileResult {
     SceneDesc scene;                    // complete only when ok()
     std::vector<SceneMessage> messages; // in the order of the file
@@ -28,13 +33,14 @@ struct SceneFileResult {
 
 // `path` stands in messages, its stem names the scene, and the files that a scene names (meshes of
 // probes) are looked for beside it; it is not read itself. Reports every error of the file at
-// once; warnings only when there is no error. A syntax error of TOML hides what comes after it.
-// Method names must be among `known_methods` (empty: not checked).
+// once (see max_listed_mistakes); warnings only when there is no error. A syntax error of TOML
+// hides what comes after it. Method names must be among `known_methods` (empty: not checked).
 SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             const std::vector<std::string> &known_methods = {});
 
-// A file that cannot be read is one error message at line 0; one without a body or a probe is an
-// error too, for there is nothing to run, while parse_scene takes the text of such a scene.
+// A file that cannot be read or is too large is one error message at line 0, and a pipe or a device
+// is read no further than a file may be long. One without a body or a probe is an error too, for
+// there is nothing to run, while parse_scene takes the text of such a scene.
 SceneFileResult load_scene(const std::filesystem::path &path,
                            const std::vector<std::string> &known_methods = {});
 

@@ -1,11 +1,13 @@
 #include "engine/scene/scene_file_probe.h"
 
 #include "engine/scene/probe.h"
+#include "engine/scene/probe_size.h"
 #include "engine/scene/scene_file_names.h"
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/scene_file_place.h"
 #include "engine/scene/scene_file_shape.h"
 #include "engine/scene/scene_file_spelling.h"
+#include "engine/scene/scene_limits.h"
 #include "engine/scene/shape_kinds.h"
 
 #include <algorithm>
@@ -59,7 +61,7 @@ class ProbeReader {
         if (info.does_take("scale"))
             probe.scale = table.vector("scale", moderate).value_or(probe.scale);
         read_expects(table, info, asked, probe);
-        if (report_.error_count() != errors)
+        if (!has_room_for(table, probe) || report_.error_count() != errors)
             return;
         if (const ProbeAnswer found = answer(probe, precision_); !found.refusal.empty())
             report_.error(table.position(), table.title() + " has no answer: " + found.refusal,
@@ -70,6 +72,29 @@ class ProbeReader {
     std::vector<ProbeDesc> take() { return std::move(probes_); }
 
   private:
+    // All probes of a scene share their limits.
+    bool has_room_for(const Table &table, const ProbeDesc &probe) {
+        const ProbeSize size = size_of(probe);
+        const std::size_t errors = report_.error_count();
+        const auto add = [&](std::size_t &total, std::size_t more, std::size_t limit,
+                             const char *what) {
+            if (total <= limit && total + more > limit)
+                table.error("name",
+                            "with " + table.title() + " the scene's probes have " +
+                                std::to_string(total + more) + " " + what,
+                            "all probes of a scene have at most " + std::to_string(limit));
+            total += more;
+            return total <= limit;
+        };
+        const bool fits =
+            add(total_.shapes, size.shapes, max_scene_probe_shapes, "shapes") &
+            add(total_.triangles, size.triangles, max_scene_probe_triangles, "triangles") &
+            add(total_.scattered, size.scattered, max_scene_probe_items, "scattered items") &
+            add(total_.questions, size.questions, max_scene_probe_questions,
+                "pairs to ask about (a shape and a point, or two shapes)");
+        return fits && report_.error_count() == errors;
+    }
+
     void refuse_what_is_not_asked(const Table &table, const ProbeQuestionInfo &info,
                                   const std::string &asked) {
         const std::string suggestion = "it is about " + std::string(info.about);
@@ -320,6 +345,7 @@ class ProbeReader {
     Precision precision_;
     ShapeFiles &files_;
     Names names_;
+    ProbeSize total_;
     std::vector<ProbeDesc> probes_;
 };
 

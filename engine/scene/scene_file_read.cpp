@@ -1,10 +1,14 @@
 #include "engine/scene/scene_file.h"
+#include "engine/scene/scene_file_crowd.h"
 #include "engine/scene/scene_file_probe.h"
 #include "engine/scene/scene_file_reading.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
-#include <sstream>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace plumb {
 
@@ -42,6 +46,9 @@ SceneFileResult read_tables(const toml::table &root, const std::filesystem::path
     scene.probes = read_probes(reading.report, top, scene.world.precision, reading.files);
     read_one("state", read_state);
 
+    if (reading.report.error_count() == 0)
+        if (const std::optional<SceneMessage> crowd = too_crowded(scene, reading.positions))
+            reading.report.error({crowd->line, crowd->column}, crowd->what, crowd->suggestion);
     if (reading.report.error_count() == 0)
         for (SceneMessage &warning : scene_warnings(scene, reading.positions))
             reading.report.warning(std::move(warning));
@@ -93,17 +100,27 @@ SceneFileResult parse_scene(std::string_view text, const std::string &path,
 
 SceneFileResult load_scene(const std::filesystem::path &path,
                            const std::vector<std::string> &known_methods) {
-    // A directory opens, but cannot be read.
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    if (!file || file.bad() || std::filesystem::is_directory(path)) {
+    const auto refuse = [](std::string what, std::string suggestion) {
         SceneFileResult result;
-        result.messages.push_back({SceneMessage::Severity::error, 0, 0, "the file cannot be read",
-                                   "check that it exists and that you may read it"});
+        result.messages.push_back(
+            {SceneMessage::Severity::error, 0, 0, std::move(what), std::move(suggestion)});
         return result;
+    };
+    std::ifstream file(path, std::ios::binary);
+    std::string text;
+    std::array<char, 1U << 16U> block;
+    while (file && text.size() <= max_scene_file_bytes) {
+        file.read(block.data(), block.size());
+        text.append(block.data(), static_cast<std::size_t>(file.gcount()));
     }
-    SceneFileResult result = parse_scene(text.str(), path.string(), known_methods);
+    // A directory opens, but cannot be read.
+    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path))
+        return refuse("the file cannot be read", "check that it exists and that you may read it");
+    if (text.size() > max_scene_file_bytes)
+        return refuse("the file is too large",
+                      "a scene file has at most " + std::to_string(max_scene_file_bytes >> 20U) +
+                          " MiB; `repeat` makes many bodies of a few lines");
+    SceneFileResult result = parse_scene(text, path.string(), known_methods);
     if (result.ok() && result.scene.bodies.empty() && result.scene.probes.empty())
         result.messages = {{SceneMessage::Severity::error, 1, 1,
                             "the scene is empty: it has no body and no probe",

@@ -5,6 +5,7 @@
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/simulation.h"
 #include "engine/scene/start_overlaps.h"
+#include "engine/scene/touching_boxes.h"
 
 #include <algorithm>
 #include <array>
@@ -202,17 +203,10 @@ class Checker {
         return depth.x > limit && depth.y > limit && depth.z > limit;
     }
 
-    // Sweep and prune (Cohen, Lin, Manocha, Ponamgi 1995, "I-COLLIDE"), along the one axis on which
-    // the bodies are spread most.
     void check_pairs() {
-        struct Bounds {
-            glm::dvec3 min;
-            glm::dvec3 max;
-            std::size_t body;
-        };
-        std::vector<Bounds> bounded;
+        std::vector<BoundsDesc> boxes;
+        std::vector<std::size_t> bounded; // the body of each box
         std::vector<std::size_t> planes;
-        glm::dvec3 mean{0};
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
             const BodyDesc &body = scene_.bodies[i];
             if (has_plane(body)) {
@@ -221,42 +215,20 @@ class Checker {
             }
             // Of what is infinitely wide only the other's width counts.
             const double near = std::isfinite(widths_[i]) ? overlap_limit * widths_[i] : 0;
-            bounded.push_back({bounds_[i].min - near, bounds_[i].max + near, i});
-            mean += body.position;
+            boxes.push_back({bounds_[i].min - near, bounds_[i].max + near});
+            bounded.push_back(i);
         }
         for (const std::size_t plane : planes)
-            for (const Bounds &other : bounded)
-                if (is_dynamic(other.body))
-                    check_pair(plane, other.body);
-        if (bounded.empty())
-            return;
-
-        mean /= static_cast<double>(bounded.size());
-        glm::dvec3 spread{0};
-        for (const Bounds &b : bounded) {
-            const glm::dvec3 offset = scene_.bodies[b.body].position - mean;
-            spread += offset * offset;
-        }
-        const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0
-                         : spread.y >= spread.z                       ? 1
-                                                                      : 2;
-        std::sort(bounded.begin(), bounded.end(), [axis](const Bounds &a, const Bounds &b) {
-            return a.min[axis] != b.min[axis] ? a.min[axis] < b.min[axis] : a.body < b.body;
+            for (const std::size_t other : bounded)
+                if (is_dynamic(other))
+                    check_pair(plane, other);
+        for_touching_boxes(boxes, [&](std::size_t i, std::size_t j) {
+            const std::size_t a = bounded[i];
+            const std::size_t b = bounded[j];
+            if ((is_dynamic(a) || is_dynamic(b)) && (may_overlap(a, b) || differ_in_mass(a, b)))
+                check_pair(a, b);
+            return true;
         });
-        const int second = (axis + 1) % 3;
-        const int third = (axis + 2) % 3;
-        for (std::size_t i = 0; i < bounded.size(); ++i) {
-            const Bounds &a = bounded[i];
-            for (std::size_t j = i + 1; j < bounded.size() && bounded[j].min[axis] <= a.max[axis];
-                 ++j) {
-                const Bounds &b = bounded[j];
-                if (a.min[second] <= b.max[second] && b.min[second] <= a.max[second] &&
-                    a.min[third] <= b.max[third] && b.min[third] <= a.max[third] &&
-                    (is_dynamic(a.body) || is_dynamic(b.body)) &&
-                    (may_overlap(a.body, b.body) || differ_in_mass(a.body, b.body)))
-                    check_pair(a.body, b.body);
-            }
-        }
     }
 
     void check_dt() {

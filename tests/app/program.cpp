@@ -6,8 +6,11 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
+#include <csignal>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace plumb {
 
@@ -36,6 +39,36 @@ ProgramResult run_program(const std::string &arguments, const std::filesystem::p
     result.out = read_all(out);
     result.err = read_all(err);
     return result;
+}
+
+RunningProgram::RunningProgram(const std::string &arguments, std::filesystem::path folder)
+    : folder_(std::move(folder)) {
+    const std::string command = "cd '" + folder_.string() +
+                                "' && unset DISPLAY WAYLAND_DISPLAY && exec '" PLUMB_PROGRAM "' " +
+                                arguments + " >out 2>err </dev/null";
+    process_ = fork();
+    if (process_ == 0) {
+        execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char *>(nullptr));
+        _exit(127);
+    }
+}
+
+RunningProgram::~RunningProgram() {
+    if (process_ > 0) {
+        kill(process_, SIGKILL);
+        waitpid(process_, nullptr, 0);
+    }
+}
+
+void RunningProgram::send(int signal) const {
+    kill(process_, signal);
+}
+
+ProgramResult RunningProgram::wait() {
+    int status = 0;
+    waitpid(std::exchange(process_, -1), &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            read_all(folder_ / "out"), read_all(folder_ / "err")};
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -16,6 +16,24 @@ struct ProgramResult {
 ProgramResult run_program(const std::string &arguments, const std::filesystem::path &folder = ".",
                           const std::string &before = {});
 
+// One that is still running. `folder` must be one of its own: what it prints lies there in the
+// files "out" and "err".
+class RunningProgram {
+  public:
+    RunningProgram(const std::string &arguments, std::filesystem::path folder);
+    ~RunningProgram(); // kills it
+    RunningProgram(const RunningProgram &) = delete;
+    RunningProgram &operator=(const RunningProgram &) = delete;
+
+    void send(int signal) const;
+    // As a shell has it: 128 and the signal's number when one ended it.
+    ProgramResult wait();
+
+  private:
+    std::filesystem::path folder_;
+    int process_ = -1;
+};
+
 // A new empty folder, removed at the end.
 class TemporaryFolder {
   public:

@@ -1,9 +1,9 @@
 // plumb-bench: `plumb bench` runs it. Arguments: geometry ROUNDS OUT_DIR SHADER_DIR.
+#include "app/files/output_file.h"
 #include "app/lab/chart_image.h"
 #include "app/lab/csv.h"
 #include "app/lab/exit_code.h"
 #include "app/lab/interrupt.h"
-#include "app/lab/partial_file.h"
 #include "app/lab/progress.h"
 #include "app/lab/timing.h"
 #include "app/render/context.h"
@@ -80,14 +80,9 @@ void print_contests(const std::vector<Contest> &contests,
 
 ExitCode bench_geometry(int rounds, const std::filesystem::path &out_dir,
                         const std::filesystem::path &shader_dir) {
-    std::error_code error;
-    std::filesystem::create_directories(out_dir, error);
-    if (error) {
-        std::cerr << out_dir.string() << ": " << error.message() << '\n';
-        return ExitCode::bad_input;
-    }
+    create_folder(out_dir);
     const InterruptGuard interrupt;
-    ProgressLine line(std::cerr, stderr_is_terminal());
+    ProgressLine line(std::cerr);
     TimingOptions timing;
     timing.rounds = rounds;
     timing.stop = InterruptGuard::requested;
@@ -111,13 +106,12 @@ ExitCode bench_geometry(int rounds, const std::filesystem::path &out_dir,
     };
     const std::vector<std::vector<double>> times = time_interleaved(works, timing);
     line.clear();
-    PartialFile csv(out_dir / "bench_geometry.csv");
+    OutputFile csv(out_dir / "bench_geometry.csv");
     print_contests(contests, times, csv.stream());
     std::fflush(stdout);
     if (InterruptGuard::requested()) {
-        csv.flush();
         std::cerr << "interrupted; of the rounds that were finished: "
-                  << csv.partial_path().string() << '\n';
+                  << csv.keep_partial().string() << '\n';
         return ExitCode::fine;
     }
     csv.finish();
@@ -130,7 +124,7 @@ ExitCode bench_geometry(int rounds, const std::filesystem::path &out_dir,
     const std::vector<TreeCost> trees = time_trees(1'000'000, timing);
     line.clear();
     print(std::cout << '\n', trees);
-    PartialFile tree_csv(out_dir / "bench_trees.csv");
+    OutputFile tree_csv(out_dir / "bench_trees.csv");
     write_tree_csv(tree_csv.stream(), trees);
     if (InterruptGuard::requested())
         return ExitCode::fine;
@@ -156,7 +150,7 @@ int bench(int argc, char **argv) {
         return static_cast<int>(ExitCode::bad_input);
     }
     const ExitCode code = bench_geometry(rounds, argv[3], argv[4]);
-    return InterruptGuard::requested() ? 130 : static_cast<int>(code);
+    return InterruptGuard::requested() ? InterruptGuard::exit_code() : static_cast<int>(code);
 }
 
 } // namespace

@@ -20,6 +20,30 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/fall_float)
 run(${WORK_DIR}/build/fall_double)
 
+# The README's example, as it stands there.
+file(READ ${SOURCE_DIR}/README.md readme)
+foreach(block "cmake;CMakeLists.txt" "cpp;example.cpp")
+    list(GET block 0 language)
+    list(GET block 1 name)
+    string(REGEX MATCH "```${language}\n([^`]*)```" found "${readme}")
+    if(NOT found)
+        message(FATAL_ERROR "README.md has no example in ${language}")
+    endif()
+    file(WRITE ${WORK_DIR}/example/${name} "${CMAKE_MATCH_1}")
+endforeach()
+run(${CMAKE_COMMAND} -S ${WORK_DIR}/example -B ${WORK_DIR}/example/build -G Ninja
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_C_COMPILER=${CC} "-DCMAKE_CXX_FLAGS=${FLAGS}")
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/example/build)
+execute_process(COMMAND ${WORK_DIR}/example/build/example OUTPUT_VARIABLE said)
+if(NOT said STREQUAL "95.1 m\n")
+    message(FATAL_ERROR "README.md's example says ${said}")
+endif()
+
+if(NOT EXISTS ${WORK_DIR}/prefix/share/doc/plumb/LICENSE)
+    message(FATAL_ERROR "the licence is not installed")
+endif()
+
 # The source tree must not be what made it work.
 file(GLOB_RECURSE exported ${WORK_DIR}/prefix/*.cmake)
 foreach(file ${exported})

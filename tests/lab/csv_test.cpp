@@ -1,15 +1,11 @@
 #include "app/lab/csv.h"
-#include "app/lab/partial_file.h"
 
 #include "engine/core/random.h"
 #include "tests/lab/csv_reader.h"
 
 #include <bit>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
-#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -42,28 +38,6 @@ TEST(Csv, TextsAreQuotedWhereNeeded) {
     EXPECT_EQ(rows[0],
               (std::vector<std::string>{"plain", "a,b", "say \"no\"", "two\nlines", "1", "7"}));
     EXPECT_EQ(rows[1], (std::vector<std::string>{"0.5", ""}));
-}
-
-TEST(PartialFile, AppearsWhole) {
-    namespace fs = std::filesystem;
-    const fs::path path = fs::path(testing::TempDir()) / "plumb_partial_file_test.csv";
-    {
-        std::ofstream(path) << "old";
-        PartialFile file(path);
-        file.stream() << "first";
-        file.restart();
-        file.stream() << "second";
-        file.flush();
-        EXPECT_EQ(fs::file_size(path), 3U);
-        EXPECT_EQ(fs::file_size(file.partial_path()), 6U);
-        file.finish();
-        EXPECT_FALSE(fs::exists(file.partial_path()));
-    }
-    std::string text;
-    std::ifstream(path) >> text;
-    EXPECT_EQ(text, "second");
-    fs::remove(path);
-    EXPECT_THROW(PartialFile("/nowhere/at/all.csv"), std::runtime_error);
 }
 
 } // namespace

@@ -3,8 +3,11 @@
 #include "app/sandbox/sandbox.h"
 #include "engine/scene/scene_file.h"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+
+#include <sys/resource.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -112,6 +115,45 @@ TEST_F(ProbeTest, ASavedSceneTakesTheFilesOfItsMeshesAlong) {
     std::ofstream(folder / "gear.obj") << "v 0 0 0\nf 1 1 1\n";
     EXPECT_FALSE(sandbox.session().save_scene(folder / "third.toml"));
     EXPECT_FALSE(std::filesystem::exists(folder / "third.toml"));
+    std::filesystem::remove_all(folder);
+}
+
+// A disk that is full after so many bytes, or as good as one.
+class FullDisk {
+  public:
+    explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const struct rlimit small { bytes, before_.rlim_max };
+        setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~FullDisk() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FullDisk(const FullDisk &) = delete;
+    FullDisk &operator=(const FullDisk &) = delete;
+
+  private:
+    struct rlimit before_ {};
+    void (*handler_)(int);
+};
+
+TEST_F(ProbeTest, OnAFullDiskNoPartOfASavedSceneIsLeft) {
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / "plumb_full_disk";
+    std::filesystem::remove_all(folder);
+    const auto fails = [&] {
+        const FullDisk full(100);
+        EXPECT_FALSE(sandbox.session().save_scene(folder / "saved.toml"));
+        const std::string said = sandbox.session().messages().all().back().text;
+        EXPECT_NE(said.find("File too large"), std::string::npos) << said;
+        EXPECT_TRUE(std::filesystem::is_empty(folder));
+    };
+    fails(); // the scene itself
+    ASSERT_TRUE(sandbox.session().open(PLUMB_SOURCE_DIR "/scenes/geometry/mesh_file.toml"));
+    fails(); // its mesh
+    EXPECT_TRUE(sandbox.session().save_scene(folder / "saved.toml"));
+    EXPECT_TRUE(load_scene(folder / "saved.toml").ok());
     std::filesystem::remove_all(folder);
 }
 

@@ -422,6 +422,8 @@ TEST(History, KeepsTheNewestWithinItsMemory) {
     for (const std::size_t bodies : {1u, 100u, 5000u, 200'000u})
         EXPECT_LE(History::capacity(bodies) * bodies * History::bytes_per_body,
                   History::memory_limit);
+    // Contacts are remembered too.
+    EXPECT_EQ(History::capacity(4000, 3'000'000), 1U);
     FakeSimulation simulation(two_balls());
     History history;
     for (std::size_t i = 0; i < History::most_states + 5; ++i) {

@@ -1,0 +1,16 @@
+// `plumb list`: what there is.
+#pragma once
+
+#include "app/sandbox/scene_catalog.h"
+
+#include <ostream>
+#include <vector>
+
+namespace plumb {
+
+enum class Listed { scenes, methods, keys, settings };
+
+// For people, or as one JSON array.
+void list(Listed what, bool json, const std::vector<SceneEntry> &catalogue, std::ostream &out);
+
+} // namespace plumb

@@ -1,0 +1,40 @@
+#include "engine/scene/probe_size.h"
+
+#include <variant>
+
+namespace plumb {
+
+namespace {
+
+struct Counter {
+    ProbeSize &size;
+
+    void operator()(const MeshDesc &mesh) const {
+        size.triangles += mesh.data ? mesh.data->triangles.size() : 0;
+    }
+    void operator()(const HeightFieldDesc &field) const {
+        size.triangles += 2 * static_cast<std::size_t>(field.rows - 1) *
+                          static_cast<std::size_t>(field.columns - 1);
+    }
+    void operator()(const FlatCompoundDesc &compound) const {
+        size.shapes += compound.parts.size();
+    }
+    template <typename Plain> void operator()(const Plain &) const {}
+};
+
+} // namespace
+
+ProbeSize size_of(const ProbeDesc &probe) {
+    ProbeSize size;
+    size.shapes = probe.shapes.size();
+    for (const ProbeShapeDesc &shape : probe.shapes)
+        std::visit(Counter{size}, shape.shape);
+    if (probe.scatter)
+        size.scattered = static_cast<std::size_t>(probe.scatter->count);
+    const std::size_t shapes = probe.shapes.size();
+    size.questions = probe.question == ProbeQuestion::overlap ? shapes * (shapes - 1) / 2
+                                                              : shapes * probe.points.size();
+    return size;
+}
+
+} // namespace plumb

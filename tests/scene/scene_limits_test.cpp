@@ -1,0 +1,168 @@
+// What a scene may ask for, and what is said of one that asks for more.
+#include "tests/scene/scene_file_errors.h"
+
+#include <filesystem>
+#include <fstream>
+
+namespace plumb {
+namespace {
+
+using namespace scene_file_errors;
+
+std::string body(const std::string &name, const std::string &more) {
+    return "[[body]]\nname = \"" + name + "\"\nshape = \"box\"\nhalf_extents = [0.5, 0.5, 0.5]\n" +
+           more + "\n";
+}
+
+std::string line_of(int count, double step) {
+    return "repeat = { kind = \"line\", count = " + std::to_string(count) + ", step = [" +
+           std::to_string(step) + ", 0, 0] }";
+}
+
+std::string probe(int number, const std::string &asks) {
+    return "[[probe]]\n@name = \"p" + std::to_string(number) + "\"\n" + asks + "\n";
+}
+
+std::string repeated(const std::string &text, const std::string &separator, int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i)
+        all += (i > 0 ? separator : "") + text;
+    return all;
+}
+
+// The message stands at the last mark; the others are at probes that still fit.
+void expect_only(std::string marked, const std::string &message) {
+    while (marked.find('@') != marked.rfind('@'))
+        marked.erase(marked.find('@'), 1);
+    expect_messages({"", marked, {message}});
+}
+
+bool fine(const std::string &text) {
+    const SceneFileResult result = parse_scene(text, "s.toml");
+    for (const SceneMessage &message : result.messages)
+        if (message.severity == SceneMessage::Severity::error)
+            ADD_FAILURE() << format_message("s.toml", message);
+    return result.ok();
+}
+
+// Whose pairs are n (n - 1) / 2: 2450 bodies have 3 000 025, and the 2450th is the first too many.
+TEST(SceneLimits, BodiesInOnePlace) {
+    EXPECT_TRUE(fine(body("heap", line_of(2449, 1e-4))));
+    expect_messages(
+        {"",
+         body("first", "position = [1e6, 0, 0]") + "@" + body("heap", line_of(3000, 1e-4)),
+         {"with \"heap_2449\" more than 3000000 pairs of bodies touch or overlap at the "
+          "start; each pair takes memory: put the bodies apart (fast ones reach as far as "
+          "they move in a step)"}});
+    // Static ones too: they are looked at once.
+    EXPECT_FALSE(parse_scene(body("heap", "kind = \"static\"\n" + line_of(3000, 1e-4)), "s").ok());
+}
+
+TEST(SceneLimits, FastBodiesReachFar) {
+    const std::string row = line_of(4000, 2);
+    EXPECT_TRUE(fine(body("row", row)));
+    EXPECT_FALSE(parse_scene(body("row", "velocity = [1e6, 0, 0]\n" + row), "s").ok());
+    EXPECT_TRUE(fine("[world]\ndt = 1e-6\n" + body("row", "velocity = [1e6, 0, 0]\n" + row)));
+}
+
+TEST(SceneLimits, ASolidBlockOfBoxesAsLargeAsASceneMayBe) {
+    EXPECT_TRUE(
+        fine(body("block", "repeat = { kind = \"grid\", count = [58, 58, 59], spacing = [1, "
+                           "1, 1] }")));
+}
+
+TEST(SceneLimits, Planes) {
+    std::string planes;
+    for (int i = 0; i < 100; ++i)
+        planes += "[[body]]\nname = \"p" + std::to_string(i) + "\"\nshape = \"plane\"\n";
+    EXPECT_TRUE(fine(planes + body("box", "position = [0, 0.5, 0]")));
+    expect_messages({"",
+                     planes + "@[[body]]\nname = \"p\"\nshape = \"plane\"\n",
+                     {"too many planes; a scene holds at most 100"}});
+    // Each pair of a plane and a body that reaches it counts.
+    EXPECT_FALSE(parse_scene(planes + body("row", line_of(30'001, 2)), "s").ok());
+    EXPECT_TRUE(fine(planes + body("row", "position = [0, 50, 0]\n" + line_of(30'001, 2))));
+}
+
+TEST(SceneLimits, SquaresOfAHeightField) {
+    const auto hills = [](const std::string &half_extents) {
+        return "[[probe]]\nname = \"hills\"\nask = \"closest\"\npoints = [[0, 1, 0]]\n"
+               "shapes = [{ kind = \"height_field\", @half_extents = " +
+               half_extents + ", detail = 50 }]\n";
+    };
+    std::string most = hills("[1, 1, 20]");
+    most.erase(most.find('@'), 1);
+    EXPECT_TRUE(fine(most));
+    const std::string suggestion =
+        " squares; a height field has at most 50000: less detail, or less long along z";
+    const std::string title = "the height_field of [[probe]] \"hills\" has ";
+    expect_messages({"", hills("[1, 1, 20.1]"), {title + "50250" + suggestion}});
+    expect_messages({"", hills("[1, 1, 200000]"), {title + "500000000" + suggestion}});
+    // More than a whole number holds.
+    expect_messages({"", hills("[1e-9, 1, 1e9]"), {title + "2.5e+21" + suggestion}});
+}
+
+TEST(SceneLimits, ProbesTogether) {
+    const std::string knot =
+        "{ kind = \"mesh\", model = \"knot\", half_extents = [1, 1, 1], detail = 64 }";
+    std::string meshes;
+    for (int i = 0; i < 16; ++i)
+        meshes += probe(i, "ask = \"closest\"\npoint = [0, 0, 0]\nshapes = [" + knot + "]");
+    expect_only(meshes, "with [[probe]] \"p15\" the scene's probes have 1048576 triangles; all "
+                        "probes of a scene have at most 1000000");
+
+    std::string scatters;
+    for (int i = 0; i < 11; ++i)
+        scatters += probe(i, "ask = \"tree\"\ntree = \"bvh\"\nscatter = { count = 20000, "
+                             "half_extents = [5, 5, 5] }");
+    expect_only(scatters, "with [[probe]] \"p10\" the scene's probes have 220000 scattered items; "
+                          "all probes of a scene have at most 200000");
+
+    const std::string points = "points = [" + repeated("[9, 9, 9]", ", ", 2000) + "]\n";
+    const std::string spheres =
+        "shapes = [" + repeated("{ kind = \"sphere\", radius = 1 }", ", ", 300) + "]";
+    expect_only(probe(0, "ask = \"contains\"\n" + points + spheres) +
+                    probe(1, "ask = \"contains\"\n" + points + spheres),
+                "with [[probe]] \"p1\" the scene's probes have 1200000 pairs to ask about (a shape "
+                "and a point, or two shapes); all probes of a scene have at most 1000000");
+
+    std::string circles;
+    for (int i = 0; i < 51; ++i)
+        circles += probe(i, "ask = \"contains\"\npoint = [0, 0]\nshapes = [" +
+                                repeated("{ kind = \"circle\", radius = 1 }", ", ", 1000) + "]");
+    expect_only(circles, "with [[probe]] \"p50\" the scene's probes have 51000 shapes; all probes "
+                         "of a scene have at most 50000");
+}
+
+TEST(SceneLimits, OfManyMistakesTheFirstInTheFileAreListed) {
+    std::string text = "[world]\n";
+    for (int i = 0; i < 300; ++i)
+        text += "mistake_" + std::to_string(i) + " = 1\n";
+    // Read later, but it stands first.
+    const SceneFileResult result = parse_scene("expect = 1\n" + text, "s.toml");
+    ASSERT_EQ(result.messages.size(), max_listed_mistakes + 1);
+    EXPECT_EQ(result.messages.front().line, 1U);
+    for (std::size_t i = 1; i < max_listed_mistakes; ++i)
+        EXPECT_EQ(result.messages[i].line, i + 2);
+    EXPECT_EQ(format_message("s.toml", result.messages.back()), "s.toml: error: ... and 251 more");
+}
+
+TEST(SceneLimits, AFileHasALargestSize) {
+    const std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) / "plumb_large_scene.toml";
+    std::ofstream(path)
+        << "title = \"large\"\n[[body]]\nname = \"a\"\nshape = \"sphere\"\nradius = 1\n#";
+    std::filesystem::resize_file(path, max_scene_file_bytes); // zeros are no TOML, but are read
+    EXPECT_NE(load_scene(path).messages.at(0).line, 0U);
+    std::filesystem::resize_file(path, max_scene_file_bytes + 1);
+    const SceneFileResult result = load_scene(path);
+    std::filesystem::remove(path);
+    ASSERT_EQ(result.messages.size(), 1U);
+    EXPECT_EQ(
+        format_message("s.toml", result.messages[0]),
+        "s.toml: error: the file is too large; a scene file has at most 64 MiB; `repeat` makes "
+        "many bodies of a few lines");
+}
+
+} // namespace
+} // namespace plumb
