@@ -186,13 +186,26 @@ void add_gl(CLI::App &command, Common &common) {
         ->capture_default_str();
 }
 
+template <typename T>
+void add_ui_scale(CLI::App &command, T &scale, const std::string &by_default) {
+    command
+        .add_option("--ui-scale", scale,
+                    "How large text and panels are, 0.5 to 4 (" + by_default + ")")
+        ->check(CLI::Range(0.5, 4.0));
+}
+
 void add_out(CLI::App &command, Common &common, const std::string &by_default) {
     common.out = by_default;
     command.add_option("--out", common.out, "Folder for what is made")->capture_default_str();
 }
 
-int run(const Common &common, const std::optional<int> &frames,
-        const std::filesystem::path &screenshot) {
+struct RunArguments {
+    std::optional<int> frames, samples;
+    std::optional<float> ui_scale;
+    std::filesystem::path screenshot;
+};
+
+int run(const Common &common, const RunArguments &arguments) {
     TaskPool tasks(common.threads);
     SandboxOptions options;
     options.scenes = common.catalogue;
@@ -206,8 +219,10 @@ int run(const Common &common, const std::optional<int> &frames,
     options.out_dir = common.out;
     options.run = common.run();
     options.tasks = &tasks;
-    options.max_frames = frames;
-    options.screenshot = screenshot;
+    options.max_frames = arguments.frames;
+    options.screenshot = arguments.screenshot;
+    options.samples = arguments.samples;
+    options.ui_scale = arguments.ui_scale;
     const SandboxResult result = run_sandbox(options);
     if (result.why_no_window.empty())
         return result.exit_code;
@@ -223,6 +238,7 @@ int run(const Common &common, const std::optional<int> &frames,
     snapshot.shader_dir = common.shader_dir();
     snapshot.numbered = false;
     snapshot.gl = GlChoice::osmesa;
+    snapshot.samples = arguments.samples.value_or(snapshot.samples);
     snapshot.tasks = &tasks;
     return code_of(make_snapshots(snapshot, std::cout, std::cerr));
 }
@@ -232,6 +248,7 @@ struct SnapshotArguments {
     std::uint64_t every = 0, steps = 0;
     bool panels = false;
     int samples = 4;
+    float ui_scale = 1;
 };
 
 int snapshot(const Common &common, const SnapshotArguments &arguments) {
@@ -255,6 +272,7 @@ int snapshot(const Common &common, const SnapshotArguments &arguments) {
     command.panels = arguments.panels;
     command.catalogue = common.catalogue;
     command.samples = arguments.samples;
+    command.ui_scale = arguments.ui_scale;
     command.gl = gl_choice_from_name(common.gl);
     command.tasks = &tasks;
     return code_of(make_snapshots(command, std::cout, std::cerr));
@@ -344,11 +362,17 @@ int main_with_errors(int argc, char **argv) {
     add_gl(*run_command, common);
     add_out(*run_command, common, "out");
     run_command->add_option("--size", common.size, "Of the window: WIDTHxHEIGHT (1280x800)");
-    std::optional<int> frames;
-    std::filesystem::path screenshot;
-    run_command->add_option("--frames", frames, "Ends after so many frames")->check(positive());
-    run_command->add_option("--screenshot", screenshot, "Where to write the last frame, a PNG");
-    run_command->callback([&] { result = run(common, frames, screenshot); });
+    RunArguments window;
+    run_command
+        ->add_option("--samples", window.samples,
+                     "Of multisampling; 1: none (4, or 1 where there is no GPU)")
+        ->check(CLI::Range(1, 16));
+    add_ui_scale(*run_command, window.ui_scale, "the monitor's");
+    run_command->add_option("--frames", window.frames, "Ends after so many frames")
+        ->check(positive());
+    run_command->add_option("--screenshot", window.screenshot,
+                            "Where to write the last frame, a PNG");
+    run_command->callback([&] { result = run(common, window); });
 
     SnapshotArguments pictures;
     CLI::App *snapshot_command =
@@ -371,6 +395,7 @@ int main_with_errors(int argc, char **argv) {
     snapshot_command->add_option("--samples", pictures.samples, "Of multisampling; 1: none")
         ->check(CLI::Range(1, 16))
         ->capture_default_str();
+    add_ui_scale(*snapshot_command, pictures.ui_scale, "1");
     add_run_options(*snapshot_command, common);
     add_gl(*snapshot_command, common);
     snapshot_command->callback([&] { result = snapshot(common, pictures); });
@@ -547,7 +572,7 @@ int main_with_errors(int argc, char **argv) {
         return app.exit(error) == 0 ? 0 : code_of(ExitCode::bad_input);
     }
     if (app.get_subcommands().empty())
-        result = run(common, frames, screenshot);
+        result = run(common, window);
     return result;
 }
 

@@ -9,7 +9,6 @@
 #include "app/render/renderer.h"
 #include "app/sandbox/sandbox.h"
 #include "app/sandbox/ui_snapshot.h"
-#include "app/sandbox/world_draw.h"
 
 #include <algorithm>
 #include <charconv>
@@ -35,6 +34,14 @@ std::filesystem::path picture_path(const SnapshotCommand &command, const std::st
     std::string digits = std::to_string(step);
     digits.insert(0, 5 - std::min<std::size_t>(digits.size(), 5), '0');
     return command.out_dir / (scene + "-" + digits + ".png");
+}
+
+Image plain_picture(const SnapshotCommand &command, Sandbox &sandbox, Renderer &renderer) {
+    sandbox.clock().set_paused(true); // the state itself, not what lies between two steps
+    sandbox.keep_in_picture();
+    const glm::vec2 size(command.size);
+    sandbox.view().camera.look_through(size, {0, 0}, size, sandbox.view().aspect);
+    return render_image(renderer, sandbox.draw_list(), command.size, command.samples);
 }
 
 // One scene, stepped from picture to picture. The sandbox draws its panels around the same session
@@ -67,11 +74,10 @@ ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer 
         // Labels of probes are drawn as panels are.
         sandbox.view().panels = command.panels;
         if (command.panels || !scene.probes.empty())
-            write_png(path, ui_snapshot(sandbox, renderer, command.shader_dir, command.size,
-                                        command.samples));
+            write_png(path, ui_snapshot(sandbox, renderer, command.shader_dir,
+                                        {command.size, command.samples, command.ui_scale}));
         else
-            write_png(path, render_image(renderer, draw_world(simulation, camera_of(scene.camera)),
-                                         command.size, command.samples));
+            write_png(path, plain_picture(command, sandbox, renderer));
         line.clear();
         out << path.string() << std::endl;
         line.show(static_cast<double>(done()) / last, scene.name);

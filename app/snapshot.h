@@ -23,6 +23,7 @@ struct SnapshotCommand {
     std::filesystem::path out_dir = "out";
     std::filesystem::path shader_dir;
     bool panels = false;               // the sandbox's, too
+    float ui_scale = 1;                // of the panels
     std::vector<SceneEntry> catalogue; // that the panels list
     int samples = 4;                   // of multisampling; 1 for pictures that are compared
     bool numbered = true;              // scene-00060.png; else scene.png, for one step alone

@@ -8,7 +8,7 @@ float metres_at(ivec2 pixel) {
 
 // Where a pixel's surface is, in the eye's frame with z forward.
 vec3 seen_at(ivec2 pixel, float metres) {
-    vec2 clip = 2.0 * (vec2(pixel) + 0.5) / viewport.xy - 1.0;
+    vec2 clip = 2.0 * (vec2(pixel) + 0.5) / viewport.xy - 1.0 - centre.xy;
     return vec3(clip * viewport.zw * metres, metres);
 }
 

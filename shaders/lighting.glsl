@@ -3,16 +3,18 @@ uniform sampler2DShadow shadow_map;
 
 // A 5 x 5 tent over the map's texels from nine filtered fetches (Castano, "Shadow Mapping Summary",
 // The Witness, 2013).
-// `flatness` is how far the mesh lies under the surface that it stands for, in metres.
-float light_reaching(vec3 position, vec3 normal, float flatness) {
+// `under` is how far the mesh lies there under the surface that it stands for, in metres.
+float light_reaching(vec3 position, vec3 normal, float under) {
     if (light.w < 0.5)
         return 1.0;
     // A point on a slope moves off its surface by as much as the filter reaches across it.
     float cosine = clamp(dot(normal, to_light.xyz), 0.0, 1.0);
     float sine = sqrt(1.0 - cosine * cosine);
-    vec3 from = position + normal * (flatness + light.y * (0.6 + 2.4 * sine));
+    vec3 from = position + normal * (under + light.y * (0.6 + 2.4 * sine));
     vec3 at = (shadow * vec4(from, 1.0)).xyz;
     float depth = min(at.z, 1.0);
+    if (light.w > 1.5)
+        return texture(shadow_map, vec3(at.xy, depth));
 
     float texel = light.z;
     vec2 uv = at.xy / texel;

@@ -24,7 +24,7 @@ float grid_lines(vec2 at, vec2 per_pixel, float width) {
 
 void main() {
     // Where the ray through this pixel meets the plane; exact however large the square is.
-    vec2 clip = (2.0 * gl_FragCoord.xy / viewport.xy - 1.0) * viewport.zw;
+    vec2 clip = (2.0 * gl_FragCoord.xy / viewport.xy - 1.0 - centre.xy) * viewport.zw;
     vec3 ray = transpose(mat3(view)) * vec3(clip, -1.0);
     float height = dot(eye.xyz, normal.xyz) + normal.w;
     float t = height / max(-dot(ray, normal.xyz), 1e-6);

@@ -1,7 +1,7 @@
 #version 330 core
 #include "frame.glsl"
 
-layout(location = 0) in vec4 centre;       // w: radius in pixels
+layout(location = 0) in vec4 marker;       // w: radius in pixels
 layout(location = 1) in vec3 point_colour; // linear
 
 out vec2 at; // pixels
@@ -10,11 +10,11 @@ flat out vec3 colour;
 
 void main() {
     vec2 corner = vec2(gl_VertexID % 2 == 0 ? -1.0 : 1.0, gl_VertexID < 2 ? -1.0 : 1.0);
-    radius = centre.w;
+    radius = marker.w;
     colour = point_colour;
     at = (radius + 1.0) * corner;
     // Nearer to the eye than the lines that end here.
-    vec4 clip = projection * vec4(0.996 * (view * vec4(centre.xyz, 1.0)).xyz, 1.0);
+    vec4 clip = projection * vec4(0.996 * (view * vec4(marker.xyz, 1.0)).xyz, 1.0);
     // One w for the whole square: it is interpolated straight.
     gl_Position = clip + vec4(2.0 * at / viewport.xy * clip.w, 0.0, 0.0);
 }

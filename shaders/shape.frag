@@ -6,6 +6,7 @@
 in vec3 position;
 in vec3 local;
 in vec3 local_normal;
+in vec3 profile;
 flat in vec4 rotation;
 flat in vec4 scale;
 flat in vec4 colour;
@@ -48,9 +49,12 @@ void main() {
     vec3 shaded = rotate(rotation, bent);
     vec3 to_eye = normalize(eye.xyz - position);
     float facing = max(dot(shaded, to_light.xyz), 0.0);
-    // The facets of a round mesh, as seen and as in the shadow map, lie up to 1.2 % of the radius apart.
-    float flatness = scale.w == 1.0 || scale.w == 4.0 ? 0.0 : 0.012 * scale.x;
-    float reaching = facing > 0.0 ? light_reaching(position, normal, flatness) : 0.0;
+    // A facet lies under the round surface that it stands for, by a share of the radius that depends
+    // on the mesh, and so under the finer facets of the shadow map: light is asked for on the surface.
+    vec3 smooth_normal = normalize(local_normal);
+    bool is_round = scale.w == 0.0 || scale.w == 2.0 || (scale.w == 3.0 && abs(smooth_normal.y) < 0.5);
+    float under = is_round ? scale.x * max(1.0 - dot(profile, smooth_normal), 0.0) : 0.0;
+    float reaching = facing > 0.0 ? light_reaching(position, normal, under) : 0.0;
     vec3 direct = light_colour * (to_light.w * facing * reaching);
     // A satin surface: a broad, weak gloss, and a little sheen at grazing angles.
     vec3 halfway = normalize(to_light.xyz + to_eye);

@@ -15,11 +15,6 @@ namespace {
 constexpr float min_distance = 1e-3f; // metres; nearer, single precision has nothing left to show
 constexpr float max_distance = 1e6f;
 
-// Half of the picture's height at unit depth.
-float half_height(float fov) {
-    return std::tan(0.5f * fov);
-}
-
 void check_viewport(const glm::vec2 &viewport) {
     PLUMB_CHECK(viewport.x > 0 && viewport.y > 0,
                 "a viewport must have an area, got " << viewport.x << " x " << viewport.y);
@@ -41,6 +36,10 @@ glm::vec3 Camera::up() const {
 
 glm::vec3 Camera::eye() const {
     return target - distance * forward();
+}
+
+float Camera::half_height() const {
+    return std::tan(0.5f * fov) / share;
 }
 
 float Camera::near_plane() const {
@@ -68,10 +67,10 @@ glm::mat4 Camera::projection(float aspect) const {
     PLUMB_CHECK(aspect > 0, "an aspect must be positive, got " << aspect);
     const float n = near_plane();
     const float f = far_plane();
-    const float h = half_height(fov);
+    const float h = half_height();
     return {{1 / (h * aspect), 0, 0, 0},
             {0, 1 / h, 0, 0},
-            {0, 0, -(f + n) / (f - n), -1},
+            {-centre.x, -centre.y, -(f + n) / (f - n), -1},
             {0, 0, -2 * f * n / (f - n), 0}};
 }
 
@@ -79,9 +78,9 @@ glm::vec3 Camera::project(const glm::vec3 &world, const glm::vec2 &viewport) con
     check_viewport(viewport);
     const glm::vec3 d = world - eye();
     const float z = glm::dot(d, forward());
-    const float h = half_height(fov) * z;
-    const float x = glm::dot(d, right()) / (h * viewport.x / viewport.y);
-    const float y = glm::dot(d, up()) / h;
+    const float h = half_height() * z;
+    const float x = glm::dot(d, right()) / (h * viewport.x / viewport.y) + centre.x;
+    const float y = glm::dot(d, up()) / h + centre.y;
     const float n = near_plane();
     const float f = far_plane();
     const float depth = f * (1 - n / z) / (f - n);
@@ -93,17 +92,18 @@ glm::vec3 Camera::unproject(const glm::vec3 &pixel_and_depth, const glm::vec2 &v
     const float n = near_plane();
     const float f = far_plane();
     const float z = f * n / (f - pixel_and_depth.z * (f - n));
-    const float h = half_height(fov) * z;
-    const float x = (2 * pixel_and_depth.x / viewport.x - 1) * h * viewport.x / viewport.y;
-    const float y = (1 - 2 * pixel_and_depth.y / viewport.y) * h;
+    const float h = half_height() * z;
+    const float x =
+        (2 * pixel_and_depth.x / viewport.x - 1 - centre.x) * h * viewport.x / viewport.y;
+    const float y = (1 - 2 * pixel_and_depth.y / viewport.y - centre.y) * h;
     return eye() + z * forward() + x * right() + y * up();
 }
 
 PickRay Camera::pick_ray(const glm::vec2 &pixel, const glm::vec2 &viewport) const {
     check_viewport(viewport);
-    const float h = half_height(fov);
-    const float x = (2 * pixel.x / viewport.x - 1) * h * viewport.x / viewport.y;
-    const float y = (1 - 2 * pixel.y / viewport.y) * h;
+    const float h = half_height();
+    const float x = (2 * pixel.x / viewport.x - 1 - centre.x) * h * viewport.x / viewport.y;
+    const float y = (1 - 2 * pixel.y / viewport.y - centre.y) * h;
     return {eye(), glm::normalize(forward() + x * right() + y * up())};
 }
 
@@ -114,7 +114,7 @@ void Camera::orbit(const glm::vec2 &delta, float viewport_height) {
 }
 
 void Camera::pan(const glm::vec2 &delta, float viewport_height) {
-    const float metres = 2 * distance * half_height(fov) / viewport_height; // per pixel
+    const float metres = 2 * distance * half_height() / viewport_height; // per pixel
     target += metres * (-delta.x * right() + delta.y * up());
 }
 
@@ -122,16 +122,25 @@ void Camera::zoom(float notches) {
     distance = std::clamp(distance * std::pow(0.88f, notches), min_distance, max_distance);
 }
 
-void Camera::frame(const glm::vec3 &centre, float radius, float aspect) {
-    PLUMB_CHECK(radius >= 0 && aspect > 0,
-                "cannot frame a radius of " << radius << " at an aspect of " << aspect);
-    // The sphere touches the sides of the view where a tangent from the eye leaves at half the
-    // narrower field of view: sin(half) = radius / distance.
-    const float h = half_height(fov);
-    const float half = std::atan(h * std::min(1.0f, aspect));
-    target = centre;
+void Camera::frame(const glm::vec3 &sphere, float radius, float side) {
+    PLUMB_CHECK(radius >= 0 && side > 0,
+                "cannot frame a radius of " << radius << " in a side of " << side);
+    // The sphere touches the sides of the square where a tangent from the eye leaves at half the
+    // angle that the square spans: sin(half) = radius / distance.
+    const float half = std::atan(std::tan(0.5f * fov) * side);
+    target = sphere;
     distance =
         std::clamp(1.05f * std::max(radius, 0.01f) / std::sin(half), min_distance, max_distance);
+}
+
+void Camera::look_through(const glm::vec2 &viewport, const glm::vec2 &corner, const glm::vec2 &size,
+                          float aspect) {
+    check_viewport(viewport);
+    check_viewport(size);
+    PLUMB_CHECK(aspect > 0, "an aspect must be positive, got " << aspect);
+    const glm::vec2 middle = (corner + 0.5f * size) / viewport;
+    centre = {2 * middle.x - 1, 1 - 2 * middle.y};
+    share = std::min(size.y, size.x / aspect) / viewport.y;
 }
 
 } // namespace plumb

@@ -22,6 +22,11 @@ struct Camera {
     float yaw = 0.6f;    // about +y
     float pitch = 0.35f; // kept within max_pitch of the horizon, where "up" stays defined
     float fov = 0.8f;    // the full vertical angle, in (0, pi)
+    // When something covers a part of the picture, the camera looks through the rest: the target is
+    // seen at `centre`, from (-1, -1) at the lower left to (1, 1), and `fov` spans this share of
+    // the picture's height.
+    glm::vec2 centre{0};
+    float share = 1;
 
     static constexpr float max_pitch = 1.5533f; // 89 degrees
 
@@ -29,6 +34,9 @@ struct Camera {
     [[nodiscard]] glm::vec3 forward() const; // unit, from the eye to the target
     [[nodiscard]] glm::vec3 right() const;   // unit
     [[nodiscard]] glm::vec3 up() const;      // unit, the picture's up
+
+    // Half of the whole picture's height at unit depth.
+    [[nodiscard]] float half_height() const;
 
     // The near and far planes follow the distance, so that depth stays usable at every scale.
     [[nodiscard]] float near_plane() const;
@@ -52,9 +60,14 @@ struct Camera {
     void pan(const glm::vec2 &delta, float viewport_height);
     // One notch of a wheel is one; positive comes nearer. The target stays.
     void zoom(float notches);
-    // Keeps yaw, pitch and fov, and shows the whole sphere in a picture of this aspect (width over
-    // height). A radius of zero is shown as one of a centimetre.
-    void frame(const glm::vec3 &centre, float radius, float aspect);
+    // Keeps yaw, pitch and fov, and shows the whole sphere in a square of this side, in units of
+    // the height that fov spans. A radius of zero is shown as one of a centimetre.
+    void frame(const glm::vec3 &sphere, float radius, float side);
+    // Sets `centre` and `share` to look through a rectangle of the picture (pixels, from the top
+    // left): the field of view is as large as can be while the rectangle holds a picture of this
+    // aspect (width over height).
+    void look_through(const glm::vec2 &viewport, const glm::vec2 &corner, const glm::vec2 &size,
+                      float aspect);
 };
 
 } // namespace plumb

@@ -24,6 +24,15 @@ void GlContext::read_strings() {
     version_ = text(GL_VERSION);
 }
 
+bool GlContext::is_software() const {
+    // Mesa's, Google's and Microsoft's.
+    for (const char *name : {"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer",
+                             "SwiftShader", "GDI Generic", "Basic Render"})
+        if (renderer_.find(name) != std::string::npos)
+            return true;
+    return false;
+}
+
 ContextResult create_context(const ContextRequest &request) {
     const bool automatic = request.choice == GlChoice::automatic;
     const bool try_window =

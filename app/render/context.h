@@ -44,6 +44,8 @@ class GlContext {
     // GL_RENDERER and GL_VERSION.
     [[nodiscard]] const std::string &renderer() const { return renderer_; }
     [[nodiscard]] const std::string &version() const { return version_; }
+    // Drawn by the CPU, as far as the renderer's name tells.
+    [[nodiscard]] bool is_software() const;
 
   protected:
     void read_strings(); // call once the context is current and loaded

@@ -20,8 +20,10 @@ struct FrameBlock {
     glm::vec4 eye;      // xyz; w: the camera's distance
     glm::vec4 to_light; // xyz unit; w: intensity
     glm::vec4 viewport; // width, height, tan of half the field of view across and up
-    glm::vec4 light; // ambient; shadow texel in metres; shadow texel in texture units; shadows on
-    glm::vec4 range; // near, far; edges on; metres to a pixel at unit depth
+    glm::vec4 light;  // ambient; shadow texel in metres; shadow texel in texture units; shadows: 0
+                      // none, 1 soft, 2 hard
+    glm::vec4 range;  // near, far; edges on; metres to a pixel at unit depth
+    glm::vec4 centre; // where the target is seen, x and y in clip space
 };
 inline constexpr unsigned frame_binding = 0;
 

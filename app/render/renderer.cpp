@@ -188,8 +188,9 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
         for (const DrawMesh &mesh : list.meshes)
             if (const DrawShape box = box_around(mesh); has_finite_pose(box))
                 reaching.push_back(box);
+        parts.shadow_map.set_size(list.view.cheap ? 1024 : 2048);
         shadow = fit_shadow(reaching, camera, aspect, list.light.direction, camera.target,
-                            ShadowMap::size);
+                            parts.shadow_map.size());
     }
     // What is out of view throws shadows, but need not be sorted or looked at again.
     if (shapes.size() >= least_shapes_to_cull)
@@ -210,7 +211,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
 
     Camera relative = camera;
     relative.target = glm::vec3(0);
-    const float tangent = std::tan(0.5f * camera.fov);
+    const float tangent = camera.half_height();
     FrameBlock frame{};
     frame.projection = relative.projection(aspect);
     frame.view = relative.view();
@@ -218,8 +219,12 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     frame.eye = glm::vec4(relative.eye(), camera.distance);
     frame.to_light = glm::vec4(-glm::normalize(list.light.direction), list.light.intensity);
     frame.viewport = {size, tangent * aspect, tangent};
+    frame.centre = {camera.centre, 0, 0};
     frame.light = {list.light.ambient, shadow ? shadow->texel : 0.0f,
-                   1.0f / static_cast<float>(ShadowMap::size), shadow ? 1.0f : 0.0f};
+                   1.0f / static_cast<float>(parts.shadow_map.size()),
+                   !shadow           ? 0.0f
+                   : list.view.cheap ? 2.0f
+                                     : 1.0f};
     frame.range = {relative.near_plane(), relative.far_plane(), list.view.edges ? 1.0f : 0.0f,
                    2 * tangent / size.y};
     glBindBuffer(GL_UNIFORM_BUFFER, parts.frame_buffer);
@@ -243,14 +248,16 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT); // the backdrop covers what colour is left
     // In view, and how large.
     const glm::vec3 eye = camera.eye();
-    const float cos_x = 1 / std::hypot(1.0f, tangent * aspect);
-    const float cos_y = 1 / std::hypot(1.0f, tangent);
+    const glm::vec2 widest = 1.0f + glm::abs(camera.centre);
+    const float cos_x = 1 / std::hypot(1.0f, tangent * aspect * widest.x);
+    const float cos_y = 1 / std::hypot(1.0f, tangent * widest.y);
     const auto pixels_of = [&](const DrawShape &shape) -> std::optional<float> {
         const glm::vec3 d = shape.position - eye;
         const float depth = glm::dot(d, forward);
         const float radius = bounding_radius(shape);
-        const float x = std::abs(glm::dot(d, camera.right()));
-        const float y = std::abs(glm::dot(d, camera.up()));
+        const float x =
+            std::abs(glm::dot(d, camera.right()) + camera.centre.x * depth * tangent * aspect);
+        const float y = std::abs(glm::dot(d, camera.up()) + camera.centre.y * depth * tangent);
         // Beyond a side of the view by more than the radius.
         if (depth < -radius || (x - depth * tangent * aspect) * cos_x > radius ||
             (y - depth * tangent) * cos_y > radius)
@@ -272,7 +279,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     parts.draw_planes(list);
     glDisable(GL_CULL_FACE);
     draw_screen(parts.backdrop_program, parts.empty_array);
-    if (list.view.occlusion && !list.view.wireframe && any_solid)
+    if (list.view.occlusion && !list.view.cheap && !list.view.wireframe && any_solid)
         parts.occlusion.draw(target);
 
     if (any_glass) {

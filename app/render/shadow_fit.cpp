@@ -82,8 +82,11 @@ std::optional<ShadowFit> fit_shadow(std::span<const DrawShape> shapes, const Cam
 
     // The eye and the far corners of the part of the view that shows shadows.
     const double depth = reach * static_cast<double>(camera.distance);
-    const double half_height = depth * std::tan(0.5 * static_cast<double>(camera.fov));
-    const double half_width = half_height * static_cast<double>(aspect);
+    // Of a view with the target in its middle that holds this one.
+    const glm::dvec2 widest = 1.0 + glm::abs(glm::dvec2(camera.centre));
+    const double height = depth * static_cast<double>(camera.half_height());
+    const double half_height = height * widest.y;
+    const double half_width = height * static_cast<double>(aspect) * widest.x;
     std::array<Interval, 2> seen;
     for (std::size_t i = 0; i < 2; ++i) {
         const glm::dvec3 axis(axes[i]);

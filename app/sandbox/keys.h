@@ -34,6 +34,8 @@ enum class Action {
     toggle_panels,
     toggle_diagnostics,
     toggle_help,
+    larger_panels,
+    smaller_panels,
     dismiss,
     screenshot,
     save_scene,

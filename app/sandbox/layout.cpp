@@ -2,54 +2,133 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace plumb {
 
 namespace {
 
-// At a scale of 1: the rows that each of these panels holds, which do not grow with the window.
-constexpr float settings_height = 222;
-constexpr float view_height = 190;
-constexpr float transport_height = 92;
-constexpr float transport_width = 520;
+// At a scale of 1.
 constexpr float margin = 8;
+constexpr float transport_width = 520;
+constexpr float least_transport_width = 380;
+constexpr glm::vec2 roomy{860, 600};
+
+// A picture less high than this share of the window is no picture.
+constexpr float least_picture = 0.2f;
+
+// Panels one below the other. If they do not fit, the highest are cut, all to one height.
+void stack(PerPanel<Rect> &rects, const PerPanel<float> &wished, std::span<const PanelId> panels,
+           const Rect &column, float gap) {
+    std::vector<float> heights;
+    for (const PanelId panel : panels)
+        if (wished[panel] > 0)
+            heights.push_back(std::ceil(wished[panel]));
+    if (heights.empty())
+        return;
+    std::ranges::sort(heights);
+    float room = column.size.y - gap * static_cast<float>(heights.size() - 1);
+    float most = heights.back();
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        const float share = std::floor(room / static_cast<float>(heights.size() - i));
+        if (heights[i] > share) {
+            most = std::max(share, 1.0f);
+            break;
+        }
+        room -= heights[i];
+    }
+    float y = column.min.y;
+    for (const PanelId panel : panels) {
+        if (!(wished[panel] > 0))
+            continue;
+        const float height = std::min(std::ceil(wished[panel]), most);
+        rects[panel] = {{column.min.x, y}, {column.size.x, height}};
+        y += height + gap;
+    }
+}
 
 } // namespace
 
-Layout lay_out(glm::vec2 window, float scale, const LayoutWishes &wishes) {
+bool is_roomy(glm::vec2 window, float scale) {
+    return window.x >= roomy.x * scale && window.y >= roomy.y * scale;
+}
+
+PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wished) {
     const float gap = std::round(margin * scale);
     const float height = std::max(window.y - 2 * gap, 1.0f);
-    const float left = std::round(std::clamp(0.22f * window.x, 240 * scale, 280 * scale));
-    const float right = std::round(std::clamp(0.245f * window.x, 240 * scale, 320 * scale));
-
-    Layout layout;
-    const float view = std::round(std::min(view_height * scale, 0.32f * height));
-    const float settings = std::round(std::min(settings_height * scale, 0.38f * height));
-    const float scenes = std::max(height - view - settings - 2 * gap, 1.0f);
-    layout.scenes = {{gap, gap}, {left, scenes}};
-    layout.settings = {{gap, layout.scenes.max().y + gap}, {left, settings}};
-    layout.view = {{gap, layout.settings.max().y + gap}, {left, view}};
-
+    const float left = std::round(std::clamp(0.2f * window.x, 190 * scale, 280 * scale));
+    const float right = std::round(std::clamp(0.23f * window.x, 210 * scale, 320 * scale));
     const float right_x = std::max(window.x - gap - right, left + 3 * gap);
-    const float details =
-        wishes.diagnostics ? std::round(std::max(0.4f * height, height - 470 * scale)) : height;
-    layout.details = {{right_x, gap}, {right, details}};
-    layout.diagnostics = {{right_x, layout.details.max().y + gap},
-                          {right, std::max(height - details - gap, 0.0f)}};
-
     const float middle_x = left + 2 * gap;
     const float middle = std::max(right_x - gap - middle_x, 1.0f);
-    const float bar = std::min(transport_width * scale, middle);
-    const float bar_height = std::round(transport_height * scale);
-    layout.transport = {{std::round(middle_x + (middle - bar) / 2), window.y - gap - bar_height},
-                        {bar, bar_height}};
-    const float free = std::max(layout.transport.min.y - 2 * gap, 1.0f);
-    const float said = std::min(wishes.messages_height, 0.35f * free);
-    layout.messages = {{middle_x, gap}, {middle, said}};
-    const float help_y = said > 0 ? layout.messages.max().y + gap : gap;
-    layout.help = {{middle_x, help_y},
-                   {middle, std::max(layout.transport.min.y - gap - help_y, 1.0f)}};
-    return layout;
+
+    PerPanel<Rect> rects{};
+    // Where the bar does not fit between the columns, they end above it.
+    const float bar_height = std::min(std::ceil(wished[PanelId::transport]), 0.4f * height);
+    const float bar_y = window.y - gap - bar_height;
+    const bool fits = middle >= least_transport_width * scale;
+    const float bar =
+        std::min(transport_width * scale, fits ? middle : std::max(window.x - 2 * gap, 1.0f));
+    const float bar_x = fits ? middle_x + (middle - bar) / 2 : (window.x - bar) / 2;
+    if (bar_height > 0)
+        rects[PanelId::transport] = {{std::round(bar_x), bar_y}, {bar, bar_height}};
+    const float above = bar_height > 0 ? std::max(bar_y - 2 * gap, 1.0f) : height;
+    const float column = fits ? height : above;
+
+    constexpr std::array on_the_left{PanelId::scenes, PanelId::settings, PanelId::view};
+    constexpr std::array on_the_right{PanelId::details, PanelId::diagnostics};
+    stack(rects, wished, on_the_left, {{gap, gap}, {left, column}}, gap);
+    stack(rects, wished, on_the_right, {{right_x, gap}, {right, column}}, gap);
+
+    const bool alone = !is_roomy(window, scale) && wished[PanelId::help] > 0;
+    const float over_x = alone ? gap : middle_x;
+    const float over = alone ? std::max(window.x - 2 * gap, 1.0f) : middle;
+    const float said = std::min(std::ceil(wished[PanelId::messages]), 0.35f * above);
+    if (said > 0)
+        rects[PanelId::messages] = {{over_x, gap}, {over, said}};
+    if (wished[PanelId::help] > 0) {
+        const float y = said > 0 ? 2 * gap + said : gap;
+        const float room = (alone ? height : above) - (y - gap);
+        rects[PanelId::help] = {
+            {over_x, y}, {over, std::min(std::ceil(wished[PanelId::help]), std::max(room, 1.0f))}};
+    }
+    return rects;
+}
+
+Rect free_part(glm::vec2 window, std::span<const Rect> taken, float aspect) {
+    // The sides of the largest are sides of the window or of what is taken.
+    std::vector<float> xs{0, window.x};
+    std::vector<float> ys{0, window.y};
+    for (const Rect &rect : taken) {
+        xs.insert(xs.end(), {rect.min.x, rect.max().x});
+        ys.insert(ys.end(), {rect.min.y, rect.max().y});
+    }
+    std::ranges::sort(xs);
+    std::ranges::sort(ys);
+    const auto is_free = [&](const Rect &rect) {
+        return std::ranges::none_of(taken, [&](const Rect &other) {
+            return rect.min.x < other.max().x && other.min.x < rect.max().x &&
+                   rect.min.y < other.max().y && other.min.y < rect.max().y;
+        });
+    };
+    Rect best{{0, 0}, window};
+    std::pair<float, float> most{least_picture * window.y, 0}; // height of the picture, area
+    for (const float left : xs)
+        for (const float right : xs)
+            for (const float top : ys)
+                for (const float bottom : ys) {
+                    if (!(left < right && top < bottom))
+                        continue;
+                    const Rect rect{{left, top}, {right - left, bottom - top}};
+                    const std::pair<float, float> size{std::min(rect.size.y, rect.size.x / aspect),
+                                                       rect.size.x * rect.size.y};
+                    if (size > most && is_free(rect)) {
+                        best = rect;
+                        most = size;
+                    }
+                }
+    return best;
 }
 
 } // namespace plumb

@@ -1,6 +1,10 @@
 // Where the panels stand: pure geometry, so that a test can see that nothing overlaps.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <span>
+
 #include <glm/vec2.hpp>
 
 namespace plumb {
@@ -11,24 +15,39 @@ struct Rect {
     [[nodiscard]] glm::vec2 max() const { return min + size; }
 };
 
-// Left: scenes, method, view. Right: details of body or scene, diagnostics. In the middle the
+// Left: scenes, settings, view. Right: details of body or scene, diagnostics. In the middle the
 // scene, with the transport bar under it, messages above it, and help over it.
-struct Layout {
-    Rect scenes, settings, view;
-    Rect details, diagnostics; // without diagnostics, details has the whole column
-    Rect messages;             // its height is the most it may take
-    Rect help;
-    Rect transport;
+enum class PanelId : std::size_t {
+    scenes,
+    settings,
+    view,
+    details,
+    diagnostics,
+    transport,
+    messages,
+    help
+};
+inline constexpr std::size_t panel_count = 8;
+
+// One for each panel, by its id.
+template <typename T> struct PerPanel : std::array<T, panel_count> {
+    using std::array<T, panel_count>::operator[];
+    T &operator[](PanelId panel) { return (*this)[static_cast<std::size_t>(panel)]; }
+    const T &operator[](PanelId panel) const { return (*this)[static_cast<std::size_t>(panel)]; }
 };
 
-struct LayoutWishes {
-    bool diagnostics = true;
-    float messages_height = 0; // what the messages take; 0: none
-};
+// Pixels. `wished` is how high each panel's contents are, 0 where there is none; a panel that does
+// not fit is lower, and scrolls. `scale` is 1 on an ordinary monitor. Nothing overlaps in windows
+// of smallest_window and above, but for help in one that is not roomy: there it stands alone.
+inline constexpr glm::vec2 smallest_window{640, 400};
+[[nodiscard]] PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wished);
 
-// Sizes in pixels; `scale` is 1 on an ordinary monitor. Below smallest_window the panels of a
-// column get narrow, but still do not overlap.
-inline constexpr glm::vec2 smallest_window{860, 600};
-[[nodiscard]] Layout lay_out(glm::vec2 window, float scale, const LayoutWishes &wishes);
+// Whether all panels can be open and leave room for the scene. In other windows they are closed
+// until somebody opens them.
+[[nodiscard]] bool is_roomy(glm::vec2 window, float scale);
+
+// The rectangle beside those given in which a picture of this aspect (width over height) is
+// largest, and of those the largest rectangle; the whole window where hardly any is left.
+[[nodiscard]] Rect free_part(glm::vec2 window, std::span<const Rect> taken, float aspect);
 
 } // namespace plumb

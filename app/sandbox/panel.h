@@ -3,6 +3,7 @@
 
 #include "app/sandbox/clock.h"
 #include "app/sandbox/keys.h"
+#include "app/sandbox/pace.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/sandbox/session.h"
 #include "app/sandbox/theme.h"
@@ -20,9 +21,12 @@ struct PanelContext {
     Session &session;
     ViewState &view;
     const StepClock &clock;
+    const Pace &pace;
     std::span<const SceneEntry> scenes;
     const Fonts &fonts;
     bool frozen = false; // no text or graph that differs from run to run
+    // How much higher the panel would be if it scrolled nothing inside itself, pixels.
+    float scrolled_height = 0;
     // What the person asked for.
     std::vector<Action> actions;
     std::optional<std::filesystem::path> open_scene;
@@ -30,20 +34,29 @@ struct PanelContext {
     bool restart_as_written = false;
 };
 
+// A panel's title, with a sign that opens and closes the panel, and some text at the right end.
+// Whether the panel is open, and so has more than its title.
+[[nodiscard]] bool title_bar(PanelContext &context, PanelId panel, std::string_view title,
+                             std::string_view at_right = {});
+// The sign alone, to go on in the same line.
+[[nodiscard]] bool title_sign(PanelContext &context, PanelId panel);
+
 void scenes_panel(PanelContext &context);
-void settings_panel(PanelContext &context);
+void settings_panel(PanelContext &context); // this, the transport and the diagnostics: of a world
 void view_panel(PanelContext &context);
 void transport_panel(PanelContext &context);
+void details_panel(PanelContext &context);      // of the body selected, or of the scene
 void inspector_panel(PanelContext &context);    // of the selected body
 void expectations_panel(PanelContext &context); // of the scene, with its title and description
 void probes_panel(PanelContext &context);
 void probe_labels(const PanelContext &context); // over the scene, under the panels
-void statistics_panel(PanelContext &context);
-void measures_panel(PanelContext &context);
+void diagnostics_panel(PanelContext &context);
+void measures_panel(PanelContext &context); // the lower part of the diagnostics
 void messages_panel(PanelContext &context);
 void help_panel(PanelContext &context);
 
-// The scenes whose path or title contains every word of `search`, in any case; indices.
+// The scenes whose path or title contains every word of `search`, in any case; indices. Those whose
+// name has them all come first, then those whose name and title have.
 [[nodiscard]] std::vector<std::size_t> matching(std::span<const SceneEntry> scenes,
                                                 const std::string &search);
 

@@ -8,12 +8,9 @@
 namespace plumb {
 
 void measures_panel(PanelContext &context) {
-    const Simulation *simulation = context.session.simulation();
-    if (!simulation)
-        return;
     ImGui::Spacing();
     heading(context.fonts, "Measures");
-    const Measures measures = simulation->measure();
+    const Measures measures = context.session.simulation()->measure();
     value_row("Kinetic energy", number(measures.kinetic_energy, "J"));
     value_row("Potential energy", number(measures.potential_energy, "J"));
     value_row("Linear momentum", number(glm::length(measures.linear_momentum), "kg m/s"));

@@ -3,6 +3,7 @@
 #include "app/sandbox/widgets.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <sstream>
 #include <string>
@@ -41,21 +42,33 @@ std::vector<std::size_t> matching(std::span<const SceneEntry> scenes, const std:
     std::istringstream stream(lower(search));
     for (std::string word; stream >> word;)
         words.push_back(word);
-    std::vector<std::size_t> found;
+    const auto has_all = [&](const std::string &text) {
+        return std::ranges::all_of(words, [text = lower(text)](const std::string &word) {
+            return text.find(word) != std::string::npos;
+        });
+    };
+    std::array<std::vector<std::size_t>, 3> found; // the nearest first
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const SceneEntry &entry = scenes[i];
-        const std::string text = lower(entry.subject + "/" + entry.name + " " + entry.title);
-        if (std::ranges::all_of(words, [&](const std::string &word) {
-                return text.find(word) != std::string::npos;
-            }))
-            found.push_back(i);
+        const std::string about = entry.name + " " + entry.title;
+        if (has_all(entry.name))
+            found[0].push_back(i);
+        else if (has_all(about))
+            found[1].push_back(i);
+        else if (has_all(entry.subject + "/" + about))
+            found[2].push_back(i);
     }
-    return found;
+    for (const std::size_t farther : {1u, 2u})
+        found[0].insert(found[0].end(), found[farther].begin(), found[farther].end());
+    return found[0];
 }
 
 void scenes_panel(PanelContext &context) {
-    heading(context.fonts, "Scenes",
-            shortcut(Action::previous_scene) + "  " + shortcut(Action::next_scene));
+    if (context.view.focus_search)
+        context.view.opened[PanelId::scenes] = true;
+    if (!title_bar(context, PanelId::scenes, "Scenes",
+                   shortcut(Action::previous_scene) + "  " + shortcut(Action::next_scene)))
+        return;
     if (context.view.focus_search) {
         ImGui::SetKeyboardFocusHere();
         context.view.focus_search = false;
@@ -88,6 +101,9 @@ void scenes_panel(PanelContext &context) {
         scene_row(context, entry);
         ImGui::Unindent();
     }
+    // The list is as high as the panel allows.
+    context.scrolled_height =
+        ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y - ImGui::GetWindowHeight();
     ImGui::EndChild();
 
     const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;

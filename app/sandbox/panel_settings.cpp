@@ -154,18 +154,10 @@ bool more_rows(const MethodInfo &method, StepSettings &settings) {
 
 void settings_panel(PanelContext &context) {
     const Simulation *simulation = context.session.simulation();
-    heading(context.fonts, "Method",
-            !simulation                                  ? ""
-            : simulation->precision() == Precision::dual ? "double precision"
-                                                         : "single precision");
-    if (!simulation) {
-        ImGui::TextDisabled("No scene is running.");
+    if (!title_bar(context, PanelId::settings, "Method",
+                   simulation->precision() == Precision::dual ? "double precision"
+                                                              : "single precision"))
         return;
-    }
-    if (!simulation->has_world()) {
-        ImGui::TextDisabled("There is no world to step.");
-        return;
-    }
     method_row(context, *simulation);
     StepSettings settings = simulation->settings();
     const MethodInfo &method = simulation->method();

@@ -92,6 +92,9 @@ void time_graph(const PanelContext &context, float height) {
     const double scale = round_up(1.25 * usual);
     ImDrawList &list = *ImGui::GetWindowDrawList();
     list.PushClipRect(plot.min, plot.max, true);
+    // The soft border of a phase too short to see would hide those below it.
+    const ImDrawListFlags flags = list.Flags;
+    list.Flags &= ~ImDrawListFlags_AntiAliasedFill;
     for (std::size_t i = 0; i + 1 < count; ++i) {
         double below_a = 0;
         double below_b = 0;
@@ -107,8 +110,9 @@ void time_graph(const PanelContext &context, float height) {
             below_b = above_b;
         }
     }
+    list.Flags = flags;
     list.PopClipRect();
-    label(context.fonts, plot, true, count > 0 ? number(scale * 1e3, "ms") : "-");
+    label(context.fonts, plot, true, count > 0 ? duration(scale) : "-");
 }
 
 void energy_graph(const PanelContext &context, float height) {
@@ -164,7 +168,7 @@ void legend(const PanelContext &context, const StepTimes &times) {
             {at.x, at.y + down}, {at.x + side, at.y + down + side}, packed(phase.colour), 2);
         ImGui::SetCursorPosX(start + side + 5);
         ImGui::TextUnformatted(phase.title);
-        const std::string time = context.frozen ? "-" : milliseconds(times.*phase.time);
+        const std::string time = context.frozen ? "-" : duration(times.*phase.time);
         ImGui::SameLine();
         ImGui::SetCursorPosX(start + half - ImGui::CalcTextSize(time.c_str()).x -
                              (i % 2 == 0 ? 10.0f : 0.0f));
@@ -175,11 +179,11 @@ void legend(const PanelContext &context, const StepTimes &times) {
 
 } // namespace
 
-void statistics_panel(PanelContext &context) {
-    heading(context.fonts, "Time of a step, ms", shortcut(Action::toggle_diagnostics));
-    static const StepReport nothing;
-    const Simulation *simulation = context.session.simulation();
-    const StepReport &report = simulation ? simulation->report() : nothing;
+void diagnostics_panel(PanelContext &context) {
+    if (!title_bar(context, PanelId::diagnostics, "Time of a step",
+                   shortcut(Action::toggle_diagnostics)))
+        return;
+    const StepReport &report = context.session.simulation()->report();
     const float height = ImGui::GetFontSize() * 3.0f;
     time_graph(context, height);
     legend(context, context.session.times());
@@ -195,6 +199,7 @@ void statistics_panel(PanelContext &context) {
     value_row("Impacts, unresolved",
               std::to_string(report.impacts) + ", " + std::to_string(report.unresolved_impacts),
               report.unresolved_impacts > 0 ? theme::warning : theme::text);
+    measures_panel(context);
 }
 
 } // namespace plumb

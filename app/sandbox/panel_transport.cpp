@@ -3,6 +3,7 @@
 #include "app/sandbox/widgets.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include <imgui/imgui.h>
@@ -25,18 +26,6 @@ std::string speed_text(double speed) {
 
 void status(const PanelContext &context) {
     const Session &session = context.session;
-    if (!session.running()) {
-        ImGui::TextDisabled("No scene is running.");
-        return;
-    }
-    if (!session.simulation()->has_world()) {
-        ImGui::TextColored(theme::accent, "probes");
-        ImGui::SameLine();
-        ImGui::Text("%s", session.scene().name.c_str());
-        ImGui::SameLine();
-        ImGui::TextDisabled("no world to step; drag the handles");
-        return;
-    }
     const char *state = session.stopped()        ? "stopped"
                         : context.clock.paused() ? "paused"
                                                  : "running";
@@ -58,10 +47,32 @@ void status(const PanelContext &context) {
     ImGui::TextDisabled("%s", text.data());
 }
 
+// "×1, at 0.2 of real time" and "12 frames/s", while there is something to measure.
+void pace_row(const PanelContext &context) {
+    const Pace &pace = context.pace;
+    std::string speed = speed_text(context.clock.speed());
+    std::string frames;
+    if (!context.frozen && pace.frames_per_second() > 0) {
+        speed += ", at " + number(pace.of_real_time(), {}, 2) + " of real time";
+        const double rate = pace.frames_per_second();
+        frames = number(rate < 10 ? rate : std::round(rate), "frames/s", rate < 10 ? 2 : 6);
+    }
+    small_text(context.fonts, speed);
+    ImGui::PushFont(context.fonts.small);
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(frames.c_str()).x);
+    ImGui::TextDisabled("%s", frames.c_str());
+    ImGui::PopFont();
+}
+
 } // namespace
 
 void transport_panel(PanelContext &context) {
+    const bool open = title_sign(context, PanelId::transport);
+    ImGui::SameLine();
     status(context);
+    if (!open)
+        return;
+    pace_row(context);
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
     const float width = (ImGui::GetContentRegionAvail().x - 7 * spacing) / 8;
     const auto button = [&](Icon icon, Action action, bool enabled) {
@@ -71,10 +82,8 @@ void transport_panel(PanelContext &context) {
         ImGui::EndDisabled();
         ImGui::SameLine();
     };
-    const bool running = context.session.running();
-    const bool can_step =
-        running && !context.session.stopped() && context.session.simulation()->has_world();
-    button(Icon::restart, Action::restart, running);
+    const bool can_step = !context.session.stopped();
+    button(Icon::restart, Action::restart, true);
     button(Icon::step_back, Action::step_back, context.session.steps_remembered() > 0);
     button(context.clock.paused() ? Icon::play : Icon::pause, Action::pause, can_step);
     button(Icon::step, Action::step, can_step);

@@ -7,8 +7,10 @@
 namespace plumb {
 
 void view_panel(PanelContext &context) {
-    heading(context.fonts, "View",
-            "Help " + shortcut(Action::toggle_help) + "   Hide " + shortcut(Action::toggle_panels));
+    if (!title_bar(context, PanelId::view, "View",
+                   "Help " + shortcut(Action::toggle_help) + "   Hide " +
+                       shortcut(Action::toggle_panels)))
+        return;
     const ViewState &view = context.view;
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
     const float width = ImGui::GetContentRegionAvail().x - spacing;
@@ -17,21 +19,29 @@ void view_panel(PanelContext &context) {
         if (action_check_box(context.fonts, action, checked, width * share))
             context.actions.push_back(action);
     };
-    // The longer titles stand on the left.
-    constexpr float left = 0.54f;
-    box(Action::toggle_contacts, view.contacts, left);
-    ImGui::SameLine(0, spacing);
-    box(Action::toggle_joints, view.joints, 1 - left);
-    box(Action::toggle_velocities, view.velocities, left);
-    ImGui::SameLine(0, spacing);
-    box(Action::toggle_bounds, view.bounds, 1 - left);
+    const Simulation *simulation = context.session.simulation();
+    const bool has_world = simulation && simulation->has_world();
+    if (has_world) {
+        // The longer titles stand on the left.
+        constexpr float left = 0.54f;
+        box(Action::toggle_contacts, view.contacts, left);
+        ImGui::SameLine(0, spacing);
+        box(Action::toggle_joints, view.joints, 1 - left);
+        box(Action::toggle_velocities, view.velocities, left);
+        ImGui::SameLine(0, spacing);
+        box(Action::toggle_bounds, view.bounds, 1 - left);
+    }
     box(Action::toggle_wireframe, view.wireframe, 1);
-    box(Action::toggle_diagnostics, view.diagnostics, 1);
+    if (has_world)
+        box(Action::toggle_diagnostics, view.diagnostics, 1);
     if (action_button(context.fonts, Action::frame, half))
         context.actions.push_back(Action::frame);
     ImGui::SameLine(0, spacing);
     if (action_button(context.fonts, Action::home, half))
         context.actions.push_back(Action::home);
+    // Without the transport bar, which has it otherwise.
+    if (!has_world && action_button(context.fonts, Action::restart, width + spacing))
+        context.actions.push_back(Action::restart);
 }
 
 } // namespace plumb

@@ -28,7 +28,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int samples = 4;
 // A paused world is drawn this long after the last event, then only now and then.
 constexpr double awake = 0.5;          // s
 constexpr double drowsy = 0.2;         // s between frames
@@ -45,19 +44,34 @@ class GlfwBackEnd {
 
 // Everything that both loops draw with.
 struct Stage {
-    Stage(const SandboxOptions &options, float scale, glm::ivec2 pixels)
-        : ui(scale), renderer(options.shader_dir), ui_renderer(options.shader_dir),
-          target(pixels, samples) {}
+    Stage(const SandboxOptions &options, bool in_software, float ui_scale, glm::ivec2 pixels)
+        : ui(ui_scale), scale(ui_scale), is_cheap(in_software), renderer(options.shader_dir),
+          ui_renderer(options.shader_dir),
+          target(pixels, options.samples.value_or(in_software ? 1 : 4)) {}
 
+    // Takes effect with the next frame that is begun.
+    void set_scale(float ui_scale) {
+        if (ui_scale == scale)
+            return;
+        scale = ui_scale;
+        ui.set_scale(scale);
+        ui_renderer.upload_fonts();
+    }
+
+    // The panels first: the camera looks through what they leave free.
     void draw(Sandbox &sandbox) {
-        renderer.draw(sandbox.draw_list(), target);
         PanelContext context = sandbox.panel_context(ui.fonts());
         const ImDrawData &data = ui.draw(context);
+        DrawList list = sandbox.draw_list();
+        list.view.cheap = is_cheap;
+        renderer.draw(list, target);
         ui_renderer.draw(data, target);
         sandbox.take(context);
     }
 
     Ui ui;
+    float scale = 1; // of ui
+    bool is_cheap = false;
     Renderer renderer;
     ImguiRenderer ui_renderer;
     Framebuffer target;
@@ -97,9 +111,9 @@ int finish(const SandboxOptions &options, const Sandbox &sandbox, const Stage &s
     return 0;
 }
 
-int run_off_screen(const SandboxOptions &options) {
+int run_off_screen(const SandboxOptions &options, bool in_software) {
     Sandbox sandbox = make_sandbox(options);
-    Stage stage(options, 1, options.size);
+    Stage stage(options, in_software, options.ui_scale.value_or(1.0f), options.size);
     const InterruptGuard interrupt;
     ProgressLine line(std::cerr);
     for (int frame = 0;
@@ -129,13 +143,19 @@ void handle_events(Sandbox &sandbox, Ui &ui, const Window &window,
         sandbox.open(events.dropped.front());
 }
 
-int run_in_window(const SandboxOptions &options, Window &window) {
-    WindowInput input(window);
-    Sandbox sandbox = make_sandbox(options);
-    // Pixels of the display to a unit of the window's coordinates are the back end's business.
+// Of text and panels. Pixels of the display to a unit of the window's coordinates are the back
+// end's business.
+float ui_scale(const SandboxOptions &options, const Window &window, const Sandbox &sandbox) {
     const float dense = static_cast<float>(window.framebuffer_size().x) /
                         static_cast<float>(std::max(window.size().x, 1));
-    Stage stage(options, window.content_scale() / (dense > 0 ? dense : 1),
+    const float monitor = window.content_scale() / (dense > 0 ? dense : 1);
+    return options.ui_scale.value_or(monitor) * sandbox.view().ui_scale;
+}
+
+int run_in_window(const SandboxOptions &options, Window &window, bool in_software) {
+    WindowInput input(window);
+    Sandbox sandbox = make_sandbox(options);
+    Stage stage(options, in_software, ui_scale(options, window, sandbox),
                 glm::max(window.framebuffer_size(), 1));
     const GlfwBackEnd back_end(window);
 
@@ -169,6 +189,7 @@ int run_in_window(const SandboxOptions &options, Window &window) {
         if (!events.empty())
             last_event = now;
 
+        stage.set_scale(ui_scale(options, window, sandbox));
         ImGui_ImplGlfw_NewFrame();
         stage.ui.begin_frame();
         handle_events(sandbox, stage.ui, window, events);
@@ -198,9 +219,9 @@ SandboxResult run_sandbox(const SandboxOptions &options) {
     request.size = options.size;
     const ContextResult made = create_context(request);
     if (Window *window = made.context->window())
-        return {run_in_window(options, *window), {}};
+        return {run_in_window(options, *window, made.context->is_software()), {}};
     if (options.max_frames)
-        return {run_off_screen(options), {}};
+        return {run_off_screen(options, made.context->is_software()), {}};
     return {0, made.why_no_window.empty() ? "drawing in memory was asked for" : made.why_no_window};
 }
 

@@ -25,6 +25,8 @@ struct SandboxOptions {
     RunOptions run;
     TaskPool *tasks = nullptr; // may be null
     bool paused = false;
+    std::optional<int> samples;    // of multisampling; as the renderer can bear if empty
+    std::optional<float> ui_scale; // of the panels; the monitor's if empty
     // For tests: ends after so many frames, and writes the last one to a file. Without a window
     // each frame lasts 1/60 s.
     std::optional<int> max_frames;

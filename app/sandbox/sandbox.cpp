@@ -1,10 +1,13 @@
 #include "app/sandbox/sandbox.h"
 
+#include "app/sandbox/framing.h"
 #include "app/sandbox/probe_draw.h"
 #include "app/sandbox/world_draw.h"
 #include "engine/dynamics/method_info.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <system_error>
 #include <utility>
 
@@ -55,12 +58,15 @@ void Sandbox::started(bool another_scene) {
     tools_.let_go(session_);
     if (another_scene) {
         view_.selected.reset();
-        view_.camera = camera_of(session_.scene().camera);
+        look_from(camera_of(session_.scene().camera));
     }
     view_.hovered.reset();
     view_.hovered_handle.reset();
     view_.pointed_at.reset();
+    if (another_scene)
+        view_.aspect = aspect_needed(draw_list());
     clock_.give_up();
+    pace_.clear();
     follow_simulation();
 }
 
@@ -144,7 +150,7 @@ void Sandbox::perform(Action action) {
         break;
     case Action::home:
         if (session_.running())
-            view_.camera = camera_of(session_.scene().camera);
+            look_from(camera_of(session_.scene().camera));
         break;
     case Action::toggle_panels:
         view_.panels = !view_.panels;
@@ -154,6 +160,12 @@ void Sandbox::perform(Action action) {
         break;
     case Action::toggle_help:
         view_.help = !view_.help;
+        break;
+    case Action::larger_panels:
+        scale_panels(1.1f);
+        break;
+    case Action::smaller_panels:
+        scale_panels(1 / 1.1f);
         break;
     case Action::dismiss:
         dismiss();
@@ -189,8 +201,13 @@ void Sandbox::handle(const KeyEvent &event, bool in_text_field) {
 }
 
 void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
-    viewport_ = viewport;
     tools_.handle(event, {session_, view_.camera, view_.selected, viewport});
+    // Whoever moves it or goes nearer wants to see something else.
+    if (tools_.drag() == Tools::Drag::pan ||
+        (event.kind == PointerEvent::Kind::wheel && !event.over_panel)) {
+        view_.follows = false;
+        view_.followed = glm::vec3(0);
+    }
     if (event.kind != PointerEvent::Kind::move)
         return;
     view_.hovered.reset();
@@ -209,22 +226,50 @@ void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
 
 void Sandbox::advance(std::int64_t nanoseconds) {
     session_.messages().grow_older(static_cast<double>(nanoseconds) * 1e-9);
-    if (!session_.running() || session_.stopped() || !session_.simulation()->has_world())
+    if (!session_.running() || !session_.simulation()->has_world())
         return;
     follow_simulation();
+    if (clock_.paused() || session_.stopped()) {
+        pace_.clear();
+    } else {
+        const double dt = clock_.dt();
+        const int taken = take_due_steps(nanoseconds);
+        pace_.add(static_cast<double>(nanoseconds) * 1e-9, taken * dt);
+    }
+    keep_in_picture();
+}
+
+void Sandbox::keep_in_picture() {
+    Camera &camera = view_.camera;
+    camera.target -= view_.followed;
+    view_.followed = glm::vec3(0);
+    if (!view_.follows || !session_.running())
+        return;
+    const Simulation &simulation = *session_.simulation();
+    std::vector<glm::vec3> moving;
+    for (std::size_t body = 0; body < session_.present_poses().size(); ++body)
+        if (simulation.body_info(body).alive && simulation.body_info(body).kind != BodyKind::fixed)
+            moving.emplace_back(glm::mix(session_.previous_poses()[body].position,
+                                         session_.present_poses()[body].position, clock_.alpha()));
+    view_.followed = shift_to_see(camera, view_.aspect, moving);
+    camera.target += view_.followed;
+}
+
+int Sandbox::take_due_steps(std::int64_t nanoseconds) {
     const int due = clock_.advance(nanoseconds);
     const auto start = std::chrono::steady_clock::now();
     for (int i = 0; i < due; ++i) {
         if (!session_.step()) {
             clock_.set_paused(true);
-            return;
+            return i;
         }
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
         if (taken.count() > step_budget && i + 1 < due) {
             clock_.give_up();
-            return;
+            return i + 1;
         }
     }
+    return due;
 }
 
 void Sandbox::take_steps(int count) {
@@ -289,13 +334,31 @@ void Sandbox::choose_neighbour_method(int direction) {
         able[direction > 0 ? (now + 1) % able.size() : (now + able.size() - 1) % able.size()]);
 }
 
+void Sandbox::scale_panels(float factor) {
+    // Back where it was, after as many steps either way.
+    constexpr float steps = 8;
+    const float now = std::round(std::log(view_.ui_scale * factor) / std::log(1.1f));
+    view_.ui_scale = std::pow(1.1f, std::clamp(now, -steps, steps));
+}
+
+void Sandbox::look_from(Camera camera) {
+    camera.centre = view_.camera.centre;
+    camera.share = view_.camera.share;
+    view_.camera = camera;
+    view_.follows = true;
+    view_.followed = glm::vec3(0);
+}
+
 void Sandbox::frame_selection() {
     if (!session_.running())
         return;
     const Around sphere = session_.simulation()->has_world()
                               ? around(*session_.simulation(), view_.selected)
                               : around(session_.answers());
-    view_.camera.frame(sphere.centre, sphere.radius, viewport_.x / viewport_.y);
+    // A body has its own width of air on each side, so that one sees where it is.
+    Camera camera = view_.camera;
+    camera.frame(sphere.centre, sphere.radius, view_.selected ? 1.0f / 3 : 0.9f);
+    look_from(camera);
 }
 
 void Sandbox::dismiss() {
@@ -311,7 +374,8 @@ void Sandbox::dismiss() {
 
 PanelContext Sandbox::panel_context(const Fonts &fonts, bool frozen) {
     follow_simulation();
-    return PanelContext{session_, view_, clock_, scenes_, fonts, frozen, {}, {}, {}, false};
+    return PanelContext{session_, view_, clock_, pace_, scenes_, fonts,
+                        frozen,   0,     {},     {},    {},      false};
 }
 
 void Sandbox::take(const PanelContext &context) {
@@ -346,6 +410,9 @@ DrawList Sandbox::draw_list() const {
                    blend(session_.previous_poses(), session_.present_poses(), clock_.alpha()));
     draw_probes(list, session_.probes(), session_.answers(), view_.hovered_handle,
                 !session_.simulation()->has_world());
+    if (session_.simulation()->has_world())
+        if (const auto plane = plane_behind(session_.scene()))
+            list.planes.push_back(*plane);
     if (view_.pointed_at)
         draw_point(list, *view_.pointed_at);
     return list;

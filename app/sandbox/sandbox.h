@@ -4,6 +4,7 @@
 #include "app/render/draw_list.h"
 #include "app/sandbox/clock.h"
 #include "app/sandbox/keys.h"
+#include "app/sandbox/pace.h"
 #include "app/sandbox/panel.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/sandbox/session.h"
@@ -43,6 +44,10 @@ class Sandbox {
     void advance(std::int64_t nanoseconds);
     static constexpr double step_budget = 0.05; // s of real time a frame
 
+    // Has the camera go along when all that moves would leave the picture, and back when it
+    // returns; `advance` does so too.
+    void keep_in_picture();
+
     [[nodiscard]] PanelContext panel_context(const Fonts &fonts, bool frozen = false);
     // Does what the person asked for in the panels.
     void take(const PanelContext &context);
@@ -69,11 +74,14 @@ class Sandbox {
     [[nodiscard]] const Tools &tools() const { return tools_; }
 
   private:
+    void look_from(Camera camera);                // through what the panels leave free, and follow
+    int take_due_steps(std::int64_t nanoseconds); // how many were taken
     void take_steps(int count);
     void take_steps_back(int count);
     void reload();
     void open_neighbour(int direction);
     void choose_neighbour_method(int direction);
+    void scale_panels(float factor);
     void frame_selection();
     void dismiss();
     void started(bool another_scene);
@@ -85,7 +93,7 @@ class Sandbox {
     ViewState view_;
     Tools tools_;
     StepClock clock_{1.0 / 60};
-    glm::vec2 viewport_{1280, 800};
+    Pace pace_; // while running
     bool quit_ = false;
     bool screenshot_ = false;
     bool release_keyboard_ = false;

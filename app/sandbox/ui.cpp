@@ -2,22 +2,75 @@
 
 #include "app/sandbox/widgets.h"
 
+#include <array>
+
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h> // ClearActiveID: to leave a text field by Esc
 
 namespace plumb {
 
-Ui::Ui(float scale) : imgui_(ImGui::CreateContext()), scale_(scale) {
+struct Ui::Row {
+    PanelId id;
+    const char *name;
+    void (*contents)(PanelContext &);
+    bool is_clicked; // rows that are only read may stand closer than those that are clicked
+};
+
+namespace {
+
+// Before a panel has been drawn, its height is not known: as much as there is.
+constexpr float unknown_height = 1e6f;
+
+bool has_world(const PanelContext &context) {
+    const Simulation *simulation = context.session.simulation();
+    return simulation != nullptr && simulation->has_world();
+}
+
+bool is_shown(PanelId id, const PanelContext &context) {
+    const ViewState &view = context.view;
+    // In a small window the help stands alone.
+    const bool beside_help = view.panels && (view.is_roomy || !view.help);
+    switch (id) {
+    case PanelId::scenes:
+    case PanelId::details:
+        return beside_help;
+    case PanelId::view:
+        return beside_help && context.session.running();
+    case PanelId::settings:
+    case PanelId::transport:
+        return beside_help && has_world(context);
+    case PanelId::diagnostics:
+        return beside_help && has_world(context) && view.diagnostics;
+    // Errors and help are seen even when the panels are hidden.
+    case PanelId::messages:
+        return !context.session.messages().empty();
+    case PanelId::help:
+        return view.help;
+    }
+    return false;
+}
+
+} // namespace
+
+Ui::Ui(float scale) : imgui_(ImGui::CreateContext()) {
     ImGui::SetCurrentContext(imgui_);
     ImGuiIO &io = ImGui::GetIO();
     io.IniFilename = nullptr; // the layout is computed, so there is nothing to remember
     io.LogFilename = nullptr;
-    apply_theme(scale);
-    fonts_ = load_fonts(scale);
+    set_scale(scale);
 }
 
 Ui::~Ui() {
     ImGui::DestroyContext(imgui_);
+}
+
+void Ui::set_scale(float scale) {
+    ImGui::SetCurrentContext(imgui_);
+    scale_ = scale;
+    apply_theme(scale);
+    ImGui::GetIO().Fonts->Clear();
+    fonts_ = load_fonts(scale);
+    heights_ = {};
 }
 
 void Ui::fill_input(glm::vec2 size, float seconds) {
@@ -35,86 +88,62 @@ void Ui::begin_frame() {
 }
 
 const ImDrawData &Ui::draw(PanelContext &context) {
+    static constexpr std::array<Row, panel_count> rows{
+        Row{PanelId::scenes, "scenes", scenes_panel, true},
+        Row{PanelId::settings, "settings", settings_panel, true},
+        Row{PanelId::view, "view", view_panel, true},
+        Row{PanelId::details, "details", details_panel, false},
+        Row{PanelId::diagnostics, "diagnostics", diagnostics_panel, false},
+        Row{PanelId::transport, "transport", transport_panel, true},
+        Row{PanelId::messages, "messages", messages_panel, false},
+        Row{PanelId::help, "help", help_panel, false}};
     panels_.clear();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const glm::vec2 window(size.x, size.y);
-    LayoutWishes wishes;
-    // Of a world that is stepped.
-    const Simulation *simulation = context.session.simulation();
-    wishes.diagnostics =
-        context.view.diagnostics && (simulation == nullptr || simulation->has_world());
-    // The width of the messages does not depend on their height.
-    const float width = lay_out(window, scale_, wishes).messages.size.x;
-    wishes.messages_height = messages_height(context.session.messages(), width);
-    const Layout layout = lay_out(window, scale_, wishes);
+    context.view.is_roomy = is_roomy(window, scale_);
+    PerPanel<float> wished{};
+    for (const Row &row : rows)
+        if (is_shown(row.id, context))
+            wished[row.id] = heights_[row.id] > 0 ? heights_[row.id] : unknown_height;
+    const PerPanel<Rect> rects = lay_out(window, scale_, wished);
+    for (const Row &row : rows)
+        if (wished[row.id] > 0)
+            panel(context, row, rects[row.id]);
 
+    // What comes and goes over the scene shall not move it.
+    std::vector<Rect> taken;
+    for (const Panel &panel : panels_)
+        if (panel.id != PanelId::messages && panel.id != PanelId::help)
+            taken.push_back(panel.rect);
+    const Rect free = free_part(window, taken, context.view.aspect);
+    context.view.camera.look_through(window, free.min, free.size, context.view.aspect);
     probe_labels(context);
-    if (context.view.panels) {
-        panel(context, "scenes", layout.scenes, scenes_panel);
-        panel(context, "settings", layout.settings, settings_panel);
-        panel(context, "view", layout.view, view_panel);
-        panel(context, "transport", layout.transport, transport_panel);
-        panel(context, "details", layout.details, nullptr);
-        if (wishes.diagnostics)
-            panel(context, "diagnostics", layout.diagnostics, [](PanelContext &c) {
-                statistics_panel(c);
-                measures_panel(c);
-            });
-    }
-    // Errors and help are seen even when the panels are hidden.
-    if (wishes.messages_height > 0)
-        panel(context, "messages", layout.messages, messages_panel);
-    if (context.view.help)
-        panel(context, "help", layout.help, help_panel, true);
     ImGui::Render();
     return *ImGui::GetDrawData();
 }
 
-void Ui::panel(PanelContext &context, const char *name, const Rect &rect,
-               void (*contents)(PanelContext &), bool fit_height) {
+void Ui::panel(PanelContext &context, const Row &row, const Rect &rect) {
     ImGui::SetNextWindowPos({rect.min.x, rect.min.y});
-    ImGui::SetNextWindowSizeConstraints({rect.size.x, fit_height ? 0 : rect.size.y},
-                                        {rect.size.x, rect.size.y});
-    ImGui::SetNextWindowSize({rect.size.x, fit_height ? 0 : rect.size.y});
+    ImGui::SetNextWindowSizeConstraints({rect.size.x, rect.size.y}, {rect.size.x, rect.size.y});
+    ImGui::SetNextWindowSize({rect.size.x, rect.size.y});
     constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
                                        ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
-    ImGui::Begin(name, nullptr, flags);
-    // Rows that are only read may stand closer than those that are clicked.
-    const bool dense = contents != scenes_panel && contents != settings_panel &&
-                       contents != view_panel && contents != transport_panel;
-    if (dense)
+    ImGui::Begin(row.name, nullptr, flags);
+    if (!row.is_clicked)
         ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8 * scale_, 4 * scale_));
-    if (contents)
-        contents(context);
-    else
-        details(context);
-    if (dense)
+    context.scrolled_height = 0;
+    row.contents(context);
+    const ImGuiStyle &style = ImGui::GetStyle();
+    // From the last item, whatever it is, to the border.
+    heights_[row.id] = ImGui::GetCursorPosY() - style.ItemSpacing.y + style.WindowPadding.y +
+                       context.scrolled_height;
+    if (!row.is_clicked)
         ImGui::PopStyleVar();
     const ImVec2 at = ImGui::GetWindowPos();
     const ImVec2 size = ImGui::GetWindowSize();
-    panels_.push_back({name, {{at.x, at.y}, {size.x, size.y}}});
+    panels_.push_back({row.id, row.name, {{at.x, at.y}, {size.x, size.y}}});
     ImGui::End();
-}
-
-void Ui::details(PanelContext &context) {
-    // A body that has just been selected brings its tab to the front, and one let go the scene's.
-    const bool changed = shown_body_ != context.view.selected;
-    shown_body_ = context.view.selected;
-    const auto flags = [&](bool wanted) {
-        return changed && wanted ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None;
-    };
-    if (!ImGui::BeginTabBar("details"))
-        return;
-    if (ImGui::BeginTabItem("Scene", nullptr, flags(!shown_body_))) {
-        expectations_panel(context);
-        ImGui::EndTabItem();
-    }
-    if (ImGui::BeginTabItem("Body", nullptr, flags(shown_body_.has_value()))) {
-        inspector_panel(context);
-        ImGui::EndTabItem();
-    }
-    ImGui::EndTabBar();
 }
 
 bool Ui::over_panel() const {

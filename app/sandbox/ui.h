@@ -24,12 +24,16 @@ class Ui {
     Ui(const Ui &) = delete;
     Ui &operator=(const Ui &) = delete;
 
+    // Text and all sizes anew; whoever draws the panels must upload the fonts again.
+    void set_scale(float scale);
+
     // Off screen: a display of this many pixels and a frame of this many seconds, with no mouse.
     void fill_input(glm::vec2 size, float seconds);
 
     // Begins a frame, after which over_panel() speaks of the present mouse position.
     void begin_frame();
-    // Draws the panels and ends the frame. What the person asked for is left in `context`.
+    // Draws the panels, and ends the frame. What the person asked for is left in `context`, and its
+    // camera looks through what the panels leave free.
     [[nodiscard]] const ImDrawData &draw(PanelContext &context);
 
     // A panel has the mouse; the keyboard goes into a text field.
@@ -39,6 +43,7 @@ class Ui {
     void release_keyboard();
 
     struct Panel {
+        PanelId id;
         std::string name;
         Rect rect; // as ImGui has it
     };
@@ -47,15 +52,14 @@ class Ui {
     [[nodiscard]] const Fonts &fonts() const { return fonts_; }
 
   private:
-    void panel(PanelContext &context, const char *name, const Rect &rect,
-               void (*contents)(PanelContext &), bool fit_height = false);
-    void details(PanelContext &context);
+    struct Row;
+    void panel(PanelContext &context, const Row &row, const Rect &rect);
 
     ImGuiContext *imgui_ = nullptr;
     float scale_ = 1;
     Fonts fonts_;
     std::vector<Panel> panels_;
-    std::optional<std::size_t> shown_body_; // selected in the last frame
+    PerPanel<float> heights_{}; // of their contents, in the last frame that had them
 };
 
 } // namespace plumb

@@ -6,21 +6,23 @@
 namespace plumb {
 
 Image ui_snapshot(Sandbox &sandbox, Renderer &renderer, const std::filesystem::path &shader_dir,
-                  glm::ivec2 size, int samples, std::vector<Ui::Panel> *panels) {
+                  const UiSnapshotOptions &options, std::vector<Ui::Panel> *panels) {
     sandbox.clock().set_paused(true); // the state itself, not what lies between two steps
-    Framebuffer target(size, samples);
-    renderer.draw(sandbox.draw_list(), target);
-    Ui ui;
+    sandbox.keep_in_picture();
+    Ui ui(options.scale);
     ImguiRenderer ui_renderer(shader_dir);
     const ImDrawData *data = nullptr;
-    // ImGui lays out tables and scroll bars by what the frame before has shown.
-    constexpr int frames_to_settle = 3;
+    // Panels are as high as their contents were in the frame before, and ImGui lays out tables and
+    // scroll bars by what it has shown.
+    constexpr int frames_to_settle = 4;
     for (int frame = 0; frame < frames_to_settle; ++frame) {
-        ui.fill_input(glm::vec2(size), 1.0f / 60);
+        ui.fill_input(glm::vec2(options.size), 1.0f / 60);
         ui.begin_frame();
         PanelContext context = sandbox.panel_context(ui.fonts(), true);
         data = &ui.draw(context);
     }
+    Framebuffer target(options.size, options.samples);
+    renderer.draw(sandbox.draw_list(), target);
     ui_renderer.draw(*data, target);
     if (panels)
         *panels = ui.panels();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/render/camera.h"
+#include "app/sandbox/layout.h"
 #include "engine/scene/probe.h"
 
 #include <cstddef>
@@ -19,7 +20,12 @@ struct ProbeHandle {
 };
 
 struct ViewState {
-    Camera camera;
+    Camera camera; // looks through what the panels leave free
+    // Of a picture that holds all that the scene shows at its start, width over height.
+    float aspect = 1;
+    // While the person has not moved the camera away, it goes along with what moves; as far, m.
+    bool follows = true;
+    glm::vec3 followed{0};
     std::optional<std::size_t> selected;
     std::optional<std::size_t> hovered;
     std::optional<ProbeHandle> hovered_handle;
@@ -32,9 +38,14 @@ struct ViewState {
     bool panels = true;
     bool diagnostics = true;
     bool help = false;
-    std::string search;                   // in the list of scenes
-    bool focus_search = false;            // the search box takes the keyboard in the next frame
-    std::filesystem::path scene_in_sight; // to which the list of scenes was last scrolled
+    PerPanel<std::optional<bool>> opened; // or closed to its title; as it likes until a person says
+    bool is_roomy = true;                 // the window, in which a panel likes to be open
+    [[nodiscard]] bool is_open(PanelId panel) const { return opened[panel].value_or(is_roomy); }
+    float ui_scale = 1;                       // on top of the monitor's
+    std::optional<std::size_t> detailed_body; // that the details were last about
+    std::string search;                       // in the list of scenes
+    bool focus_search = false;                // the search box takes the keyboard in the next frame
+    std::filesystem::path scene_in_sight;     // to which the list of scenes was last scrolled
 };
 
 } // namespace plumb

@@ -48,6 +48,23 @@ void bar(ImDrawList &list, float x, float y, float half_width, float half_height
                        1);
 }
 
+// Of the sign's place, in heights of the text.
+constexpr float fold_width = 0.95f;
+
+// Bright when the last item, which it belongs to, is pointed at.
+void draw_fold_sign(ImVec2 at, bool open) {
+    const ImU32 colour = packed(ImGui::IsItemHovered() ? theme::text : theme::dim);
+    const float side = ImGui::GetFontSize();
+    const ImVec2 c(at.x + side * 0.32f, at.y + side * 0.5f);
+    const float s = side * 0.26f;
+    ImDrawList &list = *ImGui::GetWindowDrawList();
+    if (open)
+        list.AddTriangleFilled({c.x - s, c.y - 0.7f * s}, {c.x + s, c.y - 0.7f * s},
+                               {c.x, c.y + 0.9f * s}, colour);
+    else
+        triangle(list, c, s, true, colour);
+}
+
 void draw_icon(ImDrawList &list, Icon icon, ImVec2 c, float s, ImU32 colour) {
     switch (icon) {
     case Icon::pause:
@@ -92,6 +109,27 @@ void heading(const Fonts &fonts, std::string_view text, std::string_view key) {
         draw_small(fonts, {right - size.x, ImGui::GetItemRectMax().y - size.y - 1}, key,
                    packed(theme::dim));
     }
+}
+
+bool fold_sign(const char *id, bool open) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float side = ImGui::GetFontSize();
+    const bool pressed = ImGui::InvisibleButton(id, {side * fold_width, side});
+    draw_fold_sign(at, open);
+    return pressed;
+}
+
+bool fold_title(const Fonts &fonts, std::string_view text, std::string_view at_right, bool open) {
+    const ImVec2 start = ImGui::GetCursorPos();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool pressed =
+        ImGui::InvisibleButton(("##" + std::string(text)).c_str(),
+                               {ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight()});
+    tooltip(open ? "Closes the panel to its title." : "Opens the panel.");
+    draw_fold_sign(at, open);
+    ImGui::SetCursorPos({start.x + ImGui::GetFontSize() * fold_width, start.y});
+    heading(fonts, text, at_right);
+    return pressed;
 }
 
 void tooltip(std::string_view text) {
@@ -219,10 +257,12 @@ std::string number(double value, std::string_view unit, int digits) {
     return text;
 }
 
-std::string milliseconds(double seconds) {
-    std::array<char, 48> digits{};
-    std::snprintf(digits.data(), digits.size(), "%.2f", seconds * 1e3);
-    return digits.data();
+std::string duration(double seconds) {
+    const double size = std::abs(seconds);
+    return size >= 0.9995      ? number(seconds, "s", 3)
+           : size >= 0.9995e-3 ? number(seconds * 1e3, "ms", 3)
+           : size >= 0.9995e-6 ? number(seconds * 1e6, "µs", 3)
+                               : number(seconds * 1e9, "ns", 3);
 }
 
 ImU32 packed(const Colour &colour, float alpha) {

@@ -14,6 +14,13 @@ enum class Icon { pause, play, step, step_back, restart, slower, faster };
 // A panel's title, dim, with a key at the right end if there is one.
 void heading(const Fonts &fonts, std::string_view text, std::string_view key = {});
 
+// A sign that points down when something is open, and right when it is closed. True when pressed.
+[[nodiscard]] bool fold_sign(const char *id, bool open);
+// The same with a title after it, all of which can be pressed, and some small text at the right
+// end.
+[[nodiscard]] bool fold_title(const Fonts &fonts, std::string_view text, std::string_view at_right,
+                              bool open);
+
 // What the action does and all its keys, over the last item.
 void action_tooltip(Action action);
 // Wrapped, over the last item.
@@ -35,7 +42,8 @@ void small_text(const Fonts &fonts, std::string_view text);
 
 // With so many significant digits; "-" if it is not finite.
 [[nodiscard]] std::string number(double value, std::string_view unit = {}, int digits = 4);
-[[nodiscard]] std::string milliseconds(double seconds); // "1.25"
+// Three significant digits, in the unit that suits: "1.25 ms", "340 µs", "85 ns".
+[[nodiscard]] std::string duration(double seconds);
 
 [[nodiscard]] ImU32 packed(const Colour &colour, float alpha = 1);
 

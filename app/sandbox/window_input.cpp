@@ -120,9 +120,8 @@ struct WindowInput::Callbacks {
 };
 
 WindowInput::WindowInput(Window &window) : window_(window.handle()) {
-    const glm::vec2 least = smallest_window * window.content_scale();
-    glfwSetWindowSizeLimits(window_, static_cast<int>(least.x), static_cast<int>(least.y),
-                            GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowSizeLimits(window_, static_cast<int>(smallest_window.x),
+                            static_cast<int>(smallest_window.y), GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
     double x = 0;
     double y = 0;

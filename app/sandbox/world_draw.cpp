@@ -74,40 +74,66 @@ void add_arrow(DrawList &list, const glm::dvec3 &from, const glm::dvec3 &vector,
     add_line(list, to, back - aside, colour);
 }
 
-void add_contacts(DrawList &list, const Simulation &simulation, double weight) {
+// A contact goes along with the bodies that move, but does not turn with them: under a ball that
+// rolls it stays below.
+glm::dvec3 contact_place(const Simulation &simulation, const std::vector<Pose> &poses,
+                         const ContactView &contact) {
+    glm::dvec3 shift(0);
+    double moving = 0;
+    for (const std::size_t body : {contact.body_a, contact.body_b}) {
+        if (body >= poses.size() || simulation.body_info(body).kind == BodyKind::fixed)
+            continue;
+        shift += poses[body].position - simulation.body_state(body).position;
+        moving += 1;
+    }
+    return moving > 0 ? contact.position + shift / moving : contact.position;
+}
+
+void add_contacts(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses,
+                  double weight) {
     for (const ContactView &contact : simulation.contacts()) {
+        const glm::dvec3 place = contact_place(simulation, poses, contact);
         // The stalk is half a metre for the weight of a middling body, and grows with the square
         // root of the force, so that light and heavy contacts are both seen.
         const double force = weight > 0 ? std::max(0.0, contact.normal_force) / weight : 0;
         const double length = std::min(2.0, 0.08 + 0.3 * std::sqrt(force));
         DrawPoint point;
-        point.position = glm::vec3(contact.position);
+        point.position = glm::vec3(place);
         point.normal = glm::vec3(contact.normal * length);
         point.colour =
             contact.normal_force > 0 ? colours::contact : colours::contact * 0.6f + 0.35f;
         list.points.push_back(point);
         const double friction = glm::length(contact.friction_force);
         if (weight > 0 && friction > 0)
-            add_arrow(list, contact.position,
+            add_arrow(list, place,
                       contact.friction_force / friction *
                           std::min(2.0, 0.3 * std::sqrt(friction / weight)),
                       colours::kinematic);
     }
 }
 
-void add_bounds(DrawList &list, const Simulation &simulation) {
-    for (const BoundsView &box : simulation.bounds()) {
-        for (int axis = 0; axis < 3; ++axis) {
-            for (int corner = 0; corner < 4; ++corner) {
-                glm::dvec3 a = box.min;
-                const int u = (axis + 1) % 3;
-                const int v = (axis + 2) % 3;
-                a[u] = (corner & 1) != 0 ? box.max[u] : box.min[u];
-                a[v] = (corner & 2) != 0 ? box.max[v] : box.min[v];
-                glm::dvec3 b = a;
-                b[axis] = box.max[axis];
-                add_line(list, a, b, colours::bounds, 1);
-            }
+void add_bounds(DrawList &list, const BodyInfo &body, const Pose &pose) {
+    glm::dvec3 min(std::numeric_limits<double>::infinity());
+    glm::dvec3 max = -min;
+    for (const ColliderDesc &collider : body.colliders) {
+        if (is_plane(collider.shape))
+            return;
+        const BoundsDesc box =
+            bounds(collider.shape, pose.position + pose.orientation * collider.position,
+                   pose.orientation * collider.orientation);
+        min = glm::min(min, box.min);
+        max = glm::max(max, box.max);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int corner = 0; corner < 4; ++corner) {
+            glm::dvec3 a = min;
+            const int u = (axis + 1) % 3;
+            const int v = (axis + 2) % 3;
+            a[u] = (corner & 1) != 0 ? max[u] : min[u];
+            a[v] = (corner & 2) != 0 ? max[v] : min[v];
+            glm::dvec3 b = a;
+            b[axis] = max[axis];
+            add_line(list, a, b, colours::bounds, 1);
         }
     }
 }
@@ -167,9 +193,11 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
             add_body(list, simulation.body_info(body), shown[body], body, options);
     add_joints(list, simulation, shown, options.joints);
     if (options.contacts)
-        add_contacts(list, simulation, typical_weight(simulation));
+        add_contacts(list, simulation, shown, typical_weight(simulation));
     if (options.bounds)
-        add_bounds(list, simulation);
+        for (std::size_t body = 0; body < shown.size(); ++body)
+            if (simulation.body_info(body).alive)
+                add_bounds(list, simulation.body_info(body), shown[body]);
     if (options.velocities)
         for (std::size_t body = 0; body < shown.size(); ++body)
             if (simulation.body_info(body).alive &&

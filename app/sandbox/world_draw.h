@@ -15,7 +15,7 @@ namespace plumb {
 struct WorldDrawOptions {
     bool contacts = false; // points, with normals and normal forces
     bool joints = false;   // anchors, and what lies between them
-    bool bounds = false;   // the boxes of the broad phase
+    bool bounds = false;   // the axis-aligned boxes around bodies
     bool velocities = false;
     bool wireframe = false;
     bool shadows = true;
@@ -28,8 +28,8 @@ struct WorldDrawOptions {
 // The camera that the scene asks for.
 [[nodiscard]] Camera camera_of(const CameraDesc &camera);
 
-// `poses` are those to show, one for each body, or empty for the present ones. Contacts, joints,
-// bounds and velocities are those of the last step.
+// `poses` are those to show, one for each body, or empty for the present ones. Contacts and joints
+// are those of the last step, moved along with the bodies that are shown; velocities too are its.
 [[nodiscard]] DrawList draw_world(const Simulation &simulation, const Camera &camera,
                                   const WorldDrawOptions &options = {},
                                   const std::vector<Pose> &poses = {});

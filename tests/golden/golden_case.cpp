@@ -87,7 +87,7 @@ const std::vector<Case> &cases() {
             {"raycasts", "geometry/raycasts", 0, {}},
             {"manifolds", "geometry/manifolds", 0, {}},
             {"gjk_epa", "geometry/gjk_epa", 0, {}},
-            {"panels", "joints/pendulum", 30, joints, true, {800, 500}},
+            {"panels", "joints/pendulum", 30, joints, true, {1000, 640}},
         };
     }();
     return all;
@@ -108,7 +108,7 @@ Rendering render(const Case &golden, std::optional<std::size_t> without) {
     result.rasterizer = {context->renderer(), context->version(), cpu_instruction_sets()};
     DrawList list = sandbox.draw_list();
     if (golden.panels) {
-        result.picture = ui_snapshot(sandbox, renderer, shaders, golden.size);
+        result.picture = ui_snapshot(sandbox, renderer, shaders, {golden.size});
     } else {
         if (without)
             list.shapes.erase(list.shapes.begin() + static_cast<std::ptrdiff_t>(*without));

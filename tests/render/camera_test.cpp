@@ -149,19 +149,55 @@ TEST(Camera, ZoomKeepsTheTargetAndUndoesItself) {
 }
 
 TEST(Camera, FrameShowsTheWholeSphereAndLittleElse) {
-    for (const float aspect : {0.5f, 1.0f, 1.78f}) {
+    for (const float side : {0.5f, 1.0f, 1.2f}) {
         Camera camera = camera_at(0.7f, 0.5f);
-        camera.frame({4, 5, 6}, 2, aspect);
+        camera.frame({4, 5, 6}, 2, side);
         EXPECT_EQ(camera.target, glm::vec3(4, 5, 6));
-        // The cone that touches the sphere, against the narrower half of the view.
+        // The cone that touches the sphere, against half the square.
         const float cone = std::asin(2 / camera.distance);
-        const float half = std::atan(std::tan(camera.fov / 2) * std::min(1.0f, aspect));
+        const float half = std::atan(std::tan(camera.fov / 2) * side);
         EXPECT_LT(cone, half);
         EXPECT_GT(cone, 0.9f * half);
     }
     Camera camera;
     camera.frame({0, 0, 0}, 0, 1);
     EXPECT_GT(camera.distance, 0);
+}
+
+// A camera that looks through a part of the picture shows in it what one of the same field of view
+// shows in a picture of that size.
+TEST(Camera, LooksThroughAPartOfThePicture) {
+    const glm::vec2 corner{300, 40};
+    const glm::vec2 size{600, 500};
+    for (const float aspect : {1.0f, 1.5f}) {
+        const float height = std::min(size.y, size.x / aspect);
+        for (const Camera &whole : cameras()) {
+            Camera part = whole;
+            part.look_through(viewport, corner, size, aspect);
+            const glm::vec2 shift = corner + 0.5f * (size - glm::vec2(height));
+            for (const glm::vec3 offset : {glm::vec3(0), {0.7f, -0.4f, 0.9f}, {-1, 1, 0.5f}}) {
+                const glm::vec3 place = whole.target + offset;
+                const glm::vec3 small = whole.project(place, glm::vec2(height));
+                const glm::vec3 seen = part.project(place, viewport);
+                EXPECT_NEAR(seen.x, small.x + shift.x, 0.01f);
+                EXPECT_NEAR(seen.y, small.y + shift.y, 0.01f);
+                EXPECT_NEAR(seen.z, small.z, 1e-6f);
+                // The matrices, the inverse and the ray agree.
+                const float ratio = viewport.x / viewport.y;
+                const glm::vec4 clip = part.projection(ratio) * part.view() * glm::vec4(place, 1);
+                EXPECT_NEAR((clip.x / clip.w + 1) / 2 * viewport.x, seen.x, 0.01f);
+                EXPECT_NEAR((1 - clip.y / clip.w) / 2 * viewport.y, seen.y, 0.01f);
+                expect_near(part.unproject(seen, viewport), place, 4e-4f);
+                const PickRay ray = part.pick_ray(glm::vec2(seen), viewport);
+                EXPECT_LT(glm::length(glm::cross(place - ray.origin, ray.direction)), 2e-5f);
+            }
+            Camera panned = part;
+            panned.pan({35, -20}, viewport.y);
+            const glm::vec3 moved = panned.project(whole.target, viewport);
+            EXPECT_NEAR(moved.x - (corner.x + 0.5f * size.x), 35, 0.01f);
+            EXPECT_NEAR(moved.y - (corner.y + 0.5f * size.y), -20, 0.01f);
+        }
+    }
 }
 
 } // namespace

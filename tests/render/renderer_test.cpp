@@ -11,6 +11,7 @@
 #include <string>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include "app/render/palette.h"
 #include "engine/core/check.h"
@@ -312,6 +313,41 @@ TEST_F(OffScreen, LitSurfacesShowNoAcne) {
                 different += difference(with.at(x, y), without.at(x, y)) > 2;
         // Only the thin rounded rims, where the face itself turns from the light, may change.
         EXPECT_LT(different, 40);
+    }
+}
+
+// What is convex throws no shadow on itself, however low the light and however coarse the mesh that
+// it is drawn with.
+TEST_F(OffScreen, AConvexShapeAloneIsTheSameWithAndWithoutShadows) {
+    const float pi = glm::pi<float>();
+    for (const DrawKind kind :
+         {DrawKind::sphere, DrawKind::box, DrawKind::capsule, DrawKind::cylinder}) {
+        for (const float distance : {4.0f, 12.0f, 30.0f, 70.0f}) { // each with a mesh of its own
+            for (const float height : {0.1f, 0.3f, 0.7f, 1.2f}) {
+                for (const float around : {0.0f, 1.0f}) {
+                    for (const bool cheap : {false, true}) {
+                        DrawList list;
+                        list.view.occlusion = false;
+                        list.view.cheap = cheap;
+                        list.camera = {{0, 0, 0}, distance, around - 0.3f * pi, 0.3f, 0.8f};
+                        list.light.direction = {-std::cos(height) * std::sin(around),
+                                                -std::sin(height),
+                                                -std::cos(height) * std::cos(around)};
+                        list.shapes.push_back(shape(kind, {0, 0, 0}, {1, 0.8f, 0.6f}));
+                        const Image with = render_image(renderer, list, size);
+                        list.view.shadows = false;
+                        const Image without = render_image(renderer, list, size);
+                        int darker = 0;
+                        for (int y = 0; y < size.y; ++y)
+                            for (int x = 0; x < size.x; ++x)
+                                darker += difference(with.at(x, y), without.at(x, y)) > 6;
+                        EXPECT_LE(darker, 0)
+                            << "kind " << static_cast<int>(kind) << " from " << distance
+                            << " m, light " << height << " rad high, cheap " << cheap;
+                    }
+                }
+            }
+        }
     }
 }
 

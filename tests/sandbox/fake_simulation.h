@@ -17,6 +17,7 @@ class FakeSimulation final : public Simulation {
     std::optional<std::uint64_t> throws_at;   // the step from this count on fails
     std::optional<std::uint64_t> diverges_at; // the step from this count on gives NaN
     std::vector<glm::dvec3> pulls;            // targets, in order
+    double advance_time = 0;                  // s, that each step says it took
 
     explicit FakeSimulation(const SceneDesc &scene) {
         scene.world.settings.apply_to(settings_);
@@ -26,7 +27,7 @@ class FakeSimulation final : public Simulation {
 
     using Simulation::save;
     using Simulation::step;
-    void step(StepTimes *) override {
+    void step(StepTimes *times) override {
         if (throws_at == state_.steps)
             throw std::runtime_error("as told");
         for (std::size_t i = 0; i < state_.bodies.size(); ++i) {
@@ -40,6 +41,8 @@ class FakeSimulation final : public Simulation {
             report_.finite = false;
         }
         ++state_.steps;
+        if (times)
+            times->advance += advance_time;
     }
     std::uint64_t step_count() const override { return state_.steps; }
     double time() const override { return static_cast<double>(state_.steps) * settings_.dt; }

@@ -87,10 +87,42 @@ TEST(Sandbox, HomeAndFrameMoveTheCamera) {
     press(sandbox, 'f');
     EXPECT_EQ(sandbox.view().camera.target, glm::vec3(5, 0, 0));
     EXPECT_EQ(sandbox.view().camera.yaw, at_home.yaw);
-    // The ball of radius 1 is seen whole: its sphere's tangent cone fits into the vertical angle.
-    EXPECT_GE(sandbox.view().camera.distance * std::sin(at_home.fov / 2), 1 - 1e-5f);
+    // The ball of radius 1 has about its own width of air on either side.
+    const float high = 1 / std::tan(std::asin(1 / sandbox.view().camera.distance));
+    EXPECT_NEAR(high * std::tan(at_home.fov / 2), 3, 0.3);
     press(sandbox, special_key::home);
     EXPECT_TRUE(same(sandbox.view().camera, at_home));
+}
+
+// What the panels leave free stays where it is: only the panels change it.
+TEST(Sandbox, HomeAndFrameLookThroughWhatThePanelsLeaveFree) {
+    Sandbox sandbox = fake_sandbox();
+    sandbox.view().camera.look_through({1000, 800}, {200, 0}, {500, 600}, 1);
+    const glm::vec2 centre = sandbox.view().camera.centre;
+    const float share = sandbox.view().camera.share;
+    EXPECT_EQ(centre, glm::vec2(-0.1f, 0.25f));
+    EXPECT_EQ(share, 0.625f);
+    sandbox.view().selected = 1;
+    for (const char32_t key : {U'f', special_key::home}) {
+        press(sandbox, key);
+        EXPECT_EQ(sandbox.view().camera.centre, centre);
+        EXPECT_EQ(sandbox.view().camera.share, share);
+    }
+    // The ball in the middle is seen in the middle of what is free.
+    const glm::vec3 seen = sandbox.view().camera.project({0, 0, 0}, {1000, 800});
+    EXPECT_NEAR(seen.x, 450, 0.01f);
+    EXPECT_NEAR(seen.y, 300, 0.01f);
+}
+
+TEST(Sandbox, PanelsGrowAndShrinkBackToWhatTheyWere) {
+    Sandbox sandbox = fake_sandbox();
+    for (int i = 0; i < 3; ++i)
+        press(sandbox, '=', true);
+    EXPECT_NEAR(sandbox.view().ui_scale, 1.331f, 1e-4f);
+    for (int i = 0; i < 3; ++i)
+        press(sandbox, '-', true);
+    EXPECT_EQ(sandbox.view().ui_scale, 1);
+    EXPECT_EQ(sandbox.clock().speed(), 1); // which the same keys change without Ctrl
 }
 
 TEST(Sandbox, EscapePeelsBackAndNeverQuits) {
@@ -216,6 +248,16 @@ TEST_F(SandboxWithScenes, AnotherSceneBringsItsCamera) {
     ASSERT_TRUE(sandbox.open(scenes[2].path));
     EXPECT_TRUE(same(sandbox.view().camera, camera_of(sandbox.session().scene().camera)));
     EXPECT_FALSE(sandbox.view().selected.has_value());
+}
+
+TEST(Search, FindsNamesBeforeTitlesAndTitlesBeforeFolders) {
+    const std::vector<SceneEntry> scenes{{"a", "stacking", "domino_run", "Dominoes"},
+                                         {"b", "stacking", "wall", "A stack of bricks"},
+                                         {"c", "stacking", "ten_box_stack", "Ten boxes"},
+                                         {"d", "towers", "stack_of_two", "Two boxes"}};
+    EXPECT_EQ(matching(scenes, "stack"), (std::vector<std::size_t>{2, 3, 1, 0}));
+    EXPECT_EQ(matching(scenes, "Stack box"), (std::vector<std::size_t>{2, 3}));
+    EXPECT_EQ(matching(scenes, ""), (std::vector<std::size_t>{0, 1, 2, 3}));
 }
 
 TEST_F(SandboxWithScenes, ABadFileIsAMessageAndTheOldSceneGoesOn) {

@@ -4,6 +4,9 @@
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/fake_simulation.h"
 
+#include <cmath>
+
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 namespace plumb {
@@ -106,6 +109,83 @@ TEST_F(WorldDraw, WhatMovesIsFramedNotTheFloor) {
     const Around wall = around(*simulation, 1);
     EXPECT_EQ(wall.centre, glm::vec3(0, 1, -60));
     EXPECT_GT(wall.radius, 40);
+}
+
+// A weightless ball on a rod from the origin, held in one direction.
+std::unique_ptr<Simulation> rod_towards(const glm::dvec3 &direction) {
+    SceneDesc scene;
+    scene.name = "rod";
+    scene.world.gravity = glm::dvec3(0);
+    scene.world.precision = Precision::dual;
+    BodyDesc ball;
+    ball.name = "ball";
+    ball.colliders.emplace_back().shape = SphereDesc{0.1};
+    ball.position = direction;
+    scene.bodies.push_back(ball);
+    JointDesc rod;
+    rod.name = "rod";
+    rod.type = JointType::distance;
+    rod.body_b = "ball";
+    rod.length = glm::length(direction);
+    scene.joints.push_back(rod);
+    return Simulation::create(scene, {}, nullptr);
+}
+
+// Straight down is where the shortest turn from up loses its axis: by a hair, by a little, exactly.
+TEST(Rods, ReachFromEndToEndInEveryDirection) {
+    std::vector<glm::dvec3> directions{{0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
+    for (double off = 1e-9; off < 1; off *= 3)
+        for (const glm::dvec3 aside : {glm::dvec3(off, 0, 0), glm::dvec3(0.6 * off, 0, -0.8 * off)})
+            for (const double down : {-1.0, 1.0})
+                directions.push_back(glm::normalize(aside + glm::dvec3(0, down, 0)));
+    for (const glm::dvec3 &direction : directions) {
+        const DrawList list = draw_world(*rod_towards(direction), Camera());
+        ASSERT_EQ(list.shapes.size(), 2u);
+        const DrawShape &rod = list.shapes[1];
+        const glm::vec3 half = rod.rotation * glm::vec3(0, rod.size.y, 0);
+        const glm::vec3 to(direction);
+        const float miss = std::min(glm::distance(rod.position + half, to),
+                                    glm::distance(rod.position - half, to));
+        EXPECT_LT(miss, 1e-6f) << direction.x << ", " << direction.y << ", " << direction.z;
+        const glm::quat &q = rod.rotation;
+        EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, 1e-6f);
+    }
+}
+
+// Between two steps all that is drawn of a body goes with it: anchors, rods, contacts and bounds.
+TEST(WorldDrawn, BetweenTwoStepsEverythingIsOfOneMoment) {
+    const auto simulation = rod_towards({0.6, -0.8, 0});
+    WorldDrawOptions options;
+    options.joints = options.bounds = true;
+    std::vector<Pose> poses = poses_of(*simulation);
+    poses[0].position = {0, -1, 0};
+    poses[0].orientation = glm::angleAxis(1.0, glm::dvec3(0, 0, 1));
+    const DrawList list = draw_world(*simulation, Camera(), options, poses);
+    ASSERT_EQ(list.shapes.size(), 2u);
+    EXPECT_EQ(list.shapes[1].position, glm::vec3(0, -0.5f, 0));
+    ASSERT_EQ(list.points.size(), 2u);
+    EXPECT_EQ(list.points[1].position, glm::vec3(0, -1, 0));
+    glm::vec3 low(1e9f);
+    ASSERT_GE(list.lines.size(), 12u);
+    for (std::size_t i = list.lines.size() - 12; i < list.lines.size(); ++i)
+        low = glm::min(low, glm::min(list.lines[i].a, list.lines[i].b));
+    EXPECT_LT(glm::distance(low, glm::vec3(-0.1f, -1.1f, -0.1f)), 1e-6f);
+}
+
+TEST_F(WorldDraw, ContactsGoAlongWithTheBodiesThatAreShown) {
+    for (int i = 0; i < 30; ++i)
+        simulation->step();
+    WorldDrawOptions options;
+    options.contacts = true;
+    std::vector<Pose> poses = poses_of(*simulation);
+    const DrawList now = draw_world(*simulation, camera, options, poses);
+    for (Pose &pose : poses)
+        pose.position.x -= 0.25;
+    const DrawList before = draw_world(*simulation, camera, options, poses);
+    ASSERT_EQ(now.points.size(), before.points.size());
+    ASSERT_GE(now.points.size(), 4u);
+    for (std::size_t i = 0; i < now.points.size(); ++i)
+        EXPECT_NEAR(before.points[i].position.x, now.points[i].position.x - 0.25f, 1e-5f);
 }
 
 } // namespace
