@@ -6,7 +6,7 @@ layout(std140) uniform Frame {
     vec4 eye;      // xyz; w: the camera's distance
     vec4 to_light; // xyz, unit; w: intensity
     vec4 viewport; // width, height, tan of half the field of view across and up
-    vec4 light;    // ambient; shadow texel in metres; shadow texel in texture units; shadows: 0 none, 1 soft, 2 hard
+    vec4 light;    // ambient; shadow texel in metres; shadow texel in texture units; shadows on
     vec4 range;    // near, far; edges on; metres to a pixel at unit depth
     vec4 centre;   // where the target is seen, x and y in clip space
 };

@@ -13,9 +13,9 @@ float light_reaching(vec3 position, vec3 normal, float under) {
     vec3 from = position + normal * (under + light.y * (0.6 + 2.4 * sine));
     vec3 at = (shadow * vec4(from, 1.0)).xyz;
     float depth = min(at.z, 1.0);
-    if (light.w > 1.5)
-        return texture(shadow_map, vec3(at.xy, depth));
-
+#ifdef HARD_SHADOWS
+    return texture(shadow_map, vec3(at.xy, depth));
+#else
     float texel = light.z;
     vec2 uv = at.xy / texel;
     vec2 base = floor(uv + 0.5);
@@ -38,6 +38,7 @@ float light_reaching(vec3 position, vec3 normal, float under) {
     sum += 7.0 * w2.y * texture(shadow_map, vec3(o1.x, o2.y, depth));
     sum += w2.x * w2.y * texture(shadow_map, vec3(o2.x, o2.y, depth));
     return sum / 144.0;
+#endif
 }
 
 // Light from all around: white from above, cooler from the sides, dim and warm from the ground.

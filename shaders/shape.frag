@@ -42,7 +42,7 @@ void main() {
         } else if (scale.w != 4.0) {
             // Quarters, a shade apart, show how what is round turns.
             vec3 side = clamp(local / max(per_pixel, 1e-9), -1.0, 1.0);
-            albedo *= 1.0 + 0.085 * side.x * side.y * side.z;
+            albedo *= 1.0 + 0.13 * side.x * side.y * side.z;
         }
     }
 

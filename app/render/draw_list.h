@@ -81,7 +81,6 @@ struct ViewOptions {
     bool shadows = true;
     bool occlusion = true; // darkens creases and contacts
     bool edges = true;     // softened, lined edges on boxes, and quarters on what is round
-    bool cheap = false;    // for a renderer without a GPU: coarser shadows, and no occlusion
 };
 
 struct DrawList {

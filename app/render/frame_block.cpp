@@ -5,8 +5,8 @@
 namespace plumb {
 
 ShaderProgram frame_program(const std::filesystem::path &dir, const std::string &vertex,
-                            const std::string &fragment) {
-    ShaderProgram program(dir, vertex, fragment);
+                            const std::string &fragment, const std::string &definition) {
+    ShaderProgram program(dir, vertex, fragment, definition);
     program.bind_block("Frame", frame_binding);
     program.bind_sampler("shadow_map", static_cast<int>(shadow_unit));
     program.bind_sampler("depth_map", static_cast<int>(depth_unit));

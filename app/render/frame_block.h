@@ -20,8 +20,7 @@ struct FrameBlock {
     glm::vec4 eye;      // xyz; w: the camera's distance
     glm::vec4 to_light; // xyz unit; w: intensity
     glm::vec4 viewport; // width, height, tan of half the field of view across and up
-    glm::vec4 light;  // ambient; shadow texel in metres; shadow texel in texture units; shadows: 0
-                      // none, 1 soft, 2 hard
+    glm::vec4 light;  // ambient; shadow texel in metres; shadow texel in texture units; shadows on
     glm::vec4 range;  // near, far; edges on; metres to a pixel at unit depth
     glm::vec4 centre; // where the target is seen, x and y in clip space
 };
@@ -34,7 +33,8 @@ inline constexpr unsigned occlusion_unit = 3;
 
 // A program that reads the frame's block and textures.
 [[nodiscard]] ShaderProgram frame_program(const std::filesystem::path &dir,
-                                          const std::string &vertex, const std::string &fragment);
+                                          const std::string &vertex, const std::string &fragment,
+                                          const std::string &definition = {});
 
 // Covers the screen, with a vertex array that has no attributes.
 void draw_screen(const ShaderProgram &program, unsigned empty_array);

@@ -71,12 +71,14 @@ struct Renderer::Parts {
     GLuint empty_array = 0;
     GLuint frame_buffer = 0;
 
-    explicit Parts(const std::filesystem::path &dir)
-        : shape_program(frame_program(dir, "shape.vert", "shape.frag")),
+    Quality quality;
+
+    Parts(const std::filesystem::path &dir, Quality wanted)
+        : shape_program(frame_program(dir, "shape.vert", "shape.frag", definition(wanted))),
           outline_program(frame_program(dir, "outline.vert", "outline.frag")),
-          plane_program(frame_program(dir, "plane.vert", "plane.frag")),
-          backdrop_program(frame_program(dir, "screen.vert", "backdrop.frag")), shadow_map(dir),
-          occlusion(dir), marks(dir) {
+          plane_program(frame_program(dir, "plane.vert", "plane.frag", definition(wanted))),
+          backdrop_program(frame_program(dir, "screen.vert", "backdrop.frag")),
+          shadow_map(dir, wanted == Quality::full), occlusion(dir), marks(dir), quality(wanted) {
         glGenVertexArrays(1, &empty_array);
         glGenBuffers(1, &frame_buffer);
         glBindBuffer(GL_UNIFORM_BUFFER, frame_buffer);
@@ -88,6 +90,10 @@ struct Renderer::Parts {
     }
     Parts(const Parts &) = delete;
     Parts &operator=(const Parts &) = delete;
+
+    static const char *definition(Quality quality) {
+        return quality == Quality::full ? "" : "#define HARD_SHADOWS";
+    }
 
     void keep_in_view(std::vector<DrawShape> &shapes, const Camera &camera, float aspect) {
         culling.update(shapes);
@@ -152,8 +158,8 @@ struct Renderer::Parts {
     }
 };
 
-Renderer::Renderer(const std::filesystem::path &shader_dir)
-    : parts_(std::make_unique<Parts>(shader_dir)) {}
+Renderer::Renderer(const std::filesystem::path &shader_dir, Quality quality)
+    : parts_(std::make_unique<Parts>(shader_dir, quality)) {}
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer &&) noexcept = default;
 Renderer &Renderer::operator=(Renderer &&) noexcept = default;
@@ -188,9 +194,8 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
         for (const DrawMesh &mesh : list.meshes)
             if (const DrawShape box = box_around(mesh); has_finite_pose(box))
                 reaching.push_back(box);
-        parts.shadow_map.set_size(list.view.cheap ? 1024 : 2048);
         shadow = fit_shadow(reaching, camera, aspect, list.light.direction, camera.target,
-                            parts.shadow_map.size());
+                            ShadowMap::size);
     }
     // What is out of view throws shadows, but need not be sorted or looked at again.
     if (shapes.size() >= least_shapes_to_cull)
@@ -221,10 +226,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     frame.viewport = {size, tangent * aspect, tangent};
     frame.centre = {camera.centre, 0, 0};
     frame.light = {list.light.ambient, shadow ? shadow->texel : 0.0f,
-                   1.0f / static_cast<float>(parts.shadow_map.size()),
-                   !shadow           ? 0.0f
-                   : list.view.cheap ? 2.0f
-                                     : 1.0f};
+                   1.0f / static_cast<float>(ShadowMap::size), shadow ? 1.0f : 0.0f};
     frame.range = {relative.near_plane(), relative.far_plane(), list.view.edges ? 1.0f : 0.0f,
                    2 * tangent / size.y};
     glBindBuffer(GL_UNIFORM_BUFFER, parts.frame_buffer);
@@ -279,7 +281,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     parts.draw_planes(list);
     glDisable(GL_CULL_FACE);
     draw_screen(parts.backdrop_program, parts.empty_array);
-    if (list.view.occlusion && !list.view.cheap && !list.view.wireframe && any_solid)
+    if (list.view.occlusion && parts.quality == Quality::full && !list.view.wireframe && any_solid)
         parts.occlusion.draw(target);
 
     if (any_glass) {

@@ -12,8 +12,10 @@ namespace plumb {
 class Renderer {
   public:
     // Loads the GLSL files of `shader_dir`; a GL context must be current, here and in every call.
-    // Throws std::runtime_error with file and line when a shader is missing or does not compile.
-    explicit Renderer(const std::filesystem::path &shader_dir);
+    // Without a GPU each pixel costs: `plain` draws hard shadows, and no occlusion. Throws
+    // std::runtime_error with file and line when a shader is missing or does not compile.
+    enum class Quality { full, plain };
+    explicit Renderer(const std::filesystem::path &shader_dir, Quality quality = Quality::full);
     ~Renderer();
     Renderer(Renderer &&) noexcept;
     Renderer &operator=(Renderer &&) noexcept;

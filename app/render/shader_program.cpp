@@ -25,8 +25,8 @@ struct Source {
     std::vector<Line> lines;
 };
 
-void append_file(const std::filesystem::path &dir, const std::string &name, int depth,
-                 Source &source) {
+void append_file(const std::filesystem::path &dir, const std::string &name,
+                 const std::string &definition, int depth, Source &source) {
     const std::string path = (dir / name).string();
     if (depth > 8)
         throw std::runtime_error(path + ": includes go round in a circle");
@@ -39,13 +39,18 @@ void append_file(const std::filesystem::path &dir, const std::string &name, int 
         if (!line.starts_with(directive)) {
             source.text += line + "\n";
             source.lines.push_back({path, number});
+            if (depth == 0 && number == 1 && !definition.empty()) {
+                source.text += definition + "\n";
+                source.lines.push_back({path, number});
+            }
             continue;
         }
         const std::size_t end = line.find('"', directive.size());
         if (end == std::string::npos)
             throw std::runtime_error(path + ":" + std::to_string(number) +
                                      ": an include without its closing quote");
-        append_file(dir, line.substr(directive.size(), end - directive.size()), depth + 1, source);
+        append_file(dir, line.substr(directive.size(), end - directive.size()), definition,
+                    depth + 1, source);
     }
 }
 
@@ -71,9 +76,10 @@ std::string name_lines(const std::string &log, const std::vector<Source::Line> &
     return result;
 }
 
-GLuint compile(GLenum stage, const std::filesystem::path &dir, const std::string &name) {
+GLuint compile(GLenum stage, const std::filesystem::path &dir, const std::string &name,
+               const std::string &definition) {
     Source source;
-    append_file(dir, name, 0, source);
+    append_file(dir, name, definition, 0, source);
     const GLuint shader = glCreateShader(stage);
     const char *text = source.text.c_str();
     glShaderSource(shader, 1, &text, nullptr);
@@ -96,11 +102,11 @@ GLuint compile(GLenum stage, const std::filesystem::path &dir, const std::string
 } // namespace
 
 ShaderProgram::ShaderProgram(const std::filesystem::path &dir, const std::string &vertex,
-                             const std::string &fragment) {
-    const GLuint vertex_shader = compile(GL_VERTEX_SHADER, dir, vertex);
+                             const std::string &fragment, const std::string &definition) {
+    const GLuint vertex_shader = compile(GL_VERTEX_SHADER, dir, vertex, definition);
     GLuint fragment_shader = 0;
     try {
-        fragment_shader = compile(GL_FRAGMENT_SHADER, dir, fragment);
+        fragment_shader = compile(GL_FRAGMENT_SHADER, dir, fragment, definition);
     } catch (...) {
         glDeleteShader(vertex_shader);
         throw;

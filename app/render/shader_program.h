@@ -11,9 +11,10 @@ namespace plumb {
 // in them is replaced by that file of the same folder.
 class ShaderProgram {
   public:
-    // Throws std::runtime_error; a compiler's message names file and line.
+    // `definition`, if any, is a line put after the first of each file ("#define HARD"). Throws
+    // std::runtime_error; a compiler's message names file and line.
     ShaderProgram(const std::filesystem::path &dir, const std::string &vertex,
-                  const std::string &fragment);
+                  const std::string &fragment, const std::string &definition = {});
     ~ShaderProgram();
     ShaderProgram(ShaderProgram &&other) noexcept;
     ShaderProgram &operator=(ShaderProgram &&other) noexcept;

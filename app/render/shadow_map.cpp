@@ -10,21 +10,25 @@
 
 namespace plumb {
 
-ShadowMap::ShadowMap(const std::filesystem::path &shader_dir)
+ShadowMap::ShadowMap(const std::filesystem::path &shader_dir, bool soft)
     : program_(frame_program(shader_dir, "shadow.vert", "shadow.frag")) {
     glGenTextures(1, &texture_);
     glActiveTexture(GL_TEXTURE0 + shadow_unit);
     glBindTexture(GL_TEXTURE_2D, texture_);
-    // Linear filtering of comparisons; outside the map everything is lit.
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT,
+                 GL_UNSIGNED_INT, nullptr);
+    // Outside the map everything is lit. (Without a GPU its empty border is extended, which is
+    // cheaper.)
     const std::array<float, 4> lit{1, 1, 1, 1};
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+    const GLint filter = soft ? GL_LINEAR : GL_NEAREST;
+    const GLint wrap = soft ? GL_CLAMP_TO_BORDER : GL_CLAMP_TO_EDGE;
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
     glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, lit.data());
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-    set_size(2048);
     glGenFramebuffers(1, &target_);
     glBindFramebuffer(GL_FRAMEBUFFER, target_);
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, texture_, 0);
@@ -37,16 +41,6 @@ ShadowMap::~ShadowMap() {
     glDeleteTextures(1, &texture_);
 }
 
-void ShadowMap::set_size(int size) {
-    if (size == size_)
-        return;
-    size_ = size;
-    glActiveTexture(GL_TEXTURE0 + shadow_unit);
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT,
-                 GL_UNSIGNED_INT, nullptr);
-}
-
 void ShadowMap::bind() const {
     glActiveTexture(GL_TEXTURE0 + shadow_unit);
     glBindTexture(GL_TEXTURE_2D, texture_);
@@ -56,7 +50,7 @@ void ShadowMap::draw(const std::vector<DrawShape> &shapes,
                      const std::vector<const TriangleBatch *> &flat, const glm::vec3 &origin,
                      const ShadowFit &fit, const ShapeMeshes &meshes) const {
     glBindFramebuffer(GL_FRAMEBUFFER, target_);
-    glViewport(0, 0, size_, size_);
+    glViewport(0, 0, size, size);
     glClear(GL_DEPTH_BUFFER_BIT);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.0f, 4.0f);
@@ -67,7 +61,7 @@ void ShadowMap::draw(const std::vector<DrawShape> &shapes,
         const glm::vec3 at = shape.position - origin;
         const glm::vec4 centre = fit.texture_from_relative * glm::vec4(at, 1);
         const float metres = bounding_radius(shape);
-        const float radius = metres / (fit.texel * static_cast<float>(size_));
+        const float radius = metres / (fit.texel * static_cast<float>(size));
         const bool outside = centre.x < -radius || centre.x > 1 + radius || centre.y < -radius ||
                              centre.y > 1 + radius;
         // A quarter of the texels: a shadow's edge is soft.

@@ -13,14 +13,13 @@ namespace plumb {
 
 class ShadowMap {
   public:
-    explicit ShadowMap(const std::filesystem::path &shader_dir);
+    static constexpr int size = 2048; // texels, both ways
+
+    // `soft`: a fetch is between the four nearest texels.
+    ShadowMap(const std::filesystem::path &shader_dir, bool soft);
     ~ShadowMap();
     ShadowMap(const ShadowMap &) = delete;
     ShadowMap &operator=(const ShadowMap &) = delete;
-
-    // Texels, both ways; what it holds is lost when this changes.
-    void set_size(int size);
-    [[nodiscard]] int size() const { return size_; }
 
     // For the shaders of the frame.
     void bind() const;
@@ -31,7 +30,6 @@ class ShadowMap {
 
   private:
     ShaderProgram program_;
-    int size_ = 0;
     unsigned texture_ = 0;
     unsigned target_ = 0;
 };

@@ -45,7 +45,9 @@ class GlfwBackEnd {
 // Everything that both loops draw with.
 struct Stage {
     Stage(const SandboxOptions &options, bool in_software, float ui_scale, glm::ivec2 pixels)
-        : ui(ui_scale), scale(ui_scale), is_cheap(in_software), renderer(options.shader_dir),
+        : ui(ui_scale), scale(ui_scale),
+          renderer(options.shader_dir,
+                   in_software ? Renderer::Quality::plain : Renderer::Quality::full),
           ui_renderer(options.shader_dir),
           target(pixels, options.samples.value_or(in_software ? 1 : 4)) {}
 
@@ -62,16 +64,13 @@ struct Stage {
     void draw(Sandbox &sandbox) {
         PanelContext context = sandbox.panel_context(ui.fonts());
         const ImDrawData &data = ui.draw(context);
-        DrawList list = sandbox.draw_list();
-        list.view.cheap = is_cheap;
-        renderer.draw(list, target);
+        renderer.draw(sandbox.draw_list(), target);
         ui_renderer.draw(data, target);
         sandbox.take(context);
     }
 
     Ui ui;
     float scale = 1; // of ui
-    bool is_cheap = false;
     Renderer renderer;
     ImguiRenderer ui_renderer;
     Framebuffer target;
