@@ -150,8 +150,8 @@ MeasureSummary measure_run(Simulation &simulation, const MeasureOptions &options
             now.max_joint_drift = now.mean_joint_drift = nan;
         }
         const double change = note(now);
-        write_row(csv, simulation.step_count(), now, change, relative_change(change, scale),
-                  report, times);
+        write_row(csv, simulation.step_count(), now, change, relative_change(change, scale), report,
+                  times);
         if (!report.finite) {
             ++summary.steps;
             summary.divergence = find_divergence(simulation, simulation.step_count());

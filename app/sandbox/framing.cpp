@@ -75,7 +75,7 @@ glm::vec3 shift_to_see(const Camera &camera, float aspect, std::span<const glm::
 }
 
 std::optional<DrawPlane> plane_behind(const SceneDesc &scene) {
-    bool is_held = !scene.joints.empty() || scene.world.gravity == glm::dvec3(0);
+    bool is_held = !scene.joints.empty() || scene.world.settings.applied().gravity == glm::dvec3(0);
     double lowest = std::numeric_limits<double>::max();
     for (const BodyDesc &body : scene.bodies) {
         if (has_plane(body))

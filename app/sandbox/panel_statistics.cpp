@@ -22,10 +22,8 @@ struct Phase {
 };
 
 constexpr std::array phases{
-    Phase{"Find pairs",
-          &SessionGraphs::find_pairs,
-          &StepTimes::find_pairs,
-          {0.42f, 0.68f, 0.90f, 1}},
+    Phase{
+        "Find pairs", &SessionGraphs::find_pairs, &StepTimes::find_pairs, {0.42f, 0.68f, 0.90f, 1}},
     Phase{"Collide", &SessionGraphs::collide, &StepTimes::collide, {0.90f, 0.64f, 0.42f, 1}},
     Phase{"Advance", &SessionGraphs::advance, &StepTimes::advance, {0.50f, 0.76f, 0.58f, 1}},
     Phase{"Finish", &SessionGraphs::finish, &StepTimes::finish, {0.72f, 0.62f, 0.86f, 1}},

@@ -70,8 +70,8 @@ radus = 1
 )";
 
 TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
-    const std::vector<std::string> run{"--set", "--dt", "--substeps", "--iterations", "--precision",
-                                       "--threads"};
+    const std::vector<std::string> run{"--set",        "--dt",        "--substeps",
+                                       "--iterations", "--precision", "--threads"};
     struct Command {
         const char *name;
         std::vector<std::string> options;
@@ -88,8 +88,8 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
         {"list", {"--json", "--keys", "--methods", "--settings"}, false},
         {"measure", {"SCENE", "--method", "--steps", "--csv"}, true},
         {"chart",
-         {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--set", "--dt", "--substeps",
-          "--iterations", "--precision"},
+         {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--set", "--dt",
+          "--substeps", "--iterations", "--precision"},
          false}, // timed on one thread: it has no --threads
         {"compare", {"A", "B", "--tolerance", "--difference"}, false},
     };

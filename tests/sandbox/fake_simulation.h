@@ -75,7 +75,9 @@ class FakeSimulation final : public Simulation {
         std::uint64_t steps = 0;
         std::vector<BodyState> bodies;
     };
-    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override { return std::make_unique<State>(state_); }
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
+        return std::make_unique<State>(state_);
+    }
     void restore(const Saved &saved) override {
         state_ = dynamic_cast<const State &>(saved);
         infos_.resize(state_.bodies.size());

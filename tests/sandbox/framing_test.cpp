@@ -108,7 +108,7 @@ TEST(PlaneBehind, IsAFloorUnderWhatIsHeldAndAWallBehindWhatFalls) {
     ASSERT_TRUE(wall);
     EXPECT_LT(glm::distance(wall->rotation * glm::vec3(0, 1, 0), glm::vec3(0, 0, 1)), 1e-6f);
     EXPECT_LT(wall->position.z, -0.5f);
-    scene.world.gravity = glm::dvec3(0);
+    scene.world.settings.give(&StepSettings::gravity, glm::dvec3(0));
     EXPECT_EQ(plane_behind(scene)->rotation, glm::quat(1, 0, 0, 0));
 
     BodyDesc ground;

@@ -115,7 +115,7 @@ TEST_F(WorldDraw, WhatMovesIsFramedNotTheFloor) {
 std::unique_ptr<Simulation> rod_towards(const glm::dvec3 &direction) {
     SceneDesc scene;
     scene.name = "rod";
-    scene.world.gravity = glm::dvec3(0);
+    scene.world.settings.give(&StepSettings::gravity, glm::dvec3(0));
     scene.world.precision = Precision::dual;
     BodyDesc ball;
     ball.name = "ball";
