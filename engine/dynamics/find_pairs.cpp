@@ -1,6 +1,8 @@
 // The broad phase: which colliders may touch within a step.
 #include "engine/dynamics/world.h"
 
+#include "engine/core/check.h"
+
 #include <algorithm>
 #include <cmath>
 
