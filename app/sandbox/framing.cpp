@@ -36,8 +36,8 @@ float aspect_needed(const DrawList &list) {
         if (const float radius = bounding_radius(shape); radius < wide * camera.distance)
             add(shape.position, radius);
     for (const DrawMesh &mesh : list.meshes)
-        for (const glm::vec3 &corner : mesh.corners)
-            add(corner, 0);
+        for (const glm::vec3 &corner : *mesh.corners)
+            add(mesh.position + mesh.rotation * corner, 0);
     for (const DrawLine &line : list.lines) {
         add(line.a, 0);
         add(line.b, 0);

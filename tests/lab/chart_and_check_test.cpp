@@ -138,8 +138,7 @@ TEST(ChartAndCheck, AgreeOnProbes) {
     probe.name = "origin";
     probe.question = ProbeQuestion::contains;
     probe.shapes.resize(1);
-    probe.shapes[0].kind = ProbeShapeKind::sphere;
-    probe.shapes[0].radius = 1;
+    probe.shapes[0].shape = SphereDesc{1};
     probe.points = {glm::dvec3(0)};
     for (const double is : {1.0, 0.0}) {
         probe.expects = {{"inside", is}};

@@ -108,7 +108,7 @@ TEST_F(UiTest, ThePanelSaysWhatIsMetAndWhatIsMissed) {
     const auto verdicts = [&](Sandbox &sandbox) {
         std::vector<Ui::Panel> panels;
         const Image image =
-            ui_snapshot(sandbox, *renderer, source / "shaders", {1280, 800}, 1, &panels);
+            ui_snapshot(sandbox, *renderer, source / "shaders", {{1280, 800}, 1, 1}, &panels);
         const auto details = std::ranges::find(panels, std::string("details"), &Ui::Panel::name);
         EXPECT_NE(details, panels.end());
         Coloured seen;

@@ -126,7 +126,7 @@ std::unique_ptr<Simulation> rod_towards(const glm::dvec3 &direction) {
     rod.name = "rod";
     rod.type = JointType::distance;
     rod.body_b = "ball";
-    rod.length = glm::length(direction);
+    rod.min_length = rod.max_length = glm::length(direction);
     scene.joints.push_back(rod);
     return Simulation::create(scene, {}, nullptr);
 }
