@@ -179,13 +179,15 @@ fs::path OutputFile::keep_partial() {
 }
 
 StandardOutput::StandardOutput()
-    : buffer_(STDOUT_FILENO, "standard output"), previous_(std::cout.rdbuf(&buffer_)) {
+    : buffer_(STDOUT_FILENO, "standard output"), previous_(std::cout.rdbuf(&buffer_)),
+      tied_(std::cerr.tie(nullptr)) { // what is wrong with the one is said on the other
     std::cout.exceptions(std::ios::badbit);
 }
 
 StandardOutput::~StandardOutput() {
     std::cout.exceptions(std::ios::goodbit);
     std::cout.rdbuf(previous_);
+    std::cerr.tie(tied_);
 }
 
 void StandardOutput::finish() {

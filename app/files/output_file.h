@@ -92,6 +92,7 @@ class StandardOutput {
   private:
     OutputBuffer buffer_;
     std::streambuf *previous_;
+    std::ostream *tied_;
 };
 
 // Creates a folder with those above it, unless it is there. Throws as OutputFile does.

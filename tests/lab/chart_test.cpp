@@ -91,8 +91,10 @@ TEST(Chart, ErrorsAreThoseOfAFullRun) {
                                                    n, run.resolved.settings.iterations));
     }
     std::vector<CostAndError> choices;
-    for (const ChartRun &run : chart.runs)
-        choices.push_back({run.cost, run.error});
+    for (const ChartRun &run : chart.runs) // what is not true enough is never on it
+        choices.push_back({run.cost, run.status == ChartStatus::fine
+                                         ? run.error
+                                         : std::numeric_limits<double>::infinity()});
     const std::vector<bool> front = pareto_front(choices);
     for (std::size_t i = 0; i < front.size(); ++i)
         EXPECT_EQ(chart.runs[i].pareto, front[i]);

@@ -20,7 +20,7 @@ std::string line_of(int count, double step) {
 }
 
 std::string probe(int number, const std::string &asks) {
-    return "[[probe]]\n@name = \"p" + std::to_string(number) + "\"\n" + asks + "\n";
+    return "[[probe]]\nname = @\"p" + std::to_string(number) + "\"\n" + asks + "\n";
 }
 
 std::string repeated(const std::string &text, const std::string &separator, int count) {
@@ -84,27 +84,27 @@ TEST(SceneLimits, Planes) {
     EXPECT_TRUE(fine(planes + body("row", "position = [0, 50, 0]\n" + line_of(30'001, 2))));
 }
 
-TEST(SceneLimits, SquaresOfAHeightField) {
+TEST(SceneLimits, HeightsOfAHeightField) {
     const auto hills = [](const std::string &half_extents) {
         return "[[probe]]\nname = \"hills\"\nask = \"closest\"\npoints = [[0, 1, 0]]\n"
-               "shapes = [{ kind = \"height_field\", @half_extents = " +
+               "shapes = [{ shape = \"height_field\", half_extents = @" +
                half_extents + ", detail = 50 }]\n";
     };
     std::string most = hills("[1, 1, 20]");
     most.erase(most.find('@'), 1);
     EXPECT_TRUE(fine(most));
-    const std::string suggestion =
-        " squares; a height field has at most 50000: less detail, or less long along z";
-    const std::string title = "the height_field of [[probe]] \"hills\" has ";
-    expect_messages({"", hills("[1, 1, 20.1]"), {title + "50250" + suggestion}});
-    expect_messages({"", hills("[1, 1, 200000]"), {title + "500000000" + suggestion}});
+    const std::string suggestion = " heights; at most 1000000";
+    const std::string title = "the height_field of [[probe]] \"hills\" would have ";
+    expect_messages({"", hills("[1, 1, 400]"), {title + "1020051" + suggestion}});
+    expect_messages({"", hills("[1, 1, 200000]"), {title + "510000051" + suggestion}});
     // More than a whole number holds.
-    expect_messages({"", hills("[1e-9, 1, 1e9]"), {title + "2.5e+21" + suggestion}});
+    expect_messages(
+        {"", hills("[1e-9, 1, 1e9]"), {title + "2549999999999999475712.0" + suggestion}});
 }
 
 TEST(SceneLimits, ProbesTogether) {
     const std::string knot =
-        "{ kind = \"mesh\", model = \"knot\", half_extents = [1, 1, 1], detail = 64 }";
+        "{ shape = \"mesh\", model = \"knot\", half_extents = [1, 1, 1], detail = 64 }";
     std::string meshes;
     for (int i = 0; i < 16; ++i)
         meshes += probe(i, "ask = \"closest\"\npoint = [0, 0, 0]\nshapes = [" + knot + "]");
@@ -120,7 +120,7 @@ TEST(SceneLimits, ProbesTogether) {
 
     const std::string points = "points = [" + repeated("[9, 9, 9]", ", ", 2000) + "]\n";
     const std::string spheres =
-        "shapes = [" + repeated("{ kind = \"sphere\", radius = 1 }", ", ", 300) + "]";
+        "shapes = [" + repeated("{ shape = \"sphere\", radius = 1 }", ", ", 300) + "]";
     expect_only(probe(0, "ask = \"contains\"\n" + points + spheres) +
                     probe(1, "ask = \"contains\"\n" + points + spheres),
                 "with [[probe]] \"p1\" the scene's probes have 1200000 pairs to ask about (a shape "
@@ -129,7 +129,7 @@ TEST(SceneLimits, ProbesTogether) {
     std::string circles;
     for (int i = 0; i < 51; ++i)
         circles += probe(i, "ask = \"contains\"\npoint = [0, 0]\nshapes = [" +
-                                repeated("{ kind = \"circle\", radius = 1 }", ", ", 1000) + "]");
+                                repeated("{ shape = \"circle\", radius = 1 }", ", ", 1000) + "]");
     expect_only(circles, "with [[probe]] \"p50\" the scene's probes have 51000 shapes; all probes "
                          "of a scene have at most 50000");
 }
