@@ -4,9 +4,9 @@
 #include "engine/geometry/check_query.h"
 #include "engine/geometry/closest.h"
 #include "engine/geometry/contains.h"
+#include "engine/geometry/hull_queries.h"
 #include "engine/math/printed.h"
 #include "engine/math/vectors.h"
-#include "engine/geometry/hull_queries.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "engine/geometry/contains.h"
 
 #include "engine/geometry/check_query.h"
-#include "engine/math/predicates.h"
 #include "engine/geometry/hull_queries.h"
+#include "engine/math/predicates.h"
 
 #include <cmath>
 

@@ -2,11 +2,11 @@
 
 #include "engine/geometry/check_query.h"
 #include "engine/geometry/contains.h"
+#include "engine/geometry/hull_queries.h"
 #include "engine/geometry/slab.h"
 #include "engine/geometry/triangle_exact.h"
 #include "engine/math/predicates.h"
 #include "engine/math/rigid.h"
-#include "engine/geometry/hull_queries.h"
 
 #include <algorithm>
 #include <bit>

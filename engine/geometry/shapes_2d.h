@@ -99,8 +99,8 @@ inline Ray lifted(const Ray2 &ray) {
 }
 
 // Fails a check, naming the value, when a member is NaN or infinite (a ray's max_t may be
-// infinite), a size is negative, a direction zero, or an axis not of unit length (is_unit). An empty
-// rectangle is valid: the empty set.
+// infinite), a size is negative, a direction zero, or an axis not of unit length (is_unit). An
+// empty rectangle is valid: the empty set.
 void check_valid(const Vec2 &point);
 void check_valid(const Segment2 &segment);
 void check_valid(const Ray2 &ray);

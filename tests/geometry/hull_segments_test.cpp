@@ -52,7 +52,7 @@ TEST(HullSegments, ThatCrossAnEdgeExactlyMeet) {
 TEST(HullSegments, ExactOnAFineLattice) {
     const HullMesh mesh = unit_tetrahedron();
     const ConvexHull hull{&mesh, Vec3{Real(0)}, identity_rotation};
-    using Exact = __int128;
+    __extension__ using Exact = __int128; // which ISO C++ does not know
     Random random(2);
     int met = 0, touching = 0;
     const Real unit_length = sizeof(Real) == 4 ? Real(0x1p-12) : Real(0x1p-24);

@@ -265,7 +265,7 @@ TEST(Mass, HullsAgainstTheDivergenceTheorem) {
 }
 
 TEST(Mass, SurfacesAroundNothing) {
-    const MassProperties none = mass_properties({});
+    const MassProperties none = mass_properties(std::span<const Triangle>{});
     EXPECT_EQ(none.volume, Real(0));
     const Triangle t{{Real(1), Real(0), Real(0)}, {Real(0), Real(1), Real(0)}, Vec3{Real(0)}};
     const std::array sheet{t, Triangle{t.a, t.c, t.b}};
