@@ -36,7 +36,7 @@ run(${CMAKE_COMMAND} -S ${WORK_DIR}/example -B ${WORK_DIR}/example/build -G Ninj
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_C_COMPILER=${CC} "-DCMAKE_CXX_FLAGS=${FLAGS}")
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/example/build)
 execute_process(COMMAND ${WORK_DIR}/example/build/example OUTPUT_VARIABLE said)
-if(NOT said STREQUAL "95.1 m\n")
+if(NOT said STREQUAL "95.095 m\n")
     message(FATAL_ERROR "README.md's example says ${said}")
 endif()
 
