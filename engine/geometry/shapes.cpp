@@ -20,7 +20,7 @@ void check_point(const Vec3 &point, const char *name) {
 }
 
 void check_plane(const Vec3 &normal, Real offset, const char *shape) {
-    PLUMB_CHECK(is_unit(glm::dot(normal, normal)),
+    PLUMB_CHECK(is_nearly_unit(glm::dot(normal, normal)),
                 shape << " normal must have unit length, got " << Printed{normal});
     PLUMB_CHECK(are_finite(offset), shape << " offset must be finite, got " << offset);
 }
@@ -82,7 +82,8 @@ HalfSpace placed(const HalfSpace &local, const Transform &pose) {
 }
 
 ConvexHull placed(const ConvexHull &local, const Transform &pose) {
-    return {local.mesh, to_world_point(pose, local.position), pose.rotation * local.rotation};
+    check_placing(local, pose);
+    return {local.mesh, to_world_point(pose, local.position), unit(pose.rotation * local.rotation)};
 }
 
 Shape placed(const Shape &local, const Transform &pose) {

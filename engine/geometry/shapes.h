@@ -128,6 +128,12 @@ inline bool is_finite(const Vec3 &v) {
     return are_finite(v.x, v.y, v.z);
 }
 
+// Planes may have a normal that is off unit length by up to 1e-3: one of few digits, on which
+// points can lie exactly.
+inline bool is_nearly_unit(Real squared_length) {
+    return std::abs(squared_length - Real(1)) <= Real(2e-3);
+}
+
 // Whether no member is NaN or infinite, no size negative, rotations and normals of unit length
 // (is_unit: within roundings, so that all queries speak of the same solid). An empty Aabb is valid.
 inline bool is_valid(const Sphere &sphere) {
@@ -150,10 +156,11 @@ inline bool is_valid(const Cylinder &cylinder) {
            are_finite(a.x, a.y, a.z, b.x, b.y, b.z, cylinder.radius);
 }
 inline bool is_valid(const HalfSpace &half_space) {
-    return is_unit(glm::dot(half_space.normal, half_space.normal)) && are_finite(half_space.offset);
+    return is_nearly_unit(glm::dot(half_space.normal, half_space.normal)) &&
+           are_finite(half_space.offset);
 }
 inline bool is_valid(const Plane &plane) {
-    return is_unit(glm::dot(plane.normal, plane.normal)) && are_finite(plane.offset);
+    return is_nearly_unit(glm::dot(plane.normal, plane.normal)) && are_finite(plane.offset);
 }
 inline bool is_valid(const Segment &segment) {
     const Vec3 &a = segment.a, &b = segment.b;

@@ -122,7 +122,7 @@ TEST(BoxOverlap, BoxesOfAnySizeAgainstClipping) {
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
         Pair pair = any_pair(random, false);
         if (random.next_index(8) == 0)
-            pair.a.rotation *= Real(1) + static_cast<Real>(random.next_in(-9e-4, 9e-4));
+            pair.a.rotation *= Real(1) + static_cast<Real>(random.next_in(-7, 7) * double(epsilon));
         const W bound = 32 * epsilon * std::max(scale_of(pair.a), scale_of(pair.b));
         judge(overlaps(pair.a, pair.b), Frame(pair.a), Frame(pair.b), pair.n, bound, counts);
         const W separation = W(separating_axis(pair.a, pair.b).separation);

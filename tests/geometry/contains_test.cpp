@@ -50,7 +50,7 @@ TEST(Contains, BoxOfAnySizeAndOrientation) {
         Box box{narrowed(any_position(random)), oracle::awkward_rotation(random),
                 any_half_extents(random, size)};
         if (random.next_index(8) == 0)
-            box.rotation *= Real(1) + static_cast<Real>(random.next_in(-9e-4, 9e-4));
+            box.rotation *= Real(1) + static_cast<Real>(random.next_in(-7, 7) * double(epsilon));
         const Frame frame(box);
         const Vec3 point = narrowed(frame.point(near_surface(random, frame.half, size)));
         const W diagonal = W(2) * glm::length(frame.half);

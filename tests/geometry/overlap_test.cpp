@@ -47,7 +47,7 @@ TEST(Overlap, SphereWithSphereAndBoxes) {
         const W3 middle = any_position(random);
         Box box{narrowed(middle), oracle::awkward_rotation(random), any_half_extents(random, size)};
         if (random.next_index(8) == 0)
-            box.rotation *= Real(1) + static_cast<Real>(random.next_in(-9e-4, 9e-4));
+            box.rotation *= Real(1) + static_cast<Real>(random.next_in(-7, 7) * double(epsilon));
         const Frame frame(box);
         // A sphere that touches the box, more or less, at a random point of it.
         Sphere sphere{{}, static_cast<Real>(size * any_power(random, -2, 1))};
