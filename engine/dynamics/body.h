@@ -89,9 +89,9 @@ struct Collider {
     bool is_half_space() const { return !surface && std::holds_alternative<HalfSpace>(shape); }
 };
 
-// What stays the same while a body lives.
 inline constexpr std::uint32_t no_body = UINT32_MAX;
 
+// What stays the same while a body lives.
 struct Body {
     BodyKind kind = BodyKind::fixed;
     bool alive = false;
@@ -144,7 +144,6 @@ struct SolverBody : Motion {
     Real inv_mass_along(const Vec3 &unit) const {
         return has_locked_translation ? glm::dot(unit, inv_mass * unit) : inv_mass.x;
     }
-    bool can_move() const { return inv_mass != Vec3{Real(0)} || inv_inertia != Mat3{Real(0)}; }
 };
 
 // Such a body is nowhere, and collides with nothing.

@@ -101,6 +101,13 @@ void World::set_settings(const StepSettings &settings) {
         state_.time_before = time();
         state_.steps_before = state_.step_count;
     }
+    use(settings);
+}
+
+// What rests keeps its swept box from step to step; how far that reaches is a setting.
+void World::use(const StepSettings &settings) {
+    if (settings.speculative_distance != settings_.speculative_distance)
+        scratch_ = Scratch{};
     settings_ = settings;
 }
 
@@ -471,7 +478,7 @@ void World::restore(const SavedWorld &saved) {
     }
     state_ = saved.state;
     method_ = saved.method;
-    settings_ = saved.settings;
+    use(saved.settings);
     scratch_.contacts_are_current = false;
     scratch_.impacts.clear();
     report_ = StepReport{};

@@ -82,7 +82,6 @@ class World {
     // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
     // are known by feature; a contact that the next step does not find again is forgotten.
     void remember_contact(const ContactKey &key, std::span<const PointMemory> points);
-    void set_grab_memory(const Vec3 &impulse) { state_.grab.impulse = impulse; }
 
     // Advances by settings().dt. `tasks` may be null: one thread. Same bits for any thread count. A
     // step that throws leaves the state as it was. `times`, when not null, gets the phases' times.
@@ -148,6 +147,7 @@ class World {
     void add_contact(const Candidate &candidate, std::uint32_t triangle, const Manifold &manifold,
                      std::vector<Contact> &out) const;
 
+    void use(const StepSettings &settings);
     // The model, to be changed; a copy of its own when saves share it.
     Model &edit();
     void add_colliders(const BodyDef &def, Body &body, std::uint32_t slot);

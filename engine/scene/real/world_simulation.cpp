@@ -3,7 +3,6 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/world.h"
-#include "engine/geometry/quickhull.h"
 #include "engine/math/basis.h"
 #include "engine/scene/real/body_def.h"
 
