@@ -168,12 +168,12 @@ void settings_panel(PanelContext &context) {
     });
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
     const float half = 0.5f * (ImGui::GetContentRegionAvail().x - spacing);
-    if (ImGui::Button("As the scene says", {half, 0}))
+    if (ImGui::Button("As in scene", {half, 0}))
         context.restart_as_written = true;
     tooltip("Starts again with the method and settings of the file and the command line.");
     ImGui::SameLine();
     ImGui::BeginDisabled(!has_more);
-    if (ImGui::Button("More settings", {half, 0}))
+    if (ImGui::Button("More", {half, 0}))
         ImGui::OpenPopup("settings");
     ImGui::EndDisabled();
     tooltip("All others that this method reads.");
