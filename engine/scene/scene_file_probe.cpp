@@ -75,7 +75,7 @@ class ProbeReader {
     // All probes of a scene share their limits.
     bool has_room_for(const Table &table, const ProbeDesc &probe) {
         const ProbeSize size = size_of(probe);
-        const std::size_t errors = report_.error_count();
+        bool fits = true;
         const auto add = [&](std::size_t &total, std::size_t more, std::size_t limit,
                              const char *what) {
             if (total <= limit && total + more > limit)
@@ -84,15 +84,14 @@ class ProbeReader {
                                 std::to_string(total + more) + " " + what,
                             "all probes of a scene have at most " + std::to_string(limit));
             total += more;
-            return total <= limit;
+            fits = fits && total <= limit;
         };
-        const bool fits =
-            add(total_.shapes, size.shapes, max_scene_probe_shapes, "shapes") &
-            add(total_.triangles, size.triangles, max_scene_probe_triangles, "triangles") &
-            add(total_.scattered, size.scattered, max_scene_probe_items, "scattered items") &
-            add(total_.questions, size.questions, max_scene_probe_questions,
-                "pairs to ask about (a shape and a point, or two shapes)");
-        return fits && report_.error_count() == errors;
+        add(total_.shapes, size.shapes, max_scene_probe_shapes, "shapes");
+        add(total_.triangles, size.triangles, max_scene_probe_triangles, "triangles");
+        add(total_.scattered, size.scattered, max_scene_probe_items, "scattered items");
+        add(total_.questions, size.questions, max_scene_probe_questions,
+            "pairs to ask about (a shape and a point, or two shapes)");
+        return fits;
     }
 
     void refuse_what_is_not_asked(const Table &table, const ProbeQuestionInfo &info,
