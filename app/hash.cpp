@@ -4,8 +4,8 @@
 #include "app/lab/load_scenes.h"
 #include "app/lab/progress.h"
 #include "engine/core/check.h"
+#include "engine/scene/recording.h"
 
-#include <iomanip>
 #include <memory>
 #include <ostream>
 #include <stdexcept>
@@ -50,8 +50,8 @@ ExitCode hash_scenes(const HashCommand &command, std::ostream &out, std::ostream
                       scene.name);
         }
         line.clear();
-        out << std::hex << std::setw(16) << std::setfill('0') << simulation->hash() << std::dec
-            << "  " << scene.name << "  step " << simulation->step_count() << std::endl;
+        out << hash_text(simulation->hash()) << "  " << scene.name << "  step "
+            << simulation->step_count() << std::endl;
         if (!simulation->report().finite) {
             err << scene.name << ": diverged at step " << simulation->step_count() << '\n';
             code = worse(code, ExitCode::diverged);

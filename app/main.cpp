@@ -11,6 +11,7 @@
 #include "app/list.h"
 #include "app/render/compare_images.h"
 #include "app/render/png.h"
+#include "app/replay.h"
 #include "app/sandbox/run_sandbox.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/snapshot.h"
@@ -39,7 +40,7 @@ constexpr std::uint64_t default_scene_step = 125;
 
 constexpr const char *exit_codes = "Exit codes:\n"
                                    "  0  fine\n"
-                                   "  1  outside a tolerance, or pictures differ\n"
+                                   "  1  outside a tolerance, or pictures or a replay differ\n"
                                    "  2  a bad scene or argument\n"
                                    "  3  the world diverged\n"
                                    "  4  no GL context\n"
@@ -156,6 +157,14 @@ void add_scenes(CLI::App &command, Common &common) {
         ->required();
 }
 
+void add_threads(CLI::App &command, Common &common) {
+    command
+        .add_option("--threads", common.threads,
+                    "Threads; the results are the same with any number")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+}
+
 void add_run_options(CLI::App &command, Common &common, bool chart = false) {
     if (!chart)
         command.add_option("--method", common.method,
@@ -169,13 +178,8 @@ void add_run_options(CLI::App &command, Common &common, bool chart = false) {
                     "The same as --set " + std::string(name) + "=VALUE", "VALUE");
     command.add_option("--precision", common.precision, "float or double")
         ->check(CLI::IsMember({"float", "double"}));
-    if (chart) // timed on one thread
-        return;
-    command
-        .add_option("--threads", common.threads,
-                    "Threads; the results are the same with any number")
-        ->check(CLI::Range(1, 256))
-        ->capture_default_str();
+    if (!chart) // which is timed on one thread
+        add_threads(command, common);
 }
 
 void add_gl(CLI::App &command, Common &common) {
@@ -202,7 +206,7 @@ void add_out(CLI::App &command, Common &common, const std::string &by_default) {
 struct RunArguments {
     std::optional<int> frames, samples;
     std::optional<float> ui_scale;
-    std::filesystem::path screenshot;
+    std::filesystem::path screenshot, record;
 };
 
 int run(const Common &common, const RunArguments &arguments) {
@@ -221,12 +225,16 @@ int run(const Common &common, const RunArguments &arguments) {
     options.tasks = &tasks;
     options.max_frames = arguments.frames;
     options.screenshot = arguments.screenshot;
+    options.record = arguments.record;
     options.samples = arguments.samples;
     options.ui_scale = arguments.ui_scale;
     const SandboxResult result = run_sandbox(options);
     if (result.why_no_window.empty())
         return result.exit_code;
 
+    if (!arguments.record.empty())
+        throw ContextError("no window: " + result.why_no_window +
+                           "; with --frames N the run is recorded without one");
     std::cerr << "plumb: no window: " << result.why_no_window
               << "\nplumb: drawing the scene off screen instead\n";
     SnapshotCommand snapshot;
@@ -372,7 +380,23 @@ int main_with_errors(int argc, char **argv) {
         ->check(positive());
     run_command->add_option("--screenshot", window.screenshot,
                             "Where to write the last frame, a PNG");
+    run_command->add_option("--record", window.record,
+                            "Where to write the run at its end, with all that was done to it, for "
+                            "`plumb replay`");
     run_command->callback([&] { result = run(common, window); });
+
+    ReplayCommand replayed;
+    CLI::App *replay_command = app.add_subcommand(
+        "replay",
+        "Runs a recording again, without a window, and says whether and where it differs");
+    replay_command->add_option("FILE", replayed.recording, "From `plumb run --record FILE`")
+        ->required();
+    add_threads(*replay_command, common);
+    replay_command->callback([&] {
+        TaskPool tasks(common.threads);
+        replayed.tasks = &tasks;
+        result = code_of(replay(replayed, std::cout, std::cerr));
+    });
 
     SnapshotArguments pictures;
     CLI::App *snapshot_command =

@@ -49,6 +49,7 @@
 #include "engine/scene/expect.h"
 #include "engine/scene/obj_file.h"
 #include "engine/scene/probe.h"
+#include "engine/scene/recording.h"
 #include "engine/scene/scene_desc.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/simulation.h"

@@ -146,10 +146,6 @@ std::vector<PlannedRun> plan(const SceneDesc &scene, const ChartOptions &options
     return planned;
 }
 
-double passes_per_second(int (*passes)(int, int), const StepSettings &settings) {
-    return passes == nullptr ? 0 : passes(settings.substeps, settings.iterations) / settings.dt;
-}
-
 } // namespace
 
 std::string_view status_name(ChartStatus status) {
@@ -209,10 +205,6 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
         ChartRun run;
         run.resolved = next.resolved;
         run.point = next.point;
-        run.body_passes =
-            passes_per_second(next.resolved.method->body_passes, next.resolved.settings);
-        run.constraint_passes =
-            passes_per_second(next.resolved.method->constraint_passes, next.resolved.settings);
         Timer timer;
         timer.simulation = make(scene, next.options);
         JudgeOptions judging;
@@ -242,6 +234,11 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
                                ? static_cast<int>(std::clamp(std::ceil(shortest_timing / segment),
                                                              1.0, static_cast<double>(most_rounds)))
                                : most_rounds;
+        }
+        const double simulated = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
+        if (simulated > 0) {
+            run.body_passes = static_cast<double>(run.run.body_passes) / simulated;
+            run.constraint_passes = static_cast<double>(run.run.constraint_passes) / simulated;
         }
         had_contacts = had_contacts || run.run.had_contacts;
         if (everything_expected(scene).empty())

@@ -59,7 +59,7 @@ struct ChartRun {
     // its cost is what its full run took.
     std::vector<double> timings;
     double cost = 0, cost_low = 0, cost_high = 0;
-    // Declared work per simulated second: passes over all bodies, over all constraints.
+    // Work per simulated second, as it was counted in the full run: see StepReport.
     double body_passes = 0, constraint_passes = 0;
     bool pareto = false; // fine, and nothing cheaper that is fine is truer
 };

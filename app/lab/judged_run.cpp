@@ -161,6 +161,8 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
             break;
         }
         ++run.steps;
+        run.body_passes += simulation.report().body_passes;
+        run.constraint_passes += simulation.report().constraint_passes;
         run.unresolved_impacts += simulation.report().unresolved_impacts;
         run.had_contacts = run.had_contacts || simulation.report().contacts > 0;
         if (!simulation.report().finite) {

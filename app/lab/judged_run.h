@@ -50,6 +50,8 @@ struct JudgedRun {
     double time = 0;          // s, at the end of the run
     std::uint64_t steps = 0;  // that were done
     double step_cpu_time = 0; // s, CPU time of the calling thread in all steps together
+    // Of all steps together, as StepReport counts them.
+    std::uint64_t body_passes = 0, constraint_passes = 0;
     std::uint64_t unresolved_impacts = 0;
     bool had_contacts = false;
     // With follow_errors, the largest of the run:

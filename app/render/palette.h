@@ -20,6 +20,7 @@ inline constexpr glm::vec3 kinematic{0.50f, 0.55f, 0.60f}; // bodies that move a
 inline constexpr glm::vec3 rod{0.36f, 0.38f, 0.42f};       // massless rods between bodies
 inline constexpr glm::vec3 selected{0.98f, 0.62f, 0.16f};
 inline constexpr glm::vec3 contact{0.85f, 0.26f, 0.22f};
+inline constexpr glm::vec3 impact{0.93f, 0.70f, 0.15f};
 inline constexpr glm::vec3 joint{0.16f, 0.42f, 0.66f};
 inline constexpr glm::vec3 bounds{0.40f, 0.62f, 0.45f};
 inline constexpr glm::vec3 grab{0.95f, 0.50f, 0.12f};

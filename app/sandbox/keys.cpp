@@ -70,7 +70,7 @@ const std::vector<ActionInfo> &table() {
          "Of those that can run the scene.",
          Place::settings, true, {plain('>')}},
         {Action::toggle_contacts, "Contacts",
-         "Contact points, normals and forces.",
+         "Contact points, normals and forces; impacts.",
          Place::view, false, {plain('c')}},
         {Action::toggle_joints, "Joints",
          "Joints and their anchors.",

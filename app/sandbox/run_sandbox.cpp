@@ -78,6 +78,8 @@ struct Stage {
 
 Sandbox make_sandbox(const SandboxOptions &options) {
     Sandbox sandbox(Session(options.run, options.tasks), options.scenes, options.out_dir);
+    if (!options.record.empty())
+        sandbox.session().record();
     sandbox.clock().set_paused(options.paused);
     if (!options.initial_scene.empty())
         sandbox.open(options.initial_scene);
@@ -110,10 +112,26 @@ int finish(const SandboxOptions &options, const Sandbox &sandbox, const Stage &s
     return 0;
 }
 
-int run_off_screen(const SandboxOptions &options, bool in_software) {
-    Sandbox sandbox = make_sandbox(options);
-    Stage stage(options, in_software, options.ui_scale.value_or(1.0f), options.size);
-    const InterruptGuard interrupt;
+// Runs the loop, and then writes the recording, whatever ended the loop. A place that cannot be
+// written to is found out before it.
+template <typename Loop>
+void with_recording(const SandboxOptions &options, const Sandbox &sandbox, const Loop &loop) {
+    if (options.record.empty()) {
+        loop();
+        return;
+    }
+    OutputFile file(options.record);
+    try {
+        loop();
+    } catch (...) {
+        sandbox.session().write_recording(file);
+        throw;
+    }
+    if (sandbox.session().running())
+        sandbox.session().write_recording(file);
+}
+
+void draw_frames(const SandboxOptions &options, Sandbox &sandbox, Stage &stage) {
     ProgressLine line(std::cerr);
     for (int frame = 0;
          frame < *options.max_frames && !sandbox.quit_requested() && !InterruptGuard::requested();
@@ -125,6 +143,13 @@ int run_off_screen(const SandboxOptions &options, bool in_software) {
         stage.draw(sandbox);
     }
     line.clear();
+}
+
+int run_off_screen(const SandboxOptions &options, bool in_software) {
+    Sandbox sandbox = make_sandbox(options);
+    Stage stage(options, in_software, options.ui_scale.value_or(1.0f), options.size);
+    const InterruptGuard interrupt;
+    with_recording(options, sandbox, [&] { draw_frames(options, sandbox, stage); });
     return finish(options, sandbox, stage);
 }
 
@@ -151,13 +176,8 @@ float ui_scale(const SandboxOptions &options, const Window &window, const Sandbo
     return options.ui_scale.value_or(monitor) * sandbox.view().ui_scale;
 }
 
-int run_in_window(const SandboxOptions &options, Window &window, bool in_software) {
-    WindowInput input(window);
-    Sandbox sandbox = make_sandbox(options);
-    Stage stage(options, in_software, ui_scale(options, window, sandbox),
-                glm::max(window.framebuffer_size(), 1));
-    const GlfwBackEnd back_end(window);
-
+void show_frames(const SandboxOptions &options, Window &window, WindowInput &input,
+                 Sandbox &sandbox, Stage &stage) {
     std::string title;
     Clock::time_point last = Clock::now();
     Clock::time_point last_event = last;
@@ -166,7 +186,9 @@ int run_in_window(const SandboxOptions &options, Window &window, bool in_softwar
         return std::chrono::duration<double>(now - then).count();
     };
 
-    for (int frame = 0; !window.should_close() && !sandbox.quit_requested(); ++frame) {
+    for (int frame = 0;
+         !window.should_close() && !sandbox.quit_requested() && !InterruptGuard::requested();
+         ++frame) {
         if (options.max_frames && frame >= *options.max_frames)
             break;
         const bool asleep = sandbox.clock().paused() && since(last_event, last) > awake;
@@ -207,6 +229,16 @@ int run_in_window(const SandboxOptions &options, Window &window, bool in_softwar
             last_title = now;
         }
     }
+}
+
+int run_in_window(const SandboxOptions &options, Window &window, bool in_software) {
+    WindowInput input(window);
+    Sandbox sandbox = make_sandbox(options);
+    Stage stage(options, in_software, ui_scale(options, window, sandbox),
+                glm::max(window.framebuffer_size(), 1));
+    const GlfwBackEnd back_end(window);
+    const InterruptGuard interrupt;
+    with_recording(options, sandbox, [&] { show_frames(options, window, input, sandbox, stage); });
     return finish(options, sandbox, stage);
 }
 

@@ -31,6 +31,7 @@ struct SandboxOptions {
     // each frame lasts 1/60 s.
     std::optional<int> max_frames;
     std::filesystem::path screenshot;
+    std::filesystem::path record; // the run that goes on at the end is recorded there
 };
 
 struct SandboxResult {

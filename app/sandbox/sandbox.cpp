@@ -405,6 +405,7 @@ DrawList Sandbox::draw_list() const {
     options.selected = view_.selected;
     options.hovered = view_.hovered;
     options.grab = session_.grabbed();
+    options.impacts = session_.impacts();
     DrawList list =
         draw_world(*session_.simulation(), view_.camera, options,
                    blend(session_.previous_poses(), session_.present_poses(), clock_.alpha()));

@@ -1,6 +1,5 @@
 #include "app/sandbox/session.h"
 
-#include "app/files/output_file.h"
 #include "engine/scene/scene_file.h"
 
 #include <algorithm>
@@ -116,6 +115,9 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
         watch_ = std::move(watch);
         history_.clear(); // before the simulation that made it
         simulation_ = std::move(simulation);
+        recorder_.reset();
+        if (records_ && simulation_->has_world())
+            recorder_.emplace(*simulation_);
     } catch (const std::exception &failure) {
         messages_.error((scene.name.empty() ? "The scene" : scene.name) +
                         " cannot run: " + reason(failure));
@@ -127,6 +129,7 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     first_step_ = simulation_->step_count();
     disturbed_from_.reset();
     grab_.reset();
+    pulled_to_.reset();
     graphs_ = {};
     settle_poses();
     return true;
@@ -136,11 +139,10 @@ bool Session::step() {
     if (!simulation_ || stopped_ || !simulation_->has_world())
         return false;
     try {
+        pull_grabbed();
         history_.remember(*simulation_);
-        if (grab_) {
-            disturb(simulation_->step_count() + 1);
-            simulation_->pull(grab_->body, grab_->local_point, grab_->target);
-        }
+        if (recorder_)
+            recorder_->before_step(*simulation_);
         times_ = StepTimes{};
         simulation_->step(&times_);
     } catch (const std::exception &failure) {
@@ -158,6 +160,7 @@ bool Session::step() {
     graphs_.energy.add(simulation_->energy());
     previous_ = std::move(present_);
     present_ = poses_of(*simulation_);
+    see_impacts();
     if (!report.finite) {
         stopped_ = true;
         messages_.error("The motion is no longer finite: " + where_not_finite(*simulation_) +
@@ -177,12 +180,16 @@ bool Session::step_back() {
     try {
         if (!history_.recall(*simulation_))
             return false;
+        if (recorder_)
+            recorder_->went_back(*simulation_);
         watch_->go_back(*simulation_);
         if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
             disturbed_from_.reset();
         if (simulation_->method().name != method)
-            simulation_->set_method(method);
-        simulation_->set_settings(settings);
+            apply(SetMethod{method});
+        if (const auto changed = GivenSettings::differences(simulation_->settings(), settings);
+            !changed.empty())
+            apply(SetSettings{changed});
     } catch (const std::exception &failure) {
         messages_.error("Cannot step back: " + reason(failure));
         return false;
@@ -212,8 +219,8 @@ bool Session::set_method(std::string_view name) {
         for (const SettingNumber number : setting_numbers())
             if (number.setting().group == SettingGroup::world)
                 set_setting(settings, number, setting_value(simulation_->settings(), number));
-        simulation_->set_method(name);
-        simulation_->set_settings(settings);
+        apply(SetMethod{std::string(name)});
+        apply(SetSettings{GivenSettings::differences(simulation_->settings(), settings)});
         settings_changed();
         return true;
     } catch (const std::exception &failure) {
@@ -227,7 +234,7 @@ bool Session::set_settings(const StepSettings &settings) {
     if (!simulation_)
         return false;
     try {
-        simulation_->set_settings(settings);
+        apply(SetSettings{GivenSettings::differences(simulation_->settings(), settings)});
         settings_changed();
         return true;
     } catch (const std::exception &failure) {
@@ -236,20 +243,46 @@ bool Session::set_settings(const StepSettings &settings) {
     }
 }
 
+void Session::apply(const Command &command) {
+    simulation_->apply(command);
+    if (recorder_)
+        recorder_->add(*simulation_, command);
+}
+
+void Session::grab(const std::optional<Grab> &grab) {
+    grab_ = grab;
+    if (grab || !pulled_to_)
+        return;
+    apply(ReleaseGrab{});
+    pulled_to_.reset();
+}
+
+void Session::pull_grabbed() {
+    if (!grab_)
+        return;
+    disturb(simulation_->step_count() + 1);
+    if (!pulled_to_)
+        apply(GrabBody{simulation_->body_info(grab_->body).name, grab_->local_point, grab_->target,
+                       grab_->max_force});
+    else if (*pulled_to_ != grab_->target)
+        apply(MoveGrab{grab_->target});
+    pulled_to_ = grab_->target;
+}
+
 std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
                                           double radius) {
     if (!simulation_)
         return {};
     BodyDesc ball;
-    ball.name = "ball";
+    ball.name = simulation_->free_name("ball");
     ball.colliders.emplace_back().shape = SphereDesc{radius};
     ball.position = from;
     ball.velocity = velocity;
     try {
-        const std::size_t body = simulation_->add_body(ball);
+        apply(AddBody{ball});
         disturb(simulation_->step_count());
         settle_poses();
-        return body;
+        return simulation_->find_body(ball.name);
     } catch (const std::exception &failure) {
         messages_.error("Cannot add a ball: " + reason(failure));
         return {};
@@ -283,6 +316,16 @@ void Session::save_mesh_files(const std::filesystem::path &folder) const {
         else if (text_of(from) != text_of(to))
             throw std::runtime_error(to.string() + " is another mesh already");
     }
+}
+
+void Session::write_recording(OutputFile &file) const {
+    if (!recorder_)
+        throw std::runtime_error(simulation_ ? scene_.name + " has only probes: there is nothing "
+                                                             "to record"
+                                             : "no scene runs: there is nothing to record");
+    save_mesh_files(file.path().parent_path());
+    file.stream() << plumb::write_recording(recorder_->recording(*simulation_));
+    file.finish();
 }
 
 bool Session::save_scene(const std::filesystem::path &path) {
@@ -331,9 +374,18 @@ std::string Session::reason(const std::exception &failure) {
     return "memory ran out";
 }
 
+void Session::see_impacts() {
+    for (SeenImpact &seen : impacts_)
+        seen.age += simulation_->settings().dt;
+    std::erase_if(impacts_, [](const SeenImpact &seen) { return seen.age >= impact_shown; });
+    for (const ImpactView &impact : simulation_->impacts())
+        impacts_.push_back({impact, 0});
+}
+
 void Session::settle_poses() {
     present_ = poses_of(*simulation_);
     previous_ = present_;
+    impacts_.clear();
 }
 
 } // namespace plumb

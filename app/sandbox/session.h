@@ -1,6 +1,7 @@
 // The scene that is running: opened, stepped, taken back, changed and saved.
 #pragma once
 
+#include "app/files/output_file.h"
 #include "app/lab/expectation_watch.h"
 #include "app/sandbox/graphs.h"
 #include "app/sandbox/history.h"
@@ -8,6 +9,7 @@
 #include "app/sandbox/pose_blend.h"
 #include "engine/core/task_pool.h"
 #include "engine/scene/probe.h"
+#include "engine/scene/recording.h"
 #include "engine/scene/scene_desc.h"
 #include "engine/scene/simulation.h"
 
@@ -33,6 +35,13 @@ struct Grab {
     std::size_t body = 0;
     glm::dvec3 local_point{0};
     glm::dvec3 target{0}; // world
+    double max_force = 0; // N
+};
+
+// An impact that has just been.
+struct SeenImpact {
+    ImpactView impact;
+    double age = 0; // s, since the end of its step
 };
 
 // Nothing here throws because of a scene, a file or a setting: what is wrong is said in messages(),
@@ -86,11 +95,8 @@ class Session {
     bool set_method(std::string_view name);
     bool set_settings(const StepSettings &settings);
 
-    void grab(const std::optional<Grab> &grab) {
-        if (!grab && simulation_)
-            simulation_->release();
-        grab_ = grab;
-    }
+    // From the next step on; of a grab that goes on, only the target may change. Nothing: lets go.
+    void grab(const std::optional<Grab> &grab);
     [[nodiscard]] const std::optional<Grab> &grabbed() const { return grab_; }
     // Adds a ball, kg and m/s, in SI units; its index, or nothing with a message.
     std::optional<std::size_t> shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
@@ -103,6 +109,13 @@ class Session {
     // restart brings the scene's own places back, and what is expected there.
     void move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place);
 
+    // From the next scene that is opened on, the run that is going on is recorded, from its start
+    // to its present state: what is stepped back over is forgotten, and a restart begins anew.
+    void record() { records_ = true; }
+    // Writes it, and the meshes' files beside it. Throws as OutputFile does, and
+    // std::runtime_error when there is nothing to record.
+    void write_recording(OutputFile &file) const;
+
     // Writes the present state as a scene file, as an OutputFile. Makes the folder, and copies the
     // meshes' files into it; one that has another file of a mesh's name is an error.
     bool save_scene(const std::filesystem::path &path);
@@ -110,6 +123,9 @@ class Session {
     // Before and after the last step; the same after anything but a step.
     [[nodiscard]] const std::vector<Pose> &previous_poses() const { return previous_; }
     [[nodiscard]] const std::vector<Pose> &present_poses() const { return present_; }
+    // Of the last impact_shown seconds, as long as nothing but steps came in between.
+    static constexpr double impact_shown = 0.25;
+    [[nodiscard]] const std::vector<SeenImpact> &impacts() const { return impacts_; }
     [[nodiscard]] const SessionGraphs &graphs() const { return graphs_; }
     [[nodiscard]] const StepTimes &times() const { return times_; } // of the last step's phases
     // Whether that is why something in messages() failed, once at least.
@@ -121,6 +137,9 @@ class Session {
     bool start(const SceneDesc &scene, const RunOptions &options,
                const std::optional<StepSettings> &settings);
     [[nodiscard]] std::string reason(const std::exception &failure);
+    void apply(const Command &command);
+    void pull_grabbed();
+    void see_impacts();
     void settle_poses();
     void disturb(std::uint64_t first_step);
     void settings_changed();
@@ -137,11 +156,15 @@ class Session {
     std::uint64_t first_step_ = 0;                // of the run
     std::optional<std::uint64_t> disturbed_from_; // states from this step on
     std::optional<Grab> grab_;
+    std::optional<glm::dvec3> pulled_to_; // what the simulation knows of the grab
+    bool records_ = false;
+    std::optional<Recorder> recorder_; // of the run that is going on
     std::vector<ProbeDesc> probes_;
     std::vector<ProbeAnswer> answers_;
     bool stopped_ = false;
     bool memory_ran_out_ = false;
     std::vector<Pose> previous_, present_;
+    std::vector<SeenImpact> impacts_;
     SessionGraphs graphs_;
     StepTimes times_;
     Messages messages_;

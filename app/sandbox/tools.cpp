@@ -133,7 +133,8 @@ void Tools::release(const PointerEvent &event, const ToolTargets &targets) {
 void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
     const std::optional<Pick> hit =
         pick(targets.session, targets.camera, event.position, targets.viewport);
-    if (!hit || targets.session.simulation()->body_info(hit->body).kind != BodyKind::dynamic) {
+    const BodyInfo *info = hit ? &targets.session.simulation()->body_info(hit->body) : nullptr;
+    if (!info || info->kind != BodyKind::dynamic) {
         drag_ = Drag::orbit;
         return;
     }
@@ -141,7 +142,7 @@ void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
     const glm::dvec3 local = glm::conjugate(state.orientation) * (hit->point - state.position);
     grab_point_ = hit->point;
     grab_normal_ = -glm::dvec3(targets.camera.forward());
-    targets.session.grab(Grab{hit->body, local, hit->point});
+    targets.session.grab(Grab{hit->body, local, hit->point, grab_strength * info->mass});
     targets.selected = hit->body;
     drag_ = Drag::grab;
 }

@@ -36,6 +36,9 @@ struct ToolTargets {
 class Tools {
   public:
     double shot_speed = 15; // m/s
+    // The greatest force of a grab for each kilogram of the body (m/s^2), some twenty times its
+    // weight on Earth: it lifts what hangs on the body or lies on it, and tears nothing.
+    double grab_strength = 200;
 
     // A press over a panel belongs to the panel; releases and moves always arrive here, so that a
     // drag that ends over a panel ends.

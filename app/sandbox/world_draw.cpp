@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include <glm/common.hpp>
@@ -112,6 +113,30 @@ void add_contacts(DrawList &list, const Simulation &simulation, const std::vecto
     }
 }
 
+// A ring around the place, across the normal, that fades by shrinking. Its radius grows with the
+// square root of the speed that the impulse would give the middling body: 20 cm for 1 m/s.
+void add_impacts(DrawList &list, const std::vector<SeenImpact> &impacts, double mass) {
+    constexpr int corners = 16;
+    for (const auto &[impact, age] : impacts) {
+        const double left = 1 - age / Session::impact_shown;
+        const double radius = left * std::min(2.0, 0.2 * std::sqrt(impact.impulse / mass));
+        if (!(radius > 1e-6) || !std::isfinite(radius))
+            continue;
+        const glm::dvec3 other =
+            std::abs(impact.normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+        const glm::dvec3 u = glm::normalize(glm::cross(impact.normal, other));
+        const glm::dvec3 v = glm::cross(impact.normal, u);
+        const auto corner = [&](int k) {
+            const double angle = 2 * std::numbers::pi * k / corners;
+            return impact.position + radius * (std::cos(angle) * u + std::sin(angle) * v);
+        };
+        for (int k = 0; k < corners; ++k)
+            add_line(list, corner(k), corner(k + 1), colours::impact, 2);
+        add_line(list, impact.position - radius * impact.normal,
+                 impact.position + radius * impact.normal, colours::impact, 2);
+    }
+}
+
 void add_bounds(DrawList &list, const BodyInfo &body, const Pose &pose) {
     glm::dvec3 min(std::numeric_limits<double>::infinity());
     glm::dvec3 max = -min;
@@ -138,8 +163,8 @@ void add_bounds(DrawList &list, const BodyInfo &body, const Pose &pose) {
     }
 }
 
-// Of the median dynamic body, N; 0 without gravity or bodies.
-double typical_weight(const Simulation &simulation) {
+// Of the median dynamic body, kg; 0 when there is none.
+double typical_mass(const Simulation &simulation) {
     std::vector<double> masses;
     for (std::size_t body = 0; body < simulation.body_count(); ++body) {
         const BodyInfo &info = simulation.body_info(body);
@@ -150,7 +175,7 @@ double typical_weight(const Simulation &simulation) {
         return 0;
     const auto middle = masses.begin() + static_cast<std::ptrdiff_t>(masses.size() / 2);
     std::nth_element(masses.begin(), middle, masses.end());
-    return *middle * glm::length(simulation.settings().gravity);
+    return *middle;
 }
 
 void add_joints(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses,
@@ -192,8 +217,11 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
         if (simulation.body_info(body).alive)
             add_body(list, simulation.body_info(body), shown[body], body, options);
     add_joints(list, simulation, shown, options.joints);
-    if (options.contacts)
-        add_contacts(list, simulation, shown, typical_weight(simulation));
+    if (options.contacts) {
+        const double mass = typical_mass(simulation);
+        add_contacts(list, simulation, shown, mass * glm::length(simulation.settings().gravity));
+        add_impacts(list, options.impacts, mass);
+    }
     if (options.bounds)
         for (std::size_t body = 0; body < shown.size(); ++body)
             if (simulation.body_info(body).alive)

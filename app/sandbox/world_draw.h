@@ -13,7 +13,7 @@ namespace plumb {
 
 // What is drawn besides the bodies.
 struct WorldDrawOptions {
-    bool contacts = false; // points, with normals and normal forces
+    bool contacts = false; // points, with normals and normal forces; and impacts
     bool joints = false;   // anchors, and what lies between them
     bool bounds = false;   // the axis-aligned boxes around bodies
     bool velocities = false;
@@ -23,6 +23,7 @@ struct WorldDrawOptions {
     std::optional<std::size_t> selected;
     std::optional<std::size_t> hovered;
     std::optional<Grab> grab;
+    std::vector<SeenImpact> impacts; // drawn with the contacts
 };
 
 // The camera that the scene asks for.

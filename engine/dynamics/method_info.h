@@ -18,9 +18,6 @@ struct MethodInfo {
     std::vector<SettingGroup> reads; // of the settings, beside those that every method reads
     int default_substeps = 1;
     int default_iterations = 1;
-    // Declared work of one step: passes over all bodies, and over all constraints.
-    int (*body_passes)(int substeps, int iterations) = nullptr;
-    int (*constraint_passes)(int substeps, int iterations) = nullptr;
 };
 
 // Whether the method's motion depends on that setting.

@@ -30,27 +30,33 @@ class PhaseTimer {
 
 } // namespace
 
-// All but the last phase work on scratch: until then the state is as it was.
+// All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
+// left half done is thrown away.
 void World::step(TaskPool *tasks, StepTimes *times) {
     report_ = StepReport{};
     scratch_.contacts_are_current = false;
-    {
-        const PhaseTimer timer(times ? &times->find_pairs : nullptr);
-        find_pairs();
-    }
-    {
-        const PhaseTimer timer(times ? &times->collide : nullptr);
-        collide(tasks);
-    }
-    {
-        const PhaseTimer timer(times ? &times->advance : nullptr);
-        load_bodies();
-        advance();
-    }
-    {
-        const PhaseTimer timer(times ? &times->finish : nullptr);
-        gather_memory();
-        finish();
+    try {
+        {
+            const PhaseTimer timer(times ? &times->find_pairs : nullptr);
+            find_pairs();
+        }
+        {
+            const PhaseTimer timer(times ? &times->collide : nullptr);
+            collide(tasks);
+        }
+        {
+            const PhaseTimer timer(times ? &times->advance : nullptr);
+            load_bodies();
+            advance();
+        }
+        {
+            const PhaseTimer timer(times ? &times->finish : nullptr);
+            gather_memory();
+            finish();
+        }
+    } catch (...) {
+        scratch_ = Scratch{};
+        throw;
     }
 }
 

@@ -28,12 +28,18 @@ class ProbeSimulation final : public Simulation {
     const MethodInfo &method() const override { return *run_.method; }
     const StepSettings &settings() const override { return run_.settings; }
     Precision precision() const override { return run_.precision; }
-    void set_method(std::string_view name) override {
-        RunOptions options;
-        options.method = name;
-        run_.method = resolve_run(scene_, options).method;
+    void apply(const Command &command) override {
+        if (const auto *method = std::get_if<SetMethod>(&command)) {
+            RunOptions options;
+            options.method = method->method;
+            run_.method = resolve_run(scene_, options).method;
+        } else if (const auto *changed = std::get_if<SetSettings>(&command)) {
+            changed->settings.apply_to(run_.settings);
+        } else {
+            throw std::invalid_argument(
+                "this scene has only probes, and no world that a body could be in");
+        }
     }
-    void set_settings(const StepSettings &settings) override { run_.settings = settings; }
 
     std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
         return std::make_unique<Saved>();
@@ -56,16 +62,6 @@ class ProbeSimulation final : public Simulation {
     std::vector<ImpactView> impacts() const override { return {}; }
     std::vector<BoundsView> bounds() const override { return {}; }
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override { return {}; }
-    void apply_impulse(std::size_t body, const glm::dvec3 &, const glm::dvec3 &) override {
-        no_body(body);
-    }
-    void pull(std::size_t body, const glm::dvec3 &, const glm::dvec3 &) override { no_body(body); }
-    void release() override {}
-    std::size_t add_body(const BodyDesc &) override {
-        throw std::invalid_argument(
-            "this scene has only probes, and no world that a body could be in");
-    }
-    void remove_body(std::size_t body) override { no_body(body); }
 
   private:
     [[noreturn]] static void no_body(std::size_t body) {

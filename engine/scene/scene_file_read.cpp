@@ -16,17 +16,37 @@ namespace {
 
 using namespace scene_file;
 
-SceneFileResult read_tables(const toml::table &root, const std::filesystem::path &path,
-                            const std::vector<std::string> &known_methods) {
-    static constexpr std::array<std::string_view, 11> keys{
-        "title", "description", "world", "methods", "camera", "material",
-        "body",  "joint",       "probe", "expect",  "state"};
-    Reading reading;
-    reading.known_methods.assign(known_methods.begin(), known_methods.end());
-    reading.files = ShapeFiles(path.parent_path());
+// The end of the file, as toml++ counts it, lies a little behind its last character.
+FilePosition inside(std::string_view text, FilePosition at) {
+    std::size_t line = 1;
+    std::size_t start = 0;
+    while (line < at.line) {
+        const std::size_t newline = text.find('\n', start);
+        if (newline == std::string_view::npos)
+            break;
+        start = newline + 1;
+        ++line;
+    }
+    const std::string_view rest = text.substr(start);
+    const std::string_view content = rest.substr(0, std::min(rest.size(), rest.find('\n')));
+    // Columns count characters: the bytes 10xxxxxx continue one.
+    const auto characters =
+        static_cast<std::size_t>(std::count_if(content.begin(), content.end(), [](char c) {
+            return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+        }));
+    return {line, line < at.line ? characters + 1 : std::min(at.column, characters + 1)};
+}
+
+SceneMessage error(std::size_t line, std::size_t column, std::string what, std::string suggestion) {
+    return {SceneMessage::Severity::error, line, column, std::move(what), std::move(suggestion)};
+}
+
+} // namespace
+
+namespace scene_file {
+
+void read_scene(Reading &reading, const Table &top) {
     SceneDesc &scene = reading.scene;
-    scene.name = path.stem().string();
-    const Table top(reading.report, root, "the top level of a scene", keys);
     scene.title = top.string("title").value_or("");
     scene.description = top.string("description").value_or("");
     const auto read_one = [&](std::string_view key, auto read) {
@@ -49,34 +69,45 @@ SceneFileResult read_tables(const toml::table &root, const std::filesystem::path
     if (reading.report.error_count() == 0)
         if (const std::optional<SceneMessage> crowd = too_crowded(scene, reading.positions))
             reading.report.error({crowd->line, crowd->column}, crowd->what, crowd->suggestion);
-    if (reading.report.error_count() == 0)
-        for (SceneMessage &warning : scene_warnings(scene, reading.positions))
-            reading.report.warning(std::move(warning));
-    return {std::move(scene), reading.report.in_file_order()};
 }
 
-// The end of the file, as toml++ counts it, lies a little behind its last character.
-FilePosition inside(std::string_view text, FilePosition at) {
-    std::size_t line = 1;
-    std::size_t start = 0;
-    while (line < at.line) {
-        const std::size_t newline = text.find('\n', start);
-        if (newline == std::string_view::npos)
-            break;
-        start = newline + 1;
-        ++line;
+std::optional<toml::table> parse_toml(std::string_view text, const std::string &path,
+                                      std::vector<SceneMessage> &messages) {
+    toml::parse_result parsed = toml::parse(text, std::string_view(path));
+    if (parsed)
+        return std::move(parsed).table();
+    const FilePosition at = inside(text, position_of(parsed.error().source()));
+    messages.push_back(error(at.line, at.column, std::string(parsed.error().description()),
+                             "see https://toml.io for how TOML is written"));
+    return std::nullopt;
+}
+
+std::optional<std::string> read_file(const std::filesystem::path &path,
+                                     std::vector<SceneMessage> &messages) {
+    std::ifstream file(path, std::ios::binary);
+    std::string text;
+    std::array<char, 1U << 16U> block;
+    while (file && text.size() <= max_scene_file_bytes) {
+        file.read(block.data(), block.size());
+        text.append(block.data(), static_cast<std::size_t>(file.gcount()));
     }
-    const std::string_view rest = text.substr(start);
-    const std::string_view content = rest.substr(0, std::min(rest.size(), rest.find('\n')));
-    // Columns count characters: the bytes 10xxxxxx continue one.
-    const auto characters =
-        static_cast<std::size_t>(std::count_if(content.begin(), content.end(), [](char c) {
-            return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-        }));
-    return {line, line < at.line ? characters + 1 : std::min(at.column, characters + 1)};
+    // A directory opens, but cannot be read.
+    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path)) {
+        messages.push_back(error(0, 0, "the file cannot be read",
+                                 "check that it exists and that you may read it"));
+        return std::nullopt;
+    }
+    if (text.size() > max_scene_file_bytes) {
+        messages.push_back(error(0, 0, "the file is too large",
+                                 "a scene file has at most " +
+                                     std::to_string(max_scene_file_bytes >> 20U) +
+                                     " MiB; `repeat` makes many bodies of a few lines"));
+        return std::nullopt;
+    }
+    return text;
 }
 
-} // namespace
+} // namespace scene_file
 
 bool SceneFileResult::ok() const {
     return std::none_of(messages.begin(), messages.end(), [](const SceneMessage &message) {
@@ -86,45 +117,28 @@ bool SceneFileResult::ok() const {
 
 SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             const std::vector<std::string> &known_methods) {
-    const toml::parse_result parsed = toml::parse(text, std::string_view(path));
-    if (!parsed) {
-        const FilePosition at = inside(text, position_of(parsed.error().source()));
-        SceneFileResult result;
-        result.messages.push_back({SceneMessage::Severity::error, at.line, at.column,
-                                   std::string(parsed.error().description()),
-                                   "see https://toml.io for how TOML is written"});
+    SceneFileResult result;
+    const std::optional<toml::table> root = parse_toml(text, path, result.messages);
+    if (!root)
         return result;
-    }
-    return read_tables(parsed.table(), path, known_methods);
+    Reading reading(path, known_methods);
+    read_scene(reading, Table(reading.report, *root, "the top level of a scene", scene_keys));
+    if (reading.report.error_count() == 0)
+        for (SceneMessage &warning : scene_warnings(reading.scene, reading.positions))
+            reading.report.warning(std::move(warning));
+    return {std::move(reading.scene), reading.report.in_file_order()};
 }
 
 SceneFileResult load_scene(const std::filesystem::path &path,
                            const std::vector<std::string> &known_methods) {
-    const auto refuse = [](std::string what, std::string suggestion) {
-        SceneFileResult result;
-        result.messages.push_back(
-            {SceneMessage::Severity::error, 0, 0, std::move(what), std::move(suggestion)});
+    SceneFileResult result;
+    const std::optional<std::string> text = read_file(path, result.messages);
+    if (!text)
         return result;
-    };
-    std::ifstream file(path, std::ios::binary);
-    std::string text;
-    std::array<char, 1U << 16U> block;
-    while (file && text.size() <= max_scene_file_bytes) {
-        file.read(block.data(), block.size());
-        text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    }
-    // A directory opens, but cannot be read.
-    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path))
-        return refuse("the file cannot be read", "check that it exists and that you may read it");
-    if (text.size() > max_scene_file_bytes)
-        return refuse("the file is too large",
-                      "a scene file has at most " + std::to_string(max_scene_file_bytes >> 20U) +
-                          " MiB; `repeat` makes many bodies of a few lines");
-    SceneFileResult result = parse_scene(text, path.string(), known_methods);
+    result = parse_scene(*text, path.string(), known_methods);
     if (result.ok() && result.scene.bodies.empty() && result.scene.probes.empty())
-        result.messages = {{SceneMessage::Severity::error, 1, 1,
-                            "the scene is empty: it has no body and no probe",
-                            "add a [[body]] or a [[probe]]"}};
+        result.messages = {error(1, 1, "the scene is empty: it has no body and no probe",
+                                 "add a [[body]] or a [[probe]]")};
     return result;
 }
 

@@ -7,6 +7,8 @@
 #include "engine/scene/scene_file_shape.h"
 #include "engine/scene/scene_file_table.h"
 
+#include <array>
+#include <filesystem>
 #include <map>
 
 namespace plumb::scene_file {
@@ -19,6 +21,13 @@ struct BodyGroup {
 };
 
 struct Reading {
+    Reading() = default;
+    // Of the file of that path.
+    Reading(const std::filesystem::path &path, const std::vector<std::string> &methods)
+        : known_methods(methods.begin(), methods.end()), files(path.parent_path()) {
+        scene.name = path.stem().string();
+    }
+
     std::vector<std::string_view> known_methods;
     Report report;
     ShapeFiles files;
@@ -35,6 +44,20 @@ struct Reading {
     bool said_too_many = false;
 };
 
+// The text of a file, and its tables; empty, with a message, when there is none.
+std::optional<std::string> read_file(const std::filesystem::path &path,
+                                     std::vector<SceneMessage> &messages);
+std::optional<toml::table> parse_toml(std::string_view text, const std::string &path,
+                                      std::vector<SceneMessage> &messages);
+
+// The keys of a scene's top level.
+inline constexpr std::array<std::string_view, 11> scene_keys{
+    "title", "description", "world", "methods", "camera", "material",
+    "body",  "joint",       "probe", "expect",  "state"};
+
+// Reads all tables of a scene, and reports every error.
+void read_scene(Reading &reading, const Table &top);
+
 // Each adds what the table says to the scene, and reports every error.
 void read_world(Reading &reading, const toml::table &source);
 void read_methods(Reading &reading, const toml::table &source);
@@ -44,6 +67,9 @@ void read_body(Reading &reading, const toml::table &source);
 void read_joint(Reading &reading, const toml::table &source);
 void read_expect(Reading &reading, const toml::table &source);
 void read_state(Reading &reading, const toml::table &source);
+
+// The settings of a table that has nothing else.
+GivenSettings read_settings(Report &report, const toml::table &source, const std::string &title);
 
 // The shape of a body, or its several shapes: one at least, usable even after an error. False when
 // there was one.

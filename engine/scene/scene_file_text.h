@@ -1,7 +1,7 @@
 // Values as the text of a scene file. Not for users of the engine.
 #pragma once
 
-#include "engine/scene/joint_desc.h"
+#include "engine/scene/scene_desc.h"
 #include "engine/scene/scene_file_number.h"
 
 #include <optional>
@@ -30,7 +30,9 @@ std::optional<double> exact_degrees(double radians);
 std::string angle_in_line(const std::string &key, double radians);
 std::string angle(const std::string &key, double radians); // a line
 
-// Of a joint's table, what stands under its header.
+// Of a table of each kind, what stands under its header.
 std::string joint_text(const JointDesc &joint);
+std::string body_text(const BodyDesc &body);
+std::string settings_text(const GivenSettings &given);
 
 } // namespace plumb::scene_file

@@ -68,6 +68,10 @@ void check_method(Reading &reading, const std::string &method, const FilePositio
 
 } // namespace
 
+GivenSettings read_settings(Report &report, const toml::table &source, const std::string &title) {
+    return read_settings(Table(report, source, title, keys_with(true, {})));
+}
+
 void read_world(Reading &reading, const toml::table &source) {
     static constexpr std::array<std::string_view, 3> others{"method", "precision", "seed"};
     const Table table(reading.report, source, "[world]", keys_with(true, others));

@@ -67,6 +67,14 @@ class SceneWriter {
         write_state(scene);
         return std::move(text_);
     }
+    std::string body_text(const BodyDesc &body) {
+        write_body_lines(body);
+        return std::move(text_);
+    }
+    std::string settings_text(const GivenSettings &given) {
+        write_settings(given);
+        return std::move(text_);
+    }
 
   private:
     void header(const std::string &brackets) {
@@ -178,12 +186,16 @@ class SceneWriter {
     }
 
     void write_body(const BodyDesc &body) {
+        header("[[body]]");
+        write_body_lines(body);
+    }
+
+    void write_body_lines(const BodyDesc &body) {
         constexpr std::array<const char *, 3> kinds{"\"static\"", "\"kinematic\"", "\"dynamic\""};
         const bool can_be_dynamic =
             std::ranges::all_of(body.colliders, [](const ColliderDesc &collider) {
                 return kind_info(collider.shape).moves == Moves::by_forces;
             });
-        header("[[body]]");
         line("name", string(body.name));
         if (body.kind != (can_be_dynamic ? BodyKind::dynamic : BodyKind::fixed))
             line("kind", kinds[static_cast<std::size_t>(body.kind)]);
@@ -317,6 +329,13 @@ class SceneWriter {
 };
 
 } // namespace
+
+std::string scene_file::body_text(const BodyDesc &body) {
+    return SceneWriter().body_text(body);
+}
+std::string scene_file::settings_text(const GivenSettings &given) {
+    return SceneWriter().settings_text(given);
+}
 
 std::string write_scene(const SceneDesc &scene) {
     return SceneWriter().write(scene);

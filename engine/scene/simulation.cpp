@@ -10,6 +10,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace plumb {
 
@@ -103,6 +104,26 @@ std::string why_not(const MethodInfo &method, const SceneDesc &scene) {
         return name + " knows no contacts, and the scene has " +
                std::to_string(scene.bodies.size()) + " bodies that could touch";
     return {};
+}
+
+std::string Simulation::free_name(const std::string &name) const {
+    std::string free = name;
+    for (int number = 2; find_body(free); ++number)
+        free = name + "_" + std::to_string(number);
+    return free;
+}
+
+std::size_t Simulation::add_body(BodyDesc body) {
+    body.name = free_name(body.name);
+    const std::string name = body.name;
+    apply(AddBody{std::move(body)});
+    return *find_body(name);
+}
+
+void Simulation::remove_body(std::size_t body) {
+    if (!body_info(body).alive)
+        throw std::invalid_argument("body " + std::to_string(body) + " is not alive");
+    apply(RemoveBody{body_info(body).name});
 }
 
 std::unique_ptr<Simulation> Simulation::create(const SceneDesc &scene, const RunOptions &options,

@@ -9,6 +9,7 @@
 #include "engine/dynamics/method_info.h"
 #include "engine/dynamics/settings.h"
 #include "engine/dynamics/step_report.h"
+#include "engine/scene/command.h"
 #include "engine/scene/scene_desc.h"
 
 #include <cstdint>
@@ -148,9 +149,18 @@ class Simulation {
     virtual const MethodInfo &method() const = 0;
     virtual const StepSettings &settings() const = 0;
     virtual Precision precision() const = 0;
-    // Takes effect at the next step. Throws std::invalid_argument as create does.
-    virtual void set_method(std::string_view name) = 0;
-    virtual void set_settings(const StepSettings &settings) = 0;
+
+    // The one way in which anything but a step changes a simulation. Throws std::invalid_argument,
+    // and changes nothing, when it cannot be done: a body that is not there, a value out of range,
+    // a method that cannot run the scene, a body for a method that knows no contacts.
+    virtual void apply(const Command &command) = 0;
+    // The same, said shorter. A change of method or settings takes effect at the next step.
+    void set_method(std::string_view name) { apply(SetMethod{std::string(name)}); }
+    void set_settings(const StepSettings &settings) {
+        apply(SetSettings{GivenSettings::differences(this->settings(), settings)});
+    }
+    std::size_t add_body(BodyDesc body); // under a free name; returns its index
+    void remove_body(std::size_t body);
 
     // A complete copy of the state: restore, and the same bits follow.
     class Saved {
@@ -169,6 +179,8 @@ class Simulation {
     virtual const BodyInfo &body_info(std::size_t body) const = 0;
     virtual BodyState body_state(std::size_t body) const = 0;
     virtual std::optional<std::size_t> find_body(std::string_view name) const = 0;
+    // The name, with a number behind it when it is taken already.
+    std::string free_name(const std::string &name) const;
 
     virtual std::vector<ContactView> contacts() const = 0; // of the last step
     virtual std::vector<JointView> joints() const = 0;
@@ -178,18 +190,6 @@ class Simulation {
     // The nearest body on the ray origin + t * direction, t >= 0.
     virtual std::optional<Pick> pick(const glm::dvec3 &origin,
                                      const glm::dvec3 &direction) const = 0;
-    // Changes a dynamic body's velocity at once (N s at a world point). Others ignore it.
-    virtual void apply_impulse(std::size_t body, const glm::dvec3 &impulse,
-                               const glm::dvec3 &point) = 0;
-    // Holds a body's point (in its frame) at a target by a damped spring of limited strength, until
-    // release. Part of the state.
-    virtual void pull(std::size_t body, const glm::dvec3 &local_point,
-                      const glm::dvec3 &target) = 0;
-    virtual void release() = 0;
-    // Adds a body; a name already taken gets a number. Returns its index. Throws
-    // std::invalid_argument when the method knows no contacts.
-    virtual std::size_t add_body(const BodyDesc &body) = 0;
-    virtual void remove_body(std::size_t body) = 0;
 };
 
 } // namespace plumb

@@ -78,7 +78,10 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
         bool runs;
     };
     const Command commands[]{
-        {"run", {"SCENE", "--method", "--gl", "--out", "--size", "--frames", "--screenshot"}, true},
+        {"run",
+         {"SCENE", "--method", "--gl", "--out", "--size", "--frames", "--screenshot", "--record"},
+         true},
+        {"replay", {"FILE", "--threads"}, false},
         {"snapshot",
          {"SCENE", "--method", "--at", "--every", "--steps", "--size", "--out", "--ui", "--samples",
           "--gl"},

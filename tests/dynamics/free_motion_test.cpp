@@ -173,13 +173,8 @@ TEST(Registry, RowsAreCompleteAndFound) {
         EXPECT_FALSE(info.title.empty());
         EXPECT_FALSE(info.source.empty());
         EXPECT_NE(method.advance, nullptr);
-        ASSERT_NE(info.body_passes, nullptr);
-        ASSERT_NE(info.constraint_passes, nullptr);
         EXPECT_GE(info.default_substeps, 1);
         EXPECT_GE(info.default_iterations, 1);
-        // Work grows with the substeps, and constraint passes are declared by who has constraints.
-        EXPECT_EQ(info.body_passes(8, 1), 2 * info.body_passes(4, 1));
-        EXPECT_EQ(info.constraint_passes(4, 2) > 0, info.contacts || info.joints);
     }
     EXPECT_EQ(find_method("no_such_method"), nullptr);
     EXPECT_EQ(find_method(""), nullptr);

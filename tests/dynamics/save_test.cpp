@@ -3,14 +3,19 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <limits>
 #include <new>
 
 namespace {
 
 std::atomic<std::uint64_t> allocations{0};
+// How many more allocations succeed; the one after those fails.
+std::atomic<std::int64_t> allocations_left{std::numeric_limits<std::int64_t>::max()};
 
 void *counted(std::size_t size) {
     ++allocations;
+    if (allocations_left-- == 0)
+        throw std::bad_alloc();
     if (void *memory = std::malloc(size == 0 ? 1 : size))
         return memory;
     throw std::bad_alloc();
@@ -18,7 +23,7 @@ void *counted(std::size_t size) {
 
 } // namespace
 
-// Counts what this program allocates.
+// Counts what this program allocates, and fails when asked.
 void *operator new(std::size_t size) {
     return counted(size);
 }
@@ -133,6 +138,39 @@ TEST_P(Saves, ASettledStepAllocatesNothing) {
     const std::uint64_t before_save = allocations;
     world.save(saved);
     EXPECT_EQ(allocations - before_save, 0U);
+}
+
+// Memory may run out anywhere in a step: the world is as it was, and the step, taken again, is the
+// step that it would have been.
+TEST_P(Saves, AStepThatFailsLeavesTheStateAsItWas) {
+    if (!find_method(GetParam())->info.joints)
+        GTEST_SKIP() << "no joints";
+    World world = heap(GetParam(), 60);
+    const std::uint64_t before = world.hash();
+    World whole = heap(GetParam(), 60);
+    run(whole, 1);
+    const std::uint64_t after = whole.hash();
+    run(whole, 4);
+    int failures = 0;
+    for (std::int64_t left = 0;; ++left) {
+        bool failed = false;
+        allocations_left = left;
+        try {
+            world.step(nullptr);
+        } catch (const std::bad_alloc &) {
+            failed = true;
+        }
+        allocations_left = std::numeric_limits<std::int64_t>::max();
+        if (!failed)
+            break;
+        ++failures;
+        ASSERT_EQ(world.hash(), before) << left;
+        ASSERT_EQ(world.step_count(), 0U) << left;
+    }
+    EXPECT_GE(failures, 20);
+    EXPECT_EQ(world.hash(), after);
+    run(world, 4);
+    EXPECT_EQ(world.hash(), whole.hash());
 }
 
 // What rests takes little to save: 300 bytes a body, contacts and all.

@@ -35,6 +35,8 @@ class FakeSimulation : public Simulation {
         ++steps_;
         report_.finite = steps_ < nan_from_step;
         report_.contacts = 1;
+        report_.body_passes = 2;
+        report_.constraint_passes = 3;
     }
     std::uint64_t step_count() const override { return steps_; }
     double time() const override { return static_cast<double>(steps_) * settings_.dt; }
@@ -50,8 +52,9 @@ class FakeSimulation : public Simulation {
     const MethodInfo &method() const override { return method_infos().front(); }
     const StepSettings &settings() const override { return settings_; }
     Precision precision() const override { return Precision::dual; }
-    void set_method(std::string_view) override {}
-    void set_settings(const StepSettings &settings) override { settings_ = settings; }
+    void apply(const Command &command) override {
+        std::get<SetSettings>(command).settings.apply_to(settings_);
+    }
 
     struct State : Saved {
         std::uint64_t steps = 0;
@@ -82,11 +85,6 @@ class FakeSimulation : public Simulation {
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override {
         return std::nullopt;
     }
-    void apply_impulse(std::size_t, const glm::dvec3 &, const glm::dvec3 &) override {}
-    void pull(std::size_t, const glm::dvec3 &, const glm::dvec3 &) override {}
-    void release() override {}
-    std::size_t add_body(const BodyDesc &) override { throw std::logic_error("not here"); }
-    void remove_body(std::size_t) override { throw std::logic_error("not here"); }
 
   private:
     StepSettings settings_;

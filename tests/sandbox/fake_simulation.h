@@ -16,13 +16,13 @@ class FakeSimulation final : public Simulation {
   public:
     std::optional<std::uint64_t> throws_at;   // the step from this count on fails
     std::optional<std::uint64_t> diverges_at; // the step from this count on gives NaN
-    std::vector<glm::dvec3> pulls;            // targets, in order
+    std::vector<Command> commands;            // in order
     double advance_time = 0;                  // s, that each step says it took
 
     explicit FakeSimulation(const SceneDesc &scene) {
         scene.world.settings.apply_to(settings_);
         for (const BodyDesc &body : scene.bodies)
-            add_body(body);
+            insert(body);
     }
 
     using Simulation::save;
@@ -64,11 +64,19 @@ class FakeSimulation final : public Simulation {
     const MethodInfo &method() const override { return method_infos().front(); }
     const StepSettings &settings() const override { return settings_; }
     Precision precision() const override { return Precision::dual; }
-    void set_method(std::string_view) override {}
-    void set_settings(const StepSettings &settings) override {
-        if (!(settings.dt > 0))
-            throw std::invalid_argument("dt must be positive");
-        settings_ = settings;
+    void apply(const Command &command) override {
+        commands.push_back(command);
+        if (const auto *changed = std::get_if<SetSettings>(&command)) {
+            StepSettings settings = settings_;
+            changed->settings.apply_to(settings);
+            if (!(settings.dt > 0))
+                throw std::invalid_argument("dt must be positive");
+            settings_ = settings;
+        } else if (const auto *added = std::get_if<AddBody>(&command)) {
+            insert(added->body);
+        } else if (const auto *removed = std::get_if<RemoveBody>(&command)) {
+            infos_.at(find_body(removed->body).value()).alive = false;
+        }
     }
 
     struct State final : Saved {
@@ -116,12 +124,9 @@ class FakeSimulation final : public Simulation {
         }
         return nearest;
     }
-    void apply_impulse(std::size_t, const glm::dvec3 &, const glm::dvec3 &) override {}
-    void pull(std::size_t, const glm::dvec3 &, const glm::dvec3 &target) override {
-        pulls.push_back(target);
-    }
-    void release() override {}
-    std::size_t add_body(const BodyDesc &body) override {
+
+  private:
+    void insert(const BodyDesc &body) {
         BodyInfo info;
         info.alive = true;
         info.name = body.name;
@@ -131,11 +136,8 @@ class FakeSimulation final : public Simulation {
         infos_.push_back(info);
         state_.bodies.push_back(
             {body.position, body.orientation, body.velocity, body.angular_velocity});
-        return infos_.size() - 1;
     }
-    void remove_body(std::size_t body) override { infos_.at(body).alive = false; }
 
-  private:
     StepSettings settings_;
     StepReport report_;
     State state_;

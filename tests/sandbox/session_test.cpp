@@ -1,6 +1,7 @@
 #include "app/sandbox/session.h"
 
 #include "engine/dynamics/method_info.h"
+#include "engine/scene/recording.h"
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/fake_simulation.h"
 
@@ -369,6 +370,55 @@ TEST(SessionWithFake, AnotherStepIsJudgedByTimeNotByCount) {
     for (int step = 1; step <= 4; ++step)
         ASSERT_TRUE(session.step());
     EXPECT_EQ(verdicts(session), (Verdicts{met, missed, missed}));
+}
+
+// All that the window does to a run, and back again, is in its recording.
+TEST_F(SessionTest, ARecordingIsTheWayToThePresentState) {
+    Session session;
+    session.record();
+    ASSERT_TRUE(session.open(folder / "stack.toml"));
+    const auto replayed_hash = [&] {
+        const std::filesystem::path path = folder / "run.toml";
+        OutputFile file(path);
+        session.write_recording(file);
+        const RecordingResult read = load_recording(path);
+        EXPECT_TRUE(read.ok());
+        const auto simulation = Simulation::create(read.recording.scene, {}, nullptr);
+        Replay replay(read.recording);
+        while (true) {
+            EXPECT_TRUE(replay.obey(*simulation)) << "step " << simulation->step_count();
+            if (replay.is_at_end(*simulation))
+                break;
+            simulation->step();
+        }
+        return simulation->hash();
+    };
+    EXPECT_EQ(replayed_hash(), session.simulation()->hash());
+    hashes_of_steps(session, 3);
+    const std::size_t crate = session.simulation()->find_body("crate_3").value();
+    Grab grab{crate, {0.5, 0.5, 0}, {1, 5, 0}, 1e5};
+    session.grab(grab);
+    hashes_of_steps(session, 2);
+    grab.target.x = 2;
+    session.grab(grab);
+    hashes_of_steps(session, 4);
+    EXPECT_EQ(replayed_hash(), session.simulation()->hash());
+    session.shoot({-4, 1, 0}, {20, 0, 0}, 0.3);
+    hashes_of_steps(session, 2);
+    ASSERT_TRUE(session.step_back()); // lets go
+    EXPECT_EQ(replayed_hash(), session.simulation()->hash());
+    hashes_of_steps(session, 3);
+    ASSERT_TRUE(session.set_method("sequential_impulses"));
+    hashes_of_steps(session, 3);
+    for (int i = 0; i < 8; ++i)
+        ASSERT_TRUE(session.step_back()); // before the shot; the method stays
+    EXPECT_EQ(replayed_hash(), session.simulation()->hash());
+    session.shoot({-4, 1, 0}, {20, 0, 0}, 0.3);
+    hashes_of_steps(session, 5);
+    EXPECT_EQ(replayed_hash(), session.simulation()->hash());
+    ASSERT_TRUE(session.restart());
+    hashes_of_steps(session, 2);
+    EXPECT_EQ(replayed_hash(), session.simulation()->hash());
 }
 
 TEST(SessionWithFake, ARunThatWasMeddledWithSaysSo) {

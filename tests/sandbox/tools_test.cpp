@@ -131,13 +131,20 @@ TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
     EXPECT_NEAR(pixel.x, 500, 1e-2);
     EXPECT_NEAR(pixel.y, 350, 1e-2);
     session.step();
+    const auto &grabbed = std::get<GrabBody>(fake().commands.at(0));
+    EXPECT_EQ(grabbed.body, "left");
+    EXPECT_EQ(grabbed.target, target);
+    EXPECT_EQ(grabbed.max_force, tools.grab_strength); // of 1 kg
     session.step();
-    ASSERT_EQ(fake().pulls.size(), 2u);
-    EXPECT_EQ(fake().pulls[1], target);
+    EXPECT_EQ(fake().commands.size(), 1u); // the pointer rests
+    send(Kind::move, ball + glm::vec2(50, 50), PointerButton::left, true);
+    session.step();
+    EXPECT_EQ(std::get<MoveGrab>(fake().commands.at(1)).target, session.grabbed()->target);
     send(Kind::release, ball, PointerButton::left, false);
     EXPECT_FALSE(session.grabbed().has_value());
     session.step();
-    EXPECT_EQ(fake().pulls.size(), 2u);
+    ASSERT_EQ(fake().commands.size(), 3u);
+    EXPECT_TRUE(std::holds_alternative<ReleaseGrab>(fake().commands[2]));
 }
 
 TEST_F(ToolsTest, ShiftClickShootsABallAlongTheRay) {

@@ -83,9 +83,7 @@ Method rk4() {
              .joints = false,
              .reads = {},
              .default_substeps = 1,
-             .default_iterations = 1,
-             .body_passes = [](int substeps, int) { return 4 * substeps; },
-             .constraint_passes = [](int, int) { return 0; }},
+             .default_iterations = 1},
             advance};
 }
 

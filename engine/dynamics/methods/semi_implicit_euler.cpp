@@ -49,9 +49,7 @@ Method semi_implicit_euler() {
              .joints = false,
              .reads = {},
              .default_substeps = 1,
-             .default_iterations = 1,
-             .body_passes = [](int substeps, int) { return substeps; },
-             .constraint_passes = [](int, int) { return 0; }},
+             .default_iterations = 1},
             advance};
 }
 

@@ -49,10 +49,7 @@ Method sequential_impulses() {
              .reads = {SettingGroup::constraints, SettingGroup::baumgarte, SettingGroup::impacts,
                        SettingGroup::gyroscopic},
              .default_substeps = 1,
-             .default_iterations = 10,
-             .body_passes = [](int substeps, int) { return 2 * substeps; },
-             .constraint_passes = [](int substeps,
-                                     int iterations) { return substeps * (1 + iterations); }},
+             .default_iterations = 10},
             advance};
 }
 

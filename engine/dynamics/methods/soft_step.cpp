@@ -78,10 +78,7 @@ Method soft_step() {
              .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::impacts,
                        SettingGroup::gyroscopic},
              .default_substeps = 4,
-             .default_iterations = 1,
-             .body_passes = [](int substeps, int) { return 2 * substeps; },
-             .constraint_passes = [](int substeps,
-                                     int iterations) { return substeps * (2 + 2 * iterations); }},
+             .default_iterations = 1},
             advance};
 }
 

@@ -57,10 +57,7 @@ Method tgs_soft() {
              .joints = true,
              .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::gyroscopic},
              .default_substeps = 4,
-             .default_iterations = 1,
-             .body_passes = [](int substeps, int) { return 2 * substeps; },
-             .constraint_passes = [](int substeps,
-                                     int iterations) { return substeps * (1 + 2 * iterations); }},
+             .default_iterations = 1},
             advance};
 }
 

@@ -56,17 +56,9 @@ class WorldSimulation final : public Simulation {
     const StepSettings &settings() const override { return world_.settings(); }
     Precision precision() const override { return precision_; }
 
-    void set_method(std::string_view name) override {
-        const MethodInfo *info = find_method_info(name);
-        if (info == nullptr)
-            throw std::invalid_argument("no method is called '" + std::string(name) + "'");
-        if (const std::string reason = why_not(*info, describe()); !reason.empty())
-            throw std::invalid_argument(reason);
-        world_.set_method(name);
-    }
-    void set_settings(const StepSettings &settings) override {
+    void apply(const Command &command) override {
         try {
-            world_.set_settings(settings);
+            std::visit([this](const auto &one) { obey(one); }, command);
         } catch (const CheckFailure &failure) {
             throw std::invalid_argument(failure.what());
         }
@@ -116,33 +108,22 @@ class WorldSimulation final : public Simulation {
         return Pick{hit->body.index, static_cast<double>(hit->hit.t), glm::dvec3{hit->hit.point},
                     glm::dvec3{hit->hit.normal}};
     }
-    void apply_impulse(std::size_t body, const glm::dvec3 &impulse,
-                       const glm::dvec3 &point) override {
-        world_.apply_impulse(id_of(body), Vec3{impulse}, Vec3{point});
-    }
-    void pull(std::size_t body, const glm::dvec3 &local_point, const glm::dvec3 &target) override;
-    void release() override { world_.release(); }
-    std::size_t add_body(const BodyDesc &body) override {
-        if (!world_.method().info.contacts)
-            throw std::invalid_argument(std::string(world_.method().info.name) +
-                                        " knows no contacts, so no body can be added");
-        BodyDesc named = body;
-        for (int number = 2; book_->index_of.contains(named.name); ++number)
-            named.name = body.name + "_" + std::to_string(number);
-        return insert(named);
-    }
-    void remove_body(std::size_t body) override {
-        world_.remove_body(id_of(body));
-        Book &book = edit();
-        book.index_of.erase(book.infos[body].name);
-        book.infos[body].alive = false;
-    }
 
   private:
     struct SavedState final : Saved {
         SavedWorld world;
         std::shared_ptr<Book> book;
     };
+
+    void obey(const AddBody &command);
+    void obey(const RemoveBody &command);
+    void obey(const SetMotion &command);
+    void obey(const ApplyImpulse &command);
+    void obey(const GrabBody &command);
+    void obey(const MoveGrab &command) { world_.move_grab(Vec3{command.target}); }
+    void obey(const ReleaseGrab &) { world_.release(); }
+    void obey(const SetMethod &command);
+    void obey(const SetSettings &command);
 
     // The book, to be changed; a copy of its own when saves share it.
     Book &edit() {
@@ -159,7 +140,9 @@ class WorldSimulation final : public Simulation {
     BodyId id_of(const std::string &name) const {
         return name.empty() ? BodyId{} : id_of(book_->index_of.at(name));
     }
-    std::size_t insert(const BodyDesc &desc);
+    // Throws std::invalid_argument when there is no such body.
+    std::size_t index_of(const std::string &name) const;
+    void insert(const BodyDesc &desc);
     void insert(const JointDesc &desc);
     void remember(const ContactStateDesc &desc);
 
@@ -167,11 +150,63 @@ class WorldSimulation final : public Simulation {
     Precision precision_;
     World world_;
     std::shared_ptr<Book> book_;
-    // The grabbed point as it was asked for, so that the same one is moved and not grabbed anew.
-    glm::dvec3 grabbed_point_{0};
 };
 
-std::size_t WorldSimulation::insert(const BodyDesc &desc) {
+void WorldSimulation::obey(const AddBody &command) {
+    if (!world_.method().info.contacts)
+        throw std::invalid_argument(std::string(world_.method().info.name) +
+                                    " knows no contacts, so no body can be added");
+    if (book_->index_of.contains(command.body.name))
+        throw std::invalid_argument("there is a body \"" + command.body.name + "\" already");
+    insert(command.body);
+}
+
+void WorldSimulation::obey(const RemoveBody &command) {
+    const std::size_t body = index_of(command.body);
+    world_.remove_body(id_of(body));
+    Book &book = edit();
+    book.index_of.erase(command.body);
+    book.infos[body].alive = false;
+}
+
+void WorldSimulation::obey(const SetMotion &command) {
+    world_.set_motion(id_of(index_of(command.body)),
+                      {Vec3{command.position}, unit(Quat{command.orientation})},
+                      Vec3{command.velocity}, Vec3{command.angular_velocity});
+}
+
+void WorldSimulation::obey(const ApplyImpulse &command) {
+    world_.apply_impulse(id_of(index_of(command.body)), Vec3{command.impulse}, Vec3{command.point});
+}
+
+void WorldSimulation::obey(const GrabBody &command) {
+    world_.grab(id_of(index_of(command.body)), Vec3{command.point}, Vec3{command.target},
+                static_cast<Real>(command.max_force));
+}
+
+void WorldSimulation::obey(const SetMethod &command) {
+    const MethodInfo *info = find_method_info(command.method);
+    if (info == nullptr)
+        throw std::invalid_argument("no method is called '" + command.method + "'");
+    if (const std::string reason = why_not(*info, describe()); !reason.empty())
+        throw std::invalid_argument(reason);
+    world_.set_method(command.method);
+}
+
+void WorldSimulation::obey(const SetSettings &command) {
+    StepSettings settings = world_.settings();
+    command.settings.apply_to(settings);
+    world_.set_settings(settings);
+}
+
+std::size_t WorldSimulation::index_of(const std::string &name) const {
+    const auto found = book_->index_of.find(name);
+    if (found == book_->index_of.end())
+        throw std::invalid_argument("there is no body \"" + name + '"');
+    return found->second;
+}
+
+void WorldSimulation::insert(const BodyDesc &desc) {
     const std::size_t index = world_.add_body(body_def(book_->scene, desc)).index;
     const Body &body = world_.bodies()[index];
     BodyInfo info;
@@ -189,7 +224,6 @@ std::size_t WorldSimulation::insert(const BodyDesc &desc) {
     book.infos[index] = info;
     book.scene.bodies[index] = desc;
     book.index_of[desc.name] = index;
-    return index;
 }
 
 void WorldSimulation::insert(const JointDesc &desc) {
@@ -400,20 +434,6 @@ std::vector<BoundsView> WorldSimulation::bounds() const {
             views.push_back({glm::dvec3{box.min}, glm::dvec3{box.max}});
     }
     return views;
-}
-
-// As strong as twenty times the weight of the body: it lifts what hangs on it, and tears nothing.
-void WorldSimulation::pull(std::size_t body, const glm::dvec3 &local_point,
-                           const glm::dvec3 &target) {
-    const BodyId id = id_of(body);
-    if (world_.state().grab.body == id.index && grabbed_point_ == local_point) {
-        world_.move_grab(Vec3{target});
-        return;
-    }
-    constexpr double strength = 200; // m/s^2
-    world_.grab(id, Vec3{local_point}, Vec3{target},
-                static_cast<Real>(strength * book_->infos[body].mass));
-    grabbed_point_ = local_point;
 }
 
 } // namespace

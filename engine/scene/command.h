@@ -1,0 +1,117 @@
+// What a caller can do to a running scene between two steps, as values: what is done, recorded and
+// replayed. A new command is an alternative here, with its fields, and an `obey` in
+// engine/scene/real/world_simulation.cpp.
+#pragma once
+
+#include "engine/scene/scene_desc.h"
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace plumb {
+
+// `name` is the command's in a recording; each_field(command, visit) calls visit(key, field) for
+// all that it says. Bodies are named; all places and vectors are the world's unless they say
+// otherwise.
+
+// Its name must be free.
+struct AddBody {
+    static constexpr std::string_view name = "add";
+    BodyDesc body;
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("body", self.body);
+    }
+};
+
+// With its contacts and joints.
+struct RemoveBody {
+    static constexpr std::string_view name = "remove";
+    std::string body;
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("body", self.body);
+    }
+};
+
+// Puts a body somewhere else, or gives it another velocity; what the body has locked stays 0.
+struct SetMotion {
+    static constexpr std::string_view name = "move";
+    std::string body;
+    glm::dvec3 position{0};
+    glm::dquat orientation{1, 0, 0, 0};
+    glm::dvec3 velocity{0};         // m/s
+    glm::dvec3 angular_velocity{0}; // rad/s
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("body", self.body);
+        visit("position", self.position);
+        visit("orientation", self.orientation);
+        visit("velocity", self.velocity);
+        visit("angular_velocity", self.angular_velocity);
+    }
+};
+
+// Changes a dynamic body's velocity at once. Others ignore it.
+struct ApplyImpulse {
+    static constexpr std::string_view name = "push";
+    std::string body;
+    glm::dvec3 impulse{0}; // N s
+    glm::dvec3 point{0};
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("body", self.body);
+        visit("impulse", self.impulse);
+        visit("point", self.point);
+    }
+};
+
+// Holds a point of a dynamic body at a target, by a damped spring of limited strength, until it is
+// released or the body removed. A second grab replaces the first. Others ignore it.
+struct GrabBody {
+    static constexpr std::string_view name = "grab";
+    std::string body;
+    glm::dvec3 point{0}; // in the body's frame
+    glm::dvec3 target{0};
+    double max_force = 0; // N
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("body", self.body);
+        visit("point", self.point);
+        visit("target", self.target);
+        visit("max_force", self.max_force);
+    }
+};
+
+// Nothing held: does nothing.
+struct MoveGrab {
+    static constexpr std::string_view name = "drag";
+    glm::dvec3 target{0};
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("target", self.target);
+    }
+};
+
+struct ReleaseGrab {
+    static constexpr std::string_view name = "release";
+    template <typename Self, typename Visit> static void each_field(Self &, Visit &&) {}
+};
+
+// Settings stay as they are.
+struct SetMethod {
+    static constexpr std::string_view name = "method";
+    std::string method;
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("method", self.method);
+    }
+};
+
+// Those that are not given stay as they are.
+struct SetSettings {
+    static constexpr std::string_view name = "settings";
+    GivenSettings settings;
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("settings", self.settings);
+    }
+};
+
+using Command = std::variant<AddBody, RemoveBody, SetMotion, ApplyImpulse, GrabBody, MoveGrab,
+                             ReleaseGrab, SetMethod, SetSettings>;
+
+} // namespace plumb

@@ -1,0 +1,66 @@
+#include "engine/scene/recording.h"
+
+#include <algorithm>
+
+namespace plumb {
+
+Recorder::Recorder(const Simulation &simulation) {
+    recording_.scene = simulation.describe();
+}
+
+void Recorder::add(const Simulation &simulation, const Command &command) {
+    recording_.commands.push_back({simulation.step_count(), command, 0});
+}
+
+void Recorder::before_step(const Simulation &simulation) {
+    // One more than there are: of a step that failed, the hash is there already.
+    forget_after(simulation.step_count());
+    recording_.hashes.push_back(simulation.hash());
+}
+
+void Recorder::went_back(const Simulation &simulation) {
+    forget_after(simulation.step_count());
+}
+
+void Recorder::forget_after(std::uint64_t step) {
+    std::erase_if(recording_.commands,
+                  [step](const RecordedCommand &command) { return command.step > step; });
+    recording_.hashes.resize(
+        std::min<std::size_t>(recording_.hashes.size(), step - recording_.first_step()));
+}
+
+Recording Recorder::recording(const Simulation &simulation) const {
+    Recording whole = recording_;
+    whole.hashes.resize(simulation.step_count() - recording_.first_step());
+    whole.hashes.push_back(simulation.hash());
+    return whole;
+}
+
+std::string hash_text(std::uint64_t hash) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::string text;
+    for (int shift = 60; shift >= 0; shift -= 4)
+        text += digits[hash >> static_cast<unsigned>(shift) & 15U];
+    return text;
+}
+
+bool RecordingResult::ok() const {
+    return std::ranges::none_of(messages, [](const SceneMessage &message) {
+        return message.severity == SceneMessage::Severity::error;
+    });
+}
+
+bool Replay::obey(Simulation &simulation) {
+    for (; next_ < recording_.commands.size() &&
+           recording_.commands[next_].step <= simulation.step_count();
+         ++next_)
+        try {
+            simulation.apply(recording_.commands[next_].command);
+        } catch (const std::invalid_argument &error) {
+            throw CommandFailure(recording_.commands[next_], error.what());
+        }
+    const std::uint64_t state = simulation.step_count() - recording_.first_step();
+    return state >= recording_.hashes.size() || simulation.hash() == recording_.hashes[state];
+}
+
+} // namespace plumb

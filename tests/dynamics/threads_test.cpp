@@ -1,0 +1,65 @@
+// Steps shared out to many threads: the same bits as with one. Under ThreadSanitizer this is what
+// it looks at.
+#include "tests/dynamics/worlds.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+class Threads : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Threads, testing::ValuesIn(contact_methods()), name_of);
+
+// A heap that falls together: many times more pairs than a part of the loop over them takes.
+World heap(const std::string &method) {
+    Random random(9);
+    StepSettings settings; // of the method, as settings_for has them, without the scene's room
+    settings.substeps = find_method(method)->info.default_substeps;
+    settings.iterations = find_method(method)->info.default_iterations;
+    World world(method, settings);
+    world.add_body(ground(0.6, 0.3));
+    BodyId last;
+    for (int i = 0; i < 300; ++i) {
+        const V at{0.45 * (i % 8), 0.4 + 0.45 * (i / 64), 0.45 * (i / 8 % 8)};
+        BodyDef def = dynamic_body(any_shape(random), 1, at, any_vector(random, 1));
+        def.pose.rotation = narrow(any_rotation(random));
+        const BodyId id = world.add_body(with_material(def, 0.5, 0.2));
+        if (i % 16 == 1) {
+            JointDef joint;
+            joint.a = last;
+            joint.b = id;
+            joint.anchor_a_local = narrow(V{0.2, 0, 0});
+            joint.anchor_b_local = narrow(V{-0.25, 0, 0});
+            world.add_joint(joint);
+        }
+        last = id;
+    }
+    return world;
+}
+
+TEST_P(Threads, ShareAStepWithoutARace) {
+    World alone = heap(GetParam()), shared = heap(GetParam());
+    TaskPool tasks(8);
+    SavedWorld saved;
+    for (int step = 0; step < 8; ++step) {
+        alone.step(nullptr);
+        shared.step(&tasks);
+        ASSERT_EQ(shared.hash(), alone.hash()) << "step " << step;
+        // Between steps: what edits, saves and restores leave is there for all threads.
+        if (step == 2)
+            shared.save(saved);
+        if (step == 4)
+            for (World *world : {&alone, &shared}) {
+                world->remove_body(world->body_id(40));
+                world->add_body(dynamic_body(ball(0.3), 2, V{1, 6, 1}));
+            }
+    }
+    EXPECT_GE(shared.report().pairs, 20U * 64);
+    shared.restore(saved);
+    for (int step = 0; step < 2; ++step)
+        shared.step(&tasks);
+    EXPECT_TRUE(shared.report().finite);
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
