@@ -131,7 +131,7 @@ OutputFile::Opened OutputFile::open(const fs::path &path) {
     return opened;
 }
 
-OutputFile::OutputFile(fs::path path) : OutputFile(path, open(path)) {}
+OutputFile::OutputFile(const fs::path &path) : OutputFile(path, open(path)) {}
 
 OutputFile::OutputFile(fs::path path, Opened opened)
     : path_(std::move(path)), opened_(std::move(opened)),

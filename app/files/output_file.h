@@ -48,7 +48,7 @@ class OutputBuffer final : public std::streambuf {
 class OutputFile {
   public:
     // Creates no folders.
-    explicit OutputFile(std::filesystem::path path);
+    explicit OutputFile(const std::filesystem::path &path);
     ~OutputFile(); // what is not finished is removed
     OutputFile(const OutputFile &) = delete;
     OutputFile &operator=(const OutputFile &) = delete;

@@ -60,7 +60,6 @@ class ProbeSimulation final : public Simulation {
     std::vector<ContactView> contacts() const override { return {}; }
     std::vector<JointView> joints() const override { return {}; }
     std::vector<ImpactView> impacts() const override { return {}; }
-    std::vector<BoundsView> bounds() const override { return {}; }
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override { return {}; }
 
   private:

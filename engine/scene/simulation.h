@@ -85,10 +85,6 @@ struct ImpactView {
     double impulse = 0;     // N s
 };
 
-struct BoundsView {
-    glm::dvec3 min{0}, max{0};
-};
-
 struct Pick {
     std::size_t body = 0;
     double t = 0;
@@ -185,7 +181,6 @@ class Simulation {
     virtual std::vector<ContactView> contacts() const = 0; // of the last step
     virtual std::vector<JointView> joints() const = 0;
     virtual std::vector<ImpactView> impacts() const = 0; // of the last step
-    virtual std::vector<BoundsView> bounds() const = 0;  // around each body, now; planes have none
 
     // The nearest body on the ray origin + t * direction, t >= 0.
     virtual std::optional<Pick> pick(const glm::dvec3 &origin,

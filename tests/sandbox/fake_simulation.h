@@ -105,7 +105,6 @@ class FakeSimulation final : public Simulation {
     std::vector<ContactView> contacts() const override { return {}; }
     std::vector<JointView> joints() const override { return {}; }
     std::vector<ImpactView> impacts() const override { return {}; }
-    std::vector<BoundsView> bounds() const override { return {}; }
 
     // Spheres only.
     std::optional<Pick> pick(const glm::dvec3 &origin, const glm::dvec3 &direction) const override {

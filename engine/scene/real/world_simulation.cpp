@@ -99,7 +99,6 @@ class WorldSimulation final : public Simulation {
     std::vector<ContactView> contacts() const override;
     std::vector<JointView> joints() const override;
     std::vector<ImpactView> impacts() const override;
-    std::vector<BoundsView> bounds() const override;
 
     std::optional<Pick> pick(const glm::dvec3 &origin, const glm::dvec3 &direction) const override {
         const auto hit = world_.raycast(Ray{Vec3{origin}, Vec3{direction}});
@@ -421,18 +420,6 @@ std::vector<ImpactView> WorldSimulation::impacts() const {
     for (const Impact &impact : world_.impacts())
         views.push_back({impact.key.a, impact.key.b, glm::dvec3{impact.position},
                          glm::dvec3{impact.normal}, static_cast<double>(impact.impulse)});
-    return views;
-}
-
-std::vector<BoundsView> WorldSimulation::bounds() const {
-    std::vector<BoundsView> views;
-    for (std::uint32_t i = 0; i < world_.bodies().size(); ++i) {
-        if (!world_.bodies()[i].alive)
-            continue;
-        const Aabb box = world_.bounds_of(i);
-        if (box.min.x <= box.max.x)
-            views.push_back({glm::dvec3{box.min}, glm::dvec3{box.max}});
-    }
     return views;
 }
 
