@@ -145,9 +145,18 @@ TEST_P(Saves, ASettledStepAllocatesNothing) {
 TEST_P(Saves, AStepThatFailsLeavesTheStateAsItWas) {
     if (!find_method(GetParam())->info.joints)
         GTEST_SKIP() << "no joints";
-    World world = heap(GetParam(), 60);
+    // Balls that touch each other from the start.
+    const auto pile = [] {
+        World world(GetParam(), settings_for(GetParam()));
+        world.add_body(ground(0.6, 0));
+        for (int i = 0; i < 60; ++i)
+            world.add_body(dynamic_body(
+                ball(0.3), 1, V{0.59 * (i % 4), 0.3 + 0.59 * (i / 16), 0.59 * (i / 4 % 4)}));
+        return world;
+    };
+    World world = pile();
     const std::uint64_t before = world.hash();
-    World whole = heap(GetParam(), 60);
+    World whole = pile();
     run(whole, 1);
     const std::uint64_t after = whole.hash();
     run(whole, 4);
@@ -167,7 +176,7 @@ TEST_P(Saves, AStepThatFailsLeavesTheStateAsItWas) {
         ASSERT_EQ(world.hash(), before) << left;
         ASSERT_EQ(world.step_count(), 0U) << left;
     }
-    EXPECT_GE(failures, 20);
+    EXPECT_GE(failures, 5);
     EXPECT_EQ(world.hash(), after);
     run(world, 4);
     EXPECT_EQ(world.hash(), whole.hash());

@@ -187,5 +187,26 @@ TEST_F(WorldDraw, ContactsGoAlongWithTheBodiesThatAreShown) {
         EXPECT_NEAR(before.points[i].position.x, now.points[i].position.x - 0.25f, 1e-5f);
 }
 
+// A ring of 16 lines and a stalk for each impact that is passed on, smaller the older it is.
+TEST_F(WorldDraw, ImpactsAreDrawnWhereTheyWereAndHowHard) {
+    WorldDrawOptions options;
+    options.contacts = true;
+    const std::size_t without = draw_world(*simulation, camera, options).lines.size();
+    const auto reach_of = [&](double impulse, double age) {
+        options.impacts = {{ImpactView{0, 2, {3, 2, 1}, {0, 1, 0}, impulse}, age}};
+        const DrawList list = draw_world(*simulation, camera, options);
+        EXPECT_EQ(list.lines.size(), without + 17);
+        const glm::vec3 at(3, 2, 1);
+        const float reach = glm::distance(list.lines.back().b, at);
+        for (std::size_t i = without; i < list.lines.size(); ++i)
+            EXPECT_NEAR(glm::distance(list.lines[i].a, at), reach, 1e-5f);
+        return reach;
+    };
+    EXPECT_NEAR(reach_of(4, 0), 2 * reach_of(1, 0), 1e-5f);
+    EXPECT_NEAR(reach_of(1, Session::impact_shown / 2), reach_of(1, 0) / 2, 1e-5f);
+    options.contacts = false;
+    EXPECT_LT(draw_world(*simulation, camera, options).lines.size(), without + 17);
+}
+
 } // namespace
 } // namespace plumb
