@@ -41,6 +41,21 @@ void carry_over(std::span<const PointMemory> from, Contact &to) {
             to.impulses[static_cast<std::size_t>(k)] = share;
 }
 
+const ContactMemory *find_memory(const State &state, const ContactKey &key) {
+    const auto found = std::ranges::lower_bound(state.contacts, key, {}, &ContactMemory::key);
+    return found != state.contacts.end() && found->key == key ? &*found : nullptr;
+}
+
+// The angle between two rotations, for small ones (rad).
+Real turn_between(const Quat &from, const Quat &to) {
+    const Quat turn = glm::conjugate(from) * to;
+    return Real(2) * glm::length(Vec3{turn.x, turn.y, turn.z});
+}
+
+ContactOrigin origin_of(const Vec3 &normal, const Motion &a, const Motion &b) {
+    return {normal, b.position - a.position, a.rotation, b.rotation};
+}
+
 } // namespace
 
 // How far apart the two may be and still meet within the step; NaN when they are about to diverge.
@@ -71,11 +86,91 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     contact.friction = std::sqrt(a.material.friction * b.material.friction);
     contact.restitution = std::max(a.material.restitution, b.material.restitution);
     contact.sensor = a.sensor || b.sensor;
-    const auto before =
-        std::ranges::lower_bound(state_.contacts, contact.key, {}, &ContactMemory::key);
-    if (before != state_.contacts.end() && before->key == contact.key)
+    const Motion &motion_a = state_.motions[contact.key.a];
+    const Motion &motion_b = state_.motions[contact.key.b];
+    contact.origin = origin_of(manifold.normal, motion_a, motion_b);
+    for (int k = 0; k < manifold.count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        const ManifoldPoint &point = manifold.points[index];
+        ContactAnchor &anchor = contact.anchors[index];
+        anchor.arm_a = point.position - motion_a.position;
+        anchor.arm_b = point.position - motion_b.position;
+        // The midpoint lies half the separation off either surface.
+        const Real half = Real(0.5) * point.separation;
+        anchor.core_a = glm::conjugate(motion_a.rotation) *
+                        (anchor.arm_a - (half + a.rounding) * manifold.normal);
+        anchor.core_b = glm::conjugate(motion_b.rotation) *
+                        (anchor.arm_b + (half + b.rounding) * manifold.normal);
+    }
+    const ContactMemory *before = find_memory(state_, contact.key);
+    contact.is_new = before == nullptr;
+    if (!contact.is_new)
         carry_over(std::span(state_.points).subspan(before->first_point, before->point_count),
                    contact);
+}
+
+// While two bodies have hardly moved against each other since their manifold was found, it stays:
+// normal and lever arms as they were, separations following the poses. That saves finding it again,
+// and it makes the contact linear about the poses where it was found: without it a column of
+// contacts, each as soft as the step lets it be, buckles under its own weight. After Box3D (Catto),
+// which names PhysX's persistent manifolds as the source.
+bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) const {
+    const ContactMemory *before = find_memory(state_, candidate.key);
+    if (before == nullptr || before->point_count < 2)
+        return false;
+    const Collider &a = model_->colliders[candidate.collider_a];
+    const Collider &b = model_->colliders[candidate.collider_b];
+    const Motion &motion_a = state_.motions[candidate.key.a];
+    const Motion &motion_b = state_.motions[candidate.key.b];
+    const ContactOrigin &origin = before->origin;
+    const auto points = std::span(state_.points).subspan(before->first_point, before->point_count);
+    Real arm_a = Real(0);
+    Real arm_b = Real(0);
+    for (const PointMemory &point : points) {
+        arm_a = std::max(arm_a, glm::dot(point.core_a, point.core_a));
+        arm_b = std::max(arm_b, glm::dot(point.core_b, point.core_b));
+    }
+    const Real travel = glm::length((motion_b.position - motion_a.position) - origin.offset) +
+                        std::sqrt(arm_a) * turn_between(origin.rotation_a, motion_a.rotation) +
+                        std::sqrt(arm_b) * turn_between(origin.rotation_b, motion_b.rotation);
+    if (!(travel <= static_cast<Real>(settings_.kept_travel)))
+        return false;
+    Contact &contact = out.emplace_back();
+    contact.key = candidate.key;
+    contact.collider_a = candidate.collider_a;
+    contact.collider_b = candidate.collider_b;
+    contact.friction = std::sqrt(a.material.friction * b.material.friction);
+    contact.restitution = std::max(a.material.restitution, b.material.restitution);
+    contact.origin = origin;
+    contact.manifold.normal = origin.normal;
+    contact.manifold.count = static_cast<int>(before->point_count);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const PointMemory &point = points[k];
+        contact.impulses[k] = point.impulse;
+        ContactAnchor &anchor = contact.anchors[k];
+        anchor.core_a = point.core_a;
+        anchor.core_b = point.core_b;
+        const Vec3 surface_a = origin.rotation_a * point.core_a + a.rounding * origin.normal;
+        const Vec3 surface_b = origin.rotation_b * point.core_b - b.rounding * origin.normal;
+        const Vec3 half = Real(0.5) *
+                          glm::dot(origin.offset + (surface_b - surface_a), origin.normal) *
+                          origin.normal;
+        anchor.arm_a = surface_a + half;
+        anchor.arm_b = surface_b - half;
+        const Vec3 now_a = motion_a.rotation * point.core_a + a.rounding * origin.normal;
+        const Vec3 now_b = motion_b.rotation * point.core_b - b.rounding * origin.normal;
+        const Vec3 gap = (motion_b.position - motion_a.position) + (now_b - now_a);
+        ManifoldPoint &to = contact.manifold.points[k];
+        to.feature = point.feature;
+        to.separation = glm::dot(gap, origin.normal);
+        to.position = motion_a.position + now_a + Real(0.5) * gap;
+    }
+    return true;
+}
+
+bool World::keeps_contacts() const {
+    return settings_.kept_travel > 0 &&
+           std::ranges::find(method_->info.reads, SettingGroup::kept) != method_->info.reads.end();
 }
 
 void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
@@ -88,6 +183,8 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
     const std::uint32_t i = candidate.collider_a;
     const std::uint32_t j = candidate.collider_b;
     if (!a.surface && !b.surface) {
+        if (keeps_contacts() && keep_contact(candidate, out))
+            return;
         add_contact(candidate, ContactKey::no_triangle,
                     plumb::collide(scratch_.placed[i], scratch_.placed[j], margin), out);
         return;

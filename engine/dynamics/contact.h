@@ -21,7 +21,26 @@ struct ContactKey {
     friend auto operator<=>(const ContactKey &, const ContactKey &) = default;
 };
 
-// Two colliders that touch, or are about to, as found in this step.
+// Where a contact point is on its bodies.
+struct ContactAnchor {
+    // The point without the rounding radius of a sphere or capsule, in the mass frames: a round
+    // surface keeps its distance when the body rolls, so only the core's point turns with it.
+    Vec3 core_a{Real(0)};
+    Vec3 core_b{Real(0)};
+    // The lever arms, in world axes, as of when the manifold was found.
+    Vec3 arm_a{Real(0)};
+    Vec3 arm_b{Real(0)};
+};
+
+// How two bodies lay when their manifold was found.
+struct ContactOrigin {
+    Vec3 normal{Real(0)};
+    Vec3 offset{Real(0)}; // from a's centre of mass to b's
+    Quat rotation_a = identity_rotation;
+    Quat rotation_b = identity_rotation;
+};
+
+// Two colliders that touch, or are about to, as found in this step or kept from an earlier one.
 struct Contact {
     ContactKey key;
     std::uint32_t collider_a = 0; // in the model
@@ -29,22 +48,28 @@ struct Contact {
     Real friction = Real(0);
     Real restitution = Real(0);
     bool sensor = false; // pushes nothing
+    bool is_new = false; // nothing is remembered of it
     Manifold manifold;
+    ContactOrigin origin;
+    std::array<ContactAnchor, 4> anchors{};
     // For each manifold point what the solver remembers of the last substep (N s): along the
     // normal, and along the two vectors of tangent_basis(normal).
     std::array<Vec3, 4> impulses{};
 };
 
-// What is remembered of a contact from step to step: the impulses of its loaded points, known by
-// feature.
+// What is remembered of a loaded contact from step to step: its points, known by feature, with
+// their impulses, and where they were found.
 struct ContactMemory {
     ContactKey key;
     std::uint32_t first_point = 0;
     std::uint32_t point_count = 0; // 1..4
+    ContactOrigin origin;
 };
 struct PointMemory {
     std::uint32_t feature = 0;
     Vec3 impulse{Real(0)};
+    Vec3 core_a{Real(0)}; // ContactAnchor
+    Vec3 core_b{Real(0)};
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -62,18 +62,18 @@ void solve_friction(const ContactConstraint &contact, ContactPointConstraint &po
     apply_pair_impulse(a, b, point, impulse);
 }
 
-void prepare_contacts(StepContext &context) {
+void prepare_contacts(StepContext &context, Prepare which) {
     std::vector<ContactConstraint> &constraints = context.scratch.contacts;
     constraints.clear();
     for (std::size_t i = 0; i < context.contacts.size(); ++i) {
         const Contact &contact = context.contacts[i];
-        if (contact.sensor)
+        if (contact.sensor || (which == Prepare::bouncing && contact.restitution == Real(0)))
             continue;
         ContactConstraint &out = constraints.emplace_back();
         const SolverBody &a = context.bodies[contact.key.a];
         const SolverBody &b = context.bodies[contact.key.b];
-        const Real rounding_a = context.model.colliders[contact.collider_a].rounding;
-        const Real rounding_b = context.model.colliders[contact.collider_b].rounding;
+        const Real rounding = -(context.model.colliders[contact.collider_a].rounding +
+                                context.model.colliders[contact.collider_b].rounding);
         out.contact = static_cast<std::uint32_t>(i);
         out.a = contact.key.a;
         out.b = contact.key.b;
@@ -84,17 +84,13 @@ void prepare_contacts(StepContext &context) {
         out.count = contact.manifold.count;
         for (int k = 0; k < out.count; ++k) {
             const auto index = static_cast<std::size_t>(k);
-            const ManifoldPoint &from = contact.manifold.points[index];
+            const ContactAnchor &from = contact.anchors[index];
             ContactPointConstraint &point = out.points[index];
-            point.r_a = from.position - a.position;
-            point.r_b = from.position - b.position;
-            // The midpoint lies half the separation off either surface.
-            const Vec3 half = (Real(0.5) * from.separation) * out.normal;
-            const Vec3 surface_core_a = point.r_a - half - rounding_a * out.normal;
-            const Vec3 surface_core_b = point.r_b + half + rounding_b * out.normal;
-            point.core_a = glm::conjugate(a.rotation) * surface_core_a;
-            point.core_b = glm::conjugate(b.rotation) * surface_core_b;
-            point.rounding = -(rounding_a + rounding_b);
+            point.r_a = from.arm_a;
+            point.r_b = from.arm_b;
+            point.core_a = from.core_a;
+            point.core_b = from.core_b;
+            point.rounding = rounding;
             point.impulse = contact.impulses[index];
 
             const Real k_normal = inverse_effective_mass(a, b, point.r_a, point.r_b, out.normal);

@@ -64,8 +64,9 @@ Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3
 void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, SolverBody &a,
                     SolverBody &b, Real limit);
 
-// One constraint for each contact that is no sensor's, in order.
-void prepare_contacts(StepContext &context);
+// One constraint for each contact that is no sensor's, in order; or for those that bounce alone.
+enum class Prepare { all, bouncing };
+void prepare_contacts(StepContext &context, Prepare which = Prepare::all);
 // The separation of a point at the present poses (m).
 Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
                         const SolverBody &a, const SolverBody &b);

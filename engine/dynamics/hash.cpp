@@ -144,10 +144,16 @@ std::uint64_t World::hash() const {
         hash.add(rank[memory.key.a] << 32 | rank[memory.key.b]);
         hash.add(std::uint64_t{memory.key.child_a} << 48 | std::uint64_t{memory.key.child_b} << 32 |
                  memory.key.triangle);
+        add(hash, memory.origin.normal);
+        add(hash, memory.origin.offset);
+        add(hash, memory.origin.rotation_a);
+        add(hash, memory.origin.rotation_b);
         for (std::uint32_t k = 0; k < memory.point_count; ++k) {
             const PointMemory &point = state_.points[memory.first_point + k];
             hash.add(std::uint64_t{point.feature});
             add(hash, point.impulse);
+            add(hash, point.core_a);
+            add(hash, point.core_b);
         }
     }
     if (state_.grab.is_holding()) {

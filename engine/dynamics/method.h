@@ -1,6 +1,7 @@
 // The seam between a world and the methods that advance it.
 #pragma once
 
+#include "engine/dynamics/contact_columns.h"
 #include "engine/dynamics/contact_constraint.h"
 #include "engine/dynamics/events.h"
 #include "engine/dynamics/joint_constraint.h"
@@ -20,6 +21,7 @@ namespace plumb::inline PLUMB_PRECISION {
 // Memory that a method uses within a step, kept from step to step so that nothing is allocated.
 struct SolverScratch {
     std::vector<ContactConstraint> contacts;
+    ContactSchedule schedule;
     std::vector<JointConstraint> joints;
     std::vector<RowBlock> rows;
     std::vector<FreeFlight> flights; // one for each moving body

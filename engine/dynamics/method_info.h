@@ -16,8 +16,8 @@ struct MethodInfo {
     bool contacts = false;           // can hold bodies apart
     bool joints = false;             // can hold bodies together
     std::vector<SettingGroup> reads; // of the settings, beside those that every method reads
-    int default_substeps = 1;
-    int default_iterations = 1;
+    // What it runs with where nothing else is said.
+    StepSettings defaults{.substeps = 1, .iterations = 1};
 };
 
 // Whether the method's motion depends on that setting.

@@ -172,7 +172,10 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
 void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h) {
     flight.free =
         motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
-    motion.position += h * (flight.free ? flight.mean_velocity : motion.velocity);
+    const Vec3 way = h * (flight.free ? flight.mean_velocity : motion.velocity);
+    motion.position += way;
+    motion.moved += way;
+    motion.turned += h * motion.angular_velocity;
     if (flight.free && body.kind == BodyKind::dynamic && has_gyroscopic_spin(body))
         motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
     else

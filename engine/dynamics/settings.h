@@ -25,6 +25,7 @@ struct StepSettings {
     int substeps = 4;   // the default of a method stands in its row of the registry
     int iterations = 1; // likewise
     double speculative_distance = 0.02;
+    double kept_travel = 0.005;
     double penetration_slop = 0.0005;
     double baumgarte = 0.2;
     double contact_frequency_ratio = 0.125;
@@ -45,6 +46,7 @@ enum class SettingGroup {
     world,       // of the scene: the same for all methods
     step,        // how any method cuts a step
     constraints, // whatever solves contacts and joints
+    kept,        // manifolds kept while bodies rest against each other
     baumgarte,   // drift removed through the velocities
     soft,        // contacts and joints as springs
     impacts,     // bounces, with each impact handed on
@@ -76,6 +78,10 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      SettingGroup::constraints,
      "Contacts closer than this are made before they touch, so that nothing falls into its "
      "neighbour within a step; bodies that approach each other get their relative motion on top."},
+    {"kept_travel", &StepSettings::kept_travel, "m", 0, 1e9, SettingGroup::kept,
+     "Contacts of several points are kept as they were found until the surfaces have moved so far "
+     "against each other; 0: found again in each step. Well below speculative_distance, so that "
+     "no corner that was left out comes to touch."},
     {"penetration_slop", &StepSettings::penetration_slop, "m", 0, 1e9, SettingGroup::baumgarte,
      "Penetration that is left alone, so that contacts persist."},
     {"baumgarte", &StepSettings::baumgarte, "", 0, 1, SettingGroup::baumgarte,
@@ -86,7 +92,8 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "Natural frequency of a soft contact as a fraction of the substep rate: above 1/4 the spring "
      "is under-sampled, 1/8 lets it settle between neighbours (Catto 2024, Solver2D)."},
     {"contact_damping_ratio", &StepSettings::contact_damping_ratio, "", 0, 1e6, SettingGroup::soft,
-     "Damping of a soft contact; 1 is critical."},
+     "Damping of a soft contact; 1 is critical, and what soft_step takes: with more a pyramid "
+     "rocks for ever."},
     {"joint_frequency_ratio", &StepSettings::joint_frequency_ratio, "", 1e-6, 1000,
      SettingGroup::soft,
      "Natural frequency of a soft joint as a fraction of the substep rate: stiffer keeps a "

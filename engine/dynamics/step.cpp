@@ -1,6 +1,7 @@
 // The step, phase by phase.
 #include "engine/dynamics/world.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -108,22 +109,21 @@ void World::advance() {
     }
 }
 
-// A point that bears no load is not remembered.
+// A contact that bears no load is not remembered.
 void World::gather_memory() {
     Scratch &s = scratch_;
     s.next_memory.clear();
     s.next_points.clear();
     for (const Contact &contact : s.contacts) {
-        const auto first = static_cast<std::uint32_t>(s.next_points.size());
-        for (int k = 0; k < contact.manifold.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            if (contact.impulses[index] != Vec3{Real(0)})
-                s.next_points.push_back(
-                    {contact.manifold.points[index].feature, contact.impulses[index]});
-        }
-        const auto count = static_cast<std::uint32_t>(s.next_points.size()) - first;
-        if (count > 0)
-            s.next_memory.push_back({contact.key, first, count});
+        const auto count = static_cast<std::size_t>(contact.manifold.count);
+        const auto impulses = std::span(contact.impulses).first(count);
+        if (std::ranges::all_of(impulses, [](const Vec3 &one) { return one == Vec3{Real(0)}; }))
+            continue;
+        s.next_memory.push_back({contact.key, static_cast<std::uint32_t>(s.next_points.size()),
+                                 static_cast<std::uint32_t>(count), contact.origin});
+        for (std::size_t k = 0; k < count; ++k)
+            s.next_points.push_back({contact.manifold.points[k].feature, impulses[k],
+                                     contact.anchors[k].core_a, contact.anchors[k].core_b});
     }
 }
 

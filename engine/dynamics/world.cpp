@@ -430,14 +430,15 @@ void World::set_step_count(std::uint64_t count) {
     state_.steps_before = 0;
 }
 
-void World::remember_contact(const ContactKey &key, std::span<const PointMemory> points) {
+void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
+                             std::span<const PointMemory> points) {
     PLUMB_CHECK(key.a < key.b && key.b < bodies().size() && bodies()[key.a].alive &&
                     bodies()[key.b].alive,
                 "a remembered contact names a body that is not alive");
     PLUMB_CHECK(!points.empty() && points.size() <= 4,
                 "a contact has 1 to 4 points, got " << points.size());
     const ContactMemory memory{key, static_cast<std::uint32_t>(state_.points.size()),
-                               static_cast<std::uint32_t>(points.size())};
+                               static_cast<std::uint32_t>(points.size()), origin};
     state_.points.insert(state_.points.end(), points.begin(), points.end());
     const auto place = std::ranges::lower_bound(state_.contacts, key, {}, &ContactMemory::key);
     if (place != state_.contacts.end() && place->key == key)

@@ -81,7 +81,8 @@ class World {
     void release();
     // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
     // are known by feature; a contact that the next step does not find again is forgotten.
-    void remember_contact(const ContactKey &key, std::span<const PointMemory> points);
+    void remember_contact(const ContactKey &key, const ContactOrigin &origin,
+                          std::span<const PointMemory> points);
 
     // Advances by settings().dt. `tasks` may be null: one thread. Same bits for any thread count. A
     // step that throws leaves the state as it was. `times`, when not null, gets the phases' times.
@@ -144,6 +145,8 @@ class World {
     Manifold present_manifold(const Contact &contact) const;
     void collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
                            std::vector<std::uint32_t> &triangles) const;
+    bool keeps_contacts() const;
+    bool keep_contact(const Candidate &candidate, std::vector<Contact> &out) const;
     void add_contact(const Candidate &candidate, std::uint32_t triangle, const Manifold &manifold,
                      std::vector<Contact> &out) const;
 

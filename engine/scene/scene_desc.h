@@ -120,7 +120,14 @@ struct ContactStateDesc {
     struct Point {
         std::uint32_t feature = 0;
         glm::dvec3 impulse{0}; // normal, two tangential (N s)
+        glm::dvec3 core_a{0};  // where the point is on either body, in its mass frame (m)
+        glm::dvec3 core_b{0};
     };
+    // How the bodies lay when it was found.
+    glm::dvec3 normal{0, 1, 0};
+    glm::dvec3 offset{0}; // from a's centre of mass to b's (m)
+    glm::dquat rotation_a{1, 0, 0, 0};
+    glm::dquat rotation_b{1, 0, 0, 0};
     std::vector<Point> points;
 };
 

@@ -16,8 +16,9 @@ const toml::array *array_at(const Table &table, std::string_view key) {
 }
 
 void read_contact(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 7> keys{
-        "body_a", "body_b", "child_a", "child_b", "triangle", "features", "impulses"};
+    static constexpr std::array<std::string_view, 13> keys{
+        "body_a",  "body_b",  "child_a", "child_b", "triangle",   "features",  "impulses",
+        "cores_a", "cores_b", "normal",  "offset",  "rotation_a", "rotation_b"};
     const Table table(reading.report, source, "[[state.contact]]", keys);
     ContactStateDesc contact;
     for (const auto &[key, name] :
@@ -39,25 +40,49 @@ void read_contact(Reading &reading, const toml::table &source) {
     if (const std::optional<std::uint64_t> triangle = table.natural("triangle"))
         contact.triangle = static_cast<std::uint32_t>(*triangle);
     const toml::array *features = array_at(table, "features");
-    const toml::array *impulses = array_at(table, "impulses");
-    if (!features || !impulses)
+    static constexpr std::array<std::string_view, 3> vectors{"impulses", "cores_a", "cores_b"};
+    std::array<const toml::array *, 3> arrays{};
+    // Without the places on the bodies a contact is found anew.
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        if (i == 0 || table.has(vectors[i])) {
+            arrays[i] = array_at(table, vectors[i]);
+            if (!arrays[i])
+                return;
+        }
+    if (!features)
         return;
-    if (features->size() != impulses->size()) {
-        table.error("impulses",
-                    "there are " + std::to_string(features->size()) + " features and " +
-                        std::to_string(impulses->size()) + " impulses",
-                    "there must be as many of one as of the other");
-        return;
-    }
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        if (arrays[i] && arrays[i]->size() != features->size()) {
+            table.error(vectors[i],
+                        "there are " + std::to_string(features->size()) + " features and " +
+                            std::to_string(arrays[i]->size()) + " " + std::string(vectors[i]),
+                        "there must be as many of one as of the other");
+            return;
+        }
     for (std::size_t i = 0; i < features->size(); ++i) {
         const std::string index = "[" + std::to_string(i) + "]";
         const std::optional<std::int64_t> feature = table.integer(
             *features->get(i), "features" + index, 0, std::numeric_limits<std::uint32_t>::max());
-        const auto impulse = table.numbers<3>(*impulses->get(i), "impulses" + index, finite);
-        if (feature && impulse)
-            contact.points.push_back({static_cast<std::uint32_t>(*feature),
-                                      {(*impulse)[0], (*impulse)[1], (*impulse)[2]}});
+        ContactStateDesc::Point point;
+        point.feature = static_cast<std::uint32_t>(feature.value_or(0));
+        const std::array<glm::dvec3 *, 3> members{&point.impulse, &point.core_a, &point.core_b};
+        bool is_read = feature.has_value();
+        for (std::size_t k = 0; k < vectors.size(); ++k) {
+            if (!arrays[k])
+                continue;
+            if (const auto read =
+                    table.numbers<3>(*arrays[k]->get(i), std::string(vectors[k]) + index, finite))
+                *members[k] = {(*read)[0], (*read)[1], (*read)[2]};
+            else
+                is_read = false;
+        }
+        if (is_read)
+            contact.points.push_back(point);
     }
+    contact.normal = table.vector("normal", finite).value_or(contact.normal);
+    contact.offset = table.vector("offset", finite).value_or(contact.offset);
+    contact.rotation_a = table.unit_quaternion("rotation_a").value_or(contact.rotation_a);
+    contact.rotation_b = table.unit_quaternion("rotation_b").value_or(contact.rotation_b);
     reading.scene.contacts.push_back(std::move(contact));
 }
 

@@ -307,9 +307,13 @@ class SceneWriter {
         for (const ContactStateDesc &contact : scene.contacts) {
             std::string features;
             std::string impulses;
+            std::string cores_a;
+            std::string cores_b;
             for (const ContactStateDesc::Point &point : contact.points) {
                 features += (features.empty() ? "" : ", ") + std::to_string(point.feature);
                 impulses += (impulses.empty() ? "" : ", ") + array3(point.impulse);
+                cores_a += (cores_a.empty() ? "" : ", ") + array3(point.core_a);
+                cores_b += (cores_b.empty() ? "" : ", ") + array3(point.core_b);
             }
             header("[[state.contact]]");
             line("body_a", string(contact.body_a));
@@ -322,6 +326,12 @@ class SceneWriter {
                 line("triangle", natural(*contact.triangle));
             line("features", "[" + features + "]");
             line("impulses", "[" + impulses + "]");
+            line("cores_a", "[" + cores_a + "]");
+            line("cores_b", "[" + cores_b + "]");
+            line("normal", array3(contact.normal));
+            line("offset", array3(contact.offset));
+            line("rotation_a", rotation(contact.rotation_a));
+            line("rotation_b", rotation(contact.rotation_b));
         }
     }
 

@@ -42,10 +42,7 @@ bool reads(const MethodInfo &method, const SettingRow &setting) {
 }
 
 StepSettings default_settings(const MethodInfo &method) {
-    StepSettings settings;
-    settings.substeps = method.default_substeps;
-    settings.iterations = method.default_iterations;
-    return settings;
+    return method.defaults;
 }
 
 ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {

@@ -130,7 +130,8 @@ World loaded(const World &from) {
         key.a = ids[key.a].index;
         key.b = ids[key.b].index;
         world.remember_contact(
-            key, std::span(from.state().points).subspan(memory.first_point, memory.point_count));
+            key, memory.origin,
+            std::span(from.state().points).subspan(memory.first_point, memory.point_count));
     }
     world.set_step_count(from.step_count());
     return world;
@@ -249,20 +250,45 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
         }
     }
     EXPECT_GT(parts, 500);
-    // Remembered impulses of contacts.
+    // What is remembered of contacts.
     int loaded_points = 0;
-    for (const ContactMemory &memory : before.state().contacts)
-        for (std::size_t k = 0; k < memory.point_count; ++k)
-            for (int axis = 0; axis < 3; ++axis) {
-                const auto first = before.state().points.begin() + memory.first_point;
-                std::vector<PointMemory> points(first, first + memory.point_count);
-                loaded_points += points[k].impulse.x > 0 ? 1 : 0;
-                next(points[k].impulse[axis]);
-                World changed = before;
-                changed.remember_contact(memory.key, points);
-                EXPECT_NE(changed.hash(), before.hash());
-            }
-    EXPECT_GT(loaded_points, 30);
+    for (const ContactMemory &memory : before.state().contacts) {
+        const auto first = before.state().points.begin() + memory.first_point;
+        const std::vector<PointMemory> points(first, first + memory.point_count);
+        const auto expect_other = [&](const ContactOrigin &origin,
+                                      const std::vector<PointMemory> &remembered) {
+            World changed = before;
+            changed.remember_contact(memory.key, origin, remembered);
+            EXPECT_NE(changed.hash(), before.hash());
+        };
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            loaded_points += points[k].impulse.x > 0 ? 1 : 0;
+            for (int axis = 0; axis < 3; ++axis)
+                for (Vec3 PointMemory::*member :
+                     {&PointMemory::impulse, &PointMemory::core_a, &PointMemory::core_b}) {
+                    std::vector<PointMemory> other = points;
+                    next((other[k].*member)[axis]);
+                    expect_other(memory.origin, other);
+                }
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            ContactOrigin other = memory.origin;
+            next(other.normal[axis]);
+            expect_other(other, points);
+            other = memory.origin;
+            next(other.offset[axis]);
+            expect_other(other, points);
+        }
+        for (int axis = 0; axis < 4; ++axis) {
+            ContactOrigin other = memory.origin;
+            next(other.rotation_a[axis]);
+            expect_other(other, points);
+            other = memory.origin;
+            next(other.rotation_b[axis]);
+            expect_other(other, points);
+        }
+    }
+    EXPECT_GT(loaded_points, 15);
     World changed = before;
     changed.set_step_count(before.step_count() + 1);
     EXPECT_NE(changed.hash(), before.hash());

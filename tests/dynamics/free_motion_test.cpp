@@ -173,8 +173,8 @@ TEST(Registry, RowsAreCompleteAndFound) {
         EXPECT_FALSE(info.title.empty());
         EXPECT_FALSE(info.source.empty());
         EXPECT_NE(method.advance, nullptr);
-        EXPECT_GE(info.default_substeps, 1);
-        EXPECT_GE(info.default_iterations, 1);
+        EXPECT_GE(info.defaults.substeps, 1);
+        EXPECT_GE(info.defaults.iterations, 1);
     }
     EXPECT_EQ(find_method("no_such_method"), nullptr);
     EXPECT_EQ(find_method(""), nullptr);

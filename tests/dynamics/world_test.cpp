@@ -46,7 +46,7 @@ TEST(World, IdsOfRemovedBodiesAreRefusedAndSlotsUsedAgain) {
     expect_failure("body 0 is not alive", [&] { world.set_motion(a, {}, Vec3{}, Vec3{}); });
     expect_failure("body 0 is not alive", [&] { world.apply_impulse(a, Vec3{}, Vec3{}); });
     expect_failure("1 to 4 points", [&] {
-        world.remember_contact({a.index, b.index}, {});
+        world.remember_contact({a.index, b.index}, {}, {});
     }); // whose body is gone
     JointDef joint;
     joint.a = a;
@@ -156,7 +156,7 @@ TEST(World, MisuseIsNamedWithItsValue) {
     expect_failure("'no_such_method'", [&] { world.set_method("no_such_method"); });
     const std::array<PointMemory, 5> points{};
     expect_failure("1 to 4 points, got 5", [&] {
-        world.remember_contact({id.index, wall.index}, points);
+        world.remember_contact({id.index, wall.index}, {}, points);
     });
 }
 

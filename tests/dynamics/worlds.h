@@ -113,11 +113,7 @@ inline V impulse_of(const World &world, std::size_t joint) {
 
 // Settings with the method's own substeps and iterations.
 inline StepSettings settings_for(const std::string &method) {
-    StepSettings settings;
-    const MethodInfo *info = find_method_info(method);
-    settings.substeps = info->default_substeps;
-    settings.iterations = info->default_iterations;
-    return settings;
+    return default_settings(*find_method_info(method));
 }
 inline StepSettings weightless(StepSettings settings) {
     settings.gravity = V{0};

@@ -142,8 +142,8 @@ TEST_F(SessionTest, EachMethodBringsItsOwnSettings) {
     EXPECT_EQ(session.simulation()->settings().iterations, 17);
     ASSERT_TRUE(session.set_method("soft_step"));
     const MethodInfo &soft = *find_method_info("soft_step");
-    EXPECT_EQ(session.simulation()->settings().substeps, soft.default_substeps);
-    EXPECT_EQ(session.simulation()->settings().iterations, soft.default_iterations);
+    EXPECT_EQ(session.simulation()->settings().substeps, soft.defaults.substeps);
+    EXPECT_EQ(session.simulation()->settings().iterations, soft.defaults.iterations);
 }
 
 TEST_F(SessionTest, AMethodThatCannotRunTheSceneIsRefusedWithAReason) {

@@ -120,8 +120,9 @@ std::vector<std::string> words(const SceneDesc &scene) {
     w.number(scene.step_count);
     for (const ContactStateDesc &c : scene.contacts) {
         w.add(c.body_a), w.add(c.body_b);
+        w.add(c.normal), w.add(c.offset), w.add(c.rotation_a), w.add(c.rotation_b);
         for (const ContactStateDesc::Point &p : c.points)
-            w.number(p.feature), w.add(p.impulse);
+            w.number(p.feature), w.add(p.impulse), w.add(p.core_a), w.add(p.core_b);
     }
     return w.get();
 }
@@ -167,7 +168,11 @@ class Scenes {
                 contact.triangle = static_cast<std::uint32_t>(random_.next_u64());
             for (std::uint32_t k = random_.next_index(5); k > 0; --k)
                 contact.points.push_back(
-                    {static_cast<std::uint32_t>(random_.next_u64()), vector()});
+                    {static_cast<std::uint32_t>(random_.next_u64()), vector(), vector(), vector()});
+            contact.normal = vector();
+            contact.offset = vector();
+            contact.rotation_a = scene.bodies[1].orientation;
+            contact.rotation_b = scene.bodies[2].orientation;
             scene.contacts.push_back(contact);
         }
         return scene;

@@ -82,8 +82,7 @@ Method rk4() {
              .contacts = false,
              .joints = false,
              .reads = {},
-             .default_substeps = 1,
-             .default_iterations = 1},
+             .defaults = {.substeps = 1, .iterations = 1}},
             advance};
 }
 

@@ -48,8 +48,7 @@ Method semi_implicit_euler() {
              .contacts = false,
              .joints = false,
              .reads = {},
-             .default_substeps = 1,
-             .default_iterations = 1},
+             .defaults = {.substeps = 1, .iterations = 1}},
             advance};
 }
 

@@ -48,8 +48,7 @@ Method sequential_impulses() {
              .joints = true,
              .reads = {SettingGroup::constraints, SettingGroup::baumgarte, SettingGroup::impacts,
                        SettingGroup::gyroscopic},
-             .default_substeps = 1,
-             .default_iterations = 10},
+             .defaults = {.substeps = 1, .iterations = 10}},
             advance};
 }
 

@@ -39,32 +39,32 @@ void advance(StepContext &context) {
                             .force_share = Real(0.5)};
     const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .loaded_only = true};
 
-    prepare_contacts(context);
+    prepare_contact_columns(context);
+    prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
         refresh_joints(context);
         remember_joints(context);
-        remember_contacts(context);
         recall_joints(context, Real(0.5), Springs::solve);
-        recall_contacts(context, Real(0.5));
+        recall_contact_columns(context, Real(0.5), true);
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, holding);
-            solve_contacts(context, contact_bias, h);
+            solve_contact_columns(context, contact_bias, h);
         }
         end_flights(context, h, Kick::around);
         refresh_joints(context);
         recall_joints(context, Real(0.5), Springs::skip);
-        recall_contacts(context, Real(0.5));
+        recall_contact_columns(context, Real(0.5), false);
         repeat_springs(context);
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, relaxing);
-            solve_contacts(context, relax_bias, h);
+            solve_contact_columns(context, relax_bias, h);
         }
     }
     store_joints(context);
-    store_contacts(context);
+    store_contact_columns(context);
 }
 
 } // namespace
@@ -75,10 +75,9 @@ Method soft_step() {
              .source = "Catto 2024, Solver2D; Macklin et al. 2019, Small Steps",
              .contacts = true,
              .joints = true,
-             .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::impacts,
-                       SettingGroup::gyroscopic},
-             .default_substeps = 4,
-             .default_iterations = 1},
+             .reads = {SettingGroup::constraints, SettingGroup::kept, SettingGroup::soft,
+                       SettingGroup::impacts, SettingGroup::gyroscopic},
+             .defaults = {.substeps = 4, .iterations = 1, .contact_damping_ratio = 1}},
             advance};
 }
 

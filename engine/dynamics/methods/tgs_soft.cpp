@@ -56,8 +56,7 @@ Method tgs_soft() {
              .contacts = true,
              .joints = true,
              .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::gyroscopic},
-             .default_substeps = 4,
-             .default_iterations = 1},
+             .defaults = {.substeps = 4, .iterations = 1}},
             advance};
 }
 

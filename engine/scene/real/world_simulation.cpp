@@ -254,16 +254,22 @@ void WorldSimulation::insert(const JointDesc &desc) {
 void WorldSimulation::remember(const ContactStateDesc &desc) {
     std::vector<PointMemory> points;
     for (const ContactStateDesc::Point &point : desc.points)
-        points.push_back({point.feature, Vec3{point.impulse}});
+        points.push_back(
+            {point.feature, Vec3{point.impulse}, Vec3{point.core_a}, Vec3{point.core_b}});
     ContactKey key{id_of(desc.body_a).index, id_of(desc.body_b).index,
                    static_cast<std::uint16_t>(desc.child_a),
                    static_cast<std::uint16_t>(desc.child_b),
                    desc.triangle.value_or(ContactKey::no_triangle)};
+    ContactOrigin origin{Vec3{desc.normal}, Vec3{desc.offset}, Quat{desc.rotation_a},
+                         Quat{desc.rotation_b}};
     if (key.a > key.b) {
         std::swap(key.a, key.b);
         std::swap(key.child_a, key.child_b);
+        origin = {-origin.normal, -origin.offset, origin.rotation_b, origin.rotation_a};
+        for (PointMemory &point : points)
+            std::swap(point.core_a, point.core_b);
     }
-    world_.remember_contact(key, points);
+    world_.remember_contact(key, origin, points);
 }
 
 SceneDesc WorldSimulation::describe() const {
@@ -304,17 +310,21 @@ SceneDesc WorldSimulation::describe() const {
         out.joints.push_back(std::move(joint));
     }
     for (const ContactMemory &memory : world.state().contacts) {
-        ContactStateDesc state{book_->infos[memory.key.a].name,
-                               book_->infos[memory.key.b].name,
-                               memory.key.child_a,
-                               memory.key.child_b,
-                               {},
-                               {}};
+        ContactStateDesc state;
+        state.body_a = book_->infos[memory.key.a].name;
+        state.body_b = book_->infos[memory.key.b].name;
+        state.child_a = memory.key.child_a;
+        state.child_b = memory.key.child_b;
+        state.normal = glm::dvec3{memory.origin.normal};
+        state.offset = glm::dvec3{memory.origin.offset};
+        state.rotation_a = glm::dquat{memory.origin.rotation_a};
+        state.rotation_b = glm::dquat{memory.origin.rotation_b};
         if (memory.key.triangle != ContactKey::no_triangle)
             state.triangle = memory.key.triangle;
         for (std::uint32_t k = 0; k < memory.point_count; ++k) {
             const PointMemory &point = world.state().points[memory.first_point + k];
-            state.points.push_back({point.feature, glm::dvec3{point.impulse}});
+            state.points.push_back({point.feature, glm::dvec3{point.impulse},
+                                    glm::dvec3{point.core_a}, glm::dvec3{point.core_b}});
         }
         out.contacts.push_back(std::move(state));
     }

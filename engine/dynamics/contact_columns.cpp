@@ -1,0 +1,167 @@
+#include "engine/dynamics/contact_columns.h"
+
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+constexpr std::uint32_t colours = 64;
+constexpr std::uint32_t most_points = 4;
+// What finds no colour is solved alone.
+constexpr std::uint32_t alone = colours * most_points;
+
+int offset_of(const SolverBody &body, const Vec3 &member) {
+    return static_cast<int>(&member.x - &body.position.x);
+}
+
+BodyReals reals_of(std::span<SolverBody> bodies) {
+    static_assert(sizeof(SolverBody) % sizeof(Real) == 0);
+    if (bodies.empty())
+        return {};
+    const SolverBody &first = bodies.front();
+    return {&bodies.front().position.x,
+            offset_of(first, first.velocity),
+            offset_of(first, first.angular_velocity),
+            offset_of(first, first.moved),
+            offset_of(first, first.turned),
+            offset_of(first, first.inv_inertia[0])};
+}
+
+bool is_dynamic(const StepContext &context, std::uint32_t body) {
+    return context.model.bodies[body].kind == BodyKind::dynamic;
+}
+
+void set(Columns3 &columns, std::size_t lane, const Vec3 &v) {
+    columns.x.lanes[lane] = v.x;
+    columns.y.lanes[lane] = v.y;
+    columns.z.lanes[lane] = v.z;
+}
+
+Vec3 get(const Columns3 &columns, std::size_t lane) {
+    return {columns.x.lanes[lane], columns.y.lanes[lane], columns.z.lanes[lane]};
+}
+
+void set(ColumnsSymmetric &columns, std::size_t lane, const Mat3 &m) {
+    columns.xx.lanes[lane] = m[0][0];
+    columns.yy.lanes[lane] = m[1][1];
+    columns.zz.lanes[lane] = m[2][2];
+    columns.xy.lanes[lane] = m[1][0];
+    columns.xz.lanes[lane] = m[2][0];
+    columns.yz.lanes[lane] = m[2][1];
+}
+
+// The first colour that neither body has a contact of. The order is that of the contacts' keys, so
+// the colours depend on nothing but the state.
+void colour(StepContext &context) {
+    ContactSchedule &schedule = context.scratch.schedule;
+    schedule.lanes.clear();
+    schedule.bucket_sizes.assign(alone + 1, 0);
+    schedule.colours_of_body.assign(context.bodies.size(), 0);
+    for (std::size_t i = 0; i < context.contacts.size(); ++i) {
+        const Contact &contact = context.contacts[i];
+        if (contact.sensor)
+            continue;
+        const bool moves_a = is_dynamic(context, contact.key.a);
+        const bool moves_b = is_dynamic(context, contact.key.b);
+        std::uint64_t &of_a = schedule.colours_of_body[contact.key.a];
+        std::uint64_t &of_b = schedule.colours_of_body[contact.key.b];
+        const std::uint64_t taken = (moves_a ? of_a : 0) | (moves_b ? of_b : 0);
+        const auto chosen = static_cast<std::uint32_t>(std::countr_one(taken));
+        std::uint32_t bucket = alone;
+        if (chosen < colours) {
+            of_a |= std::uint64_t{1} << chosen;
+            of_b |= std::uint64_t{1} << chosen;
+            bucket = chosen * most_points + static_cast<std::uint32_t>(contact.manifold.count - 1);
+        }
+        schedule.lanes.push_back({static_cast<std::uint32_t>(i), bucket});
+        ++schedule.bucket_sizes[bucket];
+    }
+}
+
+void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,
+               std::uint32_t index) {
+    constexpr std::size_t stride = sizeof(SolverBody) / sizeof(Real);
+    const Contact &contact = context.contacts[index];
+    const SolverBody &a = context.bodies[contact.key.a];
+    const SolverBody &b = context.bodies[contact.key.b];
+    block.contacts[lane] = index;
+    block.body_a[lane] = static_cast<ContactBlock::Index>(contact.key.a * stride);
+    block.body_b[lane] = static_cast<ContactBlock::Index>(contact.key.b * stride);
+    const auto bit = static_cast<std::uint16_t>(1U << lane);
+    for (const std::uint32_t body : {contact.key.a, contact.key.b})
+        block.inertia_turns =
+            block.inertia_turns || !is_isotropic(context.model.bodies[body].inertia);
+    if (is_dynamic(context, contact.key.a))
+        block.writes_a = static_cast<std::uint16_t>(block.writes_a | bit);
+    if (is_dynamic(context, contact.key.b))
+        block.writes_b = static_cast<std::uint16_t>(block.writes_b | bit);
+    set(block.normal, lane, contact.manifold.normal);
+    set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
+    block.friction.lanes[lane] = contact.friction;
+    block.rounding_a.lanes[lane] = context.model.colliders[contact.collider_a].rounding;
+    block.rounding_b.lanes[lane] = context.model.colliders[contact.collider_b].rounding;
+    set(block.inv_mass_a, lane, a.inv_mass);
+    set(block.inv_mass_b, lane, b.inv_mass);
+    set(block.inv_inertia_a, lane, a.inv_inertia);
+    set(block.inv_inertia_b, lane, b.inv_inertia);
+    block.is_new = block.is_new || contact.is_new;
+    block.points_used = std::max(block.points_used, contact.manifold.count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        ContactBlock::Point &point = block.points[k];
+        set(point.r_a, lane, contact.anchors[k].arm_a);
+        set(point.r_b, lane, contact.anchors[k].arm_b);
+        point.separation.lanes[lane] = contact.manifold.points[k].separation;
+        set(point.impulse, lane, contact.impulses[k]);
+    }
+}
+
+} // namespace
+
+void prepare_contact_columns(StepContext &context) {
+    ContactSchedule &schedule = context.scratch.schedule;
+    colour(context);
+    // A bucket's blocks come in order; the last bucket's have one lane each.
+    std::uint32_t block_count = 0;
+    std::vector<std::uint32_t> &next = schedule.bucket_sizes; // becomes: the bucket's next lane
+    for (std::uint32_t bucket = 0; bucket <= alone; ++bucket) {
+        const std::uint32_t size = next[bucket];
+        next[bucket] = block_count * static_cast<std::uint32_t>(column_lanes);
+        constexpr auto width = static_cast<std::uint32_t>(column_lanes);
+        block_count += bucket == alone ? size : (size + width - 1) / width;
+    }
+    // Lanes that are not used, and points that a lane does not have, are zeros: of no mass.
+    schedule.blocks.assign(block_count, ContactBlock{});
+    for (const ContactSchedule::Lane &lane : schedule.lanes) {
+        const std::uint32_t place = next[lane.bucket];
+        next[lane.bucket] += lane.bucket == alone ? static_cast<std::uint32_t>(column_lanes) : 1;
+        ContactBlock &block = schedule.blocks[place / column_lanes];
+        fill_lane(context, block, block.used++, lane.contact);
+    }
+    kernels::finish(schedule.blocks);
+}
+
+void recall_contact_columns(StepContext &context, Real share, bool remember_first) {
+    kernels::recall(context.scratch.schedule.blocks, reals_of(context.bodies), share,
+                    remember_first);
+    context.report.constraint_passes += context.scratch.schedule.lanes.size();
+}
+
+void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h) {
+    kernels::solve(context.scratch.schedule.blocks, reals_of(context.bodies), bias, Real(1) / h);
+    context.report.constraint_passes += context.scratch.schedule.lanes.size();
+}
+
+void store_contact_columns(StepContext &context) {
+    for (const ContactBlock &block : context.scratch.schedule.blocks)
+        for (std::size_t lane = 0; lane < block.used; ++lane) {
+            Contact &contact = context.contacts[block.contacts[lane]];
+            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
+                contact.impulses[k] = get(block.points[k].impulse, lane);
+        }
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

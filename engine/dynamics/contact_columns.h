@@ -1,0 +1,104 @@
+// Contacts of soft_step in columns: the same numbers of 16 contacts side by side, so that the
+// processor works on as many at once as it can. The contacts of one block share no dynamic body
+// (a colouring of the contact graph), so that the answer is the same at any width.
+#pragma once
+
+#include "engine/dynamics/contact_constraint.h"
+
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+inline constexpr std::size_t column_lanes = 16;
+
+struct alignas(64) Column {
+    Real lanes[column_lanes]; // NOLINT(modernize-avoid-c-arrays): what vectors load from
+};
+struct Columns3 {
+    Column x, y, z;
+};
+// A symmetric matrix.
+struct ColumnsSymmetric {
+    Column xx, yy, zz, xy, xz, yz;
+};
+
+struct ContactBlock {
+    struct Point {
+        Columns3 r_a; // world, from a's centre of mass
+        Columns3 r_b;
+        // The separation at the start of the step (m); what the bodies moved since comes on top, to
+        // second order in their turns.
+        Column separation;
+        Column normal_mass;  // 1 / (n^T K n); 0 where a lane has no such point
+        Column tangent_mass; // ContactPointConstraint::tangent_mass
+        Columns3 impulse;    // accumulated in this substep: normal, t1, t2 (N s)
+        Columns3 remembered; // of the substep before
+    };
+    // Of each body, as an index of a Real from the first one of the array of bodies; and whether it
+    // is dynamic: others are never written.
+    using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+    alignas(64) Index body_a[column_lanes]; // NOLINT(modernize-avoid-c-arrays)
+    alignas(64) Index body_b[column_lanes]; // NOLINT(modernize-avoid-c-arrays)
+    std::uint16_t writes_a = 0;             // bit k: lane k
+    std::uint16_t writes_b = 0;
+    std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
+    std::size_t used = 0;                 // lanes
+    int points_used = 0;
+    // Whether any of its contacts is new and was not solved yet.
+    bool is_new = false;
+    // Whether any of its bodies has an inertia that turns with it.
+    bool inertia_turns = false;
+    Columns3 normal;
+    Columns3 t1; // t2 = n x t1
+    Column friction;
+    Column rounding_a; // radius by which a round surface lies beyond its core (m)
+    Column rounding_b;
+    Columns3 inv_mass_a; // along the world's axes
+    Columns3 inv_mass_b;
+    ColumnsSymmetric inv_inertia_a;
+    ColumnsSymmetric inv_inertia_b;
+    Point points[4]; // NOLINT(modernize-avoid-c-arrays)
+};
+
+// All contacts of a context that are no sensors' in blocks, one colour after another.
+struct ContactSchedule {
+    struct Lane {
+        std::uint32_t contact = 0;
+        std::uint32_t bucket = 0; // colour and number of points
+    };
+    std::vector<ContactBlock> blocks;
+    std::vector<Lane> lanes;
+    std::vector<std::uint64_t> colours_of_body; // bit c: colour c has a contact of it
+    std::vector<std::uint32_t> bucket_sizes;
+};
+
+// Where the kernels find what they need of a body; `bodies` is its first Real.
+struct BodyReals {
+    Real *bodies = nullptr;
+    int velocity = 0; // offsets in Reals
+    int angular_velocity = 0;
+    int moved = 0;
+    int turned = 0;
+    int inv_inertia = 0;
+};
+
+void prepare_contact_columns(StepContext &context);
+// As remember_contacts, recall_contacts, solve_contacts and store_contacts.
+void recall_contact_columns(StepContext &context, Real share, bool remember_first);
+void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
+void store_contact_columns(StepContext &context);
+
+// Compiled for each instruction set (contact_kernels.cpp).
+namespace kernels {
+// Masses, from what is there of the blocks.
+void finish(std::span<ContactBlock> blocks);
+void recall(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
+            bool remember_first);
+void solve(std::span<ContactBlock> blocks, const BodyReals &bodies, const ContactBias &bias,
+           Real inv_h);
+} // namespace kernels
+
+} // namespace plumb::inline PLUMB_PRECISION

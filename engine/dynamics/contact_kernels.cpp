@@ -1,0 +1,395 @@
+// What soft_step does with a block of contacts. Compiled once for each instruction set, by
+// including itself. Nothing here is fused or reordered by width: each lane sees the same
+// operations whatever the processor.
+#include "engine/dynamics/contact_columns.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/dynamics/contact_kernels.cpp"
+// Vectors of unknown size cannot stand in structs.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which must choose the target first.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace plumb::inline PLUMB_PRECISION {
+namespace kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = hn::CappedTag<Real, column_lanes>;
+using IndexTag = hn::RebindToSigned<Tag>;
+using Lanes = hn::Vec<Tag>;
+using Indices = hn::Vec<IndexTag>;
+constexpr Tag tag{};
+constexpr int new_sweeps = 8;
+
+struct Vector {
+    Lanes x, y, z;
+};
+struct Symmetric {
+    Lanes xx, yy, zz, xy, xz, yz;
+};
+
+HWY_INLINE Lanes all(Real x) {
+    return hn::Set(tag, x);
+}
+HWY_INLINE Vector plus(const Vector &a, const Vector &b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+HWY_INLINE Vector minus(const Vector &a, const Vector &b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vector times(Lanes s, const Vector &a) {
+    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+HWY_INLINE Vector times(const Vector &a, const Vector &b) {
+    return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
+}
+HWY_INLINE Lanes dot(const Vector &a, const Vector &b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vector cross(const Vector &a, const Vector &b) {
+    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
+            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
+HWY_INLINE Vector times(const Symmetric &m, const Vector &v) {
+    return {hn::Add(hn::Add(hn::Mul(m.xx, v.x), hn::Mul(m.xy, v.y)), hn::Mul(m.xz, v.z)),
+            hn::Add(hn::Add(hn::Mul(m.xy, v.x), hn::Mul(m.yy, v.y)), hn::Mul(m.yz, v.z)),
+            hn::Add(hn::Add(hn::Mul(m.xz, v.x), hn::Mul(m.yz, v.y)), hn::Mul(m.zz, v.z))};
+}
+// 1 / x, or 0 where x is not positive.
+HWY_INLINE Lanes inverse(Lanes x) {
+    const auto positive = hn::Gt(x, hn::Zero(tag));
+    return hn::IfThenElseZero(positive,
+                              hn::Div(all(Real(1)), hn::IfThenElse(positive, x, all(Real(1)))));
+}
+
+HWY_INLINE Lanes load(const Column &from, std::size_t lane) {
+    return hn::Load(tag, from.lanes + lane);
+}
+HWY_INLINE Vector load(const Columns3 &from, std::size_t lane) {
+    return {load(from.x, lane), load(from.y, lane), load(from.z, lane)};
+}
+HWY_INLINE Symmetric load(const ColumnsSymmetric &from, std::size_t lane) {
+    return {load(from.xx, lane), load(from.yy, lane), load(from.zz, lane),
+            load(from.xy, lane), load(from.xz, lane), load(from.yz, lane)};
+}
+HWY_INLINE void store(Lanes v, Column &to, std::size_t lane) {
+    hn::Store(v, tag, to.lanes + lane);
+}
+HWY_INLINE void store(const Vector &v, Columns3 &to, std::size_t lane) {
+    store(v.x, to.x, lane);
+    store(v.y, to.y, lane);
+    store(v.z, to.z, lane);
+}
+
+HWY_INLINE Vector gather(const Real *bodies, int offset, Indices index) {
+    const Real *from = bodies + offset;
+    return {hn::GatherIndex(tag, from, index), hn::GatherIndex(tag, from + 1, index),
+            hn::GatherIndex(tag, from + 2, index)};
+}
+
+struct Velocity {
+    Vector linear, angular;
+};
+
+HWY_INLINE Velocity gather_velocity(const BodyReals &bodies, Indices index) {
+    return {gather(bodies.bodies, bodies.velocity, index),
+            gather(bodies.bodies, bodies.angular_velocity, index)};
+}
+
+HWY_INLINE void scatter(const Velocity &v, const BodyReals &bodies,
+                        const ContactBlock::Index *index, unsigned writes, std::size_t lane) {
+    HWY_ALIGN Real out[6][column_lanes];
+    hn::Store(v.linear.x, tag, out[0]);
+    hn::Store(v.linear.y, tag, out[1]);
+    hn::Store(v.linear.z, tag, out[2]);
+    hn::Store(v.angular.x, tag, out[3]);
+    hn::Store(v.angular.y, tag, out[4]);
+    hn::Store(v.angular.z, tag, out[5]);
+    for (std::size_t k = 0; k < hn::Lanes(tag); ++k) {
+        if (((writes >> (lane + k)) & 1U) == 0)
+            continue;
+        Real *linear = bodies.bodies + index[lane + k] + bodies.velocity;
+        Real *angular = bodies.bodies + index[lane + k] + bodies.angular_velocity;
+        linear[0] = out[0][k];
+        linear[1] = out[1][k];
+        linear[2] = out[2][k];
+        angular[0] = out[3][k];
+        angular[1] = out[4][k];
+        angular[2] = out[5][k];
+    }
+}
+
+// The two bodies of the contacts in the lanes of one vector.
+struct Pair {
+    Velocity a, b;
+    Vector inv_mass_a, inv_mass_b;
+    Symmetric inv_inertia_a, inv_inertia_b;
+
+    HWY_INLINE Vector velocity_at(const Vector &r_a, const Vector &r_b) const {
+        return minus(plus(b.linear, cross(b.angular, r_b)), plus(a.linear, cross(a.angular, r_a)));
+    }
+    HWY_INLINE void apply(const Vector &impulse, const Vector &r_a, const Vector &r_b) {
+        a.linear = minus(a.linear, times(inv_mass_a, impulse));
+        b.linear = plus(b.linear, times(inv_mass_b, impulse));
+        a.angular = minus(a.angular, times(inv_inertia_a, cross(r_a, impulse)));
+        b.angular = plus(b.angular, times(inv_inertia_b, cross(r_b, impulse)));
+    }
+};
+
+HWY_INLINE Pair load_pair(const ContactBlock &block, const BodyReals &bodies, std::size_t lane) {
+    const IndexTag index_tag;
+    return {gather_velocity(bodies, hn::Load(index_tag, block.body_a + lane)),
+            gather_velocity(bodies, hn::Load(index_tag, block.body_b + lane)),
+            load(block.inv_mass_a, lane),
+            load(block.inv_mass_b, lane),
+            load(block.inv_inertia_a, lane),
+            load(block.inv_inertia_b, lane)};
+}
+
+HWY_INLINE void store_pair(const Pair &pair, const ContactBlock &block, const BodyReals &bodies,
+                           std::size_t lane) {
+    scatter(pair.a, bodies, block.body_a, block.writes_a, lane);
+    scatter(pair.b, bodies, block.body_b, block.writes_b, lane);
+}
+
+// u^T K v (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers"), from the turns r x u
+// and r x v.
+struct Turns {
+    Vector a, b;
+};
+HWY_INLINE Turns turns(const Vector &r_a, const Vector &r_b, const Vector &u) {
+    return {cross(r_a, u), cross(r_b, u)};
+}
+
+void finish_block_impl(ContactBlock &block) {
+    for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
+        const Vector n = load(block.normal, lane);
+        const Vector t1 = load(block.t1, lane);
+        const Vector t2 = cross(n, t1);
+        const Vector inv_mass = plus(load(block.inv_mass_a, lane), load(block.inv_mass_b, lane));
+        const Symmetric inertia_a = load(block.inv_inertia_a, lane);
+        const Symmetric inertia_b = load(block.inv_inertia_b, lane);
+        for (int k = 0; k < block.points_used; ++k) {
+            ContactBlock::Point &point = block.points[k];
+            const Vector r_a = load(point.r_a, lane);
+            const Vector r_b = load(point.r_b, lane);
+            const Turns of_n = turns(r_a, r_b, n);
+            const Turns of_1 = turns(r_a, r_b, t1);
+            const Turns of_2 = turns(r_a, r_b, t2);
+            const auto coupling = [&](const Vector &u, const Turns &of_u, const Vector &v,
+                                      const Turns &of_v) HWY_ATTR {
+                const Lanes linear = dot(u, times(inv_mass, v));
+                const Lanes angular_a = dot(times(inertia_a, of_u.a), of_v.a);
+                const Lanes angular_b = dot(times(inertia_b, of_u.b), of_v.b);
+                return hn::Add(linear, hn::Add(angular_a, angular_b));
+            };
+            const Lanes k_11 = coupling(t1, of_1, t1, of_1);
+            const Lanes k_12 = coupling(t1, of_1, t2, of_2);
+            const Lanes k_22 = coupling(t2, of_2, t2, of_2);
+            const Lanes half = all(Real(0.5));
+            const Lanes half_difference = hn::Mul(half, hn::Sub(k_11, k_22));
+            const Lanes largest = hn::Add(
+                hn::Mul(half, hn::Add(k_11, k_22)),
+                hn::Sqrt(hn::Add(hn::Mul(half_difference, half_difference), hn::Mul(k_12, k_12))));
+            store(inverse(coupling(n, of_n, n, of_n)), point.normal_mass, lane);
+            store(inverse(largest), point.tangent_mass, lane);
+        }
+    }
+}
+
+// The columns of a symmetric matrix of three Vec3.
+HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, Indices index,
+                       std::size_t lane) {
+    const Vector first = gather(bodies.bodies, bodies.inv_inertia, index);
+    const Vector second = gather(bodies.bodies, bodies.inv_inertia + 3, index);
+    const Vector third = gather(bodies.bodies, bodies.inv_inertia + 6, index);
+    store(first.x, to.xx, lane);
+    store(second.y, to.yy, lane);
+    store(third.z, to.zz, lane);
+    store(second.x, to.xy, lane);
+    store(third.x, to.xz, lane);
+    store(third.y, to.yz, lane);
+}
+
+void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool remember_first) {
+    for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
+        if (block.inertia_turns) {
+            const IndexTag index_tag;
+            reload(block.inv_inertia_a, bodies, hn::Load(index_tag, block.body_a + lane), lane);
+            reload(block.inv_inertia_b, bodies, hn::Load(index_tag, block.body_b + lane), lane);
+        }
+        Pair pair = load_pair(block, bodies, lane);
+        const Vector n = load(block.normal, lane);
+        const Vector t1 = load(block.t1, lane);
+        const Vector t2 = cross(n, t1);
+        for (int k = 0; k < block.points_used; ++k) {
+            ContactBlock::Point &point = block.points[k];
+            Vector before = load(point.impulse, lane);
+            Vector recalled;
+            if (remember_first) {
+                store(before, point.remembered, lane);
+                recalled = times(all(share), before);
+                store(recalled, point.impulse, lane);
+            } else {
+                recalled = times(all(share), load(point.remembered, lane));
+                store(plus(before, recalled), point.impulse, lane);
+            }
+            const Vector impulse =
+                plus(plus(times(recalled.x, n), times(recalled.y, t1)), times(recalled.z, t2));
+            pair.apply(impulse, load(point.r_a, lane), load(point.r_b, lane));
+        }
+        store_pair(pair, block, bodies, lane);
+    }
+}
+
+// How far an arm's end comes along n when the arm turns by `turn`, to second order: with the core
+// that is the arm less its rounding along n, n . (turn x r + turn x (turn x core) / 2).
+HWY_INLINE Lanes way_along(const Vector &n, const Vector &turn, Lanes turn_n, Lanes turn_squared,
+                           const Vector &r, Lanes rounding) {
+    const Lanes core_n = hn::Sub(dot(r, n), rounding);
+    const Lanes core_turn = hn::Sub(dot(r, turn), hn::Mul(rounding, turn_n));
+    const Lanes second = hn::Sub(hn::Mul(turn_n, core_turn), hn::Mul(turn_squared, core_n));
+    return hn::Add(dot(n, cross(turn, r)), hn::Mul(all(Real(0.5)), second));
+}
+
+void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias &bias, Real inv_h) {
+    const Lanes zero = hn::Zero(tag);
+    const Lanes slop = all(bias.slop);
+    const Lanes rate = all(bias.softness.bias_rate);
+    const Lanes least = all(-bias.push_velocity);
+    const bool pushes = bias.push_velocity > Real(0);
+    const Lanes one = all(Real(1));
+    const Lanes soft_mass = all(pushes ? bias.softness.mass_scale : Real(1));
+    const Lanes soft_impulse = all(pushes ? bias.softness.impulse_scale : Real(0));
+    const IndexTag index_tag;
+    // Friction tips a body that the normal impulses know nothing of yet, where nothing is
+    // remembered: without further sweeps what slides off at once would keep what it gains by that.
+    const int sweeps = block.is_new && !pushes ? new_sweeps : 1;
+    for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
+        Pair pair = load_pair(block, bodies, lane);
+        const Indices index_a = hn::Load(index_tag, block.body_a + lane);
+        const Indices index_b = hn::Load(index_tag, block.body_b + lane);
+        const Vector moved = minus(gather(bodies.bodies, bodies.moved, index_b),
+                                   gather(bodies.bodies, bodies.moved, index_a));
+        const Vector turned_a = gather(bodies.bodies, bodies.turned, index_a);
+        const Vector turned_b = gather(bodies.bodies, bodies.turned, index_b);
+        const Vector n = load(block.normal, lane);
+        const Lanes way = dot(n, moved);
+        const Lanes turned_a_n = dot(turned_a, n);
+        const Lanes turned_b_n = dot(turned_b, n);
+        const Lanes turned_a_squared = dot(turned_a, turned_a);
+        const Lanes turned_b_squared = dot(turned_b, turned_b);
+        const Lanes rounding_a = load(block.rounding_a, lane);
+        // The normal points at b: its surface is on the other side of its core.
+        const Lanes rounding_b = hn::Neg(load(block.rounding_b, lane));
+        const Vector t1 = load(block.t1, lane);
+        const Vector t2 = cross(n, t1);
+        const Lanes friction = load(block.friction, lane);
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
+            for (int k = 0; k < block.points_used; ++k) {
+                ContactBlock::Point &point = block.points[k];
+                const Vector r_a = load(point.r_a, lane);
+                const Vector r_b = load(point.r_b, lane);
+                const Lanes way_a =
+                    way_along(n, turned_a, turned_a_n, turned_a_squared, r_a, rounding_a);
+                const Lanes way_b =
+                    way_along(n, turned_b, turned_b_n, turned_b_squared, r_b, rounding_b);
+                const Lanes separation =
+                    hn::Add(load(point.separation, lane), hn::Add(way, hn::Sub(way_b, way_a)));
+                const Lanes before = load(point.impulse.x, lane);
+                const auto apart = hn::Gt(separation, zero);
+                const Lanes depth = hn::Min(hn::Add(separation, slop), zero);
+                const Lanes push = hn::Max(hn::Mul(rate, depth), least);
+                const Lanes target =
+                    hn::IfThenElse(apart, hn::Mul(separation, all(inv_h)), pushes ? push : zero);
+                const Lanes mass_scale = hn::IfThenElse(apart, one, soft_mass);
+                const Lanes impulse_scale = hn::IfThenElse(apart, zero, soft_impulse);
+                const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
+                const Lanes change =
+                    hn::Sub(hn::Neg(hn::Mul(hn::Mul(load(point.normal_mass, lane), mass_scale),
+                                            hn::Add(speed, target))),
+                            hn::Mul(impulse_scale, before));
+                Lanes total = hn::Max(hn::Add(before, change), zero);
+                if (bias.loaded_only)
+                    total = hn::IfThenElse(hn::And(apart, hn::Eq(before, zero)), before, total);
+                pair.apply(times(hn::Sub(total, before), n), r_a, r_b);
+                store(total, point.impulse.x, lane);
+            }
+            for (int k = 0; k < block.points_used; ++k) {
+                ContactBlock::Point &point = block.points[k];
+                const Vector r_a = load(point.r_a, lane);
+                const Vector r_b = load(point.r_b, lane);
+                const Vector v = pair.velocity_at(r_a, r_b);
+                const Lanes before_1 = load(point.impulse.y, lane);
+                const Lanes before_2 = load(point.impulse.z, lane);
+                const Lanes mass = load(point.tangent_mass, lane);
+                const Lanes new_1 = hn::Sub(before_1, hn::Mul(mass, dot(v, t1)));
+                const Lanes new_2 = hn::Sub(before_2, hn::Mul(mass, dot(v, t2)));
+                const Lanes length =
+                    hn::Sqrt(hn::Add(hn::Mul(new_1, new_1), hn::Mul(new_2, new_2)));
+                const Lanes limit = hn::Mul(friction, load(point.impulse.x, lane));
+                const auto slides = hn::Gt(length, limit);
+                const Lanes scale = hn::IfThenElse(
+                    slides, hn::Div(limit, hn::IfThenElse(slides, length, one)), one);
+                const Lanes after_1 = hn::Mul(scale, new_1);
+                const Lanes after_2 = hn::Mul(scale, new_2);
+                pair.apply(plus(times(hn::Sub(after_1, before_1), t1),
+                                times(hn::Sub(after_2, before_2), t2)),
+                           r_a, r_b);
+                store(after_1, point.impulse.y, lane);
+                store(after_2, point.impulse.z, lane);
+            }
+        }
+        store_pair(pair, block, bodies, lane);
+    }
+    block.is_new = block.is_new && pushes;
+}
+
+} // namespace
+
+void finish_blocks(std::span<ContactBlock> blocks) {
+    for (ContactBlock &block : blocks)
+        finish_block_impl(block);
+}
+void recall_blocks(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
+                   bool remember_first) {
+    for (ContactBlock &block : blocks)
+        recall_impl(block, bodies, share, remember_first);
+}
+void solve_blocks(std::span<ContactBlock> blocks, const BodyReals &bodies, const ContactBias &bias,
+                  Real inv_h) {
+    for (ContactBlock &block : blocks)
+        solve_impl(block, bodies, bias, inv_h);
+}
+
+} // namespace kernels::HWY_NAMESPACE
+} // namespace plumb::inline PLUMB_PRECISION
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace plumb::inline PLUMB_PRECISION {
+namespace kernels {
+
+HWY_EXPORT(finish_blocks);
+HWY_EXPORT(recall_blocks);
+HWY_EXPORT(solve_blocks);
+
+void finish(std::span<ContactBlock> blocks) {
+    HWY_DYNAMIC_DISPATCH(finish_blocks)(blocks);
+}
+void recall(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
+            bool remember_first) {
+    HWY_DYNAMIC_DISPATCH(recall_blocks)(blocks, bodies, share, remember_first);
+}
+void solve(std::span<ContactBlock> blocks, const BodyReals &bodies, const ContactBias &bias,
+           Real inv_h) {
+    HWY_DYNAMIC_DISPATCH(solve_blocks)(blocks, bodies, bias, inv_h);
+}
+
+} // namespace kernels
+} // namespace plumb::inline PLUMB_PRECISION
+#endif

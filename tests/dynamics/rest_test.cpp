@@ -1,0 +1,110 @@
+// What stands comes to rest and stays there: long, and at every width of the processor's vectors.
+#include "tests/dynamics/worlds.h"
+
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+constexpr double side = 1;
+
+World stack_of(int boxes, const StepSettings &settings) {
+    World world("soft_step", settings);
+    world.add_body(ground(0.6, 0));
+    for (int i = 0; i < boxes; ++i)
+        world.add_body(dynamic_body(block(V{side / 2}), 1, V{0, side * (i + 0.5), 0}));
+    return world;
+}
+
+World pyramid_of(int base, const StepSettings &settings) {
+    World world("soft_step", settings);
+    world.add_body(ground(0.6, 0));
+    for (int row = 0; row < base; ++row)
+        for (int i = 0; i < base - row; ++i)
+            world.add_body(
+                dynamic_body(block(V{side / 2}), 1,
+                             V{1.05 * side * (i - 0.5 * (base - row - 1)), side * (row + 0.5), 0}));
+    return world;
+}
+
+double height_of(const World &world, std::uint32_t body) {
+    return double(world.motions()[body].position.y);
+}
+
+// Found anew in each step, a column of soft contacts buckles under its own weight once it is taller
+// than N^3 = 7.8 k / (m g): at four substeps some 15 boxes. Kept, it does not.
+TEST(Rest, ATallStackStandsOnKeptContacts) {
+    StepSettings settings = settings_for("soft_step");
+    settings.substeps = 8;
+    for (const int boxes : {20, 30}) {
+        World world = stack_of(boxes, settings);
+        run(world, 60 * 30);
+        const auto top = static_cast<std::uint32_t>(boxes);
+        const double sunk = side * (boxes - 0.5) - height_of(world, top);
+        EXPECT_LT(sunk, 0.04) << boxes;
+        EXPECT_LT(world.measure().kinetic_energy, 1e-6 * boxes * gravity * side * boxes / 2);
+    }
+    settings.substeps = 4;
+    settings.kept_travel = 0;
+    World fallen = stack_of(30, settings);
+    run(fallen, 60 * 30);
+    EXPECT_LT(height_of(fallen, 30), 10) << "found anew in each step it falls";
+}
+
+TEST(Rest, APyramidComesToRest) {
+    for (const int base : {10, 20}) {
+        World world = pyramid_of(base, settings_for("soft_step"));
+        run(world, 60 * 20);
+        const Measures m = world.measure();
+        EXPECT_LT(m.kinetic_energy, 1e-6 * m.potential_energy) << base;
+        EXPECT_LT(m.max_penetration, 3e-3) << base;
+    }
+}
+
+// A box a little steeper than friction holds picks up speed at once; none of it is lost to corners
+// that have not yet shared out the load.
+TEST(Rest, ASlopeJustTooSteepGivesTheClosedFormsWay) {
+    for (const double ratio : {1.05, 1.1, 1.5}) {
+        const double angle = std::atan(0.5 * ratio);
+        StepSettings settings = settings_for("soft_step");
+        settings.gravity = gravity * V{std::sin(angle), -std::cos(angle), 0};
+        World world("soft_step", settings);
+        world.add_body(ground(0.5, 0));
+        BodyDef box = dynamic_body(block(V{0.5}), 10, V{0, 0.5, 0});
+        world.add_body(with_material(box, 0.5, 0));
+        run(world, 240);
+        const double way = 0.5 * gravity * (std::sin(angle) - 0.5 * std::cos(angle)) * 16;
+        EXPECT_NEAR(double(world.motions()[1].position.x), way, 0.01) << ratio;
+    }
+}
+
+// The contacts of one colour share no body: their order, and how many the processor works on at
+// once, does not matter.
+TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
+    const auto hash_at = [](std::int64_t target) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        Random random(11);
+        World world("soft_step", settings_for("soft_step"));
+        world.add_body(ground(0.6, 0));
+        for (int i = 0; i < 150; ++i) {
+            const V at{0.7 * (i % 5), 0.4 + 0.8 * (i / 25), 0.7 * (i / 5 % 5)};
+            world.add_body(dynamic_body(any_shape(random), random.next_in(0.5, 5), at));
+        }
+        run(world, 120);
+        return world.hash();
+    };
+    const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+    ASSERT_FALSE(targets.empty());
+    const std::uint64_t first = hash_at(targets.front());
+    for (const std::int64_t target : targets)
+        EXPECT_EQ(hash_at(target), first) << hwy::TargetName(target);
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
