@@ -42,9 +42,14 @@ void advance(StepContext &context) {
     prepare_contact_columns(context);
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
+    const bool is_free = context.scratch.contacts.empty() && context.scratch.joints.empty();
     for (int substep = 0; substep < settings.substeps; ++substep) {
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
+        if (is_free) { // nothing of what follows would do anything
+            end_flights(context, h, Kick::around);
+            continue;
+        }
         refresh_joints(context);
         remember_joints(context);
         recall_joints(context, Real(0.5), Springs::solve);
