@@ -42,7 +42,7 @@ void advance(StepContext &context) {
     prepare_contact_columns(context);
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
-    const bool is_free = context.scratch.contacts.empty() && context.scratch.joints.empty();
+    const bool is_free = context.contacts.empty() && context.scratch.joints.empty();
     for (int substep = 0; substep < settings.substeps; ++substep) {
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
