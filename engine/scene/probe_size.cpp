@@ -1,5 +1,7 @@
 #include "engine/scene/probe_size.h"
 
+#include "engine/scene/triangle_count.h"
+
 #include <variant>
 
 namespace plumb {
@@ -9,17 +11,12 @@ namespace {
 struct Counter {
     ProbeSize &size;
 
-    void operator()(const MeshDesc &mesh) const {
-        size.triangles += mesh.data ? mesh.data->triangles.size() : 0;
-    }
-    void operator()(const HeightFieldDesc &field) const {
-        size.triangles += 2 * static_cast<std::size_t>(field.rows - 1) *
-                          static_cast<std::size_t>(field.columns - 1);
-    }
     void operator()(const FlatCompoundDesc &compound) const {
         size.shapes += compound.parts.size();
     }
-    template <typename Plain> void operator()(const Plain &) const {}
+    template <typename Plain> void operator()(const Plain &shape) const {
+        size.triangles += triangle_count(shape);
+    }
 };
 
 } // namespace

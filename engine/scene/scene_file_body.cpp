@@ -1,7 +1,9 @@
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/scene_file_reading.h"
 #include "engine/scene/scene_file_spelling.h"
+#include "engine/scene/scene_limits.h"
 #include "engine/scene/shape_kinds.h"
+#include "engine/scene/triangle_count.h"
 
 #include <algorithm>
 
@@ -131,6 +133,23 @@ void read_velocity(Reading &reading, const Table &table, BodyDesc &body) {
                              suggestion);
 }
 
+// For so many like it.
+bool has_room_for(Reading &reading, const BodyDesc &body, std::size_t count,
+                  const FilePosition &at) {
+    std::size_t triangles = 0;
+    for (const ColliderDesc &collider : body.colliders)
+        triangles +=
+            std::visit([](const auto &shape) { return triangle_count(shape); }, collider.shape);
+    triangles *= count;
+    if (!has_room_for(reading, count, max_scene_bodies, reading.scene.bodies.size(), "bodies",
+                      at) ||
+        !has_room_for(reading, triangles, max_scene_triangles, reading.triangles,
+                      "triangles of surfaces", at))
+        return false;
+    reading.triangles += triangles;
+    return true;
+}
+
 // FNV-1a, 64 bits.
 std::uint64_t name_hash(std::string_view name) {
     std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -150,8 +169,7 @@ void repeat_body(Reading &reading, const Table &table, const BodyDesc &body, boo
     const std::optional<Repeat> repeat =
         read_repeat(reading.report, *source, table.title(), body, has_shape);
     if (!repeat || reading.report.error_count() != errors ||
-        !has_room_for(reading, repeat_count(*repeat), max_scene_bodies, reading.scene.bodies.size(),
-                      "bodies", table.position("repeat")))
+        !has_room_for(reading, body, repeat_count(*repeat), table.position("repeat")))
         return;
     // A sequence of its own for each body, so that adding one leaves the others where they are.
     Random random(reading.scene.world.seed ^ name_hash(body.name));
@@ -251,8 +269,7 @@ void read_body(Reading &reading, const toml::table &source) {
 
     if (table.has("repeat")) {
         repeat_body(reading, table, body, has_shape);
-    } else if (has_room_for(reading, 1, max_scene_bodies, reading.scene.bodies.size(), "bodies",
-                            table.position())) {
+    } else if (has_room_for(reading, body, 1, table.position())) {
         if (name)
             reading.bodies_by_name[*name] = reading.scene.bodies.size();
         add_body(reading, std::move(body), table.position());

@@ -40,6 +40,7 @@ struct Reading {
     std::map<std::string, double> densities; // of materials
     std::map<std::string, std::size_t> bodies_by_name;
     std::map<std::string, BodyGroup> groups; // by the name of the repeated body
+    std::size_t triangles = 0;               // of all bodies
     int missing_bodies = 0;
     bool said_too_many = false;
 };

@@ -11,6 +11,9 @@ inline constexpr std::size_t max_scene_planes = 100;
 // some 600 bytes. 15 for each of max_scene_bodies, which is more than a solid block of boxes has.
 inline constexpr std::size_t max_scene_pairs = 3'000'000;
 
+// Of the surfaces of all bodies, each by itself: some 110 bytes a triangle.
+inline constexpr std::size_t max_scene_triangles = 4'000'000;
+
 // Of all probes of a scene together.
 inline constexpr std::size_t max_scene_probe_shapes = 50'000; // with the parts of compounds
 inline constexpr std::size_t max_scene_probe_triangles = 1'000'000;

@@ -84,6 +84,39 @@ TEST(SceneLimits, Planes) {
     EXPECT_TRUE(fine(planes + body("row", "position = [0, 50, 0]\n" + line_of(30'001, 2))));
 }
 
+// A knot of detail 64 has 65 536: 61 of them have 3 997 696.
+TEST(SceneLimits, TrianglesOfAllBodies) {
+    const auto knots = [](const std::string &name, int count, int x) {
+        return "[[body]]\nname = \"" + name +
+               "\"\nshape = \"mesh\"\nmodel = \"knot\"\nhalf_extents = [1, 1, 1]\ndetail = 64\n"
+               "position = [" +
+               std::to_string(x) + ", 0, 0]\n" +
+               (count > 1 ? "repeat = @{ kind = \"line\", count = " + std::to_string(count) +
+                                ", step = [0, 3, 0] }\n"
+                          : "");
+    };
+    std::string most = knots("knots", 61, 0);
+    most.erase(most.find('@'), 1);
+    EXPECT_TRUE(fine(most));
+    const std::string suggestion = " here; a scene holds at most 4000000";
+    expect_messages(
+        {"",
+         most + "@" + knots("knot", 1, 5),
+         {"too many triangles of surfaces: 3997696 before this, and 65536" + suggestion}});
+    expect_messages(
+        {"",
+         knots("knots", 2000, 0),
+         {"too many triangles of surfaces: 0 before this, and 131072000" + suggestion}});
+    // A field of 51 by 1001 heights has 50 000 squares.
+    const std::string field = "shape = \"height_field\"\nhalf_extents = [1, 1, 20]\ndetail = 50\n";
+    EXPECT_TRUE(fine("[[body]]\nname = \"hills\"\n" + field +
+                     "repeat = { kind = \"line\", count = 40, step = [3, 0, 0] }\n"));
+    EXPECT_FALSE(parse_scene("[[body]]\nname = \"hills\"\n" + field +
+                                 "repeat = { kind = \"line\", count = 41, step = [3, 0, 0] }\n",
+                             "s")
+                     .ok());
+}
+
 TEST(SceneLimits, HeightsOfAHeightField) {
     const auto hills = [](const std::string &half_extents) {
         return "[[probe]]\nname = \"hills\"\nask = \"closest\"\npoints = [[0, 1, 0]]\n"
