@@ -56,6 +56,21 @@ DrawShape box_around(const DrawMesh &mesh) {
     return box;
 }
 
+// Nothing of the scene passes the depth test there.
+void hide(std::span<const PixelRect> rects, glm::ivec2 size) {
+    constexpr float grey = 0.75f; // of the backdrop, more or less
+    glClearColor(grey, grey, grey, 1);
+    glClearDepth(0);
+    glEnable(GL_SCISSOR_TEST);
+    for (const PixelRect &rect : rects) {
+        glScissor(rect.min.x, size.y - rect.min.y - rect.size.y, std::max(rect.size.x, 0),
+                  std::max(rect.size.y, 0));
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    glClearDepth(1);
+}
+
 } // namespace
 
 struct Renderer::Parts {
@@ -164,7 +179,7 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer &&) noexcept = default;
 Renderer &Renderer::operator=(Renderer &&) noexcept = default;
 
-void Renderer::draw(const DrawList &list, Framebuffer &target) {
+void Renderer::draw(const DrawList &list, Framebuffer &target, std::span<const PixelRect> covered) {
     Parts &parts = *parts_;
     const Camera &camera = list.camera;
     const glm::vec2 size(target.size());
@@ -248,6 +263,8 @@ void Renderer::draw(const DrawList &list, Framebuffer &target) {
     target.bind();
     glEnable(GL_FRAMEBUFFER_SRGB);
     glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT); // the backdrop covers what colour is left
+    if (parts.quality == Quality::plain)
+        hide(covered, target.size());
     // In view, and how large.
     const glm::vec3 eye = camera.eye();
     const glm::vec2 widest = 1.0f + glm::abs(camera.centre);

@@ -19,6 +19,9 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
+
+#include <glm/common.hpp>
 
 #include <imgui/backends/imgui_impl_glfw.h>
 
@@ -64,9 +67,21 @@ struct Stage {
     void draw(Sandbox &sandbox) {
         PanelContext context = sandbox.panel_context(ui.fonts());
         const ImDrawData &data = ui.draw(context);
-        renderer.draw(sandbox.draw_list(), target);
+        renderer.draw(sandbox.draw_list(), target, panels(data.FramebufferScale.x));
         ui_renderer.draw(data, target);
         sandbox.take(context);
+    }
+
+    // In pixels, which are so many to a unit of the panels' coordinates; less their round corners.
+    std::vector<PixelRect> panels(float density) const {
+        constexpr float corner = 3;
+        std::vector<PixelRect> rects;
+        for (const Ui::Panel &panel : ui.panels()) {
+            const glm::ivec2 low(glm::ceil(density * (panel.rect.min + corner * scale)));
+            const glm::ivec2 high(glm::floor(density * (panel.rect.max() - corner * scale)));
+            rects.push_back({low, high - low});
+        }
+        return rects;
     }
 
     Ui ui;
