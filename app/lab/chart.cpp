@@ -172,7 +172,8 @@ double SceneChart::median_spread() const {
     return spreads.empty() ? 0 : median(spreads);
 }
 
-SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options) {
+SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
+                       const std::function<void(const SceneChart &)> &changed) {
     SceneChart chart;
     chart.scene = scene;
     chart.sweep = options.sweep.empty() ? std::vector{default_sweep()} : options.sweep;
@@ -244,9 +245,12 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options) {
             chart.measure = followed_measure(scene, had_contacts);
         timers.push_back(std::move(timer));
         chart.runs.push_back(std::move(run));
+        for (ChartRun &done : chart.runs)
+            judge_error(chart.measure, done);
+        mark_front(chart);
+        if (changed)
+            changed(chart);
     }
-    for (ChartRun &run : chart.runs)
-        judge_error(chart.measure, run);
 
     for (int repeat = 0; repeat < options.repeats && !stopped(); ++repeat) {
         std::vector<std::optional<double>> round(timers.size());
@@ -271,8 +275,10 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options) {
             chart.runs[i].timings.push_back(*round[i]);
             set_cost(chart.runs[i]);
         }
+        mark_front(chart);
+        if (changed)
+            changed(chart);
     }
-    mark_front(chart);
     chart.interrupted = stopped();
     return chart;
 }

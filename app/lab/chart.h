@@ -78,9 +78,11 @@ struct SceneChart {
 };
 
 // First each run in full, for its error; then the timings, round after round over all runs, so that
-// a machine that slows down does so for all. Throws std::invalid_argument for options that make no
+// a machine that slows down does so for all. `changed` is called whenever a run was added or a
+// round of timings finished; it may be empty. Throws std::invalid_argument for options that make no
 // sense.
-[[nodiscard]] SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options);
+[[nodiscard]] SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
+                                     const std::function<void(const SceneChart &)> &changed = {});
 
 // One row a run: all settings, costs, work, every error and every expectation.
 void write_chart_csv(std::ostream &out, const SceneChart &chart);
