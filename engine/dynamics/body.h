@@ -83,6 +83,8 @@ struct Collider {
     // The part of the surface's distance that turning the body does not change: the radius of a
     // sphere or capsule.
     Real rounding = Real(0);
+    Real extent = Real(0);     // how far turning the body moves its surface at most, a radian (m)
+    Real half_width = Real(0); // half of its least width (m); infinite for surfaces
     std::uint32_t body = UINT32_MAX; // none: a hole
     std::uint16_t child = 0;         // which of the body's colliders
 

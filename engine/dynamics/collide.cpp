@@ -56,23 +56,43 @@ ContactOrigin origin_of(const Vec3 &normal, const Motion &a, const Motion &b) {
     return {normal, b.position - a.position, a.rotation, b.rotation};
 }
 
+bool touches(const Manifold &manifold) {
+    for (int k = 0; k < manifold.count; ++k)
+        if (manifold.points[static_cast<std::size_t>(k)].separation <= Real(0))
+            return true;
+    return false;
+}
+
+// How far two solids go against each other in a step before it matters that they turn around each
+// other on the way: their distance then changes by way^2 / (2 width).
+Real predicted_from(const Collider &a, const Collider &b) {
+    return Real(0.02) * std::min(a.half_width, b.half_width);
+}
+
 } // namespace
+
+// How far apart the two may be and still meet within the step although they do not move: what
+// gravity adds, and a little. Two bodies that feel the same gravity fall together.
+Real World::contact_reach(const Candidate &candidate) const {
+    const auto dt = static_cast<Real>(settings_.dt);
+    const Vec3 gravity{settings_.gravity};
+    const Vec3 falling = gravity_on(model_->bodies[candidate.key.b], gravity) -
+                         gravity_on(model_->bodies[candidate.key.a], gravity);
+    return static_cast<Real>(settings_.speculative_distance) + glm::length(falling) * dt * dt;
+}
 
 // How far apart the two may be and still meet within the step; NaN when they are about to diverge.
 Real World::contact_margin(const Candidate &candidate) const {
-    const auto dt = static_cast<Real>(settings_.dt);
-    const Motion &a = state_.motions[candidate.key.a];
-    const Motion &b = state_.motions[candidate.key.b];
-    const Vec3 gravity{settings_.gravity};
-    // What gravity adds within the step; two bodies that feel the same fall together.
-    const Vec3 falling = gravity_on(model_->bodies[candidate.key.b], gravity) -
-                         gravity_on(model_->bodies[candidate.key.a], gravity);
-    return static_cast<Real>(settings_.speculative_distance) +
-           glm::length(b.velocity - a.velocity) * dt + glm::length(falling) * dt * dt;
+    const Motion &a = going(candidate.key.a);
+    const Motion &b = going(candidate.key.b);
+    return contact_reach(candidate) +
+           glm::length(b.velocity - a.velocity) * static_cast<Real>(settings_.dt) +
+           turning_reach(candidate.key.a) + turning_reach(candidate.key.b);
 }
 
 void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
-                        const Manifold &manifold, std::vector<Contact> &out) const {
+                        const FoundManifold &found, std::vector<Contact> &out) const {
+    const Manifold &manifold = found.manifold;
     if (manifold.count == 0)
         return;
     Contact &contact = out.emplace_back();
@@ -86,22 +106,22 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     contact.friction = std::sqrt(a.material.friction * b.material.friction);
     contact.restitution = std::max(a.material.restitution, b.material.restitution);
     contact.sensor = a.sensor || b.sensor;
-    const Motion &motion_a = state_.motions[contact.key.a];
-    const Motion &motion_b = state_.motions[contact.key.b];
-    contact.origin = origin_of(manifold.normal, motion_a, motion_b);
+    contact.origin = origin_of(manifold.normal, found.a, found.b);
     for (int k = 0; k < manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         const ManifoldPoint &point = manifold.points[index];
         ContactAnchor &anchor = contact.anchors[index];
-        anchor.arm_a = point.position - motion_a.position;
-        anchor.arm_b = point.position - motion_b.position;
+        anchor.arm_a = point.position - found.a.position;
+        anchor.arm_b = point.position - found.b.position;
         // The midpoint lies half the separation off either surface.
         const Real half = Real(0.5) * point.separation;
-        anchor.core_a = glm::conjugate(motion_a.rotation) *
+        anchor.core_a = glm::conjugate(found.a.rotation) *
                         (anchor.arm_a - (half + a.rounding) * manifold.normal);
-        anchor.core_b = glm::conjugate(motion_b.rotation) *
+        anchor.core_b = glm::conjugate(found.b.rotation) *
                         (anchor.arm_b + (half + b.rounding) * manifold.normal);
     }
+    if (found.is_ahead)
+        take_to_start(contact, found.a, found.b);
     const ContactMemory *before = find_memory(state_, contact.key);
     contact.is_new = before == nullptr;
     if (!contact.is_new)
@@ -182,11 +202,24 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
     const Collider &b = model_->colliders[candidate.collider_b];
     const std::uint32_t i = candidate.collider_a;
     const std::uint32_t j = candidate.collider_b;
+    const Motion &motion_a = state_.motions[candidate.key.a];
+    const Motion &motion_b = state_.motions[candidate.key.b];
+    const Real way = way_of(candidate);
+    const bool is_predicted = !a.sensor && !b.sensor && way > predicted_from(a, b);
     if (!a.surface && !b.surface) {
-        if (keeps_contacts() && keep_contact(candidate, out))
+        const bool is_turning = turn_together(candidate.key.a, candidate.key.b);
+        if (!is_turning && keeps_contacts() && keep_contact(candidate, out))
             return;
-        add_contact(candidate, ContactKey::no_triangle,
-                    plumb::collide(scratch_.placed[i], scratch_.placed[j], margin), out);
+        FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin),
+                            motion_a, motion_b};
+        if (is_turning)
+            found = turned_manifold(candidate, margin);
+        else if (found.manifold.count > 0 && is_predicted && !touches(found.manifold))
+            found = predicted_manifold(candidate);
+        else if (found.manifold.count > 0 && is_predicted)
+            guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
+        drop_inner_edges(candidate, ContactKey::no_triangle, found);
+        add_contact(candidate, ContactKey::no_triangle, found, out);
         return;
     }
     if (a.surface && b.surface)
@@ -205,10 +238,14 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                          glm::conjugate(pose.rotation)};
     surface.surface->each_touching(
         bounds(placed(around, back)), triangles, [&](std::uint32_t triangle) {
-            Manifold manifold = plumb::collide(solid, *surface.surface, pose, triangle, margin);
+            FoundManifold found{plumb::collide(solid, *surface.surface, pose, triangle, margin),
+                                motion_a, motion_b};
             if (!solid_first)
-                manifold.normal = -manifold.normal;
-            add_contact(candidate, triangle, manifold, out);
+                found.manifold.normal = -found.manifold.normal;
+            if (is_predicted && !touches(found.manifold))
+                found = predicted_manifold(candidate, triangle);
+            drop_inner_edges(candidate, triangle, found);
+            add_contact(candidate, triangle, found, out);
         });
 }
 

@@ -41,6 +41,8 @@ struct ContactOrigin {
 };
 
 // Two colliders that touch, or are about to, as found in this step or kept from an earlier one.
+// The manifold of those that are about to touch is that of the poses in which they will, but for
+// its separations.
 struct Contact {
     ContactKey key;
     std::uint32_t collider_a = 0; // in the model

@@ -61,18 +61,29 @@ void colour(StepContext &context) {
     schedule.lanes.clear();
     schedule.bucket_sizes.assign(alone + 1, 0);
     schedule.colours_of_body.assign(context.bodies.size(), 0);
-    for (std::size_t i = 0; i < context.contacts.size(); ++i) {
+    // Those with what cannot be pushed take later colours than all others: then nothing is left
+    // going into a wall by what pushes it there.
+    std::uint64_t of_others = 0;
+    std::uint64_t used = 0;
+    const std::size_t count = context.contacts.size();
+    for (std::size_t turn = 0; turn < 2 * count; ++turn) {
+        const std::size_t i = turn < count ? turn : turn - count;
         const Contact &contact = context.contacts[i];
-        if (contact.sensor)
+        const bool is_last =
+            !is_dynamic(context, contact.key.a) || !is_dynamic(context, contact.key.b);
+        if (turn == count)
+            of_others = used;
+        if (contact.sensor || is_last != (turn >= count))
             continue;
         const bool moves_a = is_dynamic(context, contact.key.a);
         const bool moves_b = is_dynamic(context, contact.key.b);
         std::uint64_t &of_a = schedule.colours_of_body[contact.key.a];
         std::uint64_t &of_b = schedule.colours_of_body[contact.key.b];
-        const std::uint64_t taken = (moves_a ? of_a : 0) | (moves_b ? of_b : 0);
+        const std::uint64_t taken = of_others | (moves_a ? of_a : 0) | (moves_b ? of_b : 0);
         const auto chosen = static_cast<std::uint32_t>(std::countr_one(taken));
         std::uint32_t bucket = alone;
         if (chosen < colours) {
+            used |= std::uint64_t{1} << chosen;
             of_a |= std::uint64_t{1} << chosen;
             of_b |= std::uint64_t{1} << chosen;
             bucket = chosen * most_points + static_cast<std::uint32_t>(contact.manifold.count - 1);
@@ -102,6 +113,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     set(block.normal, lane, contact.manifold.normal);
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
+    block.bounces.lanes[lane] = contact.restitution > Real(0) ? Real(1) : Real(0);
     block.rounding_a.lanes[lane] = context.model.colliders[contact.collider_a].rounding;
     block.rounding_b.lanes[lane] = context.model.colliders[contact.collider_b].rounding;
     set(block.inv_mass_a, lane, a.inv_mass);

@@ -54,6 +54,7 @@ struct ContactBlock {
     Columns3 normal;
     Columns3 t1; // t2 = n x t1
     Column friction;
+    Column bounces;    // 1 where there is restitution
     Column rounding_a; // radius by which a round surface lies beyond its core (m)
     Column rounding_b;
     Columns3 inv_mass_a; // along the world's axes

@@ -65,9 +65,18 @@ void solve_friction(const ContactConstraint &contact, ContactPointConstraint &po
 void prepare_contacts(StepContext &context, Prepare which) {
     std::vector<ContactConstraint> &constraints = context.scratch.contacts;
     constraints.clear();
-    for (std::size_t i = 0; i < context.contacts.size(); ++i) {
+    // Those with what cannot be pushed come last in each pass, so that nothing is left going into a
+    // wall by what pushes it there.
+    const auto is_against_fixed = [&](const Contact &contact) {
+        return context.model.bodies[contact.key.a].kind != BodyKind::dynamic ||
+               context.model.bodies[contact.key.b].kind != BodyKind::dynamic;
+    };
+    const std::size_t count = context.contacts.size();
+    for (std::size_t turn = 0; turn < 2 * count; ++turn) {
+        const std::size_t i = turn < count ? turn : turn - count;
         const Contact &contact = context.contacts[i];
-        if (contact.sensor || (which == Prepare::bouncing && contact.restitution == Real(0)))
+        if (contact.sensor || (which == Prepare::bouncing && contact.restitution == Real(0)) ||
+            is_against_fixed(contact) != (turn >= count))
             continue;
         ContactConstraint &out = constraints.emplace_back();
         const SolverBody &a = context.bodies[contact.key.a];
@@ -146,7 +155,9 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
             const Real separation = present_separation(contact, point, a, b);
-            if (bias.loaded_only && separation > Real(0) && point.impulse.x == Real(0))
+            // What bounces and has come a hair too deep is left to the next substep's impacts.
+            const bool is_left = separation > Real(0) || contact.restitution > Real(0);
+            if (bias.loaded_only && is_left && point.impulse.x == Real(0))
                 continue;
             Real target = Real(0); // velocity to be added to the relative normal velocity
             Real mass_scale = Real(1);

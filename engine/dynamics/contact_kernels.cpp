@@ -289,6 +289,7 @@ void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias 
         const Vector t1 = load(block.t1, lane);
         const Vector t2 = cross(n, t1);
         const Lanes friction = load(block.friction, lane);
+        const auto bounces = hn::Gt(load(block.bounces, lane), zero);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             for (int k = 0; k < block.points_used; ++k) {
                 ContactBlock::Point &point = block.points[k];
@@ -315,7 +316,9 @@ void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias 
                             hn::Mul(impulse_scale, before));
                 Lanes total = hn::Max(hn::Add(before, change), zero);
                 if (bias.loaded_only)
-                    total = hn::IfThenElse(hn::And(apart, hn::Eq(before, zero)), before, total);
+                    // What bounces and has come a hair too deep is left to the next impacts.
+                    total = hn::IfThenElse(hn::And(hn::Or(apart, bounces), hn::Eq(before, zero)),
+                                           before, total);
                 pair.apply(times(hn::Sub(total, before), n), r_a, r_b);
                 store(total, point.impulse.x, lane);
             }

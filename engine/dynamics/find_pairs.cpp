@@ -63,7 +63,7 @@ Aabb World::swept_bounds(const Aabb &box, std::uint32_t body) const {
     const auto dt = static_cast<Real>(settings_.dt);
     Real reach = static_cast<Real>(settings_.speculative_distance) / 2;
     if (what.kind != BodyKind::fixed)
-        reach += glm::length(state_.motions[body].velocity) * dt;
+        reach += glm::length(going(body).velocity) * dt + turning_reach(body);
     if (what.kind == BodyKind::dynamic)
         reach += glm::length(gravity_on(what, Vec3{settings_.gravity})) * dt * dt;
     return {box.min - reach, box.max + reach};
@@ -169,8 +169,7 @@ void World::find_pairs() const {
         HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
         reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;
         if (model_->bodies[body].kind != BodyKind::fixed)
-            reached.offset +=
-                glm::length(state_.motions[body].velocity) * static_cast<Real>(settings_.dt);
+            reached.offset += glm::length(going(body).velocity) * static_cast<Real>(settings_.dt);
         for (std::uint32_t i = 0; i < count; ++i) {
             const Collider &other = model_->colliders[i];
             if (other.body != no_body && !other.is_half_space() && may_touch(i, plane) &&
@@ -180,6 +179,24 @@ void World::find_pairs() const {
     }
     refuse_more_than(most_candidates, s.candidates.size(), s);
     std::ranges::sort(s.candidates, {}, &Candidate::key);
+    note_fixed_neighbors();
+}
+
+// Which fixed colliders each other one is near: where there are several they may be flush.
+void World::note_fixed_neighbors() const {
+    Scratch &s = scratch_;
+    s.beside_fixed.clear();
+    for (const Candidate &candidate : s.candidates) {
+        const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::fixed;
+        const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::fixed;
+        if (!a_is_fixed && !b_is_fixed)
+            continue;
+        const std::uint32_t other = a_is_fixed ? candidate.collider_b : candidate.collider_a;
+        const std::uint32_t fixed = a_is_fixed ? candidate.collider_a : candidate.collider_b;
+        if (!model_->colliders[fixed].sensor && !model_->colliders[other].sensor)
+            s.beside_fixed.push_back(std::uint64_t{other} << 32 | fixed);
+    }
+    std::ranges::sort(s.beside_fixed);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -11,10 +13,12 @@ namespace {
 
 // The rebound speed of one contact point that approaches with `speed` < 0 at distance `gap`, under
 // a relative acceleration `pull` along the normal (negative: towards each other); empty when it is
-// not struck within h, or too slow to come back to where it is.
+// not struck within h, or too slow to come back to where it is. Energy is that of a bounce at the
+// surface, whatever the gap.
 struct Rebound {
     bool struck = false;
     Real speed = Real(0);
+    Real time = Real(0); // s, until it touches
 };
 
 Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSettings &settings,
@@ -29,7 +33,7 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
     const Real back_squared = restitution * restitution * surface_squared + Real(2) * pull * height;
     if (back_squared <= threshold * threshold)
         return {};
-    return {true, std::sqrt(back_squared)};
+    return {true, std::sqrt(back_squared), height / -speed};
 }
 
 // The impact at the middle of where it acts.
@@ -63,20 +67,25 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
         return glm::dot(b.velocity_at(point.r_b) - a.velocity_at(point.r_a), contact.normal);
     };
     std::array<Rebound, 4> rebounds;
+    std::array<Real, 4> approaches{}; // normal speeds before
     std::array<Real, 4>
         normal_mass{}; // at the present poses: a stale one would gain or lose energy
     bool any = false;
     for (int k = 0; k < contact.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         const ContactPointConstraint &point = contact.points[index];
-        rebounds[index] = rebound(present_separation(contact, point, a, b), normal_speed(point),
-                                  pull, contact.restitution, context.settings, h);
+        approaches[index] = normal_speed(point);
+        rebounds[index] = rebound(present_separation(contact, point, a, b), approaches[index], pull,
+                                  contact.restitution, context.settings, h);
         const Real inverse = inverse_effective_mass(a, b, point.r_a, point.r_b, contact.normal);
         normal_mass[index] = inverse > Real(0) ? Real(1) / inverse : Real(0);
         any = any || rebounds[index].struck;
     }
     if (!any)
         return false;
+
+    const Vec3 before_a = a.velocity;
+    const Vec3 before_b = b.velocity;
 
     // The points of one manifold share the impulse by Gauss-Seidel.
     const int passes = contact.count == 1 ? 1 : context.settings.impact_passes;
@@ -94,6 +103,26 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             a.apply_impulse(-impulse, point.r_a);
             b.apply_impulse(impulse, point.r_b);
         }
+    // What the passes have not shared out yet is made good as a whole, so that they leave the
+    // energy that the law leaves: half the impulses times the sums of the speeds before and after.
+    if (contact.count > 1) {
+        Real wanted = Real(0);
+        Real reached = Real(0);
+        for (int k = 0; k < contact.count; ++k) {
+            const auto index = static_cast<std::size_t>(k);
+            const Real after = normal_speed(contact.points[index]);
+            wanted += normal_impulse[index] * (rebounds[index].speed - approaches[index]);
+            reached += normal_impulse[index] * (after - approaches[index]);
+        }
+        const Real missing = reached > Real(0) ? wanted / reached - Real(1) : Real(0);
+        for (int k = 0; k < contact.count; ++k) {
+            const auto index = static_cast<std::size_t>(k);
+            const Vec3 impulse = (missing * normal_impulse[index]) * contact.normal;
+            normal_impulse[index] *= Real(1) + missing;
+            a.apply_impulse(-impulse, contact.points[index].r_a);
+            b.apply_impulse(impulse, contact.points[index].r_b);
+        }
+    }
     if (contact.friction > Real(0))
         for (int k = 0; k < contact.count; ++k) {
             const auto index = static_cast<std::size_t>(k);
@@ -102,6 +131,22 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             solve_friction(contact, point, a, b, contact.friction * normal_impulse[index]);
         }
     record(context, contact, normal_impulse);
+    // Until they touch they go on as before: the new velocities act from there on. Without that the
+    // two would be struck while apart, and so lose angular momentum.
+    if (pull == Real(0)) {
+        Real time = std::numeric_limits<Real>::infinity();
+        for (std::size_t k = 0; k < rebounds.size(); ++k)
+            if (rebounds[k].struck && normal_impulse[k] > Real(0))
+                time = std::min(time, rebounds[k].time);
+        if (time > Real(0) && std::isfinite(time)) {
+            time = std::min(time, h);
+            for (const auto &[body, before] : {std::pair{&a, before_a}, std::pair{&b, before_b}}) {
+                const Vec3 way = time * (before - body->velocity);
+                body->position += way;
+                body->moved += way;
+            }
+        }
+    }
     return true;
 }
 

@@ -29,11 +29,18 @@ struct Scratch {
     std::vector<std::uint8_t> moved;
     std::vector<std::uint64_t> fat_pairs; // of colliders whose fat boxes touch, ascending
     std::vector<Candidate> candidates;
+    // Of candidates with one fixed body: (the other collider << 32 | the fixed one), ascending.
+    std::vector<std::uint64_t> beside_fixed;
 
     // Contacts of the last step, or found again. `are_current`: of this model and these poses or of
     // the step that led to them.
     std::vector<Contact> contacts;
     bool contacts_are_current = false;
+    // Bodies that went another way than at the start of the step, how all go now, and whom they
+    // met.
+    std::vector<std::uint8_t> surprised; // empty: none
+    std::vector<Motion> going;
+    std::vector<Contact> more;
     std::vector<std::vector<Contact>> parts; // found by each part of a parallel loop
     std::vector<std::vector<std::uint32_t>> triangles;
     std::vector<ContactMemory> next_memory;

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
@@ -31,11 +33,58 @@ class PhaseTimer {
 
 } // namespace
 
-// All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
-// left half done is thrown away.
+// Whether one of the two is moved by the scene, turns, and the other turns with it.
+bool World::turn_together(std::uint32_t a, std::uint32_t b) const {
+    const Vec3 &spin_a = state_.motions[a].angular_velocity;
+    const Vec3 &spin_b = state_.motions[b].angular_velocity;
+    const bool is_driven = model_->bodies[a].kind == BodyKind::kinematic ||
+                           model_->bodies[b].kind == BodyKind::kinematic;
+    return is_driven && glm::dot(spin_a, spin_b) > Real(0.5) * std::max(glm::dot(spin_a, spin_a),
+                                                                        glm::dot(spin_b, spin_b));
+}
+
+// What rides on a turntable is turned by friction all the time; with contacts of the start of the
+// step it would be turned all at once, in the first substep, and friction cannot hold that. Then
+// contacts are found for each substep.
+bool World::rides_on_turning() const {
+    constexpr double enough = 0.01; // rad in a step
+    return std::ranges::any_of(state_.contacts, [&](const ContactMemory &memory) {
+        return turn_together(memory.key.a, memory.key.b) &&
+               static_cast<double>(glm::length(state_.motions[memory.key.a].angular_velocity)) *
+                       settings_.dt >
+                   enough;
+    });
+}
+
 void World::step(TaskPool *tasks, StepTimes *times) {
     report_ = StepReport{};
+    scratch_.impacts.clear();
+    const int parts = settings_.substeps > 1 && rides_on_turning() ? settings_.substeps : 1;
+    if (parts == 1) {
+        step_part(tasks, times);
+    } else {
+        const StepSettings whole = settings_;
+        const State before = state_;
+        try {
+            settings_.dt /= parts;
+            settings_.substeps = 1;
+            for (int part = 0; part < parts; ++part)
+                step_part(tasks, times);
+            settings_ = whole;
+        } catch (...) {
+            settings_ = whole;
+            state_ = before;
+            throw;
+        }
+    }
+    ++state_.step_count;
+}
+
+// All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
+// left half done is thrown away.
+void World::step_part(TaskPool *tasks, StepTimes *times) {
     scratch_.contacts_are_current = false;
+    scratch_.surprised.clear();
     try {
         {
             const PhaseTimer timer(times ? &times->find_pairs : nullptr);
@@ -47,8 +96,19 @@ void World::step(TaskPool *tasks, StepTimes *times) {
         }
         {
             const PhaseTimer timer(times ? &times->advance : nullptr);
+            const std::size_t impacts = scratch_.impacts.size();
+            const StepReport before = report_;
             load_bodies();
             advance();
+            constexpr int most_tries = 8;
+            for (int tries = 1; tries < most_tries && find_surprises(); ++tries) {
+                scratch_.impacts.resize(impacts);
+                report_.impacts = before.impacts;
+                report_.unresolved_impacts = before.unresolved_impacts;
+                load_bodies();
+                advance();
+            }
+            scratch_.surprised.clear();
         }
         {
             const PhaseTimer timer(times ? &times->finish : nullptr);
@@ -86,7 +146,6 @@ void World::load_bodies() {
     s.joints = state_.joints;
     s.grab = state_.grab;
     s.world_frame = SolverBody{};
-    s.impacts.clear();
 }
 
 void World::advance() {
@@ -95,6 +154,7 @@ void World::advance() {
                         s.grab,  s.world_frame, s.solver, report_,  s.impacts};
     method_->advance(context);
     report_.moving_bodies = static_cast<std::uint32_t>(s.moving.size());
+    report_.contact_points = 0;
     report_.joints = model_->alive_joints;
     report_.pairs = static_cast<std::uint32_t>(s.candidates.size());
     report_.contacts = static_cast<std::uint32_t>(s.contacts.size());
@@ -136,7 +196,6 @@ void World::finish() {
     std::swap(state_.points, s.next_points);
     std::swap(state_.joints, s.joints);
     state_.grab = s.grab;
-    ++state_.step_count;
     s.contacts_are_current = true;
 }
 

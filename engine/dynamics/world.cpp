@@ -2,6 +2,7 @@
 #include "engine/dynamics/world.h"
 
 #include "engine/core/check.h"
+#include "engine/dynamics/approach.h"
 #include "engine/dynamics/mass_frame.h"
 
 #include <algorithm>
@@ -68,6 +69,11 @@ Real rounding_of(const Shape &shape) {
     if (const auto *capsule = std::get_if<Capsule>(&shape))
         return capsule->radius;
     return Real(0);
+}
+
+Real surface_extent(const TriangleSurface &surface, const Transform &pose) {
+    const Vec3 reach = glm::max(glm::abs(surface.bounds().min), glm::abs(surface.bounds().max));
+    return glm::length(pose.position) + glm::length(reach);
 }
 
 template <typename Item>
@@ -193,6 +199,9 @@ void World::add_colliders(const BodyDef &def, Body &body, std::uint32_t slot) {
                       .child = static_cast<std::uint16_t>(i)};
         if (body.has_mass_frame)
             to.shape = with_unit_rotation(placed(from.shape, into(body.mass_frame)));
+        to.extent =
+            from.surface ? surface_extent(*from.surface, from.surface_pose) : core_extent(to.shape);
+        to.half_width = from.surface ? std::numeric_limits<Real>::infinity() : half_width(to.shape);
         if (to.is_half_space())
             model.half_spaces.insert(
                 std::ranges::lower_bound(model.half_spaces, body.first_collider + i),

@@ -31,6 +31,14 @@ struct SavedWorld {
 // Three things: the model (what only an edit changes), the state (all that survives a step), and
 // scratch, which may be thrown away between any two steps. What follows depends only on the first
 // two, the method and the settings, never on the way that led there.
+// A manifold and the poses that it is of: those of now, or those in which two bodies will touch.
+struct FoundManifold {
+    Manifold manifold;
+    Motion a;
+    Motion b;
+    bool is_ahead = false; // not of now
+};
+
 class World {
   public:
     // A method unknown to the registry, or settings out of range, fail a check.
@@ -129,6 +137,9 @@ class World {
 
   private:
     // The phases of a step; those that are const work on scratch alone.
+    bool turn_together(std::uint32_t a, std::uint32_t b) const;
+    bool rides_on_turning() const;
+    void step_part(TaskPool *tasks, StepTimes *times);
     void find_pairs() const;
     void collide(TaskPool *tasks) const;
     void load_bodies();
@@ -147,8 +158,25 @@ class World {
                            std::vector<std::uint32_t> &triangles) const;
     bool keeps_contacts() const;
     bool keep_contact(const Candidate &candidate, std::vector<Contact> &out) const;
-    void add_contact(const Candidate &candidate, std::uint32_t triangle, const Manifold &manifold,
+    void add_contact(const Candidate &candidate, std::uint32_t triangle, const FoundManifold &found,
                      std::vector<Contact> &out) const;
+    void note_fixed_neighbors() const;
+    // Without what a fixed body's neighbours cover (inner_edges.h).
+    void drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
+                          FoundManifold &found) const;
+    // Contacts of what does not touch yet (predicted_contact.cpp).
+    const Motion &going(std::uint32_t body) const;
+    void take_to_start(Contact &contact, const Motion &a, const Motion &b) const;
+    Real least_half_width(const Body &body) const;
+    bool find_surprises();
+    Real contact_reach(const Candidate &candidate) const;
+    Real turning_reach(std::uint32_t body) const;
+    Real way_of(const Candidate &candidate) const;
+    void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
+                      Manifold &manifold) const;
+    FoundManifold turned_manifold(const Candidate &candidate, Real margin) const;
+    FoundManifold predicted_manifold(const Candidate &candidate) const;
+    FoundManifold predicted_manifold(const Candidate &candidate, std::uint32_t triangle) const;
 
     void use(const StepSettings &settings);
     // The model, to be changed; a copy of its own when saves share it.

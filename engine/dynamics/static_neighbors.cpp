@@ -1,0 +1,96 @@
+// What lies flush beside a fixed body that something touches.
+#include "engine/dynamics/inner_edges.h"
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+#include <span>
+
+#include <glm/common.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+Aabb around_points(const Manifold &manifold, Real reach) {
+    Aabb box;
+    for (int k = 0; k < manifold.count; ++k) {
+        const ManifoldPoint &point = manifold.points[static_cast<std::size_t>(k)];
+        const Vec3 half = glm::abs(Real(0.5) * point.separation * manifold.normal) + reach;
+        box.min = glm::min(box.min, point.position - half);
+        box.max = glm::max(box.max, point.position + half);
+    }
+    return box;
+}
+
+bool touch(const Aabb &a, const Aabb &b) {
+    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
+           a.min.z <= b.max.z && b.min.z <= a.max.z;
+}
+
+// Its pieces that the box touches.
+void gather(const Collider &collider, const Shape &solid, const Motion &motion, const Aabb &box,
+            std::vector<StaticPiece> &out) {
+    if (!collider.surface) {
+        if (collider.is_half_space() || touch(bounds(solid), box))
+            out.emplace_back(solid);
+        return;
+    }
+    const Transform pose = surface_pose(collider, motion);
+    const Box around{Real(0.5) * (box.min + box.max), identity_rotation,
+                     Real(0.5) * (box.max - box.min)};
+    std::vector<std::uint32_t> triangles;
+    collider.surface->each_touching(
+        bounds(placed(around, inverse(pose))), triangles, [&](std::uint32_t index) {
+            out.emplace_back(placed(collider.surface->triangle(index), pose));
+        });
+}
+
+} // namespace
+
+void World::drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
+                             FoundManifold &found) const {
+    const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::fixed;
+    const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::fixed;
+    if (found.manifold.count == 0 || (!a_is_fixed && !b_is_fixed))
+        return;
+    const std::uint32_t other = a_is_fixed ? candidate.collider_b : candidate.collider_a;
+    const std::uint32_t fixed = a_is_fixed ? candidate.collider_a : candidate.collider_b;
+    const auto first = std::ranges::lower_bound(scratch_.beside_fixed, std::uint64_t{other} << 32);
+    const auto last =
+        std::ranges::lower_bound(scratch_.beside_fixed, std::uint64_t{other + 1} << 32);
+    if (last - first < 2)
+        return;
+
+    const Collider &own = model_->colliders[fixed];
+    const Collider &mover = model_->colliders[other];
+    if (own.is_half_space() || mover.surface)
+        return;
+    const Real flush = Real(1e-3) * std::min(own.half_width, mover.half_width);
+    const Aabb box = around_points(found.manifold, (near_reach + Real(8)) * flush);
+    std::vector<StaticPiece> neighbors;
+    for (const std::uint64_t pair : std::span(first, last)) {
+        const auto neighbor = static_cast<std::uint32_t>(pair & 0xFFFFFFFFU);
+        const Collider &collider = model_->colliders[neighbor];
+        if (neighbor != fixed)
+            gather(collider, scratch_.placed[neighbor], state_.motions[collider.body], box,
+                   neighbors);
+    }
+    if (neighbors.empty())
+        return;
+
+    const Motion &at = a_is_fixed ? found.b : found.a;
+    const Shape solid = placed(mover.shape, Transform{at.position, at.rotation});
+    const StaticPiece piece = own.surface
+                                  ? StaticPiece{placed(own.surface->triangle(triangle),
+                                                       surface_pose(own, state_.motions[own.body]))}
+                                  : StaticPiece{scratch_.placed[fixed]};
+    Manifold &manifold = found.manifold;
+    if (a_is_fixed)
+        manifold.normal = -manifold.normal;
+    manifold =
+        without_inner_edges(manifold, solid, piece, neighbors, contact_margin(candidate), flush);
+    if (a_is_fixed)
+        manifold.normal = -manifold.normal;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,121 @@
+// Impacts of what moves far in a step for its size, against the closed forms.
+#include "tests/dynamics/worlds.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+// A spinning ball on the ground: Newton's and Coulomb's laws at one point.
+TEST(SoftStepFastImpact, ASpinningBallBouncesByTheClosedForm) {
+    Random random(7);
+    for (const double speed : {2.0, 5.0, 10.0, 20.0, 50.0})
+        for (int trial = 0; trial < 60; ++trial) {
+            const double radius = 0.2, mass = 2, friction = 0.3 + 0.5 * (trial % 2);
+            const double restitution = 0.5 * (trial % 3);
+            const V v{0.8 * speed * random.next_in(-1, 1), -speed,
+                      0.8 * speed * random.next_in(-1, 1)};
+            const V spin = any_vector(random, 0.7 * speed / radius);
+            World world("soft_step", weightless(settings_for("soft_step")));
+            world.add_body(ground(friction, restitution));
+            BodyDef def = dynamic_body(ball(radius), mass,
+                                       V{0, radius + speed * random.next_in(0.02, 0.06), 0}, v);
+            def.angular_velocity = narrow(spin);
+            const BodyId id = world.add_body(with_material(def, friction, restitution));
+            run(world, 12);
+
+            const V arm{0, -radius, 0};
+            V sliding = v + glm::cross(spin, arm);
+            sliding.y = 0;
+            const double normal = mass * speed * (1 + restitution);
+            V rub = sliding * (-mass / 3.5); // m and I = 2/5 m r^2 against a force at the rim
+            if (glm::length(rub) > friction * normal)
+                rub *= friction * normal / glm::length(rub);
+            V expected = v + rub / mass;
+            expected.y = restitution * speed;
+            const V expected_spin = spin + glm::cross(arm, rub) / (0.4 * mass * radius * radius);
+            EXPECT_LE(glm::distance(velocity_of(world, id), expected), 0.01 * glm::length(v));
+            EXPECT_LE(glm::distance(spin_of(world, id), expected_spin),
+                      0.02 * glm::length(v) / radius);
+        }
+}
+
+// One ball strikes another that rests, off centre.
+TEST(SoftStepFastImpact, BallsPartByTheClosedFormAndKeepAngularMomentum) {
+    Random random(8);
+    const double radius = 0.2;
+    for (const double speed : {2.0, 20.0})
+        for (int trial = 0; trial < 120; ++trial) {
+            const double restitution = 0.5 * (trial % 3), friction = 0.5 * (trial % 2);
+            const double off = 2 * radius * random.next_in(-0.9, 0.9);
+            World world("soft_step", weightless(settings_for("soft_step")));
+            const BodyId a = world.add_body(with_material(
+                dynamic_body(ball(radius), 1, V{-1 - speed / 60 * random.next_in(0, 1), off, 0},
+                             V{speed, 0, 0}),
+                friction, restitution));
+            const BodyId b = world.add_body(
+                with_material(dynamic_body(ball(radius), 1, V{0}), friction, restitution));
+            const V before = world.measure().angular_momentum;
+            run(world, int(2.5 * 60 / speed) + 4);
+
+            const double sine = off / (2 * radius);
+            const V normal{std::sqrt(1 - sine * sine), -sine, 0};
+            const V v{speed, 0, 0};
+            const double struck = 0.5 * (1 + restitution) * glm::dot(v, normal);
+            const V sliding = v - glm::dot(v, normal) * normal;
+            V rub{0};
+            if (glm::length(sliding) > 0)
+                rub =
+                    glm::normalize(sliding) * std::min(glm::length(sliding) / 7, friction * struck);
+            const V given = struck * normal + rub;
+            EXPECT_LE(glm::distance(velocity_of(world, b), given), 0.015 * speed);
+            EXPECT_LE(glm::distance(velocity_of(world, a), v - given), 0.015 * speed);
+            EXPECT_LE(glm::distance(world.measure().angular_momentum, before),
+                      0.03 * speed * radius);
+        }
+}
+
+// 36 of them between six walls for ten seconds.
+TEST(SoftStepGas, ElasticBodiesKeepTheirEnergy) {
+    const std::vector<Shape> shapes{block(V{0.15, 0.1, 0.2}), ball(0.15),
+                                    upright_capsule(0.15, 0.1)};
+    for (const Shape &shape : shapes) {
+        Random random(11);
+        World world("soft_step", weightless(settings_for("soft_step")));
+        for (int side = 0; side < 6; ++side) {
+            V normal{0};
+            normal[side / 2] = side % 2 == 0 ? 1 : -1;
+            world.add_body(with_material(fixed_body(HalfSpace{narrow(normal), Real(-2)}), 0, 1));
+        }
+        for (int i = 0; i < 36; ++i) {
+            const V at{-1.2 + 0.8 * (i % 4), -0.8 + 0.8 * (i / 4 % 3), -0.8 + 0.8 * (i / 12)};
+            BodyDef def = dynamic_body(shape, 1, at, any_vector(random, 3));
+            def.angular_velocity = narrow(any_vector(random, 3));
+            world.add_body(with_material(def, 0, 1));
+        }
+        const double before = world.measure().energy();
+        run(world, 600);
+        EXPECT_NEAR(world.measure().energy(), before, 1e-3 * before) << shape.index();
+    }
+}
+
+// A box on a turntable, friction at `share` of what holds it there.
+TEST(SoftStepTurntable, ItsRiderStays) {
+    for (const double share : {0.3, 0.5, 0.7, 0.82}) {
+        const double friction = 0.5, spin = std::sqrt(share * friction * gravity);
+        World world("soft_step", settings_for("soft_step"));
+        BodyDef table = with_material(fixed_body(block(V{3, 0.1, 3}), V{0, -0.1, 0}), friction, 0);
+        table.kind = BodyKind::kinematic;
+        table.angular_velocity = narrow(V{0, spin, 0});
+        world.add_body(table);
+        BodyDef rider = dynamic_body(block(V{0.05, 0.02, 0.05}), 1, V{1, 0.02, 0}, V{0, 0, -spin});
+        rider.angular_velocity = narrow(V{0, spin, 0});
+        const BodyId id = world.add_body(with_material(rider, friction, 0));
+        run(world, 600);
+        const V at = position_of(world, id);
+        EXPECT_NEAR(std::hypot(at.x, at.z), 1, share > 0.8 ? 0.06 : 0.02) << share;
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION

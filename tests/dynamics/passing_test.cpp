@@ -1,0 +1,131 @@
+// What passes without touching is let pass; what is in the way is not passed through.
+#include "tests/dynamics/worlds.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+class Passing : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Passing, testing::ValuesIn(impact_methods()), name_of);
+
+World weightless_world(const std::string &method) {
+    return World(method, weightless(settings_for(method)));
+}
+
+// The speed that a body at rest has after another came past it along x, `above` its centre.
+double speed_after_passing(const std::string &method, const Shape &moving, const Shape &resting,
+                           double speed, double above, double start) {
+    World world = weightless_world(method);
+    world.add_body(
+        with_material(dynamic_body(moving, 1, V{start, above, 0}, V{speed, 0, 0}), 0, 0));
+    const BodyId id = world.add_body(with_material(dynamic_body(resting, 1, V{0}), 0, 0));
+    run(world, int(3 * 60 / speed) + 3);
+    return glm::length(velocity_of(world, id));
+}
+
+// In every phase of the step, from a millimetre at 2 m/s to 20 cm at 50 m/s.
+TEST_P(Passing, ABallThatPassesAnotherDoesNotTouchIt) {
+    for (const double speed : {2.0, 5.0, 10.0, 20.0, 50.0})
+        for (const double gap : {0.001, 0.005, 0.02, 0.05, 0.1, 0.2})
+            for (int phase = 0; phase < 12; ++phase) {
+                const double start = -1.5 - speed / 60 * phase / 12;
+                EXPECT_EQ(
+                    speed_after_passing(GetParam(), ball(0.2), ball(0.2), speed, 0.4 + gap, start),
+                    0)
+                    << speed << ' ' << gap << ' ' << phase;
+                EXPECT_EQ(speed_after_passing(GetParam(), ball(0.2), block(V{0.2}), speed,
+                                              0.4 + gap, start),
+                          0)
+                    << speed << ' ' << gap << ' ' << phase;
+            }
+}
+
+TEST_P(Passing, ABallThatGrazesAnotherTouchesIt) {
+    for (const double speed : {2.0, 10.0, 50.0})
+        for (const double depth : {0.002, 0.02, 0.1})
+            for (int phase = 0; phase < 12; ++phase)
+                EXPECT_GT(speed_after_passing(GetParam(), ball(0.2), ball(0.2), speed, 0.4 - depth,
+                                              -1.5 - speed / 60 * phase / 12),
+                          0.01 * speed * std::sqrt(depth / 0.4))
+                    << speed << ' ' << depth << ' ' << phase;
+}
+
+TEST_P(Passing, BoxesThatPassDoNotTouch) {
+    Random random(3);
+    for (int trial = 0; trial < 200; ++trial) {
+        const double speed = random.next_in(2, 50);
+        const V a = any_vector(random, 0.1) + V{0.2}, b = any_vector(random, 0.1) + V{0.2};
+        const double above = a.y + b.y + random.next_in(0.005, 0.1);
+        EXPECT_EQ(speed_after_passing(GetParam(), block(a), block(b), speed, above,
+                                      -1.5 - random.next_in(0, speed / 60)),
+                  0);
+    }
+}
+
+// A ball at rest a little before a wall, struck by one ten times as heavy.
+TEST(SoftStepPassing, NothingIsStruckThroughAWall) {
+    for (const double speed : {8.0, 20.0, 40.0, 100.0})
+        for (const double gap : {0.02, 0.05, 0.1, 0.3})
+            for (int phase = 0; phase < 10; ++phase) {
+                World world = weightless_world("soft_step");
+                world.add_body(with_material(fixed_body(block(V{0.005, 5, 5})), 0, 0));
+                const double x = -0.105 - gap;
+                const BodyId id =
+                    world.add_body(with_material(dynamic_body(ball(0.1), 1, V{x, 0, 0}), 0, 0));
+                world.add_body(with_material(
+                    dynamic_body(ball(0.1), 10, V{x - 0.3 - speed / 60 * phase / 10, 0, 0},
+                                 V{speed, 0, 0}),
+                    0, 0));
+                double farthest = x;
+                for (int i = 0; i < 30; ++i) {
+                    world.step(nullptr);
+                    farthest = std::max(farthest, position_of(world, id).x);
+                }
+                EXPECT_LT(farthest, 0) << speed << ' ' << gap << ' ' << phase;
+            }
+}
+
+// Small boxes against a wall thinner than they are, by any corner, edge or face.
+TEST(SoftStepPassing, ABoxDoesNotPassAThinWall) {
+    Random random(5);
+    for (const double speed : {10.0, 30.0})
+        for (const double restitution : {0.0, 0.5})
+            for (int trial = 0; trial < 100; ++trial) {
+                World world = weightless_world("soft_step");
+                world.add_body(
+                    with_material(fixed_body(block(V{0.005, 50, 50})), 0.3, restitution));
+                V way = any_vector(random, 1);
+                way = glm::normalize(V{std::abs(way.x) + 0.3, way.y, way.z});
+                BodyDef def = dynamic_body(block(V{0.05, 0.1, 0.02}), 1,
+                                           -(3 + random.next_in(0, 1)) * way, speed * way);
+                def.pose.rotation = glm::normalize(narrow(any_rotation(random)));
+                const BodyId id = world.add_body(with_material(def, 0.3, restitution));
+                double farthest = -1;
+                for (int i = 0; i < int(9 * 60 / speed); ++i) {
+                    world.step(nullptr);
+                    farthest = std::max(farthest, position_of(world, id).x);
+                }
+                EXPECT_LT(farthest, 0) << speed << ' ' << restitution << ' ' << trial;
+            }
+}
+
+// On a fixed axle, from less than a twentieth of a turn in a step to half of one.
+TEST(SoftStepPassing, ASpinningRodDoesNotPassAPost) {
+    for (const double spin : {10.0, 30.0, 94.0, 180.0})
+        for (int phase = 0; phase < 20; ++phase) {
+            World world = weightless_world("soft_step");
+            world.add_body(with_material(fixed_body(upright_capsule(1, 0.05), V{0.8, 0, 0}), 0, 0));
+            BodyDef rod = dynamic_body(block(V{1, 0.03, 0.03}), 1, V{0});
+            rod.pose.rotation =
+                glm::normalize(narrow(glm::angleAxis(0.3 + 2.4 * phase / 20, V{0, 1, 0})));
+            rod.angular_velocity = narrow(V{0, spin, 0});
+            rod.locked = {true, true, true, true, false, true};
+            const BodyId id = world.add_body(with_material(rod, 0, 0));
+            run(world, 60);
+            EXPECT_LT(std::abs(spin_of(world, id).y), 0.01 * spin) << spin << ' ' << phase;
+        }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
