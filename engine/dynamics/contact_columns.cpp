@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include <glm/geometric.hpp>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
@@ -131,6 +133,53 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     }
 }
 
+// As the kernels have it: how far an arm's end came along n since the step began.
+Real way_along(const Vec3 &n, const Vec3 &turn, const Vec3 &r, Real rounding) {
+    const Real turn_n = glm::dot(turn, n);
+    const Real core_n = glm::dot(r, n) - rounding;
+    const Real core_turn = glm::dot(r, turn) - rounding * turn_n;
+    const Real second = turn_n * core_turn - glm::dot(turn, turn) * core_n;
+    return glm::dot(n, glm::cross(turn, r)) + Real(0.5) * second;
+}
+
+// What turns too far for the second order, and for a contact made for the time of impact, whose
+// arms are those of then.
+bool turns_far(const SolverBody &body, Real dt) {
+    constexpr Real far = Real(1e-3); // rad
+    return glm::dot(body.turned, body.turned) > far * far ||
+           glm::dot(body.angular_velocity, body.angular_velocity) * dt * dt > far * far;
+}
+
+// Sets such separations so that with what the kernels add they are exact at the present poses.
+void correct_separations(StepContext &context) {
+    const auto dt = static_cast<Real>(context.settings.dt);
+    if (std::ranges::none_of(context.moving, [&](std::uint32_t body) {
+            return turns_far(context.bodies[body], dt);
+        }))
+        return;
+    for (ContactBlock &block : context.scratch.schedule.blocks)
+        for (std::size_t lane = 0; lane < block.used; ++lane) {
+            const Contact &contact = context.contacts[block.contacts[lane]];
+            const SolverBody &a = context.bodies[contact.key.a];
+            const SolverBody &b = context.bodies[contact.key.b];
+            if (!turns_far(a, dt) && !turns_far(b, dt))
+                continue;
+            const Vec3 &n = contact.manifold.normal;
+            const Real rounding_a = block.rounding_a.lanes[lane];
+            const Real rounding_b = block.rounding_b.lanes[lane];
+            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+                const ContactAnchor &anchor = contact.anchors[k];
+                const Vec3 gap = (b.position - a.position) +
+                                 (b.rotation * anchor.core_b - a.rotation * anchor.core_a);
+                const Real exact = glm::dot(gap, n) - rounding_a - rounding_b;
+                const Real way = glm::dot(n, b.moved - a.moved) +
+                                 way_along(n, b.turned, anchor.arm_b, -rounding_b) -
+                                 way_along(n, a.turned, anchor.arm_a, rounding_a);
+                block.points[k].separation.lanes[lane] = exact - way;
+            }
+        }
+}
+
 } // namespace
 
 void prepare_contact_columns(StepContext &context) {
@@ -163,6 +212,7 @@ void recall_contact_columns(StepContext &context, Real share, bool remember_firs
 }
 
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h) {
+    correct_separations(context);
     kernels::solve(context.scratch.schedule.blocks, reals_of(context.bodies), bias, Real(1) / h);
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }

@@ -307,9 +307,12 @@ void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias 
                 const Lanes push = hn::Max(hn::Mul(rate, depth), least);
                 const Lanes target =
                     hn::IfThenElse(apart, hn::Mul(separation, all(inv_h)), pushes ? push : zero);
-                const Lanes mass_scale = hn::IfThenElse(apart, one, soft_mass);
-                const Lanes impulse_scale = hn::IfThenElse(apart, zero, soft_impulse);
                 const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
+                // What comes in faster than anything is pushed out is stopped at once: as a spring
+                // it would be through a thin wall before it turned round.
+                const auto rigid = hn::Or(apart, hn::Lt(speed, least));
+                const Lanes mass_scale = hn::IfThenElse(rigid, one, soft_mass);
+                const Lanes impulse_scale = hn::IfThenElse(rigid, zero, soft_impulse);
                 const Lanes change =
                     hn::Sub(hn::Neg(hn::Mul(hn::Mul(load(point.normal_mass, lane), mass_scale),
                                             hn::Add(speed, target))),
