@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
+#include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -54,6 +55,52 @@ void record(StepContext &context, const ContactConstraint &contact,
     context.impacts.push_back(impact);
 }
 
+// The joints of the two bodies, as far as they are solved together, answer each impulse: what is
+// struck is then as heavy as they make it.
+class Answers {
+  public:
+    Answers(StepContext &context, const ContactConstraint &contact) : context_(context) {
+        JointSystem &system = context.scratch.joint_system;
+        first_ = system.group_of(contact.a);
+        second_ = system.group_of(contact.b);
+        if (second_ == first_)
+            second_ = JointSystem::none;
+        for (const std::uint32_t group : {first_, second_})
+            if (group != JointSystem::none)
+                for (std::uint32_t i = system.groups()[group].first;
+                     i < system.groups()[group].last; ++i) {
+                    const JointConstraint &joint = context.scratch.joints[system.block(i)];
+                    for (const std::uint32_t body : {joint.a, joint.b})
+                        if (body != Joint::world)
+                            before_.push_back({body, context.bodies[body].velocity,
+                                               context.bodies[body].angular_velocity});
+                }
+    }
+    bool are_any() const { return !before_.empty(); }
+    void give() {
+        answer_impact(context_, first_);
+        answer_impact(context_, second_);
+    }
+    // Undoes what happened to the joined bodies since this was made.
+    void take_back() {
+        for (const Before &one : before_) {
+            context_.bodies[one.body].velocity = one.velocity;
+            context_.bodies[one.body].angular_velocity = one.angular_velocity;
+        }
+    }
+
+  private:
+    struct Before {
+        std::uint32_t body;
+        Vec3 velocity;
+        Vec3 angular_velocity;
+    };
+    StepContext &context_;
+    std::uint32_t first_;
+    std::uint32_t second_;
+    std::vector<Before> before_;
+};
+
 // Newton's law for all points of one pair of bodies together. Returns whether anything was struck.
 bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
     SolverBody &a = context.bodies[contact.a];
@@ -83,6 +130,24 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
     }
     if (!any)
         return false;
+    Answers joints(context, contact);
+    for (int k = 0; joints.are_any() && k < contact.count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        const ContactPointConstraint &point = contact.points[index];
+        // A unit impulse, to see what comes of it.
+        const SolverBody a_before = a;
+        const SolverBody b_before = b;
+        joints.give();
+        const Real speed = normal_speed(point);
+        a.apply_impulse(-contact.normal, point.r_a);
+        b.apply_impulse(contact.normal, point.r_b);
+        joints.give();
+        const Real inverse = normal_speed(point) - speed;
+        normal_mass[index] = inverse > Real(0) ? Real(1) / inverse : Real(0);
+        joints.take_back();
+        a = a_before;
+        b = b_before;
+    }
 
     const Vec3 before_a = a.velocity;
     const Vec3 before_b = b.velocity;
@@ -102,6 +167,7 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             normal_impulse[index] = total;
             a.apply_impulse(-impulse, point.r_a);
             b.apply_impulse(impulse, point.r_b);
+            joints.give();
         }
     // What the passes have not shared out yet is made good as a whole, so that they leave the
     // energy that the law leaves: half the impulses times the sums of the speeds before and after.
@@ -121,6 +187,7 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             normal_impulse[index] *= Real(1) + missing;
             a.apply_impulse(-impulse, contact.points[index].r_a);
             b.apply_impulse(impulse, contact.points[index].r_b);
+            joints.give();
         }
     }
     if (contact.friction > Real(0))
@@ -129,11 +196,13 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             ContactPointConstraint point = contact.points[index];
             point.impulse = Vec3{normal_impulse[index], Real(0), Real(0)};
             solve_friction(contact, point, a, b, contact.friction * normal_impulse[index]);
+            joints.give();
         }
     record(context, contact, normal_impulse);
     // Until they touch they go on as before: the new velocities act from there on. Without that the
-    // two would be struck while apart, and so lose angular momentum.
-    if (pull == Real(0)) {
+    // two would be struck while apart, and so lose angular momentum. What joints hold stays with
+    // them.
+    if (pull == Real(0) && !joints.are_any()) {
         Real time = std::numeric_limits<Real>::infinity();
         for (std::size_t k = 0; k < rebounds.size(); ++k)
             if (rebounds[k].struck && normal_impulse[k] > Real(0))

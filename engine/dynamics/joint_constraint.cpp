@@ -13,6 +13,10 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
+// Of joints that are solved together, as a share of what their own blocks give way: enough for
+// joints that say the same twice, too little to be seen.
+constexpr Real held_compliance = Real(1e-3);
+
 // K of a point-to-point constraint: (1/ma + 1/mb) 1 - [ra] Ia^-1 [ra] - [rb] Ib^-1 [rb]
 // (Catto 2009, "Modeling and Solving Constraints", slide 52, in 3D).
 Mat3 point_matrix(const SolverBody &a, const SolverBody &b, const Vec3 &r_a, const Vec3 &r_b) {
@@ -82,8 +86,19 @@ Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
     return mass;
 }
 
-Vec3 centripetal(const Vec3 &angular_velocity, const Vec3 &r) {
-    return glm::cross(angular_velocity, glm::cross(angular_velocity, r));
+// The mean velocity over h, because it turns, of the end of an arm that starts as r: the chord of
+// its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
+Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
+    const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);
+    Real along = Real(1) - squared / Real(6) * (Real(1) - squared / Real(20));
+    Real inward = Real(0.5) - squared / Real(24) * (Real(1) - squared / Real(30));
+    if (squared > Real(0.04)) { // the series' next terms show
+        const Real angle = std::sqrt(squared);
+        along = std::sin(angle) / angle;
+        inward = (Real(1) - std::cos(angle)) / squared;
+    }
+    const Vec3 turning = glm::cross(angular_velocity, r);
+    return along * turning + (inward * h) * glm::cross(angular_velocity, turning);
 }
 
 // How fast the rows' errors grow.
@@ -97,20 +112,21 @@ Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b
         return v;
     }
     Vec3 relative = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
-    if (pass.to_second_order) {
+    if (pass.at_the_end) {
         // The mean over h of the anchors' relative velocity.
-        Vec3 curving =
-            centripetal(b.angular_velocity, rows.r_b) - centripetal(a.angular_velocity, rows.r_a);
+        const Vec3 now = relative;
+        relative =
+            (b.velocity - a.velocity) + (chord_velocity(b.angular_velocity, rows.r_b, pass.h) -
+                                         chord_velocity(a.angular_velocity, rows.r_a, pass.h));
         if (rows.turns_with_a)
-            curving -= Real(2) * glm::cross(a.angular_velocity, relative);
-        relative += (Real(0.5) * pass.h) * curving;
+            relative += chord_velocity(-a.angular_velocity, pass.h * now, pass.h);
     }
     if (rows.kind == RowKind::point)
         return relative;
     Vec3 v{Real(0)};
     for (int i = 0; i < rows.count; ++i)
         v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], relative);
-    if (pass.to_second_order && rows.swing_length > Real(0)) {
+    if (pass.at_the_end && rows.swing_length > Real(0)) {
         // How much longer the line between the anchors becomes while they swing aside.
         const Real distance = rows.swing_length;
         const Vec3 aside = pass.h * (relative - v.x * rows.axes[0]);
@@ -156,6 +172,11 @@ Real limit_change(const JointConstraint &joint, Real speed, const Softness &soft
     return side * (std::max(impulse + change, Real(0)) - impulse);
 }
 
+Vec3 pushed(const Vec3 &bias, Real most) {
+    const Real speed = glm::length(bias);
+    return speed > most ? (most / speed) * bias : bias;
+}
+
 Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
                     const JointPass &pass) {
     const RowBlock &rows = joint.rows;
@@ -163,13 +184,16 @@ Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const Sol
                                   ? make_soft(rows.frequency, rows.damping_ratio, pass.spring_time)
                                   : pass.softness;
     const Vec3 v = row_velocity(rows, a, b, pass);
+    const Real most =
+        joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
     const auto towards = [&](const Vec3 &error) {
         if (rows.count == 1)
             return Vec3{-softness.mass_scale * joint.mass[0][0] *
-                                (v.x + softness.bias_rate * error.x) -
+                                (v.x + std::clamp(softness.bias_rate * error.x, -most, most)) -
                             softness.impulse_scale * joint.impulse.x,
                         Real(0), Real(0)};
-        return -softness.mass_scale * (joint.mass * (v + softness.bias_rate * error)) -
+        return -softness.mass_scale *
+                   (joint.mass * (v + pushed(softness.bias_rate * error, most))) -
                softness.impulse_scale * joint.impulse;
     };
     switch (rows.bounds) {
@@ -207,6 +231,112 @@ Vec3 memory_of(const StepContext &context, const JointConstraint &constraint) {
     return memory;
 }
 
+// All rows of a group at once. Where bodies turn far within the substep, the ends of their arms
+// move along circles, and it takes some of Newton's steps until they meet.
+void solve_group(StepContext &context, const JointGroup &group, const JointPass &pass) {
+    const JointSystem &system = context.scratch.joint_system;
+    std::vector<Vec3> &sides = context.scratch.sides;
+    sides.resize(group.last - group.first);
+    // Far more than it takes when a body turns a radian within the substep.
+    constexpr int most_steps = 8;
+    constexpr Real tolerance = Real(1e-6); // of the arms' lengths
+    for (int step = 0; step < (pass.at_the_end ? most_steps : 1); ++step) {
+        bool holds = step > 0;
+        for (std::uint32_t place = group.first; place < group.last; ++place) {
+            const JointConstraint &joint = context.scratch.joints[system.block(place)];
+            Vec3 side =
+                row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), pass);
+            if (pass.held_share > Real(0))
+                side += pushed((pass.held_share / pass.h) * joint.rows.error, pass.push_velocity) +
+                        system.softening(place) * joint.impulse;
+            sides[place - group.first] = -side;
+            const Real most = tolerance * size_of(joint.rows) / pass.h;
+            holds = holds && glm::dot(side, side) <= most * most;
+        }
+        if (holds)
+            return;
+        system.solve(group, sides);
+        for (std::uint32_t place = group.first; place < group.last; ++place) {
+            JointConstraint &joint = context.scratch.joints[system.block(place)];
+            const Vec3 &change = sides[place - group.first];
+            joint.impulse += change;
+            apply(context.body(joint.a), context.body(joint.b), joint.rows, change);
+        }
+    }
+}
+
+// Leaves a group to Gauss-Seidel, from the half of the remembered impulses with which the substep
+// began.
+void let_go(StepContext &context, JointGroup &group) {
+    const JointSystem &system = context.scratch.joint_system;
+    group.is_held = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        SolverBody &a = context.body(joint.a);
+        SolverBody &b = context.body(joint.b);
+        const Vec3 change = Real(0.5) * joint.remembered - joint.impulse;
+        joint.impulse += change;
+        apply(a, b, joint.rows, change);
+        joint.is_held = false;
+        joint.mass = mass_of(joint.rows, a, b);
+    }
+}
+
+// What a group takes off the inverse mass of a row that is not of it, such as a limit's, when it
+// answers to a unit impulse there: c^T K^-1 c, with c what the impulse does to the group's rows.
+Real answered(StepContext &context, const JointConstraint &joint, const JointGroup &group) {
+    const JointSystem &system = context.scratch.joint_system;
+    std::vector<Vec3> &sides = context.scratch.sides;
+    const auto struck = [&](std::uint32_t body) {
+        SolverBody motion = context.body(body);
+        motion.velocity = motion.angular_velocity = Vec3{Real(0)};
+        return motion;
+    };
+    SolverBody a = struck(joint.a);
+    SolverBody b = struck(joint.b);
+    apply(a, b, joint.rows, Vec3{Real(1), Real(0), Real(0)});
+    const SolverBody still;
+    const auto after = [&](std::uint32_t body) -> const SolverBody & {
+        return body == Joint::world ? still : body == joint.a ? a : body == joint.b ? b : still;
+    };
+    const auto effect = [&](std::uint32_t place) {
+        const JointConstraint &other = context.scratch.joints[system.block(place)];
+        return row_velocity(other.rows, after(other.a), after(other.b), JointPass{});
+    };
+    sides.resize(group.last - group.first);
+    for (std::uint32_t place = group.first; place < group.last; ++place)
+        sides[place - group.first] = effect(place);
+    system.solve(group, sides);
+    Real sum = Real(0);
+    for (std::uint32_t place = group.first; place < group.last; ++place)
+        sum += glm::dot(effect(place), sides[place - group.first]);
+    return sum;
+}
+
+// Limits and motors against bodies whose joints are solved together: as heavy as those make them.
+void weigh_with_groups(StepContext &context) {
+    JointSystem &system = context.scratch.joint_system;
+    if (system.groups().empty())
+        return;
+    for (JointConstraint &joint : context.scratch.joints) {
+        Real &mass = joint.mass[0][0];
+        if (joint.is_held || joint.rows.count != 1 || joint.is_spring() || !(mass > Real(0)))
+            continue;
+        std::uint32_t last = JointSystem::none;
+        Real inverse = Real(1) / mass;
+        const Real least = Real(1e-3) * inverse;
+        for (const std::uint32_t body : {joint.a, joint.b}) {
+            const std::uint32_t group =
+                body == Joint::world ? JointSystem::none : system.group_of(body);
+            if (group == JointSystem::none || group == last || !system.groups()[group].is_held)
+                continue;
+            last = group;
+            inverse -= answered(context, joint, system.groups()[group]);
+        }
+        mass = Real(1) / std::max(inverse, least);
+    }
+}
+
 // Emits the rows of every joint that holds; calls use(joint, a, b) for each block, in order.
 template <typename Use> void emit_all(StepContext &context, Use &&use) {
     std::vector<RowBlock> &rows = context.scratch.rows;
@@ -230,9 +360,16 @@ template <typename Use> void emit_all(StepContext &context, Use &&use) {
 
 } // namespace
 
+Real size_of(const RowBlock &rows) {
+    return rows.kind == RowKind::angular
+               ? Real(1)
+               : glm::length(rows.r_a) + glm::length(rows.r_b) + rows.swing_length;
+}
+
 void prepare_joints(StepContext &context) {
     std::vector<JointConstraint> &constraints = context.scratch.joints;
     constraints.clear();
+    context.scratch.joint_system.release();
     if (context.model.alive_joints == 0 && !context.grab.is_holding())
         return;
     emit_all(context,
@@ -252,9 +389,15 @@ void refresh_joints(StepContext &context) {
     auto next = context.scratch.joints.begin();
     emit_all(context, [&](std::uint32_t, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
         next->rows = block;
-        next->mass = mass_of(block, context.body(a), context.body(b));
+        if (!next->is_held)
+            next->mass = mass_of(block, context.body(a), context.body(b));
         ++next;
     });
+    JointSystem &system = context.scratch.joint_system;
+    for (const JointGroup &group : system.groups())
+        if (group.is_held)
+            system.factor(context, group, held_compliance);
+    weigh_with_groups(context);
 }
 
 void remember_joints(StepContext &context) {
@@ -283,17 +426,52 @@ void repeat_springs(StepContext &context) {
         }
 }
 
+// Groups come first, to see whether they hold, and again after other joints have changed what they
+// did.
 void solve_joints(StepContext &context, const JointPass &pass) {
+    const std::span<JointGroup> groups = context.scratch.joint_system.groups();
+    for (JointGroup &group : groups)
+        if (pass.at_the_end && group.is_held) {
+            solve_group(context, group, pass);
+            if (!can_follow(context, group, pass.h))
+                let_go(context, group);
+        }
+    bool is_changed = !pass.at_the_end;
     for (JointConstraint &joint : context.scratch.joints) {
-        if (pass.springs == Springs::skip && joint.is_spring())
+        if (joint.is_held || (pass.springs == Springs::skip && joint.is_spring()))
             continue;
         SolverBody &a = context.body(joint.a);
         SolverBody &b = context.body(joint.b);
         const Vec3 change = impulse_change(joint, a, b, pass);
         joint.impulse += change;
         apply(a, b, joint.rows, change);
+        is_changed = true;
     }
+    for (const JointGroup &group : groups)
+        if (is_changed && group.is_held)
+            solve_group(context, group, pass);
     context.report.constraint_passes += context.scratch.joints.size();
+}
+
+void answer_impact(StepContext &context, std::uint32_t group) {
+    if (group == JointSystem::none)
+        return;
+    JointSystem &system = context.scratch.joint_system;
+    std::vector<Vec3> &sides = context.scratch.sides;
+    const JointGroup &all = system.groups()[group];
+    if (!all.is_held)
+        return;
+    sides.resize(all.last - all.first);
+    for (std::uint32_t place = all.first; place < all.last; ++place) {
+        const JointConstraint &joint = context.scratch.joints[system.block(place)];
+        sides[place - all.first] =
+            -row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), JointPass{});
+    }
+    system.solve(all, sides);
+    for (std::uint32_t place = all.first; place < all.last; ++place) {
+        const JointConstraint &joint = context.scratch.joints[system.block(place)];
+        apply(context.body(joint.a), context.body(joint.b), joint.rows, sides[place - all.first]);
+    }
 }
 
 void store_joints(StepContext &context) {

@@ -4,11 +4,13 @@
 #include "engine/dynamics/joint_rows.h"
 #include "engine/dynamics/softness.h"
 
+#include <limits>
 #include <span>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 struct StepContext;
+struct JointGroup;
 
 // One block of rows between two bodies at the present poses.
 struct JointConstraint {
@@ -20,6 +22,7 @@ struct JointConstraint {
     Mat3 mass{Real(0)};       // inverse of K; one row: [0][0] alone
     Vec3 impulse{Real(0)};    // accumulated in this substep, on b (N s, N m s)
     Vec3 remembered{Real(0)}; // of the substep before
+    bool is_held = false;     // solved with its group in this substep (JointSystem)
     bool is_spring() const { return rows.frequency > Real(0); }
 };
 
@@ -29,11 +32,13 @@ enum class Springs { solve, skip };
 // One Gauss-Seidel pass over all rows.
 struct JointPass {
     Softness softness; // of rigid rows: how their drift is taken back; bias_rate 0 leaves it alone
-    Real h = Real(0);  // s, the substep
-    // Whether rows are to hold at the poses that the velocities lead to after h, to second order:
-    // the anchors' centripetal way, w x (w x r) h^2 / 2, is then part of the constraint, as in
-    // SHAKE (Ryckaert, Ciccotti, Berendsen 1977). Otherwise the velocities alone agree.
-    bool to_second_order = false;
+    Real held_share = Real(0); // of their drift, that rows solved together take back in a substep
+    Real push_velocity = std::numeric_limits<Real>::infinity(); // m/s, the fastest it is taken back
+    Real h = Real(0);                                           // s, the substep
+    // Whether rows are to hold at the poses that the velocities lead to after h, as in SHAKE
+    // (Ryckaert, Ciccotti, Berendsen 1977): the way of an anchor is then the chord that it turns
+    // through, which no spin makes longer than its circle. Otherwise the velocities alone agree.
+    bool at_the_end = false;
     Springs springs = Springs::solve;
     // s over which a spring's force acts in this pass: h for the implicit Euler rule, h / 2 for the
     // first half of the midpoint rule.
@@ -42,6 +47,28 @@ struct JointPass {
     bool loaded_only = false;
     Real force_share = Real(1); // of max_force * h, for motors and grabs
 };
+
+// The length against which a block's drift is measured (m): that of its arms; 1 for angles.
+Real size_of(const RowBlock &rows);
+
+// What joints' forces do to the bodies that they act on: a force F at an arm r turns a body of
+// inertia I like a spring of stiffness F r, at the rate sqrt(F r / I), and an explicit substep h
+// follows rates up to about 1.2 / h.
+//
+// The stiffness of each body (N m): the sum of F r over its joints, from the impulses of the last
+// substep h.
+void joint_stiffness(StepContext &context, Real h, std::vector<Real> &stiffness);
+// Into how many substeps a step of dt is to be cut for such a stiffness and the least moment of
+// inertia (kg m^2).
+Real substeps_that_follow(Real stiffness, Real inertia, Real dt);
+// Whether substeps of h follow what a group's joints do to its bodies, half of it in their
+// impulses.
+bool can_follow(StepContext &context, const JointGroup &group, Real h);
+// Begins a substep, before refresh_joints: where h is too long to follow, a body gets the inertia
+// that h follows (Andrews, Teichmann, Koevecses 2017, "Geometric Stiffness for Real-time
+// Constrained Multibody Dynamics"). Then says which groups are held: those that h follows, and that
+// have not been torn apart.
+void follow_loads(StepContext &context, Real h);
 
 // Blocks of the joints that are alive and not broken, in order, then of the grab; poses are read by
 // refresh_joints.
@@ -55,6 +82,9 @@ void recall_joints(StepContext &context, Real share, Springs springs);
 // Applies what the springs did in the first half of the substep once more.
 void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);
+// What the joints of a group answer to an impact: changes velocities so that the joints hold them.
+// Nothing for JointSystem::none, or a group that is not held.
+void answer_impact(StepContext &context, std::uint32_t group);
 // Hands the accumulated impulses back for the next step, and breaks what bore too much.
 void store_joints(StepContext &context);
 

@@ -5,6 +5,7 @@
 #include "engine/dynamics/contact_constraint.h"
 #include "engine/dynamics/events.h"
 #include "engine/dynamics/joint_constraint.h"
+#include "engine/dynamics/joint_system.h"
 #include "engine/dynamics/method_info.h"
 #include "engine/dynamics/model.h"
 #include "engine/dynamics/motion.h"
@@ -24,6 +25,9 @@ struct SolverScratch {
     ContactSchedule schedule;
     std::vector<JointConstraint> joints;
     std::vector<RowBlock> rows;
+    JointSystem joint_system;
+    std::vector<Vec3> sides;         // of its equations
+    std::vector<Real> stiffness;     // of each body, see joint_stiffness
     std::vector<FreeFlight> flights; // one for each moving body
 };
 

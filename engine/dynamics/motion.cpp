@@ -22,6 +22,17 @@ Quat cayley(const Vec3 &spin, Real h) {
     return glm::normalize(Quat{Real(1), v.x, v.y, v.z});
 }
 
+// `v` turned by a quaternion that rounding has left not quite unit, in wide arithmetic: there and
+// back again a vector keeps its length, but for roundings that go either way. Otherwise free spin
+// gains or loses with every substep.
+Vec3 turned_to_rounding(const Quat &rotation, const Vec3 &v) {
+    const glm::dquat q{rotation};
+    const glm::dvec3 axis{q.x, q.y, q.z};
+    const glm::dvec3 wide{v};
+    const glm::dvec3 aside = glm::cross(axis, wide);
+    return Vec3{wide + 2.0 / glm::dot(q, q) * (q.w * aside + glm::cross(axis, aside))};
+}
+
 } // namespace
 
 Mat3 world_inverse_inertia(const Quat &rotation, const Vec3 &inv_inertia) {
@@ -133,6 +144,15 @@ Damped damped(Real rate, Real h) {
             static_cast<Real>(rest * static_cast<double>(h))};
 }
 
+// Mean and end of a torque-free, damped turn that begins with flight.start_spin.
+void turn_freely(FreeFlight &flight, const Body &body, Real h, int gyroscopic_iterations) {
+    const Damped angular = damped(body.angular_damping, h);
+    const Vec3 undamped =
+        gyroscopic_spin(body.inertia, flight.start_spin, h, gyroscopic_iterations);
+    flight.end_spin = angular.kept * undamped;
+    flight.mean_spin = angular.mean_kept * (Real(0.5) * (flight.start_spin + undamped));
+}
+
 } // namespace
 
 FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
@@ -151,10 +171,9 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
                               ? flight.mean_velocity
                               : linear.kept * motion.velocity + linear.gained * pull;
         if (has_gyroscopic_spin(body)) {
-            const Vec3 spin = rotated(glm::conjugate(motion.rotation), motion.angular_velocity);
-            const Vec3 undamped = gyroscopic_spin(body.inertia, spin, h, gyroscopic_iterations);
-            flight.end_spin = angular.kept * undamped;
-            flight.mean_spin = angular.mean_kept * (Real(0.5) * (spin + undamped));
+            flight.start_spin =
+                turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
+            turn_freely(flight, body, h, gyroscopic_iterations);
             motion.angular_velocity =
                 rotated(motion.rotation, kick == Kick::around ? flight.mean_spin : flight.end_spin);
         } else if (body.angular_damping > Real(0)) {
@@ -169,19 +188,37 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
     return flight;
 }
 
-void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h) {
+namespace {
+
+// Where joints hold a body between two halves of a kick (`is_held`), the gyroscopic torque is that
+// of the spin that the solver left, or tops sink.
+void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
+               int gyroscopic_iterations, bool is_held) {
     flight.free =
         motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
+    const bool is_gyroscopic = body.kind == BodyKind::dynamic && has_gyroscopic_spin(body);
+    if (is_gyroscopic && !flight.free && is_held) {
+        flight.start_spin += rotated(glm::conjugate(motion.rotation),
+                                     motion.angular_velocity - flight.angular_velocity);
+        turn_freely(flight, body, h, gyroscopic_iterations);
+        motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
+    }
     const Vec3 way = h * (flight.free ? flight.mean_velocity : motion.velocity);
     motion.position += way;
     motion.moved += way;
     motion.turned += h * motion.angular_velocity;
-    if (flight.free && body.kind == BodyKind::dynamic && has_gyroscopic_spin(body))
+    if (is_gyroscopic && flight.free)
         motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
     else
         motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
     if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
         motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
+}
+
+} // namespace
+
+void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h) {
+    move_held(motion, body, flight, h, 0, false);
 }
 
 void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick) {
@@ -190,7 +227,7 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
     if (body.kind != BodyKind::dynamic || !has_gyroscopic_spin(body))
         return;
     if (flight.free)
-        motion.angular_velocity = rotated(motion.rotation, flight.end_spin);
+        motion.angular_velocity = turned_to_rounding(motion.rotation, flight.end_spin);
     else if (kick == Kick::around)
         motion.angular_velocity += rotated(motion.rotation, flight.end_spin - flight.mean_spin);
 }
@@ -210,7 +247,10 @@ void end_flights(StepContext &context, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
     for (std::size_t i = 0; i < flights.size(); ++i) {
         const std::uint32_t body = context.moving[i];
-        move(context.bodies[body], context.model.bodies[body], flights[i], h);
+        const std::vector<Real> &stiffness = context.scratch.stiffness;
+        move_held(context.bodies[body], context.model.bodies[body], flights[i], h,
+                  context.settings.gyroscopic_iterations,
+                  kick == Kick::around && !stiffness.empty() && stiffness[body] > Real(0));
         end_flight(context.bodies[body], context.model.bodies[body], flights[i], kick);
     }
     context.report.body_passes += flights.size();

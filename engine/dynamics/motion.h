@@ -48,13 +48,16 @@ bool has_gyroscopic_spin(const Body &body);
 // A body whose velocities come back untouched flew free: its path is then exact under gravity,
 // x + v h + g h^2 / 2, or with damping v' = g - c v the closed form of that, and its torque-free
 // turn keeps energy and world angular momentum. Otherwise the pose follows the solver's velocities,
-// which is what the constraints were solved for.
+// which is what the constraints were solved for; between two halves of a kick, the gyroscopic
+// torque is that of the spin that the solver left, or tops would sink.
 struct FreeFlight {
     Vec3 velocity{Real(0)};         // what the solver was given
     Vec3 angular_velocity{Real(0)}; // likewise
     Vec3 mean_velocity{Real(0)};    // over the substep, in free flight
     Vec3 late_velocity{Real(0)};    // the part of gravity's change that comes after the move
-    // Body frame, for bodies with unequal inertias: the mean over the substep, and at its end.
+    // Body frame, for bodies with unequal inertias: at the substep's start, with what the solver
+    // has done to it; the mean over the substep; and at its end.
+    Vec3 start_spin{Real(0)};
     Vec3 mean_spin{Real(0)};
     Vec3 end_spin{Real(0)};
     Vec3 late_spin{Real(0)}; // the part of damping that comes after the move, world

@@ -6,7 +6,8 @@
 // its half of the remembered impulses; joints are solved for the poses at the substep's end, and
 // relaxed with their lever arms there. That is the order of RATTLE (Andersen 1983), a scheme of
 // second order, at the price of one more pass over the bodies: a pendulum keeps its energy, which
-// the plain scheme loses at the rate omega^2 h.
+// the plain scheme loses at the rate omega^2 h. And joints that hang together without many loops
+// are solved together, as long as the substep can follow them.
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 
@@ -33,8 +34,10 @@ void advance(StepContext &context) {
     // First for the poses at the substep's end, with half of the forces and springs by the first
     // half of the midpoint rule; then for the velocities there.
     const JointPass holding{.softness = joint_softness,
+                            .held_share = Real(0.5),
+                            .push_velocity = static_cast<Real>(settings.push_velocity),
                             .h = h,
-                            .to_second_order = true,
+                            .at_the_end = true,
                             .spring_time = Real(0.5) * h,
                             .force_share = Real(0.5)};
     const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .loaded_only = true};
@@ -42,15 +45,17 @@ void advance(StepContext &context) {
     prepare_contact_columns(context);
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
+    context.scratch.joint_system.arrange(context);
     const bool is_free = context.contacts.empty() && context.scratch.joints.empty();
     for (int substep = 0; substep < settings.substeps; ++substep) {
+        follow_loads(context, h);
+        refresh_joints(context);
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
         if (is_free) { // nothing of what follows would do anything
             end_flights(context, h, Kick::around);
             continue;
         }
-        refresh_joints(context);
         remember_joints(context);
         recall_joints(context, Real(0.5), Springs::solve);
         recall_contact_columns(context, Real(0.5), true);

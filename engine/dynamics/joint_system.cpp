@@ -1,0 +1,266 @@
+#include "engine/dynamics/joint_system.h"
+
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <ranges>
+#include <set>
+#include <utility>
+
+#include <glm/matrix.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// Products of elimination that a block may cost on the average: a chain costs 1, a loop of a few
+// joints 3, a net of 10 x 10 some hundred.
+constexpr std::size_t work_a_block = 12;
+
+// A diagonal value stands for one above the entries: no target is both.
+constexpr std::uint32_t on_diagonal = UINT32_C(1) << 31;
+
+bool is_rigid(const JointConstraint &joint) {
+    return joint.joint != JointConstraint::grab && joint.rows.bounds == RowBounds::equal &&
+           !joint.is_spring();
+}
+
+// What the rows do to one of the bodies: columns are their linear and angular parts.
+struct Gradient {
+    Mat3 linear{Real(0)};
+    Mat3 angular{Real(0)};
+};
+
+Gradient gradient_of(const RowBlock &rows, const Vec3 &arm, Real sign) {
+    Gradient out;
+    if (rows.kind == RowKind::point) {
+        out.linear = Mat3{sign};
+        out.angular = sign * cross_matrix(arm);
+        return out;
+    }
+    for (int i = 0; i < rows.count; ++i) {
+        const Vec3 axis = sign * rows.axes[static_cast<std::size_t>(i)];
+        if (rows.kind == RowKind::linear) {
+            out.linear[i] = axis;
+            out.angular[i] = glm::cross(arm, axis);
+        } else {
+            out.angular[i] = axis;
+        }
+    }
+    return out;
+}
+
+// u^T M^-1 v for one body.
+Mat3 coupling(const SolverBody &body, const Gradient &u, const Gradient &v) {
+    Mat3 moved = v.linear;
+    for (int i = 0; i < 3; ++i)
+        moved[i] *= body.inv_mass;
+    return glm::transpose(u.linear) * moved +
+           glm::transpose(u.angular) * (body.inv_inertia * v.angular);
+}
+
+// Of the bodies that two blocks share; `u` gives the rows of the result.
+Mat3 coupling(StepContext &context, const JointConstraint &u, const JointConstraint &v) {
+    Mat3 sum{Real(0)};
+    const auto side = [](const JointConstraint &joint, bool is_b) {
+        return gradient_of(joint.rows, is_b ? joint.rows.r_b : joint.rows.r_a,
+                           is_b ? Real(1) : Real(-1));
+    };
+    for (const bool u_b : {false, true})
+        for (const bool v_b : {false, true}) {
+            const std::uint32_t body = u_b ? u.b : u.a;
+            if (body == Joint::world || body != (v_b ? v.b : v.a))
+                continue;
+            sum += coupling(context.bodies[body], side(u, u_b), side(v, v_b));
+        }
+    return sum;
+}
+
+} // namespace
+
+void JointSystem::arrange(StepContext &context) {
+    std::vector<JointConstraint> &joints = context.scratch.joints;
+    const auto is_dynamic = [&](std::uint32_t body) {
+        return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
+    };
+    const auto key_of = [&](const JointConstraint &joint) {
+        const std::uint64_t a = is_dynamic(joint.a) ? joint.a : Joint::world;
+        const std::uint64_t b = is_dynamic(joint.b) ? joint.b : Joint::world;
+        return is_rigid(joint) ? a << 32 | b : ~std::uint64_t{0};
+    };
+    is_arranged_ = true;
+    if (!key_.empty() && key_.front() == context.bodies.size() &&
+        std::ranges::equal(key_ | std::views::drop(1), joints, {}, {}, key_of))
+        return;
+    key_.assign(1, context.bodies.size());
+    for (const JointConstraint &joint : joints)
+        key_.push_back(key_of(joint));
+    groups_.clear();
+    order_.clear();
+    column_start_.assign(1, 0);
+    rows_.clear();
+    targets_.clear();
+    target_start_.assign(1, 0);
+    group_of_body_.assign(context.bodies.size(), none);
+
+    std::vector<std::vector<std::uint32_t>> blocks_of(context.bodies.size());
+    const auto bodies_of = [&](std::uint32_t block) {
+        return std::array{joints[block].a, joints[block].b};
+    };
+    for (std::uint32_t i = 0; i < joints.size(); ++i)
+        if (is_rigid(joints[i]))
+            for (const std::uint32_t body : bodies_of(i))
+                if (is_dynamic(body))
+                    blocks_of[body].push_back(i);
+    std::vector<std::vector<std::uint32_t>> neighbours(joints.size());
+    std::vector<std::uint8_t> is_seen(joints.size(), 0);
+    for (std::uint32_t seed = 0; seed < joints.size(); ++seed) {
+        if (is_seen[seed] != 0 || !is_rigid(joints[seed]))
+            continue;
+        std::vector<std::uint32_t> members{seed};
+        is_seen[seed] = 1;
+        std::size_t pairs = 0;
+        for (std::size_t next = 0; next < members.size(); ++next)
+            for (const std::uint32_t body : bodies_of(members[next]))
+                if (is_dynamic(body)) {
+                    pairs += blocks_of[body].size();
+                    for (const std::uint32_t other : blocks_of[body])
+                        if (is_seen[other] == 0) {
+                            is_seen[other] = 1;
+                            members.push_back(other);
+                        }
+                }
+        if (pairs > 4 * work_a_block * members.size())
+            continue; // all at one hub
+        for (const std::uint32_t member : members)
+            for (const std::uint32_t body : bodies_of(member))
+                if (is_dynamic(body))
+                    for (const std::uint32_t other : blocks_of[body])
+                        if (other != member)
+                            neighbours[member].push_back(other);
+        for (const std::uint32_t member : members) {
+            std::ranges::sort(neighbours[member]);
+            const auto [first, last] = std::ranges::unique(neighbours[member]);
+            neighbours[member].erase(first, last);
+        }
+        if (!eliminate(members, neighbours))
+            continue;
+        for (const std::uint32_t member : members)
+            for (const std::uint32_t body : bodies_of(member))
+                if (is_dynamic(body))
+                    group_of_body_[body] = static_cast<std::uint32_t>(groups_.size() - 1);
+    }
+    softening_.resize(order_.size());
+    diagonal_.resize(order_.size());
+    lower_.resize(rows_.size());
+}
+
+// Orders one group by least degree and finds what fills in; false, and nothing done, when that is
+// too much.
+bool JointSystem::eliminate(const std::vector<std::uint32_t> &members,
+                            std::vector<std::vector<std::uint32_t>> &neighbours) {
+    std::set<std::pair<std::size_t, std::uint32_t>> queue;
+    for (const std::uint32_t member : members)
+        queue.emplace(neighbours[member].size(), member);
+    std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> columns;
+    std::size_t work = 0;
+    while (!queue.empty()) {
+        const std::uint32_t pivot = queue.begin()->second;
+        queue.erase(queue.begin());
+        const std::vector<std::uint32_t> around = neighbours[pivot];
+        work += around.size() * (around.size() + 1) / 2;
+        if (work > work_a_block * members.size())
+            return false;
+        for (const std::uint32_t one : around) {
+            queue.erase({neighbours[one].size(), one});
+            std::vector<std::uint32_t> joined;
+            std::ranges::set_union(neighbours[one], around, std::back_inserter(joined));
+            std::erase_if(joined, [&](std::uint32_t i) { return i == one || i == pivot; });
+            neighbours[one] = std::move(joined);
+            queue.emplace(neighbours[one].size(), one);
+        }
+        columns.emplace_back(pivot, around);
+    }
+
+    const auto first = static_cast<std::uint32_t>(order_.size());
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> place_of; // block, place
+    for (std::uint32_t i = 0; i < columns.size(); ++i)
+        place_of.emplace_back(columns[i].first, first + i);
+    std::ranges::sort(place_of);
+    for (const auto &[pivot, around] : columns) {
+        order_.push_back(pivot);
+        std::vector<std::uint32_t> rows;
+        for (const std::uint32_t one : around)
+            rows.push_back(
+                std::ranges::lower_bound(place_of, std::pair{one, std::uint32_t{0}})->second);
+        std::ranges::sort(rows);
+        rows_.insert(rows_.end(), rows.begin(), rows.end());
+        column_start_.push_back(static_cast<std::uint32_t>(rows_.size()));
+    }
+    const auto last = static_cast<std::uint32_t>(order_.size());
+    for (std::uint32_t place = first; place < last; ++place) {
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
+            targets_.push_back(rows_[i] | on_diagonal);
+            const auto begin = rows_.begin() + column_start_[rows_[i]];
+            const auto end = rows_.begin() + column_start_[rows_[i] + 1];
+            for (std::uint32_t j = i + 1; j < column_start_[place + 1]; ++j)
+                targets_.push_back(static_cast<std::uint32_t>(
+                    std::lower_bound(begin, end, rows_[j]) - rows_.begin()));
+        }
+        target_start_.push_back(static_cast<std::uint32_t>(targets_.size()));
+    }
+    groups_.push_back({first, last, false});
+    return true;
+}
+
+void JointSystem::factor(StepContext &context, const JointGroup &group, Real compliance) {
+    const std::vector<JointConstraint> &joints = context.scratch.joints;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const JointConstraint &joint = joints[order_[place]];
+        Mat3 own = coupling(context, joint, joint);
+        const Real size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Real>(joint.rows.count);
+        softening_[place] = compliance * own;
+        own += softening_[place];
+        // Rows that are not there, and a little along what nothing can move (a locked axis).
+        for (int i = 0; i < 3; ++i)
+            own[i][i] += i < joint.rows.count && size > Real(0) ? Real(1e-5) * size : Real(1);
+        diagonal_[place] = own;
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
+            lower_[i] = coupling(context, joints[order_[rows_[i]]], joint);
+    }
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const Mat3 inverse = glm::inverse(diagonal_[place]);
+        diagonal_[place] = inverse;
+        const std::uint32_t end = column_start_[place + 1];
+        const std::uint32_t *target = targets_.data() + target_start_[place];
+        for (std::uint32_t i = column_start_[place]; i < end; ++i) {
+            // Row i of L; the rows after it are still K's.
+            const Mat3 scaled = glm::transpose(lower_[i] * inverse);
+            for (std::uint32_t j = i; j < end; ++j, ++target) {
+                const Mat3 product = lower_[j] * scaled;
+                if ((*target & on_diagonal) != 0)
+                    diagonal_[*target & ~on_diagonal] -= product;
+                else
+                    lower_[*target] -= product;
+            }
+        }
+        for (std::uint32_t i = column_start_[place]; i < end; ++i)
+            lower_[i] = lower_[i] * inverse;
+    }
+}
+
+void JointSystem::solve(const JointGroup &group, std::vector<Vec3> &sides) const {
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        Vec3 &own = sides[place - group.first];
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
+            sides[rows_[i] - group.first] -= lower_[i] * own;
+        own = diagonal_[place] * own;
+    }
+    for (std::uint32_t place = group.last; place-- > group.first;)
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
+            sides[place - group.first] -= glm::transpose(lower_[i]) * sides[rows_[i] - group.first];
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,77 @@
+// Rigid joints that hang together, solved together.
+#pragma once
+
+#include "engine/dynamics/joint_constraint.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+struct StepContext;
+
+// Blocks first..last - 1 in a system's order of elimination. `is_held`: solved together in this
+// substep, not left to Gauss-Seidel.
+struct JointGroup {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+    bool is_held = false;
+};
+
+// The equations of all rigid rows of joints that share dynamic bodies, factored as L D L^T in
+// blocks of 3 x 3, eliminated by least degree. Without loops (chains, trees, a door's pin and its
+// axis) nothing fills in, and the cost grows with the number of blocks (Baraff 1996, "Linear-Time
+// Dynamics using Lagrange Multipliers"); what would fill in too much, such as a net, is left to
+// Gauss-Seidel.
+//
+// Gauss-Seidel needs compliance, or heavy ends tear a chain; compliance damps, and takes a
+// pendulum's energy. Solved together, joints need next to none.
+class JointSystem {
+  public:
+    static constexpr std::uint32_t none = UINT32_MAX;
+
+    // Holds no group until it is arranged again; the arrangement is kept, in case it stays.
+    void release() { is_arranged_ = false; }
+    // Which of the prepared blocks are solved together, and in which order.
+    void arrange(StepContext &context);
+    std::span<JointGroup> groups() {
+        return is_arranged_ ? std::span<JointGroup>(groups_) : std::span<JointGroup>{};
+    }
+    std::uint32_t group_of(std::uint32_t body) const {
+        return is_arranged_ ? group_of_body_[body] : none;
+    }
+    // The constraint at a place in the order of elimination.
+    std::uint32_t block(std::uint32_t place) const { return order_[place]; }
+
+    // At the present poses and inertias. Each block is made softer by `compliance` times its own
+    // inverse mass, so that joints that say the same twice can be solved.
+    void factor(StepContext &context, const JointGroup &group, Real compliance);
+    // What `factor` added to a block's inverse mass.
+    const Mat3 &softening(std::uint32_t place) const { return softening_[place]; }
+    // Replaces right-hand sides, one for each place of the group, by the solution.
+    void solve(const JointGroup &group, std::vector<Vec3> &sides) const;
+
+  private:
+    struct Entry { // below the diagonal, of one column
+        std::uint32_t row = 0;
+        std::uint32_t value = 0;
+    };
+    bool eliminate(const std::vector<std::uint32_t> &members,
+                   std::vector<std::vector<std::uint32_t>> &neighbours);
+
+    bool is_arranged_ = false;
+    std::vector<std::uint64_t> key_; // of the arrangement: pairs of bodies
+    std::vector<JointGroup> groups_;
+    std::vector<std::uint32_t> group_of_body_;
+    std::vector<std::uint32_t> order_;
+    std::vector<std::uint32_t> column_start_; // one more than places
+    std::vector<std::uint32_t> rows_;         // of the entries, column by column, ascending
+    std::vector<std::uint32_t> targets_;      // which value each product of elimination changes
+    std::vector<std::uint32_t> target_start_;
+    std::vector<Mat3> softening_;
+    std::vector<Mat3> diagonal_; // of K, then D^-1
+    std::vector<Mat3> lower_;    // of K, then L
+};
+
+} // namespace plumb::inline PLUMB_PRECISION
