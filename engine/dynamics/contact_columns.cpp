@@ -184,6 +184,10 @@ void correct_separations(StepContext &context) {
 
 void prepare_contact_columns(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
+    schedule.blocks.clear();
+    schedule.lanes.clear();
+    if (context.contacts.empty())
+        return;
     colour(context);
     // A bucket's blocks come in order; the last bucket's have one lane each.
     std::uint32_t block_count = 0;
