@@ -17,7 +17,8 @@ APP_ROOMS = ["files", "render", "lab", "sandbox"]
 LIBRARIES = [
     (r"toml\+\+/|toml\.hpp", r"engine/scene/scene_file_table\.h", 1),
     (r"tiny_obj_loader", r"engine/scene/[^/]+\.cpp", 1),
-    (r"hwy/", r"engine/(geometry|space)/[^/]+|tests/(geometry|space)/[^/]+", None),
+    (r"hwy/", r"engine/(geometry|space)/[^/]+|engine/dynamics/contact_kernels.cpp|"
+     r"tests/(geometry|space|dynamics)/[^/]+", None),
     (r"benchmark/", r"app/lab/[^/]+\.cpp", 1),
     (r"Bullet|LinearMath/|fcl/|embree", r"tests/bench/[^/]+", None),
     (r"GLFW/", r"app/render/window_context\.cpp|app/sandbox/[^/]+\.cpp", 3),

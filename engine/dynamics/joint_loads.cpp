@@ -37,7 +37,8 @@ void for_each_end(const JointConstraint &joint, Real h, Real share, Use &&use) {
     const Real force = glm::length(joint.impulse) / (share * h);
     if (joint.a != Joint::world)
         use(joint.a, force * glm::length(joint.rows.r_a));
-    use(joint.b, force * glm::length(joint.rows.r_b));
+    if (joint.b != Joint::world)
+        use(joint.b, force * glm::length(joint.rows.r_b));
 }
 
 // The least inertia that substeps of h follow.

@@ -315,5 +315,20 @@ TEST(FreeSpin, AboutTheMiddleAxisKeepsEnergyAndMomentumAtAnySubsteps) {
     }
 }
 
+// Which of a joint's two bodies is the world does not matter.
+TEST(SoftStep, AJointMayNameTheWorldSecond) {
+    const auto hung = [](bool world_first) {
+        World world("soft_step", settings_for("soft_step"));
+        const BodyId ball_id = world.add_body(dynamic_body(ball(0.1), 1, V{1, 0, 0}));
+        JointDef joint;
+        (world_first ? joint.b : joint.a) = ball_id;
+        (world_first ? joint.anchor_b_local : joint.anchor_a_local) = narrow(V{-1, 0, 0});
+        world.add_joint(joint);
+        run(world, 60);
+        return wide(world.motions()[ball_id.index].position);
+    };
+    EXPECT_LT(glm::length(hung(true) - hung(false)), 1e-5);
+}
+
 } // namespace
 } // namespace plumb::inline PLUMB_PRECISION

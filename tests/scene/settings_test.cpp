@@ -197,6 +197,17 @@ name = "rope"
 type = "ball"
 body_a = "bob"
 anchor = [1, 2.5, 0]
+[[body]]
+name = "torn"
+shape = "sphere"
+radius = 0.1
+position = [4, 2, 0]
+[[joint]]
+name = "apart"
+type = "ball"
+body_b = "torn"
+anchor_a_local = [4, 2.6, 0]
+anchor_b_local = [0, 0.5, 0]
 )";
 
 constexpr const char *free_scene = R"([world]
