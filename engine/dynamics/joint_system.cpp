@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -92,7 +91,7 @@ void JointSystem::arrange(StepContext &context) {
     };
     is_arranged_ = true;
     if (!key_.empty() && key_.front() == context.bodies.size() &&
-        std::ranges::equal(key_ | std::views::drop(1), joints, {}, {}, key_of))
+        std::ranges::equal(std::span(key_).subspan(1), joints, {}, {}, key_of))
         return;
     key_.assign(1, context.bodies.size());
     for (const JointConstraint &joint : joints)
@@ -142,8 +141,9 @@ void JointSystem::arrange(StepContext &context) {
                             neighbours[member].push_back(other);
         for (const std::uint32_t member : members) {
             std::ranges::sort(neighbours[member]);
-            const auto [first, last] = std::ranges::unique(neighbours[member]);
-            neighbours[member].erase(first, last);
+            neighbours[member].erase(
+                std::unique(neighbours[member].begin(), neighbours[member].end()),
+                neighbours[member].end());
         }
         if (!eliminate(members, neighbours))
             continue;
