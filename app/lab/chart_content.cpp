@@ -83,7 +83,7 @@ std::string values_by_method(const SceneChart &chart, SettingNumber number) {
         return groups.front().first;
     std::string each;
     for (const auto &[value, titles] : groups)
-        each += (each.empty() ? "" : ", ") + value + " (" + titles + ")";
+        each.append(each.empty() ? "" : ", ").append(value).append(" (").append(titles).append(")");
     return each;
 }
 

@@ -117,8 +117,9 @@ void add_contacts(DrawList &list, const Simulation &simulation, const std::vecto
 // square root of the speed that the impulse would give the middling body: 20 cm for 1 m/s.
 void add_impacts(DrawList &list, const std::vector<SeenImpact> &impacts, double mass) {
     constexpr int corners = 16;
-    for (const auto &[impact, age] : impacts) {
-        const double left = 1 - age / Session::impact_shown;
+    for (const SeenImpact &seen : impacts) {
+        const ImpactView &impact = seen.impact;
+        const double left = 1 - seen.age / Session::impact_shown;
         const double radius = left * std::min(2.0, 0.2 * std::sqrt(impact.impulse / mass));
         if (!(radius > 1e-6) || !std::isfinite(radius))
             continue;
