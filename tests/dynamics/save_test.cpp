@@ -12,11 +12,12 @@ std::atomic<std::uint64_t> allocations{0};
 // How many more allocations succeed; the one after those fails.
 std::atomic<std::int64_t> allocations_left{std::numeric_limits<std::int64_t>::max()};
 
-void *counted(std::size_t size) {
+void *counted(std::size_t size, std::size_t alignment = alignof(std::max_align_t)) {
     ++allocations;
     if (allocations_left-- == 0)
         throw std::bad_alloc();
-    if (void *memory = std::malloc(size == 0 ? 1 : size))
+    const std::size_t whole = (std::max(size, alignment) + alignment - 1) / alignment * alignment;
+    if (void *memory = std::aligned_alloc(alignment, whole))
         return memory;
     throw std::bad_alloc();
 }
@@ -29,6 +30,25 @@ void *operator new(std::size_t size) {
 }
 void *operator new[](std::size_t size) {
     return counted(size);
+}
+void *operator new(std::size_t size, std::align_val_t alignment) {
+    return counted(size, static_cast<std::size_t>(alignment));
+}
+void *operator new(std::size_t size, const std::nothrow_t & /*tag*/) noexcept {
+    try {
+        return counted(size);
+    } catch (const std::bad_alloc &) {
+        return nullptr;
+    }
+}
+void operator delete(void *memory, std::align_val_t /*alignment*/) noexcept {
+    std::free(memory);
+}
+void operator delete(void *memory, std::size_t, std::align_val_t /*alignment*/) noexcept {
+    std::free(memory);
+}
+void operator delete(void *memory, const std::nothrow_t & /*tag*/) noexcept {
+    std::free(memory);
 }
 void operator delete(void *memory) noexcept {
     std::free(memory);
