@@ -1,7 +1,7 @@
 #include "engine/dynamics/approach.h"
 
 #include "engine/dynamics/motion.h"
-#include "engine/geometry/gjk.h"
+#include "engine/geometry/half_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,23 +24,9 @@ Transform pose_of(const Motion &motion) {
     return {motion.position, motion.rotation};
 }
 
-template <typename Solid> Gap above(const HalfSpace &ground, const Solid &solid) {
-    const Vec3 origin = place_of(solid);
-    const auto core = core_of(solid, origin);
-    const Vec3 lowest = origin + core.support(-ground.normal);
-    const Real distance = glm::dot(ground.normal, lowest) - core.radius - ground.offset;
-    return {std::max(distance, Real(0)), ground.normal};
-}
-
 template <typename A, typename B> Gap gap_between(const A &a, const B &b) {
     if constexpr (std::same_as<A, HalfSpace> && std::same_as<B, HalfSpace>) {
         return {std::numeric_limits<Real>::infinity(), Vec3{Real(0), Real(1), Real(0)}};
-    } else if constexpr (std::same_as<A, HalfSpace>) {
-        return above(a, b);
-    } else if constexpr (std::same_as<B, HalfSpace>) {
-        Gap gap = above(b, a);
-        gap.normal = -gap.normal;
-        return gap;
     } else {
         const ClosestPoints found = distance(a, b);
         return {found.distance, found.normal};

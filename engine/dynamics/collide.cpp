@@ -90,38 +90,50 @@ Real World::contact_margin(const Candidate &candidate) const {
            turning_reach(candidate.key.a) + turning_reach(candidate.key.b);
 }
 
-void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
-                        const FoundManifold &found, std::vector<Contact> &out) const {
-    const Manifold &manifold = found.manifold;
-    if (manifold.count == 0)
-        return;
+// A contact without its manifold.
+Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle,
+                              std::vector<Contact> &out) const {
     Contact &contact = out.emplace_back();
     contact.key = candidate.key;
     contact.key.triangle = triangle;
     contact.collider_a = candidate.collider_a;
     contact.collider_b = candidate.collider_b;
-    contact.manifold = manifold;
     const Collider &a = model_->colliders[candidate.collider_a];
     const Collider &b = model_->colliders[candidate.collider_b];
     contact.friction = std::sqrt(a.material.friction * b.material.friction);
     contact.restitution = std::max(a.material.restitution, b.material.restitution);
     contact.sensor = a.sensor || b.sensor;
-    contact.origin = origin_of(manifold.normal, found.a, found.b);
-    for (int k = 0; k < manifold.count; ++k) {
+    return contact;
+}
+
+void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
+                        const FoundManifold &found, std::vector<Contact> &out) const {
+    if (found.manifold.count == 0)
+        return;
+    Contact &contact = begin_contact(candidate, triangle, out);
+    contact.manifold = found.manifold;
+    contact.moment = found.moment;
+    const Real rounding_a = model_->colliders[candidate.collider_a].rounding;
+    const Real rounding_b = model_->colliders[candidate.collider_b].rounding;
+    const Vec3 &normal = contact.manifold.normal;
+    contact.origin = origin_of(normal, found.a, found.b);
+    for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
-        const ManifoldPoint &point = manifold.points[index];
+        ManifoldPoint &point = contact.manifold.points[index];
         ContactAnchor &anchor = contact.anchors[index];
         anchor.arm_a = point.position - found.a.position;
         anchor.arm_b = point.position - found.b.position;
         // The midpoint lies half the separation off either surface.
         const Real half = Real(0.5) * point.separation;
-        anchor.core_a = glm::conjugate(found.a.rotation) *
-                        (anchor.arm_a - (half + a.rounding) * manifold.normal);
-        anchor.core_b = glm::conjugate(found.b.rotation) *
-                        (anchor.arm_b + (half + b.rounding) * manifold.normal);
+        anchor.core_a =
+            glm::conjugate(found.a.rotation) * (anchor.arm_a - (half + rounding_a) * normal);
+        anchor.core_b =
+            glm::conjugate(found.b.rotation) * (anchor.arm_b + (half + rounding_b) * normal);
+        if (found.moment != Moment::start)
+            point.separation =
+                separation_along(normal, anchor.core_a, anchor.core_b, rounding_a + rounding_b,
+                                 state_.motions[candidate.key.a], state_.motions[candidate.key.b]);
     }
-    if (found.is_ahead)
-        take_to_start(contact, found.a, found.b);
     const ContactMemory *before = find_memory(state_, contact.key);
     contact.is_new = before == nullptr;
     if (!contact.is_new)
@@ -155,12 +167,7 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
                         std::sqrt(arm_b) * turn_between(origin.rotation_b, motion_b.rotation);
     if (!(travel <= static_cast<Real>(settings_.kept_travel)))
         return false;
-    Contact &contact = out.emplace_back();
-    contact.key = candidate.key;
-    contact.collider_a = candidate.collider_a;
-    contact.collider_b = candidate.collider_b;
-    contact.friction = std::sqrt(a.material.friction * b.material.friction);
-    contact.restitution = std::max(a.material.restitution, b.material.restitution);
+    Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
     contact.origin = origin;
     contact.manifold.normal = origin.normal;
     contact.manifold.count = static_cast<int>(before->point_count);
@@ -177,13 +184,12 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
                           origin.normal;
         anchor.arm_a = surface_a + half;
         anchor.arm_b = surface_b - half;
-        const Vec3 now_a = motion_a.rotation * point.core_a + a.rounding * origin.normal;
-        const Vec3 now_b = motion_b.rotation * point.core_b - b.rounding * origin.normal;
-        const Vec3 gap = (motion_b.position - motion_a.position) + (now_b - now_a);
         ManifoldPoint &to = contact.manifold.points[k];
         to.feature = point.feature;
-        to.separation = glm::dot(gap, origin.normal);
-        to.position = motion_a.position + now_a + Real(0.5) * gap;
+        to.separation = separation_along(origin.normal, point.core_a, point.core_b,
+                                         a.rounding + b.rounding, motion_a, motion_b);
+        to.position = motion_a.position + motion_a.rotation * point.core_a +
+                      (a.rounding + Real(0.5) * to.separation) * origin.normal;
     }
     return true;
 }
@@ -204,8 +210,8 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
     const std::uint32_t j = candidate.collider_b;
     const Motion &motion_a = state_.motions[candidate.key.a];
     const Motion &motion_b = state_.motions[candidate.key.b];
-    const Real way = way_of(candidate);
-    const bool is_predicted = !a.sensor && !b.sensor && way > predicted_from(a, b);
+    const bool is_predicted = method_->info.looks_ahead && !a.sensor && !b.sensor &&
+                              way_of(candidate) > predicted_from(a, b);
     if (!a.surface && !b.surface) {
         const bool is_turning = turn_together(candidate.key.a, candidate.key.b);
         if (!is_turning && keeps_contacts() && keep_contact(candidate, out))

@@ -1,11 +1,14 @@
 // Contacts: which parts of two bodies touch, and what the solver remembers of them.
 #pragma once
 
+#include "engine/dynamics/body.h"
 #include "engine/geometry/manifold.h"
 
 #include <array>
 #include <compare>
 #include <cstdint>
+
+#include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -32,6 +35,14 @@ struct ContactAnchor {
     Vec3 arm_b{Real(0)};
 };
 
+// How far apart the two surfaces are at an anchor's place (m), with the bodies as they are now.
+// `rounding` is that of both.
+inline Real separation_along(const Vec3 &normal, const Vec3 &core_a, const Vec3 &core_b,
+                             Real rounding, const Motion &a, const Motion &b) {
+    const Vec3 gap = (b.position - a.position) + (b.rotation * core_b - a.rotation * core_a);
+    return glm::dot(gap, normal) - rounding;
+}
+
 // How two bodies lay when their manifold was found.
 struct ContactOrigin {
     Vec3 normal{Real(0)};
@@ -40,17 +51,20 @@ struct ContactOrigin {
     Quat rotation_b = identity_rotation;
 };
 
+// start: of the step. middle: halfway, for what turns together. touch: where the two will meet.
+enum class Moment { start, middle, touch };
+
 // Two colliders that touch, or are about to, as found in this step or kept from an earlier one.
-// The manifold of those that are about to touch is that of the poses in which they will, but for
-// its separations.
+// Separations are those of the present poses.
 struct Contact {
     ContactKey key;
     std::uint32_t collider_a = 0; // in the model
     std::uint32_t collider_b = 0;
     Real friction = Real(0);
     Real restitution = Real(0);
-    bool sensor = false; // pushes nothing
-    bool is_new = false; // nothing is remembered of it
+    bool sensor = false;           // pushes nothing
+    bool is_new = false;           // nothing is remembered of it
+    Moment moment = Moment::start; // of the step, whose poses its normal and anchors are of
     Manifold manifold;
     ContactOrigin origin;
     std::array<ContactAnchor, 4> anchors{};

@@ -123,6 +123,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     set(block.inv_inertia_a, lane, a.inv_inertia);
     set(block.inv_inertia_b, lane, b.inv_inertia);
     block.is_new = block.is_new || contact.is_new;
+    block.any_ahead = block.any_ahead || contact.moment != Moment::start;
     block.points_used = std::max(block.points_used, contact.manifold.count);
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
         ContactBlock::Point &point = block.points[k];
@@ -142,36 +143,31 @@ Real way_along(const Vec3 &n, const Vec3 &turn, const Vec3 &r, Real rounding) {
     return glm::dot(n, glm::cross(turn, r)) + Real(0.5) * second;
 }
 
-// What turns too far for the second order, and for a contact made for the time of impact, whose
-// arms are those of then.
-bool turns_far(const SolverBody &body, Real dt) {
-    constexpr Real far = Real(1e-3); // rad
-    return glm::dot(body.turned, body.turned) > far * far ||
-           glm::dot(body.angular_velocity, body.angular_velocity) * dt * dt > far * far;
+// Whether a body turned too far for the second order.
+bool has_turned_far(const SolverBody &body) {
+    constexpr Real far = Real(0.02); // rad
+    return glm::dot(body.turned, body.turned) > far * far;
 }
 
-// Sets such separations so that with what the kernels add they are exact at the present poses.
+// Sets separations so that with what the kernels add they are exact at the present poses: of what
+// turned far, and of contacts made for the time of impact, whose arms are those of then.
 void correct_separations(StepContext &context) {
-    const auto dt = static_cast<Real>(context.settings.dt);
-    if (std::ranges::none_of(context.moving, [&](std::uint32_t body) {
-            return turns_far(context.bodies[body], dt);
-        }))
-        return;
+    const bool any_far = std::ranges::any_of(
+        context.moving, [&](std::uint32_t body) { return has_turned_far(context.bodies[body]); });
     for (ContactBlock &block : context.scratch.schedule.blocks)
-        for (std::size_t lane = 0; lane < block.used; ++lane) {
+        for (std::size_t lane = 0; (any_far || block.any_ahead) && lane < block.used; ++lane) {
             const Contact &contact = context.contacts[block.contacts[lane]];
             const SolverBody &a = context.bodies[contact.key.a];
             const SolverBody &b = context.bodies[contact.key.b];
-            if (!turns_far(a, dt) && !turns_far(b, dt))
+            if (contact.moment == Moment::start && !has_turned_far(a) && !has_turned_far(b))
                 continue;
             const Vec3 &n = contact.manifold.normal;
             const Real rounding_a = block.rounding_a.lanes[lane];
             const Real rounding_b = block.rounding_b.lanes[lane];
             for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
                 const ContactAnchor &anchor = contact.anchors[k];
-                const Vec3 gap = (b.position - a.position) +
-                                 (b.rotation * anchor.core_b - a.rotation * anchor.core_a);
-                const Real exact = glm::dot(gap, n) - rounding_a - rounding_b;
+                const Real exact = separation_along(n, anchor.core_a, anchor.core_b,
+                                                    rounding_a + rounding_b, a, b);
                 const Real way = glm::dot(n, b.moved - a.moved) +
                                  way_along(n, b.turned, anchor.arm_b, -rounding_b) -
                                  way_along(n, a.turned, anchor.arm_a, rounding_a);

@@ -49,6 +49,7 @@ struct ContactBlock {
     int points_used = 0;
     // Whether any of its contacts is new and was not solved yet.
     bool is_new = false;
+    bool any_ahead = false; // not of the start of the step (Contact::moment)
     // Whether any of its bodies has an inertia that turns with it.
     bool inertia_turns = false;
     Columns3 normal;

@@ -65,24 +65,15 @@ void solve_friction(const ContactConstraint &contact, ContactPointConstraint &po
 void prepare_contacts(StepContext &context, Prepare which) {
     std::vector<ContactConstraint> &constraints = context.scratch.contacts;
     constraints.clear();
-    // Those with what cannot be pushed come last in each pass, so that nothing is left going into a
-    // wall by what pushes it there.
-    const auto is_against_fixed = [&](const Contact &contact) {
-        return context.model.bodies[contact.key.a].kind != BodyKind::dynamic ||
-               context.model.bodies[contact.key.b].kind != BodyKind::dynamic;
-    };
-    const std::size_t count = context.contacts.size();
-    for (std::size_t turn = 0; turn < 2 * count; ++turn) {
-        const std::size_t i = turn < count ? turn : turn - count;
+    for (std::size_t i = 0; i < context.contacts.size(); ++i) {
         const Contact &contact = context.contacts[i];
-        if (contact.sensor || (which == Prepare::bouncing && contact.restitution == Real(0)) ||
-            is_against_fixed(contact) != (turn >= count))
+        if (contact.sensor || (which == Prepare::bouncing && contact.restitution == Real(0)))
             continue;
         ContactConstraint &out = constraints.emplace_back();
         const SolverBody &a = context.bodies[contact.key.a];
         const SolverBody &b = context.bodies[contact.key.b];
-        const Real rounding = -(context.model.colliders[contact.collider_a].rounding +
-                                context.model.colliders[contact.collider_b].rounding);
+        const Real rounding = context.model.colliders[contact.collider_a].rounding +
+                              context.model.colliders[contact.collider_b].rounding;
         out.contact = static_cast<std::uint32_t>(i);
         out.a = contact.key.a;
         out.b = contact.key.b;
@@ -117,9 +108,7 @@ void prepare_contacts(StepContext &context, Prepare which) {
 
 Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
                         const SolverBody &a, const SolverBody &b) {
-    const Vec3 gap =
-        (b.position - a.position) + (b.rotation * point.core_b - a.rotation * point.core_a);
-    return glm::dot(gap, contact.normal) + point.rounding;
+    return separation_along(contact.normal, point.core_a, point.core_b, point.rounding, a, b);
 }
 
 void remember_contacts(StepContext &context) {
@@ -155,10 +144,6 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
             const Real separation = present_separation(contact, point, a, b);
-            // What bounces and has come a hair too deep is left to the next substep's impacts.
-            const bool is_left = separation > Real(0) || contact.restitution > Real(0);
-            if (bias.loaded_only && is_left && point.impulse.x == Real(0))
-                continue;
             Real target = Real(0); // velocity to be added to the relative normal velocity
             Real mass_scale = Real(1);
             Real impulse_scale = Real(0);

@@ -18,7 +18,7 @@ struct ContactPointConstraint {
     // round surface keeps its distance when the body rolls, so only the core's point turns with it.
     Vec3 core_a{Real(0)};
     Vec3 core_b{Real(0)};
-    Real rounding = Real(0);    // separation = (core_b - core_a) . normal + rounding
+    Real rounding = Real(0);    // of both
     Real normal_mass = Real(0); // 1 / (n^T K n)
     // 1 / (the largest eigenvalue of K in the tangent plane). One number for both directions: the
     // step is then along the sliding velocity, and the cone's projection ends at the friction of

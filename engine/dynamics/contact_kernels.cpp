@@ -11,6 +11,8 @@
 // After foreach_target.h, which must choose the target first.
 #include <hwy/highway.h>
 
+#include "engine/math/wide_vector-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace plumb::inline PLUMB_PRECISION {
 namespace kernels::HWY_NAMESPACE {
@@ -21,38 +23,23 @@ using Tag = hn::CappedTag<Real, column_lanes>;
 using IndexTag = hn::RebindToSigned<Tag>;
 using Lanes = hn::Vec<Tag>;
 using Indices = hn::Vec<IndexTag>;
+using Vector = wide::HWY_NAMESPACE::Vector<Lanes>;
+using wide::HWY_NAMESPACE::cross;
+using wide::HWY_NAMESPACE::dot;
+using wide::HWY_NAMESPACE::max;
+using wide::HWY_NAMESPACE::min;
+using wide::HWY_NAMESPACE::minus;
+using wide::HWY_NAMESPACE::plus;
+using wide::HWY_NAMESPACE::times;
 constexpr Tag tag{};
 constexpr int new_sweeps = 8;
 
-struct Vector {
-    Lanes x, y, z;
-};
 struct Symmetric {
     Lanes xx, yy, zz, xy, xz, yz;
 };
 
 HWY_INLINE Lanes all(Real x) {
     return hn::Set(tag, x);
-}
-HWY_INLINE Vector plus(const Vector &a, const Vector &b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Vector minus(const Vector &a, const Vector &b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector times(Lanes s, const Vector &a) {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE Vector times(const Vector &a, const Vector &b) {
-    return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};
-}
-HWY_INLINE Lanes dot(const Vector &a, const Vector &b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vector cross(const Vector &a, const Vector &b) {
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
-            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
 }
 HWY_INLINE Vector times(const Symmetric &m, const Vector &v) {
     return {hn::Add(hn::Add(hn::Mul(m.xx, v.x), hn::Mul(m.xy, v.y)), hn::Mul(m.xz, v.z)),
@@ -303,8 +290,8 @@ void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias 
                     hn::Add(load(point.separation, lane), hn::Add(way, hn::Sub(way_b, way_a)));
                 const Lanes before = load(point.impulse.x, lane);
                 const auto apart = hn::Gt(separation, zero);
-                const Lanes depth = hn::Min(hn::Add(separation, slop), zero);
-                const Lanes push = hn::Max(hn::Mul(rate, depth), least);
+                const Lanes depth = min(hn::Add(separation, slop), zero);
+                const Lanes push = max(hn::Mul(rate, depth), least);
                 const Lanes target =
                     hn::IfThenElse(apart, hn::Mul(separation, all(inv_h)), pushes ? push : zero);
                 const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
@@ -317,7 +304,7 @@ void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias 
                     hn::Sub(hn::Neg(hn::Mul(hn::Mul(load(point.normal_mass, lane), mass_scale),
                                             hn::Add(speed, target))),
                             hn::Mul(impulse_scale, before));
-                Lanes total = hn::Max(hn::Add(before, change), zero);
+                Lanes total = max(hn::Add(before, change), zero);
                 if (bias.loaded_only)
                     // What bounces and has come a hair too deep is left to the next impacts.
                     total = hn::IfThenElse(hn::And(hn::Or(apart, bounces), hn::Eq(before, zero)),

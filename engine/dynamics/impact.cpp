@@ -199,10 +199,10 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             joints.give();
         }
     record(context, contact, normal_impulse);
-    // Until they touch they go on as before: the new velocities act from there on. Without that the
-    // two would be struck while apart, and so lose angular momentum. What joints hold stays with
-    // them.
-    if (pull == Real(0) && !joints.are_any()) {
+    // Until they touch they go on as before: the new velocities act from there on, with the arms of
+    // then. Without that the two would lose angular momentum. What joints hold stays with them.
+    if (context.contacts[contact.contact].moment == Moment::touch && pull == Real(0) &&
+        !joints.are_any()) {
         Real time = std::numeric_limits<Real>::infinity();
         for (std::size_t k = 0; k < rebounds.size(); ++k)
             if (rebounds[k].struck && normal_impulse[k] > Real(0))

@@ -58,9 +58,6 @@ Real size_of(const RowBlock &rows);
 // The stiffness of each body (N m): the sum of F r over its joints, from the impulses of the last
 // substep h.
 void joint_stiffness(StepContext &context, Real h, std::vector<Real> &stiffness);
-// Into how many substeps a step of dt is to be cut for such a stiffness and the least moment of
-// inertia (kg m^2).
-Real substeps_that_follow(Real stiffness, Real inertia, Real dt);
 // Whether substeps of h follow what a group's joints do to its bodies, half of it in their
 // impulses.
 bool can_follow(StepContext &context, const JointGroup &group, Real h);

@@ -72,10 +72,6 @@ void joint_stiffness(StepContext &context, Real h, std::vector<Real> &stiffness)
                      [&](std::uint32_t body, Real more) { stiffness[body] += more; });
 }
 
-Real substeps_that_follow(Real stiffness, Real inertia, Real dt) {
-    return dt / followed_alone * std::sqrt(stiffness / inertia);
-}
-
 bool can_follow(StepContext &context, const JointGroup &group, Real h) {
     const JointSystem &system = context.scratch.joint_system;
     std::vector<Real> &stiffness = context.scratch.stiffness;

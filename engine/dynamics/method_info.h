@@ -10,11 +10,14 @@
 namespace plumb {
 
 struct MethodInfo {
-    std::string_view name;           // in files and on the command line: "soft_step"
-    std::string_view title;          // for people: "Soft step"
-    std::string_view source;         // where it is published
-    bool contacts = false;           // can hold bodies apart
-    bool joints = false;             // can hold bodies together
+    std::string_view name;   // in files and on the command line: "soft_step"
+    std::string_view title;  // for people: "Soft step"
+    std::string_view source; // where it is published
+    bool contacts = false;   // can hold bodies apart
+    bool joints = false;     // can hold bodies together
+    // Whether what moves fast for its size is collided with where it will be, and where it was
+    // struck to; otherwise all contacts are those of the start of the step.
+    bool looks_ahead = false;
     std::vector<SettingGroup> reads; // of the settings, beside those that every method reads
     // What it runs with where nothing else is said.
     StepSettings defaults{.substeps = 1, .iterations = 1};

@@ -30,41 +30,6 @@ const Motion &World::going(std::uint32_t body) const {
     return scratch_.surprised.empty() ? state_.motions[body] : scratch_.going[body];
 }
 
-// A manifold's separations are those of the poses that it was found in; here they become those that
-// a solver starts from: less what it will add to them until the bodies are there (to second order
-// in their turns, contact_columns.h).
-void World::take_to_start(Contact &contact, const Motion &a, const Motion &b) const {
-    const Motion &start_a = state_.motions[contact.key.a];
-    const Motion &start_b = state_.motions[contact.key.b];
-    const auto turn = [](const Quat &from, const Quat &to) {
-        Quat by = to * glm::conjugate(from);
-        if (by.w < Real(0))
-            by = -by;
-        const Vec3 axis{by.x, by.y, by.z};
-        const Real sine = glm::length(axis);
-        return sine > Real(0) ? (Real(2) * std::atan2(sine, by.w) / sine) * axis : Vec3{Real(0)};
-    };
-    const Vec3 &n = contact.manifold.normal;
-    const Real moved =
-        glm::dot((b.position - start_b.position) - (a.position - start_a.position), n);
-    const Vec3 turned_a = turn(start_a.rotation, a.rotation);
-    const Vec3 turned_b = turn(start_b.rotation, b.rotation);
-    const auto way = [&](const Vec3 &by, const Vec3 &arm, Real rounding) {
-        const Vec3 core = arm - rounding * n;
-        return glm::dot(n, glm::cross(by, arm)) +
-               Real(0.5) * glm::dot(n, glm::cross(by, glm::cross(by, core)));
-    };
-    const Real rounding_a = model_->colliders[contact.collider_a].rounding;
-    const Real rounding_b = model_->colliders[contact.collider_b].rounding;
-    for (int k = 0; k < contact.manifold.count; ++k) {
-        const auto index = static_cast<std::size_t>(k);
-        const ContactAnchor &anchor = contact.anchors[index];
-        contact.manifold.points[index].separation -= moved +
-                                                     way(turned_b, anchor.arm_b, -rounding_b) -
-                                                     way(turned_a, anchor.arm_a, rounding_a);
-    }
-}
-
 // How far two colliders may move against each other in a step (m).
 Real World::way_of(const Candidate &candidate) const {
     const Motion &a = going(candidate.key.a);
@@ -78,6 +43,8 @@ Real World::way_of(const Candidate &candidate) const {
 // How far the parts of a body may go by its spin alone in a step, when that is much for its size
 // (m): no farther than to its other side.
 Real World::turning_reach(std::uint32_t index) const {
+    if (!method_->info.looks_ahead)
+        return Real(0);
     const Body &body = model_->bodies[index];
     const Real spin = glm::length(going(index).angular_velocity) * static_cast<Real>(settings_.dt);
     if (spin == Real(0))
@@ -163,7 +130,7 @@ FoundManifold World::turned_manifold(const Candidate &candidate, Real margin) co
     const Collider &b = model_->colliders[candidate.collider_b];
     return {
         plumb::collide(placed(a.shape, placement(at_a)), placed(b.shape, placement(at_b)), margin),
-        at_a, at_b, true};
+        at_a, at_b, Moment::middle};
 }
 
 FoundManifold World::predicted_manifold(const Candidate &candidate) const {
@@ -184,7 +151,7 @@ FoundManifold World::predicted_manifold(const Candidate &candidate) const {
     const Shape solid_a = placed(a.shape, placement(at_a));
     const Shape solid_b = placed(b.shape, placement(at_b));
     FoundManifold found{plumb::collide(solid_a, solid_b, near + left * way_of(candidate)), at_a,
-                        at_b, true};
+                        at_b, Moment::touch};
     guard_middle(candidate, solid_a, solid_b, found.manifold);
     return found;
 }
@@ -213,9 +180,9 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, std::uint32_
                                        surface_pose(surface, at_surface), triangle,
                                        near + left * way_of(candidate));
     if (solid_first)
-        return {manifold, at_solid, at_surface, true};
+        return {manifold, at_solid, at_surface, Moment::touch};
     manifold.normal = -manifold.normal;
-    return {manifold, at_surface, at_solid, true};
+    return {manifold, at_surface, at_solid, Moment::touch};
 }
 
 Real World::least_half_width(const Body &body) const {
@@ -229,6 +196,8 @@ Real World::least_half_width(const Body &body) const {
 // nothing was looked for, and met something there. Its contacts are added, and the step is to be
 // tried again.
 bool World::find_surprises() {
+    if (!method_->info.looks_ahead)
+        return false;
     Scratch &s = scratch_;
     const auto dt = static_cast<Real>(settings_.dt);
     bool any = false;

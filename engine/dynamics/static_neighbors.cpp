@@ -1,6 +1,7 @@
 // What lies flush beside a fixed body that something touches.
 #include "engine/dynamics/inner_edges.h"
 #include "engine/dynamics/world.h"
+#include "engine/geometry/overlap.h"
 
 #include <algorithm>
 #include <span>
@@ -22,16 +23,11 @@ Aabb around_points(const Manifold &manifold, Real reach) {
     return box;
 }
 
-bool touch(const Aabb &a, const Aabb &b) {
-    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-           a.min.z <= b.max.z && b.min.z <= a.max.z;
-}
-
 // Its pieces that the box touches.
 void gather(const Collider &collider, const Shape &solid, const Motion &motion, const Aabb &box,
             std::vector<StaticPiece> &out) {
     if (!collider.surface) {
-        if (collider.is_half_space() || touch(bounds(solid), box))
+        if (collider.is_half_space() || overlaps(bounds(solid), box))
             out.emplace_back(solid);
         return;
     }

@@ -39,8 +39,9 @@ bool World::turn_together(std::uint32_t a, std::uint32_t b) const {
     const Vec3 &spin_b = state_.motions[b].angular_velocity;
     const bool is_driven = model_->bodies[a].kind == BodyKind::kinematic ||
                            model_->bodies[b].kind == BodyKind::kinematic;
-    return is_driven && glm::dot(spin_a, spin_b) > Real(0.5) * std::max(glm::dot(spin_a, spin_a),
-                                                                        glm::dot(spin_b, spin_b));
+    return method_->info.looks_ahead && is_driven &&
+           glm::dot(spin_a, spin_b) >
+               Real(0.5) * std::max(glm::dot(spin_a, spin_a), glm::dot(spin_b, spin_b));
 }
 
 // What rides on a turntable is turned by friction all the time; with contacts of the start of the
@@ -169,7 +170,8 @@ void World::advance() {
     }
 }
 
-// A contact that bears no load is not remembered.
+// A contact that bears no load is not remembered. Of a collision within the step nothing is
+// remembered of its friction: what stopped the two from sliding then is no load of the next step.
 void World::gather_memory() {
     Scratch &s = scratch_;
     s.next_memory.clear();
@@ -181,9 +183,12 @@ void World::gather_memory() {
             continue;
         s.next_memory.push_back({contact.key, static_cast<std::uint32_t>(s.next_points.size()),
                                  static_cast<std::uint32_t>(count), contact.origin});
+        const bool is_collision = contact.is_new && contact.moment == Moment::touch;
         for (std::size_t k = 0; k < count; ++k)
-            s.next_points.push_back({contact.manifold.points[k].feature, impulses[k],
-                                     contact.anchors[k].core_a, contact.anchors[k].core_b});
+            s.next_points.push_back(
+                {contact.manifold.points[k].feature,
+                 is_collision ? Vec3{impulses[k].x, Real(0), Real(0)} : impulses[k],
+                 contact.anchors[k].core_a, contact.anchors[k].core_b});
     }
 }
 

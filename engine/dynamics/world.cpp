@@ -535,28 +535,4 @@ std::optional<WorldHit> World::raycast(const Ray &ray) const {
     return nearest;
 }
 
-Aabb World::bounds_of(std::uint32_t body) const {
-    const Motion &motion = state_.motions[body];
-    const Body &what = bodies()[body];
-    Aabb all;
-    if (has_diverged(motion))
-        return all;
-    for (std::uint32_t c = 0; c < what.collider_count; ++c) {
-        const Collider &collider = model_->colliders[what.first_collider + c];
-        if (collider.is_half_space())
-            continue;
-        Aabb box;
-        if (collider.surface) {
-            const Aabb &local = collider.surface->bounds();
-            box = bounds(placed(Box{Real(0.5) * (local.min + local.max), identity_rotation,
-                                    Real(0.5) * (local.max - local.min)},
-                                surface_pose(collider, motion)));
-        } else {
-            box = bounds(placed(collider.shape, Transform{motion.position, motion.rotation}));
-        }
-        all = {glm::min(all.min, box.min), glm::max(all.max, box.max)};
-    }
-    return all;
-}
-
 } // namespace plumb::inline PLUMB_PRECISION

@@ -28,17 +28,17 @@ struct SavedWorld {
     StepSettings settings;
 };
 
-// Three things: the model (what only an edit changes), the state (all that survives a step), and
-// scratch, which may be thrown away between any two steps. What follows depends only on the first
-// two, the method and the settings, never on the way that led there.
 // A manifold and the poses that it is of: those of now, or those in which two bodies will touch.
 struct FoundManifold {
     Manifold manifold;
     Motion a;
     Motion b;
-    bool is_ahead = false; // not of now
+    Moment moment = Moment::start;
 };
 
+// Three things: the model (what only an edit changes), the state (all that survives a step), and
+// scratch, which may be thrown away between any two steps. What follows depends only on the first
+// two, the method and the settings, never on the way that led there.
 class World {
   public:
     // A method unknown to the registry, or settings out of range, fail a check.
@@ -126,9 +126,6 @@ class World {
     Vec3 anchor_a(const Joint &joint) const; // world
     Vec3 anchor_b(const Joint &joint) const;
     const Motion &joint_motion(std::uint32_t body) const; // the world's is the identity
-    // Around all of its colliders but half-spaces, now; empty when there is none, or when it has
-    // diverged.
-    Aabb bounds_of(std::uint32_t body) const;
 
     // Of all that decides the future as long as no body is added. Holes do not count: a world saved
     // and loaded has the same. (A new body fills a hole, and so comes earlier in the solver's
@@ -137,8 +134,6 @@ class World {
 
   private:
     // The phases of a step; those that are const work on scratch alone.
-    bool turn_together(std::uint32_t a, std::uint32_t b) const;
-    bool rides_on_turning() const;
     void step_part(TaskPool *tasks, StepTimes *times);
     void find_pairs() const;
     void collide(TaskPool *tasks) const;
@@ -147,6 +142,8 @@ class World {
     void gather_memory();
     void finish();
 
+    bool turn_together(std::uint32_t a, std::uint32_t b) const;
+    bool rides_on_turning() const;
     bool needs_contacts() const;
     bool place_colliders() const;
     bool may_touch(std::uint32_t i, std::uint32_t j) const;
@@ -156,6 +153,8 @@ class World {
     Manifold present_manifold(const Contact &contact) const;
     void collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
                            std::vector<std::uint32_t> &triangles) const;
+    Contact &begin_contact(const Candidate &candidate, std::uint32_t triangle,
+                           std::vector<Contact> &out) const;
     bool keeps_contacts() const;
     bool keep_contact(const Candidate &candidate, std::vector<Contact> &out) const;
     void add_contact(const Candidate &candidate, std::uint32_t triangle, const FoundManifold &found,
@@ -166,7 +165,6 @@ class World {
                           FoundManifold &found) const;
     // Contacts of what does not touch yet (predicted_contact.cpp).
     const Motion &going(std::uint32_t body) const;
-    void take_to_start(Contact &contact, const Motion &a, const Motion &b) const;
     Real least_half_width(const Body &body) const;
     bool find_surprises();
     Real contact_reach(const Candidate &candidate) const;

@@ -16,6 +16,8 @@
 // After foreach_target.h, which must choose the target first.
 #include <hwy/highway.h>
 
+#include "engine/math/wide_vector-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace plumb::inline PLUMB_PRECISION {
 namespace kernels::HWY_NAMESPACE {
@@ -25,6 +27,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<Real>;
 using Lanes = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
+using Vector = wide::HWY_NAMESPACE::Vector<Lanes>;
+using wide::HWY_NAMESPACE::cross;
+using wide::HWY_NAMESPACE::dot;
+using wide::HWY_NAMESPACE::max;
+using wide::HWY_NAMESPACE::min;
+using wide::HWY_NAMESPACE::minus;
+using wide::HWY_NAMESPACE::plus;
+using wide::HWY_NAMESPACE::times;
 
 constexpr Tag tag{};
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
@@ -32,14 +42,6 @@ constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
 
 HWY_INLINE Lanes all(Real x) {
     return hn::Set(tag, x);
-}
-
-// std::min and std::max, which of zeros of two signs take the first; the processors' take either.
-HWY_INLINE Lanes min(Lanes a, Lanes b) {
-    return hn::IfThenElse(hn::Lt(b, a), b, a);
-}
-HWY_INLINE Lanes max(Lanes a, Lanes b) {
-    return hn::IfThenElse(hn::Lt(a, b), b, a);
 }
 
 HWY_INLINE Mask none() {
@@ -52,29 +54,8 @@ HWY_INLINE Mask is_finite(Lanes x) {
     return hn::Le(hn::Abs(x), all(std::numeric_limits<Real>::max()));
 }
 
-// In GLM's order of operations, as the scalar functions have it.
-struct Vector {
-    Lanes x, y, z;
-};
 HWY_INLINE Vector all(const Vec3 &v) {
     return {all(v.x), all(v.y), all(v.z)};
-}
-HWY_INLINE Vector minus(const Vector &a, const Vector &b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vector plus(const Vector &a, const Vector &b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE Vector times(Lanes s, const Vector &a) {
-    return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE Lanes dot(const Vector &a, const Vector &b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vector cross(const Vector &a, const Vector &b) {
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)),
-            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
 }
 HWY_INLINE Mask is_finite(const Vector &v) {
     return hn::And(hn::And(is_finite(v.x), is_finite(v.y)), is_finite(v.z));

@@ -38,11 +38,14 @@ SceneDesc loaded(const fs::path &path) {
 class Scene : public testing::TestWithParam<fs::path> {};
 
 // Known failings: what a method cannot do by its nature, whatever its settings. TGS Soft falls by
-// semi-implicit Euler, and bounces once a step, one contact by itself.
-bool is_known_failing(std::string_view method, const std::string &scene) {
+// semi-implicit Euler, and bounces once a step, one contact by itself. What does not look ahead
+// takes the planes of the start of the step for those of all of it.
+bool is_known_failing(const MethodInfo &method, const std::string &scene) {
     static const std::set<std::string> too_much_for_tgs_soft{"free_fall", "bounce_elastic",
                                                              "bounce_half", "newtons_cradle"};
-    return method == "tgs_soft" && too_much_for_tgs_soft.contains(scene);
+    static const std::set<std::string> too_fast_without_looking{"passing", "struck_before_wall"};
+    return (method.name == "tgs_soft" && too_much_for_tgs_soft.contains(scene)) ||
+           (!method.looks_ahead && too_fast_without_looking.contains(scene));
 }
 
 TEST_P(Scene, IsWithinItsTolerancesWithEveryMethodThatCanRunIt) {
@@ -56,7 +59,7 @@ TEST_P(Scene, IsWithinItsTolerancesWithEveryMethodThatCanRunIt) {
         const CheckOutcome outcome = check_scene(scene, options, nullptr);
         std::ostringstream text;
         print(text, outcome);
-        const bool fails = is_known_failing(method.name, GetParam().stem().string());
+        const bool fails = is_known_failing(method, GetParam().stem().string());
         EXPECT_EQ(exit_code(outcome), fails ? ExitCode::outside_tolerance : ExitCode::fine)
             << text.str();
         ++runs;

@@ -16,10 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has(const std::string &text, const std::string &part) {
-    return text.find(part) != std::string::npos;
-}
-
 std::set<std::string> files_in(const fs::path &folder) {
     std::set<std::string> names;
     for (const fs::directory_entry &file : fs::directory_iterator(folder))

@@ -23,16 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-bool has(const std::string &text, const std::string &part) {
-    return text.find(part) != std::string::npos;
-}
-
-std::string text_of(const fs::path &path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
-
 std::vector<std::string> files_in(const fs::path &folder) {
     std::vector<std::string> names;
     for (const fs::directory_entry &file : fs::directory_iterator(folder))

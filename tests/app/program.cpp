@@ -14,15 +14,15 @@
 
 namespace plumb {
 
-namespace {
+bool has(const std::string &text, const std::string &part) {
+    return text.find(part) != std::string::npos;
+}
 
-std::string read_all(const std::filesystem::path &path) {
+std::string text_of(const std::filesystem::path &path) {
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();
 }
-
-} // namespace
 
 ProgramResult run_program(const std::string &arguments, const std::filesystem::path &folder,
                           const std::string &before) {
@@ -36,8 +36,8 @@ ProgramResult run_program(const std::string &arguments, const std::filesystem::p
     const int status = std::system(command.c_str());
     ProgramResult result;
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    result.out = read_all(out);
-    result.err = read_all(err);
+    result.out = text_of(out);
+    result.err = text_of(err);
     return result;
 }
 
@@ -68,7 +68,7 @@ ProgramResult RunningProgram::wait() {
     int status = 0;
     waitpid(std::exchange(process_, -1), &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            read_all(folder_ / "out"), read_all(folder_ / "err")};
+            text_of(folder_ / "out"), text_of(folder_ / "err")};
 }
 
 TemporaryFolder::TemporaryFolder() {

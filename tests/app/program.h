@@ -34,6 +34,10 @@ class RunningProgram {
     int process_ = -1;
 };
 
+bool has(const std::string &text, const std::string &part);
+// The whole of a file.
+std::string text_of(const std::filesystem::path &path);
+
 // A new empty folder, removed at the end.
 class TemporaryFolder {
   public:

@@ -1,25 +1,14 @@
 // What the README repeats of the program is what the program says.
+#include "tests/app/program.h"
+
 #include "app/sandbox/keys.h"
 #include "engine/scene/given_settings.h"
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
 #include <string>
 
 namespace plumb {
-
-namespace {
-
-std::string text_of(const char *path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
-} // namespace
 
 TEST(Readme, HasTheTableOfKeys) {
     EXPECT_NE(text_of(PLUMB_SOURCE_DIR "/README.md").find(keys_as_markdown()), std::string::npos)

@@ -4,8 +4,6 @@
 #include "engine/scene/recording.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -13,15 +11,6 @@ namespace plumb {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool has(const std::string &text, const std::string &part) {
-    return text.find(part) != std::string::npos;
-}
-
-std::string text_of(const fs::path &path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 constexpr const char *stack = R"([[body]]
 name = "ground"

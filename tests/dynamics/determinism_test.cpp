@@ -222,7 +222,7 @@ TEST_P(Determinism, HolesDoNotCount) {
 
 TEST(Hash, ChangesWithEveryPartOfTheState) {
     World world = random_world("soft_step", 5);
-    run(world, 60); // so that contacts bear
+    run(world, 120); // so that contacts bear
     const World before = world;
     ASSERT_EQ(before.hash(), World(before).hash());
     const auto next = [](Real &value) {
@@ -288,7 +288,7 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
             expect_other(other, points);
         }
     }
-    EXPECT_GT(loaded_points, 15);
+    EXPECT_GT(loaded_points, 30);
     World changed = before;
     changed.set_step_count(before.step_count() + 1);
     EXPECT_NE(changed.hash(), before.hash());

@@ -99,7 +99,8 @@ TEST(SoftStepGas, ElasticBodiesKeepTheirEnergy) {
     }
 }
 
-// A box on a turntable, friction at `share` of what holds it there.
+// A box on a turntable, friction at `share` of what holds it there. Known failing: in 10 s it
+// drifts outward by 2.4 cm at 0.7 and by 6.1 cm at 0.82.
 TEST(SoftStepTurntable, ItsRiderStays) {
     for (const double share : {0.3, 0.5, 0.7, 0.82}) {
         const double friction = 0.5, spin = std::sqrt(share * friction * gravity);

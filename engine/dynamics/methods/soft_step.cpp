@@ -2,12 +2,15 @@
 // out of the velocities again. Catto 2024, "Solver2D" (there TGS Soft); Macklin et al. 2019, "Small
 // Steps in Physics Simulation", for why substeps beat iterations.
 //
-// One thing is different here. Gravity comes in two halves, before the move and after it, each with
+// What is different here: gravity comes in two halves, before the move and after it, each with
 // its half of the remembered impulses; joints are solved for the poses at the substep's end, and
 // relaxed with their lever arms there. That is the order of RATTLE (Andersen 1983), a scheme of
 // second order, at the price of one more pass over the bodies: a pendulum keeps its energy, which
-// the plain scheme loses at the rate omega^2 h. And joints that hang together without many loops
-// are solved together, as long as the substep can follow them.
+// the plain scheme loses at the rate omega^2 h.
+//
+// And joints that hang together without many loops are solved together, as long as the substep can
+// follow them; contacts of what rests are kept as they were found (kept_travel), those of what
+// moves fast for its size are found where it will be (looks_ahead), and all are solved in columns.
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 
@@ -85,6 +88,7 @@ Method soft_step() {
              .source = "Catto 2024, Solver2D; Macklin et al. 2019, Small Steps",
              .contacts = true,
              .joints = true,
+             .looks_ahead = true,
              .reads = {SettingGroup::constraints, SettingGroup::kept, SettingGroup::soft,
                        SettingGroup::impacts, SettingGroup::gyroscopic},
              .defaults = {.substeps = 4, .iterations = 1, .contact_damping_ratio = 1}},
