@@ -58,7 +58,7 @@ bool is_worth_saying(const SceneChart &chart, SettingNumber number) {
     return std::ranges::any_of(chart.runs, [&](const ChartRun &run) {
         return reads(*run.resolved.method, number.setting()) &&
                setting_value(run.resolved.settings, number) !=
-                   setting_value(default_settings(*run.resolved.method), number);
+                   setting_value(run.resolved.method->defaults, number);
     });
 }
 

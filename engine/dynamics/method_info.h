@@ -26,9 +26,6 @@ struct MethodInfo {
 // Whether the method's motion depends on that setting.
 bool reads(const MethodInfo &method, const SettingRow &setting);
 
-// The settings with which the method runs where nothing else is said.
-StepSettings default_settings(const MethodInfo &method);
-
 // All methods, in the registry's order (engine/dynamics/methods/registry.cpp).
 std::span<const MethodInfo> method_infos();
 

@@ -53,9 +53,9 @@ std::string unit_for_people(std::string_view unit) {
 
 // Where all methods have the same default, that; else each method's own.
 std::string default_for_people(const SettingRow &row) {
-    const StepSettings first = default_settings(method_infos().front());
+    const StepSettings first = method_infos().front().defaults;
     const bool same = std::ranges::all_of(method_infos(), [&](const MethodInfo &method) {
-        return setting_text(row, default_settings(method)) == setting_text(row, first);
+        return setting_text(row, method.defaults) == setting_text(row, first);
     });
     if (!same)
         return "the method's own";

@@ -41,10 +41,6 @@ bool reads(const MethodInfo &method, const SettingRow &setting) {
            std::ranges::find(method.reads, setting.group) != method.reads.end();
 }
 
-StepSettings default_settings(const MethodInfo &method) {
-    return method.defaults;
-}
-
 ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {
     const std::string &name = options.method.empty() ? scene.world.method : options.method;
     ResolvedRun run;
@@ -76,7 +72,7 @@ StepSettings settings_of(const WorldDesc &world, const MethodInfo &method) {
         if (other != world.other_methods.end())
             given.give(other->second);
     }
-    StepSettings settings = default_settings(method);
+    StepSettings settings = method.defaults;
     given.apply_to(settings);
     return settings;
 }
@@ -88,7 +84,7 @@ void set_run(WorldDesc &world, const MethodInfo &method, const StepSettings &set
         world.method = method.name;
         world.other_methods.erase(world.method);
     }
-    world.settings = GivenSettings::differences(default_settings(method), settings);
+    world.settings = GivenSettings::differences(method.defaults, settings);
 }
 
 std::string why_not(const MethodInfo &method, const SceneDesc &scene) {

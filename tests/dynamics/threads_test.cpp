@@ -13,7 +13,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Threads, testing::ValuesIn(contact_methods()),
 // A heap that falls together: many times more pairs than a part of the loop over them takes.
 World heap(const std::string &method) {
     Random random(9);
-    World world(method, default_settings(find_method(method)->info));
+    World world(method, settings_for(method));
     world.add_body(ground(0.6, 0.3));
     BodyId last;
     for (int i = 0; i < 300; ++i) {

@@ -113,7 +113,7 @@ inline V impulse_of(const World &world, std::size_t joint) {
 
 // Settings with the method's own substeps and iterations.
 inline StepSettings settings_for(const std::string &method) {
-    return default_settings(*find_method_info(method));
+    return find_method(method)->info.defaults;
 }
 inline StepSettings weightless(StepSettings settings) {
     settings.gravity = V{0};

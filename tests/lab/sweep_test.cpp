@@ -97,7 +97,7 @@ TEST(Sweep, RangesThatDoNotBeginAboveZeroGoInFourSteps) {
 TEST(Sweep, SettingsThatAMethodDoesNotReadMakeNoDifference) {
     for (const MethodInfo &method : method_infos())
         for (const SettingNumber number : setting_numbers()) {
-            const StepSettings a = default_settings(method);
+            const StepSettings a = method.defaults;
             StepSettings b = a;
             set_setting(b, number, number.setting().max);
             EXPECT_EQ(same_work(method, a, b), !reads(method, number.setting()))

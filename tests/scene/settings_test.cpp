@@ -56,7 +56,7 @@ TEST(Settings, NamesAndReasonsAreGivenOnceEach) {
         EXPECT_LT(row.min, row.max) << row.name;
     }
     for (const MethodInfo &method : method_infos())
-        EXPECT_NO_THROW(check_settings(default_settings(method))) << method.name;
+        EXPECT_NO_THROW(check_settings(method.defaults)) << method.name;
 }
 
 TEST(Settings, EachGoesThroughASceneFile) {
@@ -64,7 +64,7 @@ TEST(Settings, EachGoesThroughASceneFile) {
         for (const SettingNumber number : setting_numbers()) {
             SceneDesc scene;
             scene.world.method = "soft_step";
-            StepSettings expected = default_settings(method);
+            StepSettings expected = method.defaults;
             set_setting(expected, number, another_value(number));
             const bool own = method.name == scene.world.method;
             GivenSettings &given = own || number.setting().group == SettingGroup::world
@@ -83,7 +83,7 @@ TEST(Settings, OfOneMethodAreNotThoseOfAnother) {
     scene.world.method = "soft_step";
     scene.world.settings = GivenSettings::differences({}, other_settings());
     const MethodInfo &other = *find_method_info("sequential_impulses");
-    StepSettings expected = default_settings(other);
+    StepSettings expected = other.defaults;
     expected.gravity = other_settings().gravity;
     expected.dt = other_settings().dt;
     EXPECT_TRUE(same(settings_of(scene.world, other), expected));
@@ -283,7 +283,7 @@ bool same_motion(const std::vector<BodyState> &a, const std::vector<BodyState> &
 TEST(Settings, MethodsReadWhatTheySay) {
     for (const MethodInfo &method : method_infos()) {
         const SceneDesc scene = scene_for(method);
-        const StepSettings by_default = default_settings(method);
+        const StepSettings by_default = method.defaults;
         const std::vector<BodyState> motion = motion_with(scene, by_default);
         for (const SettingNumber number : setting_numbers()) {
             const SettingRow &row = number.setting();
