@@ -1,3 +1,4 @@
+#define TOML_IMPLEMENTATION // toml++'s own code comes with its header
 #include "engine/scene/scene_file_table.h"
 
 #include "engine/scene/scene_file_number.h"

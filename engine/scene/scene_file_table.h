@@ -15,10 +15,11 @@
 #include <string_view>
 #include <vector>
 
-// Compiled into the readers alone, whatever the build system says, and reporting errors as values.
+// Compiled once, in scene_file_table.cpp, whatever the build system says, and reporting errors as
+// values.
 #undef TOML_HEADER_ONLY
 #undef TOML_SHARED_LIB
-#define TOML_HEADER_ONLY 1
+#define TOML_HEADER_ONLY 0
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
 #define TOML_FLOAT_CHARCONV 1 // exact for every double, subnormal ones too
