@@ -162,7 +162,7 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
             apply_pair_impulse(a, b, point, (total - point.impulse.x) * contact.normal);
             point.impulse.x = total;
         }
-        if (contact.friction > Real(0))
+        if (contact.friction > Real(0) && !bias.frictionless)
             for (int k = 0; k < contact.count; ++k) {
                 ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
                 solve_friction(contact, point, a, b, contact.friction * point.impulse.x);

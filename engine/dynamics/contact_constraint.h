@@ -53,6 +53,8 @@ struct ContactBias {
     // Whether points that are apart and bear nothing are left to the next substep, as in a relaxing
     // pass: what they would prevent lies beyond the end of this one.
     bool loaded_only = false;
+    // Whether the pass leaves friction alone, as one over pseudo velocities does.
+    bool frictionless = false;
 };
 
 // 1 / (K along n): the effective mass of two points against each other along a unit vector.

@@ -438,7 +438,8 @@ void solve_joints(StepContext &context, const JointPass &pass) {
         }
     bool is_changed = !pass.at_the_end;
     for (JointConstraint &joint : context.scratch.joints) {
-        if (joint.is_held || (pass.springs == Springs::skip && joint.is_spring()))
+        if (joint.is_held || (pass.springs == Springs::skip && joint.is_spring()) ||
+            (pass.skips_motors && joint.rows.bounds == RowBounds::motor))
             continue;
         SolverBody &a = context.body(joint.a);
         SolverBody &b = context.body(joint.b);

@@ -13,6 +13,7 @@
 #include "engine/dynamics/state.h"
 #include "engine/dynamics/step_report.h"
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -26,9 +27,10 @@ struct SolverScratch {
     std::vector<JointConstraint> joints;
     std::vector<RowBlock> rows;
     JointSystem joint_system;
-    std::vector<Vec3> sides;         // of its equations
-    std::vector<Real> stiffness;     // of each body, see joint_stiffness
-    std::vector<FreeFlight> flights; // one for each moving body
+    std::vector<Vec3> sides;                     // of its equations
+    std::vector<Real> stiffness;                 // of each body, see joint_stiffness
+    std::vector<FreeFlight> flights;             // one for each moving body
+    std::vector<std::array<Vec3, 2>> velocities; // likewise, while pseudo velocities are solved
 };
 
 // What a method is given: the world at the start of a step, to be advanced by settings.dt. Contacts
