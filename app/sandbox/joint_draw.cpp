@@ -307,6 +307,22 @@ std::vector<JointView> joints_at(const Simulation &simulation, std::span<const P
     return joints;
 }
 
+bool is_about_joints(const Simulation &simulation) {
+    std::vector<bool> joined(simulation.body_count());
+    for (const JointView &joint : simulation.joints())
+        for (const std::optional<std::size_t> &body : {joint.body_a, joint.body_b})
+            if (body && joint.type != JointType::distance)
+                joined[*body] = true;
+    int with = 0;
+    int without = 0;
+    for (std::size_t body = 0; body < joined.size(); ++body) {
+        const BodyInfo &info = simulation.body_info(body);
+        if (info.alive && info.kind == BodyKind::dynamic)
+            ++(joined[body] ? with : without);
+    }
+    return with > without;
+}
+
 void draw_links(DrawList &list, std::span<const JointView> joints,
                 const JointSurroundings &surroundings) {
     for (const JointView &joint : joints)

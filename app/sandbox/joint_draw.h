@@ -21,6 +21,10 @@ struct JointSurroundings {
 [[nodiscard]] std::vector<JointView> joints_at(const Simulation &simulation,
                                                std::span<const Pose> poses);
 
+// Whether most of the bodies that move hang on joints that nothing shows but their signs (a rod, a
+// rope or a spring is seen anyway): then these are what there is to see.
+[[nodiscard]] bool is_about_joints(const Simulation &simulation);
+
 // Rods, ropes and springs: part of the scene, whether or not joints are looked at.
 void draw_links(DrawList &list, std::span<const JointView> joints,
                 const JointSurroundings &surroundings);

@@ -32,6 +32,7 @@ struct Columns {
     float label, control; // em; of the control, -1 is all that is left
 };
 constexpr Columns panel_columns{5.4f, -1}, popup_columns{12, 8};
+constexpr float least_vector_width = 9; // em
 
 void label(const char *text, const Columns &columns) {
     const float em = ImGui::GetFontSize();
@@ -109,8 +110,13 @@ bool setting_row(const SettingRow &row, StepSettings &settings, const Columns &c
                                    static_cast<int>(row.max), "%d",
                                    ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
     } else if (const auto *vector = std::get_if<glm::dvec3 StepSettings::*>(&row.member)) {
+        // Where three numbers do not fit beside the label, they stand below it.
+        if (ImGui::GetContentRegionAvail().x < least_vector_width * ImGui::GetFontSize()) {
+            ImGui::NewLine();
+            ImGui::SetNextItemWidth(-1);
+        }
         changed = ImGui::DragScalarN(id.c_str(), ImGuiDataType_Double, &(settings.**vector)[0], 3,
-                                     0.05f, &row.min, &row.max, "%.2f", flags);
+                                     0.05f, &row.min, &row.max, "%.4g", flags);
     } else {
         double &value = settings.*std::get<double StepSettings::*>(row.member);
         const auto speed = static_cast<float>(std::clamp(0.01 * value, 1e-5, 1e3));

@@ -150,13 +150,19 @@ void energy_graph(const PanelContext &context, float height) {
 }
 
 void legend(const PanelContext &context, const StepTimes &times) {
-    const float half = ImGui::GetContentRegionAvail().x / 2;
+    // In two columns, or in one where a name and its time would not fit into half of the width.
+    constexpr float least_column = 9; // heights of its text
+    const float width = ImGui::GetContentRegionAvail().x;
+    const std::size_t columns = width / 2 < least_column * context.fonts.small->FontSize ? 1 : 2;
+    const float column = width / static_cast<float>(columns);
     const float left = ImGui::GetCursorPosX();
     ImGui::PushFont(context.fonts.small);
     for (std::size_t i = 0; i < phases.size(); ++i) {
         const Phase &phase = phases[i];
-        const float start = left + (i % 2 == 1 ? half : 0.0f);
-        if (i % 2 == 1)
+        const bool is_first = i % columns == 0;
+        const bool is_last = (i + 1) % columns == 0;
+        const float start = left + (is_first ? 0.0f : column);
+        if (!is_first)
             ImGui::SameLine();
         ImGui::SetCursorPosX(start);
         const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -168,8 +174,8 @@ void legend(const PanelContext &context, const StepTimes &times) {
         ImGui::TextUnformatted(phase.title);
         const std::string time = context.frozen ? "-" : duration(times.*phase.time);
         ImGui::SameLine();
-        ImGui::SetCursorPosX(start + half - ImGui::CalcTextSize(time.c_str()).x -
-                             (i % 2 == 0 ? 10.0f : 0.0f));
+        ImGui::SetCursorPosX(start + column - ImGui::CalcTextSize(time.c_str()).x -
+                             (is_last ? 0.0f : 10.0f));
         ImGui::TextDisabled("%s", time.c_str());
     }
     ImGui::PopFont();

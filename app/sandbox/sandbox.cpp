@@ -1,6 +1,7 @@
 #include "app/sandbox/sandbox.h"
 
 #include "app/sandbox/framing.h"
+#include "app/sandbox/joint_draw.h"
 #include "app/sandbox/probe_draw.h"
 #include "app/sandbox/world_draw.h"
 #include "engine/dynamics/method_info.h"
@@ -58,6 +59,7 @@ void Sandbox::started(bool another_scene) {
     tools_.let_go(session_);
     if (another_scene) {
         view_.selected.reset();
+        view_.joints = is_about_joints(*session_.simulation());
         look_from(camera_of(session_.scene().camera));
     }
     view_.hovered.reset();

@@ -251,6 +251,27 @@ TEST_F(SandboxWithScenes, AnotherSceneBringsItsCamera) {
     EXPECT_FALSE(sandbox.view().selected.has_value());
 }
 
+TEST_F(SandboxWithScenes, JointsThatNothingElseShowsAreShownWhereMostBodiesHangOnThem) {
+    const std::filesystem::path folder = std::filesystem::path(PLUMB_SOURCE_DIR) / "scenes";
+    Sandbox sandbox{Session()};
+    for (const char *name : {"joints/slider_fall", "joints/hinge_motor", "joints/welded"}) {
+        ASSERT_TRUE(sandbox.open(folder / (std::string(name) + ".toml")));
+        EXPECT_TRUE(sandbox.view().joints) << name;
+    }
+    // Rods are part of the picture anyway, a few joints among many bodies are not what it is about,
+    // and probes have none.
+    for (const char *name :
+         {"joints/newtons_cradle", "showcase/wrecking_ball", "geometry/raycasts"}) {
+        ASSERT_TRUE(sandbox.open(folder / (std::string(name) + ".toml")));
+        EXPECT_FALSE(sandbox.view().joints) << name;
+    }
+    // Who hides them is not shown them again before the next scene.
+    ASSERT_TRUE(sandbox.open(folder / "joints/door.toml"));
+    press(sandbox, 'j');
+    press(sandbox, 'r');
+    EXPECT_FALSE(sandbox.view().joints);
+}
+
 TEST(Search, FindsNamesBeforeTitlesAndTitlesBeforeFolders) {
     const std::vector<SceneEntry> scenes{{"a", "stacking", "domino_run", "Dominoes"},
                                          {"b", "stacking", "wall", "A stack of bricks"},

@@ -3,6 +3,7 @@
 #include "app/render/context.h"
 #include "app/sandbox/layout.h"
 #include "app/sandbox/scene_catalog.h"
+#include "app/sandbox/theme.h"
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/fake_simulation.h"
 
@@ -11,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <set>
+#include <string_view>
 
 #include <gtest/gtest.h>
 #include <imgui/imgui.h>
@@ -317,11 +319,14 @@ TEST_F(UiTest, LargerPanelsAreLarger) {
     EXPECT_NEAR(height({2560, 1600}, 2), 2 * height({1280, 800}, 1), 8);
 }
 
-double area_of(const ImDrawData &data, const Colour &colour) {
+// In all windows, or in the one of that name.
+double area_of(const ImDrawData &data, const Colour &colour, const char *window = nullptr) {
     const ImU32 wanted = ImGui::ColorConvertFloat4ToU32(colour) & ~IM_COL32_A_MASK;
     double area = 0;
     for (int i = 0; i < data.CmdListsCount; ++i) {
         const ImDrawList &list = *data.CmdLists[i];
+        if (window && std::string_view(list._OwnerName) != window)
+            continue;
         for (int k = 0; k + 2 < list.IdxBuffer.Size; k += 3) {
             const ImDrawVert &a = list.VtxBuffer[list.IdxBuffer[k]];
             const ImDrawVert &b = list.VtxBuffer[list.IdxBuffer[k + 1]];
@@ -334,6 +339,29 @@ double area_of(const ImDrawData &data, const Colour &colour) {
         }
     }
     return area;
+}
+
+// In a narrow panel there is as much of every letter as in a wide one.
+TEST_F(UiTest, NoNumberOfTheSettingsIsCutInANarrowWindow) {
+    const auto text_in = [&](ImVec2 window) {
+        Sandbox sandbox(Session(), scenes);
+        EXPECT_TRUE(sandbox.open(scenes[2].path));
+        sandbox.view().opened[PanelId::settings] = true;
+        Ui ui;
+        ImGui::GetIO().Fonts->Build();
+        const ImDrawData *data = nullptr;
+        for (int settled = 0; settled < 4; ++settled) {
+            ui.fill_input({window.x, window.y}, 1.0f / 60);
+            ui.begin_frame();
+            PanelContext panels = sandbox.panel_context(ui.fonts());
+            data = &ui.draw(panels);
+        }
+        return area_of(*data, theme::text, "settings");
+    };
+    const double whole = text_in({1280, 900});
+    EXPECT_GT(whole, 500);
+    EXPECT_NEAR(text_in({1000, 900}), whole, 1e-3 * whole);
+    EXPECT_NEAR(text_in({640, 900}), whole, 1e-3 * whole);
 }
 
 // A phase that takes no time is not seen in the graph of a step's time: only its sign is, below.
