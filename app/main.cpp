@@ -4,6 +4,7 @@
 #include "app/lab/chart.h"
 #include "app/lab/check.h"
 #include "app/lab/interrupt.h"
+#include "app/lab/map/stability_map.h"
 #include "app/lab/measure.h"
 #include "app/lab/query_chart.h"
 #include "app/lab/run_text.h"
@@ -545,6 +546,49 @@ int main_with_errors(int argc, char **argv) {
         chart.shader_dir = common.shader_dir();
         chart.command = command_text(argc, argv);
         result = code_of(chart_scenes(chart, std::cout, std::cerr));
+    });
+
+    MapCommand map;
+    std::string x_axis, y_axis, map_methods;
+    CLI::App *map_command = app.add_subcommand(
+        "map", "Maps where each method holds a scene and why it fails, over two numbers: a grid of "
+               "runs, with the limit between held and failed found by bisection along x");
+    map_command->add_option("SCENE", common.scenes, "A scene file, or a name from `plumb list`")
+        ->required()
+        ->expected(1);
+    const std::string axis_about =
+        "a setting from `plumb list --settings`, or a number of the scene file by its path, such "
+        "as body.ball.velocity.x, material.steel.friction or body.box.repeat.count; N values (10) "
+        "in equal steps, or in equal ratios with log, as in dt=1/480..1/30:9log; or a list, "
+        "substeps=1,2,4";
+    map_command->add_option("--x", x_axis, "What goes to the right: " + axis_about)
+        ->required()
+        ->type_name("NAME=FROM..TO[:N][log]");
+    map_command->add_option("--y", y_axis, "What goes up, in the same way")
+        ->required()
+        ->type_name("NAME=FROM..TO[:N][log]");
+    map_command->add_option("--methods", map_methods, "Of " + method_names() + " (all)")
+        ->type_name("METHOD,...");
+    map_command->add_option("--image", map.image, "Where to draw the map, a PNG");
+    map_command->add_option("--csv", map.csv, "Where to write every cell and limit, as a table");
+    map_command
+        ->add_option("--seconds", map.options.duration,
+                     "How long each run of a scene that expects nothing of itself lasts (5)")
+        ->check(positive());
+    add_run_options(*map_command, common, true);
+    add_threads(*map_command, common);
+    map_command->callback([&] {
+        TaskPool tasks(common.threads);
+        map.scene = common.scene_paths().front();
+        map.x = parse_map_axis(x_axis);
+        map.y = parse_map_axis(y_axis);
+        if (!map_methods.empty())
+            map.options.methods = parse_list(map_methods);
+        map.options.base = common.run();
+        map.options.tasks = &tasks;
+        map.shader_dir = common.shader_dir();
+        map.command = command_text(argc, argv);
+        result = code_of(map_scene(map, std::cout, std::cerr));
     });
 
     BenchArguments bench_arguments;

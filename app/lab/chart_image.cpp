@@ -1,6 +1,7 @@
 #include "app/lab/chart_image.h"
 
 #include "app/lab/chart_pen.h"
+#include "app/lab/map/map_picture.h"
 #include "app/lab/panel_chart.h"
 #include "app/render/context.h"
 #include "app/render/fonts.h"
@@ -305,6 +306,10 @@ Image ChartPainter::paint(const ChartContent &content) {
 
 Image ChartPainter::paint(const PanelChart &chart) {
     return paint([&](ChartPen &pen) { draw_panels(pen, chart); });
+}
+
+Image ChartPainter::paint(const MapPicture &picture) {
+    return paint([&](ChartPen &pen) { draw_map(pen, picture); });
 }
 
 } // namespace plumb

@@ -11,6 +11,7 @@
 namespace plumb {
 
 class ChartPen;
+struct MapPicture;
 struct PanelChart;
 
 // Holds a GL context and a typeface for as many charts as one likes. Leaves ImGui's current context
@@ -26,6 +27,7 @@ class ChartPainter {
     // 1200 x 800 pixels.
     [[nodiscard]] Image paint(const ChartContent &content);
     [[nodiscard]] Image paint(const PanelChart &chart);
+    [[nodiscard]] Image paint(const MapPicture &picture);
 
   private:
     [[nodiscard]] Image paint(const std::function<void(ChartPen &)> &draw);

@@ -130,6 +130,9 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
         run.max_joint_drift = std::max(run.max_joint_drift, now[1]);
         run.max_energy_change = std::max(run.max_energy_change, std::abs(now[2] - start_energy));
         run.max_energy_error = std::max(run.max_energy_error, std::abs(now[3]));
+        run.max_energy_gain = std::max(run.max_energy_gain, now[3]);
+        run.end_penetration = now[0];
+        run.end_joint_drift = now[1];
     };
 
     const double end = run_end(scene, options.duration);

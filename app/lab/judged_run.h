@@ -59,6 +59,10 @@ struct JudgedRun {
     double max_joint_drift = 0;   // m
     double max_energy_change = 0; // J, |E - E0|
     double max_energy_error = 0;  // |E - E0| / (K0 + |U0|)
+    double max_energy_gain = 0;   // (E - E0) / (K0 + |U0|), of at least 0
+    // With follow_errors, at the end of the run:
+    double end_penetration = 0; // m
+    double end_joint_drift = 0; // m
     // It came to its end, and nothing that the scene expects was missed.
     [[nodiscard]] bool all_met() const;
     // Whether anything was judged at all.

@@ -90,6 +90,10 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
          {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--set", "--dt",
           "--substeps", "--iterations", "--precision"},
          false}, // timed on one thread: it has no --threads
+        {"map",
+         {"SCENE", "--x", "--y", "NAME=FROM..TO[:N][log]", "--methods", "--image", "--csv",
+          "--seconds"},
+         true},
         {"compare", {"A", "B", "--tolerance", "--difference"}, false},
     };
     const ProgramResult all = run_program("--help");
@@ -128,7 +132,13 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "snapshot pendulum --every 3 --steps -9",
                                   "compare a.png",
                                   "chart pendulum --sweep dt",
-                                  "chart geometry --methods rk4"}) {
+                                  "chart geometry --methods rk4",
+                                  "map pendulum --x dt=1/120..1/30",
+                                  "map pendulum --x dt=1/30..1/120 --y substeps=1,2",
+                                  "map pendulum --x dtt=1..2 --y substeps=1,2",
+                                  "map pendulum --x body.bbo.mass=1..2 --y substeps=1,2",
+                                  "map pendulum --x dt=1/60,1/30 --y substeps=1,2 --seconds 1",
+                                  "map points --x dt=1/60,1/30 --y substeps=1,2"}) {
         const ProgramResult result = run_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.out << result.err;
         EXPECT_FALSE(result.err.empty()) << arguments;
@@ -206,6 +216,22 @@ TEST(CommandLine, ABadSceneIsExitCode2WithAllItsErrors) {
                                   "bad.toml:4:1: error: ", "bad.toml:7:1: error: "})
             EXPECT_TRUE(has(result.err, place)) << command << ": " << place << '\n' << result.err;
     }
+}
+
+TEST(CommandLine, AMapIsPrintedAndWritten) {
+    const TemporaryFolder folder;
+    folder.write("fall.toml", falling_ball("5.095"));
+    // Free fall is missed by more than the tolerance with large steps only, and not by RK4.
+    const ProgramResult map = run_program("map fall.toml --x dt=1/960..1/15:4log --y substeps=1,2 "
+                                          "--methods semi_implicit_euler,rk4 --csv map.csv "
+                                          "--image map.png --threads 2",
+                                          folder.path());
+    EXPECT_EQ(map.exit_code, 0) << map.err;
+    EXPECT_TRUE(has(map.out, "semi_implicit_euler")) << map.out;
+    EXPECT_TRUE(has(map.out, "missed: height")) << map.out;
+    EXPECT_TRUE(has(map.out, "  ....\n")) << map.out;
+    EXPECT_TRUE(has(text_of(folder.path() / "map.csv"), "kind,method,dt,substeps,low,high,why"));
+    EXPECT_TRUE(fs::exists(folder.path() / "map.png"));
 }
 
 TEST(CommandLine, ADivergingWorldIsExitCode3) {

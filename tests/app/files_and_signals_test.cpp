@@ -162,6 +162,18 @@ TEST(Input, ASceneMayComeThroughAPipe) {
     writer.join();
 }
 
+TEST(Input, ASceneToMapMayComeThroughAPipe) {
+    const TemporaryFolder folder;
+    folder.write("ball.toml", heap(1));
+    ASSERT_EQ(mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+    std::thread writer(
+        [&] { std::ofstream(folder.path() / "pipe") << text_of(folder.path() / "ball.toml"); });
+    const ProgramResult map =
+        run_program("map ./pipe --x dt=1/60,1/30 --y substeps=1,2 --seconds 0.1", folder.path());
+    EXPECT_EQ(map.exit_code, 0) << map.err;
+    writer.join();
+}
+
 TEST(Signals, CtrlCStopsPicturesAtOnceAndKeepsThoseThatAreThere) {
     for (const auto &[signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
         const TemporaryFolder folder;
@@ -196,6 +208,9 @@ TEST(Signals, CtrlCStopsEveryLongCommandAndKeepsWhatWasDone) {
           Command{"run pyramid --frames 100000 --size 64x64 --gl osmesa", {}},
           Command{"check pyramid --substeps 1000", {}},
           Command{"chart pyramid --sweep substeps=256 --out .", {"pyramid.csv.partial"}},
+          Command{"map pyramid --x dt=1/6000,1/3000 --y substeps=100,200 --methods soft_step --csv "
+                  "m.csv",
+                  {"m.csv.partial"}},
           Command{"chart geometry --repeats 1000 --out .", {"geometry.csv.partial"}}}) {
         const TemporaryFolder folder;
         RunningProgram program(arguments, folder.path());

@@ -1,0 +1,133 @@
+#include "app/lab/map/failing.h"
+
+#include "engine/core/check.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace plumb {
+
+namespace {
+
+constexpr std::array all_failings{
+    FailingInfo{Failing::none, "held", '.', 0xa8d5a2, "held"},
+    FailingInfo{Failing::not_finite, "not finite", 'N', 0x33373d, "not finite"},
+    FailingInfo{Failing::passed_through, "passed through", 'T', 0xd55e00,
+                "passed through: a body's centre came out behind a static body"},
+    FailingInfo{Failing::energy_grew, "energy grew", 'E', 0xe69f00,
+                "energy grew: by more than a tenth, or than the scene allows"},
+    FailingInfo{Failing::penetration, "penetration", 'P', 0x0072b2,
+                "penetration: a quarter of a width at the end, or than the scene allows"},
+    FailingInfo{Failing::drift, "drift", 'D', 0x56b4e9,
+                "joint drift: a quarter of a width at the end, or than the scene allows"},
+    FailingInfo{Failing::fell, "fell", 'F', 0xcc79a7, "fell"},
+    FailingInfo{Failing::never_rests, "never rests", 'R', 0xf0e442, "never rests"},
+    FailingInfo{Failing::missed, "missed", 'M', 0xa4abb2, "missed an expectation"},
+};
+
+bool is_about(const ExpectDesc &expect, std::string_view part) {
+    return expect.quantity.find(part) != std::string::npos;
+}
+
+bool expects_about(const SceneDesc &scene, std::string_view part) {
+    return std::ranges::any_of(scene.expects,
+                               [&](const ExpectDesc &each) { return is_about(each, part); });
+}
+
+bool has_springs(const SceneDesc &scene) {
+    return std::ranges::any_of(scene.joints,
+                               [](const JointDesc &joint) { return joint.frequency > 0; });
+}
+
+bool brings_energy_in(const SceneDesc &scene) {
+    const glm::dvec3 still(0);
+    return has_springs(scene) ||
+           std::ranges::any_of(
+               scene.joints,
+               [](const JointDesc &joint) { return joint.motor_speed.has_value(); }) ||
+           std::ranges::any_of(scene.bodies, [&](const BodyDesc &body) {
+               return body.kind == BodyKind::kinematic &&
+                      (body.velocity != still || body.angular_velocity != still);
+           });
+}
+
+double smallest_moving_width(const SceneDesc &scene) {
+    double width = std::numeric_limits<double>::infinity();
+    for (const BodyDesc &body : scene.bodies)
+        if (body.kind == BodyKind::dynamic)
+            width = std::min(width, smallest_width(body));
+    return width;
+}
+
+Failing kind_of_miss(const ExpectOutcome &outcome) {
+    using Relation = ExpectDesc::Relation;
+    const ExpectDesc &desc = outcome.desc;
+    const bool too_much = outcome.measured > desc.value;
+    if (is_about(desc, "energy") && desc.quantity != "kinetic_energy" && too_much)
+        return Failing::energy_grew;
+    if (is_about(desc, "penetration"))
+        return Failing::penetration;
+    if (is_about(desc, "joint_drift"))
+        return Failing::drift;
+    if ((desc.quantity == "position.y" && desc.relation == Relation::at_least) ||
+        (desc.quantity == "tilt" && desc.relation == Relation::at_most))
+        return Failing::fell;
+    if ((is_about(desc, "speed") || desc.quantity == "kinetic_energy") &&
+        desc.relation == Relation::at_most)
+        return Failing::never_rests;
+    return Failing::missed;
+}
+
+} // namespace
+
+std::span<const FailingInfo> failings() {
+    return all_failings;
+}
+
+const FailingInfo &info_of(Failing failing) {
+    const auto *const found = std::ranges::find(all_failings, failing, &FailingInfo::failing);
+    PLUMB_CHECK(found != all_failings.end(), "a failing has a row of its own");
+    return *found;
+}
+
+std::optional<Failing> find_failing(std::string_view name) {
+    const auto *const found = std::ranges::find(all_failings, name, &FailingInfo::name);
+    return found == all_failings.end() ? std::nullopt : std::optional(found->failing);
+}
+
+RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::string &passage) {
+    if (run.divergence)
+        return {Failing::not_finite, run.divergence->body};
+    if (!passage.empty())
+        return {Failing::passed_through, passage};
+    RunFailing worst;
+    const auto found = [&](Failing failing, const std::string &what) {
+        if (worst.failing == Failing::none || failing < worst.failing)
+            worst = {failing, what};
+    };
+    if (!expects_about(scene, "energy") && !brings_energy_in(scene) &&
+        run.max_energy_gain > tolerated_energy_gain)
+        found(Failing::energy_grew, "");
+    const double depth = tolerated_depth * smallest_moving_width(scene);
+    if (!expects_about(scene, "penetration") && run.end_penetration > depth)
+        found(Failing::penetration, "");
+    if (!expects_about(scene, "joint_drift") && !has_springs(scene) && run.end_joint_drift > depth)
+        found(Failing::drift, "");
+    // Of several of one kind the one that is missed by most.
+    double error = 0;
+    for (const ExpectOutcome &outcome : run.outcomes) {
+        if (outcome.verdict != Verdict::missed)
+            continue;
+        const Failing kind = kind_of_miss(outcome);
+        if (kind == worst.failing && outcome.scaled_error <= error)
+            continue;
+        if (worst.failing == Failing::none || kind <= worst.failing) {
+            worst = {kind, outcome.desc.name};
+            error = outcome.scaled_error;
+        }
+    }
+    return worst;
+}
+
+} // namespace plumb

@@ -1,0 +1,171 @@
+#include "app/lab/map/map_axis.h"
+
+#include "app/lab/sweep.h"
+#include "engine/scene/given_settings.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+namespace plumb {
+
+namespace {
+
+constexpr int most_values = 64; // on one axis
+constexpr int usual_values = 10;
+
+[[noreturn]] void refuse(std::string_view text, const std::string &why) {
+    throw std::invalid_argument("axis \"" + std::string(text) + "\": " + why);
+}
+
+double parse_value(std::string_view whole, std::string_view text, const MapAxis &axis) {
+    double value = 0;
+    try {
+        value = parse_number(text);
+    } catch (const std::invalid_argument &error) {
+        refuse(whole, error.what());
+    }
+    if (axis.setting)
+        if (const std::string why = why_refused(*axis.setting, value); !why.empty())
+            refuse(whole, why);
+    return value;
+}
+
+// A setting goes before a path: "gravity.y" is one.
+std::optional<SettingNumber> find_setting_number(std::string_view whole, std::string_view name) {
+    std::vector<SettingNumber> numbers;
+    try {
+        numbers = find_setting_numbers(name);
+    } catch (const std::invalid_argument &error) {
+        if (name.find('.') != std::string_view::npos)
+            return std::nullopt;
+        refuse(whole, std::string(error.what()) +
+                          " A number of the scene file is named by its path, as in "
+                          "body.ball.velocity.x");
+    }
+    if (numbers.size() > 1)
+        refuse(whole, std::string(name) + " is three numbers; take one of them, as in " +
+                          setting_name(numbers[1]) + "=-20..-1");
+    return numbers.front();
+}
+
+// Cuts ":N", "log" and ":Nlog" off the end of a range.
+int take_count(std::string_view whole, std::string_view &range, bool &logarithmic) {
+    constexpr std::string_view log = "log";
+    logarithmic = range.ends_with(log);
+    if (logarithmic)
+        range.remove_suffix(log.size());
+    const std::size_t colon = range.find(':');
+    if (colon == std::string_view::npos)
+        return usual_values;
+    const std::string_view rest = range.substr(colon + 1);
+    range = range.substr(0, colon);
+    if (rest.empty() && logarithmic)
+        return usual_values;
+    int count = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), count);
+    if (error != std::errc() || end != rest.data() + rest.size() || count < 2 ||
+        count > most_values)
+        refuse(whole, "after the colon stands how many values, 2 to " +
+                          std::to_string(most_values) +
+                          ", and log for equal ratios: dt=1/240..1/15:9log");
+    return count;
+}
+
+void set_range(std::string_view whole, std::string_view range, std::size_t dots, MapAxis &axis) {
+    const std::string_view from = range.substr(0, dots);
+    std::string_view to = range.substr(dots + 2);
+    const int count = take_count(whole, to, axis.logarithmic);
+    const double low = parse_value(whole, from, axis), high = parse_value(whole, to, axis);
+    if (!(low < high))
+        refuse(whole, "the range must ascend");
+    if (axis.logarithmic && low <= 0)
+        refuse(whole, "a logarithmic range begins above 0");
+    for (int i = 0; i < count; ++i) {
+        const double part = static_cast<double>(i) / (count - 1);
+        axis.values.push_back(i == 0             ? low
+                              : i == count - 1   ? high
+                              : axis.logarithmic ? low * std::pow(high / low, part)
+                                                 : low + part * (high - low));
+    }
+}
+
+void set_list(std::string_view whole, std::string_view list, MapAxis &axis) {
+    while (true) {
+        const auto comma = list.find(',');
+        axis.values.push_back(parse_value(whole, list.substr(0, comma), axis));
+        if (comma == std::string_view::npos)
+            break;
+        list.remove_prefix(comma + 1);
+    }
+    std::sort(axis.values.begin(), axis.values.end());
+    axis.values.erase(std::unique(axis.values.begin(), axis.values.end()), axis.values.end());
+    if (axis.values.size() < 2 || axis.values.size() > most_values)
+        refuse(whole, "an axis has 2 to " + std::to_string(most_values) + " values");
+}
+
+} // namespace
+
+MapAxis parse_map_axis(std::string_view text) {
+    const auto equals = text.find('=');
+    if (equals == 0 || equals == std::string_view::npos)
+        refuse(text, "write NAME=FROM..TO, for example dt=1/240..1/15:9log");
+    MapAxis axis;
+    axis.name = text.substr(0, equals);
+    axis.setting = find_setting_number(text, axis.name);
+    const std::string_view range = text.substr(equals + 1);
+    const auto dots = range.find("..");
+    if (dots != std::string_view::npos)
+        set_range(text, range, dots, axis);
+    else
+        set_list(text, range, axis);
+    return axis.setting && is_whole(axis.setting->setting()) ? in_whole_numbers(axis) : axis;
+}
+
+MapAxis in_whole_numbers(MapAxis axis) {
+    for (double &value : axis.values)
+        value = std::round(value);
+    axis.values.erase(std::unique(axis.values.begin(), axis.values.end()), axis.values.end());
+    if (axis.values.size() < 2)
+        throw std::invalid_argument(axis.name + " takes whole numbers; give at least two");
+    axis.whole = true;
+    return axis;
+}
+
+double between(const MapAxis &axis, double low, double high) {
+    const double middle =
+        axis.logarithmic ? std::sqrt(low) * std::sqrt(high) : low + 0.5 * (high - low);
+    return axis.whole ? std::floor(low + 0.5 * (high - low)) : middle;
+}
+
+double cell_position(const MapAxis &axis, double value) {
+    const auto scale = [&](double v) { return axis.logarithmic ? std::log(v) : v; };
+    // The cell before the value, but the first and the last two go on beyond the ends.
+    std::size_t i = 1;
+    while (i + 1 < axis.values.size() && axis.values[i] < value)
+        ++i;
+    const double low = scale(axis.values[i - 1]), high = scale(axis.values[i]);
+    return static_cast<double>(i - 1) + (scale(value) - low) / (high - low);
+}
+
+std::string value_label(const MapAxis &axis, double value) {
+    if (axis.setting && axis.setting->setting().unit == "s") {
+        const std::string label = format_dt(value);
+        if (label.starts_with("1/"))
+            return label.substr(0, label.find(' '));
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+std::string axis_title(const MapAxis &axis) {
+    std::string title = axis.name;
+    if (axis.setting && !axis.setting->setting().unit.empty())
+        title += " (" + std::string(axis.setting->setting().unit) + ")";
+    return title + (axis.logarithmic ? ", logarithmic" : "");
+}
+
+} // namespace plumb

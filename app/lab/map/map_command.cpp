@@ -1,0 +1,99 @@
+#include "app/lab/map/stability_map.h"
+
+#include "app/files/output_file.h"
+#include "app/lab/chart_image.h"
+#include "app/lab/interrupt.h"
+#include "app/lab/map/map_picture.h"
+#include "app/lab/map/map_resume.h"
+#include "app/lab/map/theory.h"
+#include "app/render/context.h"
+#include "app/render/png.h"
+#include "engine/scene/scene_file_change.h"
+
+#include <fstream>
+#include <optional>
+#include <utility>
+
+namespace plumb {
+
+namespace {
+
+// The text of a scene without errors; what there is to say about it is printed. It is read once,
+// for it may come through a pipe.
+std::optional<SceneText> read_scene(const std::filesystem::path &path, std::ostream &err) {
+    SceneFileResult result;
+    std::optional<std::string> text = read_scene_text(path, result.messages);
+    if (text) {
+        std::vector<std::string> methods;
+        for (const MethodInfo &method : method_infos())
+            methods.emplace_back(method.name);
+        result = parse_scene(*text, path.string(), methods);
+    }
+    for (const SceneMessage &message : result.messages)
+        err << format_message(path.string(), message) << '\n';
+    if (!text || !result.ok())
+        return std::nullopt;
+    return SceneText{path, std::move(*text)};
+}
+
+std::filesystem::path partial_of(const std::filesystem::path &csv) {
+    return csv.string() + ".partial";
+}
+
+void write_picture(const MapCommand &command, const StabilityMap &map, std::ostream &err) {
+    MapPicture picture{map, theory_of(map), map.left_out};
+    if (!command.command.empty())
+        picture.footer.push_back(command.command);
+    std::filesystem::path place = command.image;
+    if (map.interrupted)
+        place.replace_extension(".partial.png");
+    write_png(place, ChartPainter(command.shader_dir).paint(picture));
+    err << "wrote " << place.string() << '\n';
+}
+
+} // namespace
+
+ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &err) {
+    const std::optional<SceneText> scene = read_scene(command.scene, err);
+    if (!scene)
+        return ExitCode::bad_input;
+
+    const InterruptGuard interrupt;
+    ProgressLine line(err);
+    MapOptions options = command.options;
+    options.stop = InterruptGuard::requested;
+    options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
+    // Before the work, so that a place that nothing can be written to is known at once.
+    std::optional<OutputFile> csv;
+    std::string fingerprint;
+    if (!command.csv.empty()) {
+        csv.emplace(command.csv);
+        fingerprint = map_fingerprint(*scene, command.x, command.y, options);
+        if (std::ifstream partial(partial_of(command.csv)); partial)
+            options.known = read_map_csv(partial, fingerprint);
+    }
+    const bool goes_on = !options.known.cells.empty();
+    if (goes_on)
+        err << "going on from " << partial_of(command.csv).string() << '\n';
+    StabilityMap map = map_scene(*scene, command.x, command.y, options);
+    map.fingerprint = fingerprint;
+    line.clear();
+    print(out, map);
+    out << std::flush;
+    if (csv) {
+        write_map_csv(csv->stream(), map);
+        if (map.interrupted) {
+            err << "interrupted; rows so far: " << csv->keep_partial().string() << '\n';
+        } else {
+            csv->finish();
+            err << "wrote " << csv->path().string() << '\n';
+            if (goes_on)
+                std::filesystem::remove(partial_of(command.csv));
+        }
+    }
+    if (!command.image.empty())
+        write_picture(command, map, err);
+    return ExitCode::fine;
+}
+
+} // namespace plumb

@@ -1,0 +1,313 @@
+#include "app/lab/map/stability_map.h"
+
+#include "app/lab/map/passage.h"
+#include "engine/scene/scene_file_change.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace plumb {
+
+namespace {
+
+std::vector<std::string> known_methods() {
+    std::vector<std::string> names;
+    for (const MethodInfo &method : method_infos())
+        names.emplace_back(method.name);
+    return names;
+}
+
+// The scene and the options of a run at one point of the map.
+class Point {
+  public:
+    Point(const SceneText &text, const MapAxis &x, const MapAxis &y, const RunOptions &base)
+        : text_(text), x_(x), y_(y), base_(base) {}
+
+    SceneDesc scene(double x, double y) const {
+        SceneFileResult result = parse(x, y);
+        for (const SceneMessage &message : result.messages)
+            if (message.severity == SceneMessage::Severity::error)
+                throw std::invalid_argument(place(x, y) + ": " + message.what +
+                                            (message.suggestion.empty() ? "" : "; ") +
+                                            message.suggestion);
+        return std::move(result.scene);
+    }
+    bool is_fine(double x, double y) const { return parse(x, y).ok(); }
+
+    RunOptions run(const MethodInfo &method, double x, double y) const {
+        RunOptions run = base_;
+        run.method = std::string(method.name);
+        if (x_.setting)
+            run.settings.give(*x_.setting, x);
+        if (y_.setting)
+            run.settings.give(*y_.setting, y);
+        return run;
+    }
+
+  private:
+    SceneFileResult parse(double x, double y) const {
+        std::vector<ChangedNumber> changed;
+        if (!x_.setting)
+            changed.push_back({x_.name, x});
+        if (!y_.setting)
+            changed.push_back({y_.name, y});
+        return parse_scene(text_.text, text_.path.string(), known_methods(), changed);
+    }
+    std::string place(double x, double y) const {
+        return "with " + x_.name + "=" + value_label(x_, x) + " and " + y_.name + "=" +
+               value_label(y_, y);
+    }
+
+    const SceneText &text_;
+    const MapAxis &x_, &y_;
+    const RunOptions &base_;
+};
+
+// A number of the file takes whole numbers alone when the scene refuses what lies between two, and
+// nothing else.
+MapAxis settled(const SceneText &text, const MapAxis &axis, const RunOptions &base) {
+    if (axis.setting)
+        return axis;
+    const std::string world = "world.";
+    if (axis.name.starts_with(world) && find_setting(axis.name.substr(world.size())) != nullptr)
+        throw std::invalid_argument(axis.name + " is a setting; write " +
+                                    axis.name.substr(world.size()));
+    // The other axis stays out of it.
+    MapAxis none;
+    none.setting = SettingNumber{};
+    const Point point(text, axis, none, base);
+    const double low = axis.values.front(), high = axis.values.back();
+    const double broken = std::floor(low) + 0.5;
+    const bool spans = low <= broken && broken <= high;
+    if (spans && !point.is_fine(broken, 0) && point.is_fine(std::ceil(low), 0) &&
+        point.is_fine(std::floor(high), 0))
+        return in_whole_numbers(axis);
+    return axis;
+}
+
+std::vector<const MethodInfo *> chosen_methods(const SceneDesc &scene, const MapOptions &options,
+                                               std::vector<std::string> &left_out) {
+    std::vector<const MethodInfo *> methods;
+    for (const MethodInfo &method : method_infos())
+        methods.push_back(&method);
+    if (!options.methods.empty()) {
+        methods.clear();
+        for (const std::string &name : options.methods) {
+            RunOptions named = options.base;
+            named.method = name;
+            const MethodInfo *method = resolve_run(scene, named).method; // throws when unknown
+            if (std::ranges::find(methods, method) == methods.end())
+                methods.push_back(method);
+        }
+    }
+    std::erase_if(methods, [&](const MethodInfo *method) {
+        std::string why = why_not(*method, scene);
+        const bool cannot = !why.empty();
+        if (cannot)
+            left_out.push_back(std::move(why));
+        return cannot;
+    });
+    return methods;
+}
+
+// Runs work items on all threads, and says how far they are.
+class Runner {
+  public:
+    Runner(const SceneText &text, const StabilityMap &map, const MapOptions &options)
+        : point_(text, map.x, map.y, options.base), map_(map), options_(options) {}
+
+    // Nothing when it was interrupted.
+    std::optional<MapRun> run(const MethodInfo &method, double x, double y) {
+        const SceneDesc scene = point_.scene(x, y);
+        const RunOptions run = point_.run(method, x, y);
+        const auto simulation = Simulation::create(scene, run, nullptr);
+        PassageWatch passage(scene, *simulation);
+        JudgeOptions judging;
+        judging.follow_errors = true;
+        judging.duration = options_.duration.value_or(judging.duration);
+        judging.stop = options_.stop;
+        int told = 0;
+        judging.progress = [&](double fraction) {
+            passage.sample(*simulation);
+            const int now = static_cast<int>(one_run * fraction);
+            if (now > told)
+                advance(now - std::exchange(told, now));
+        };
+        const JudgedRun judged = judge_run(*simulation, scene, judging);
+        if (judged.stopped)
+            return std::nullopt;
+        advance(one_run - told);
+        return MapRun{why_failed(scene, judged, passage.first()), judged.time,
+                      judged.max_penetration, judged.max_joint_drift, judged.max_energy_gain};
+    }
+
+    // As many runs as were planned need not be done.
+    void skip(int runs) { advance(static_cast<std::int64_t>(one_run) * runs); }
+
+    // An item is about so many runs.
+    template <typename Item, typename Work>
+    void for_each(std::vector<Item> &items, int runs, double from, double to,
+                  const std::string &what, const Work &work) {
+        from_ = from;
+        to_ = to;
+        what_ = map_.scene.name + ": " + what;
+        planned_ = static_cast<double>(items.size()) * runs * one_run;
+        done_ = 0;
+        advance(0);
+        const auto part = [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end && !stopped(); ++i)
+                work(items[i]);
+        };
+        if (options_.tasks != nullptr && options_.tasks->threads() > 1)
+            options_.tasks->for_parts(items.size(), 1, part);
+        else
+            part(0, items.size());
+    }
+
+    bool stopped() const { return options_.stop && options_.stop(); }
+
+  private:
+    static constexpr int one_run = 1000; // in units of progress
+
+    void advance(std::int64_t units) {
+        const auto done = static_cast<double>(done_ += units);
+        if (options_.progress)
+            options_.progress(from_ + (to_ - from_) * std::min(1.0, done / std::max(1.0, planned_)),
+                              what_);
+    }
+
+    Point point_;
+    const StabilityMap &map_;
+    const MapOptions &options_;
+    double from_ = 0, to_ = 1, planned_ = 0;
+    std::string what_;
+    std::atomic<std::int64_t> done_ = 0;
+};
+
+struct CellItem {
+    MethodMap *map;
+    std::size_t column, row;
+};
+
+struct LimitItem {
+    MethodMap *map;
+    MapLimit limit;
+    bool done = false;
+};
+
+bool held(const std::optional<MapRun> &run) {
+    return run->failing.failing == Failing::none;
+}
+
+const MapLimit *find_known(const KnownRows &known, const MethodMap &of_method,
+                           const MapLimit &limit) {
+    const auto row = known.limits.find({std::string(of_method.method->name), limit.y});
+    if (row == known.limits.end())
+        return nullptr;
+    const auto found = std::ranges::find_if(row->second, [&](const MapLimit &each) {
+        return each.low >= limit.low && each.high <= limit.high;
+    });
+    return found == row->second.end() ? nullptr : &*found;
+}
+
+std::vector<LimitItem> limits_to_find(StabilityMap &map, const KnownRows &known) {
+    std::vector<LimitItem> items;
+    for (MethodMap &of_method : map.methods)
+        for (std::size_t row = 0; row < map.y.values.size(); ++row)
+            for (std::size_t column = 1; column < map.x.values.size(); ++column) {
+                const auto &left = map.cell(of_method, column - 1, row);
+                const auto &right = map.cell(of_method, column, row);
+                if (!left || !right || held(left) == held(right))
+                    continue;
+                MapLimit limit{map.y.values[row], map.x.values[column - 1], map.x.values[column],
+                               held(left), (held(left) ? right : left)->failing};
+                const MapLimit *done = find_known(known, of_method, limit);
+                items.push_back({&of_method, done != nullptr ? *done : limit, done != nullptr});
+            }
+    return items;
+}
+
+// Halves the interval that has a held end and a failing one; false when interrupted.
+bool narrow_down(Runner &runner, const MapAxis &axis, LimitItem &item) {
+    MapLimit &limit = item.limit;
+    for (int i = 0; axis.whole ? limit.high - limit.low > 1 : i < limit_halvings; ++i) {
+        const double middle = between(axis, limit.low, limit.high);
+        const std::optional<MapRun> run = runner.run(*item.map->method, middle, limit.y);
+        if (!run)
+            return false;
+        if (held(run) != limit.held_below)
+            limit.high = middle;
+        else
+            limit.low = middle;
+        if (!held(run))
+            limit.failing = run->failing;
+    }
+    return true;
+}
+
+} // namespace
+
+StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &y,
+                       const MapOptions &options) {
+    if (x.name == y.name)
+        throw std::invalid_argument(x.name + " is on both axes");
+    if (options.duration && !(*options.duration > 0))
+        throw std::invalid_argument("a run must last longer than 0 s");
+    StabilityMap map;
+    SceneFileResult as_it_is = parse_scene(scene.text, scene.path.string(), known_methods(), {});
+    if (!as_it_is.ok())
+        throw std::invalid_argument(scene.path.string() + " is not a scene");
+    map.scene = std::move(as_it_is.scene);
+    if (map.scene.bodies.empty())
+        throw std::invalid_argument("the scene has no body, and so no motion to map");
+    if (options.duration && !map.scene.expects.empty())
+        throw std::invalid_argument("the scene says itself how long it runs: until the last window "
+                                    "of what it expects ends");
+    map.x = settled(scene, x, options.base);
+    map.y = settled(scene, y, options.base);
+    for (const MethodInfo *method : chosen_methods(map.scene, options, map.left_out))
+        map.methods.push_back({method, {}, {}});
+    if (map.methods.empty())
+        throw std::invalid_argument("no method can run this scene");
+
+    Runner runner(scene, map, options);
+    std::vector<CellItem> cells;
+    for (MethodMap &of_method : map.methods) {
+        of_method.cells.resize(map.x.values.size() * map.y.values.size());
+        for (std::size_t row = 0; row < map.y.values.size(); ++row)
+            for (std::size_t column = 0; column < map.x.values.size(); ++column)
+                cells.push_back({&of_method, column, row});
+    }
+    constexpr double grid_share = 0.7; // of the time, as a guess
+    runner.for_each(cells, 1, 0, grid_share, "cells", [&](const CellItem &item) {
+        const double x_value = map.x.values[item.column], y_value = map.y.values[item.row];
+        std::optional<MapRun> &cell = item.map->cells[item.row * map.x.values.size() + item.column];
+        const auto known =
+            options.known.cells.find({std::string(item.map->method->name), x_value, y_value});
+        if (known == options.known.cells.end()) {
+            cell = runner.run(*item.map->method, x_value, y_value);
+        } else {
+            cell = known->second;
+            runner.skip(1);
+        }
+    });
+    std::vector<LimitItem> limits;
+    if (!runner.stopped())
+        limits = limits_to_find(map, options.known);
+    runner.for_each(limits, limit_halvings, grid_share, 1, "limits", [&](LimitItem &item) {
+        if (item.done)
+            runner.skip(limit_halvings);
+        else
+            item.done = narrow_down(runner, map.x, item);
+    });
+    for (const LimitItem &item : limits)
+        if (item.done)
+            item.map->limits.push_back(item.limit);
+    map.interrupted = runner.stopped();
+    return map;
+}
+
+} // namespace plumb

@@ -1,0 +1,302 @@
+// Maps on grids small enough to know what must come out.
+#include "app/lab/map/stability_map.h"
+
+#include "app/lab/map/map_resume.h"
+#include "app/lab/map/theory.h"
+#include "tests/lab/csv_reader.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+// At rest before a wall, and struck by one ten times as heavy that touches it: it leaves at 10/11
+// of the striker's speed, and is 0.3 m from the middle of the wall, half of whose thickness and
+// half of its own size are 0.15 m.
+constexpr const char *struck = R"(
+title = "Struck"
+[world]
+gravity = [0, 0, 0]
+[[material]]
+name = "steel"
+friction = 0
+[[body]]
+name = "wall"
+shape = "box"
+kind = "static"
+half_extents = [0.05, 2, 2]
+material = "steel"
+[[body]]
+name = "resting"
+shape = "sphere"
+radius = 0.1
+mass = 1
+material = "steel"
+position = [-0.3, 0, 0]
+[[body]]
+name = "heavy"
+shape = "sphere"
+radius = 0.1
+mass = 10
+material = "steel"
+position = [-0.5, 0, 0]
+velocity = [20, 0, 0]
+)";
+
+// Falls from rest for a second; by s = g t^2 / 2 it comes to 5.095 m, whatever the step.
+constexpr const char *falling = R"(
+[world]
+dt = "1/60"
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 0.5
+position = [0, 10, 0]
+velocity = [0, 0, 0]
+[[expect]]
+name = "height"
+quantity = "position.y"
+body = "ball"
+to = 1
+equals = 5.095
+tolerance = 0.01
+source = "s = g t^2 / 2"
+)";
+
+StabilityMap map_of(const char *text, const char *x, const char *y,
+                    const std::vector<std::string> &methods, TaskPool *tasks = nullptr,
+                    std::optional<double> duration = {}) {
+    MapOptions options;
+    options.methods = methods;
+    options.tasks = tasks;
+    options.duration = duration;
+    return map_scene({"scene.toml", text}, parse_map_axis(x), parse_map_axis(y), options);
+}
+
+std::string complaint(const char *text, const char *x, const char *y) {
+    try {
+        (void)map_of(text, x, y, {"soft_step"});
+    } catch (const std::invalid_argument &error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string csv_of(const StabilityMap &map) {
+    std::ostringstream csv;
+    write_map_csv(csv, map);
+    return csv.str();
+}
+
+// v dt = thickness + size, and v = 10/11 of the striker's.
+double theory_dt(double speed) {
+    return (0.1 + 0.2) / (speed * 10 / 11);
+}
+
+TEST(StabilityMap, WhatIsStruckPassesAWallWhereTheoryHasItUnlessTheMethodLooksAhead) {
+    const StabilityMap map = map_of(struck, "dt=0.005..0.08:9log", "body.heavy.velocity.x=6,12,24",
+                                    {"soft_step", "tgs_soft", "sequential_impulses"}, nullptr, 0.5);
+    ASSERT_EQ(map.methods.size(), 3U);
+    for (const MethodMap &of_method : map.methods) {
+        const bool looks = of_method.method->looks_ahead;
+        EXPECT_EQ(looks, of_method.method->name == "soft_step");
+        for (std::size_t row = 0; row < 3; ++row)
+            for (std::size_t column = 0; column < 9; ++column) {
+                const double dt = map.x.values[column];
+                const bool passes = !looks && dt > theory_dt(map.y.values[row]);
+                const RunFailing &failing = map.cell(of_method, column, row)->failing;
+                EXPECT_EQ(failing.failing, passes ? Failing::passed_through : Failing::none)
+                    << of_method.method->name << " v=" << map.y.values[row] << " dt=" << dt << ": "
+                    << info_of(failing.failing).name << " " << failing.what;
+                if (passes) {
+                    EXPECT_EQ(failing.what, "resting through wall");
+                }
+            }
+        if (looks) {
+            EXPECT_TRUE(of_method.limits.empty());
+            continue;
+        }
+        ASSERT_EQ(of_method.limits.size(), 3U) << of_method.method->name;
+        for (const MapLimit &limit : of_method.limits) {
+            EXPECT_TRUE(limit.held_below);
+            EXPECT_EQ(limit.failing.failing, Failing::passed_through);
+            // A cell is a factor of sqrt(2), cut into 32 parts.
+            EXPECT_NEAR(std::log2(limit.high / limit.low), 0.5 / 32, 1e-9);
+            const double found = between(map.x, limit.low, limit.high);
+            EXPECT_LE(std::abs(std::log2(found / theory_dt(limit.y))), 0.5)
+                << of_method.method->name << " v=" << limit.y;
+        }
+    }
+}
+
+// The rest of that cell is the striker, who presses on while the solver has not converged.
+TEST(StabilityMap, AConvergedMethodPassesAWallJustWhereTheoryHasIt) {
+    MapOptions options;
+    options.methods = {"sequential_impulses"};
+    options.duration = 0.5;
+    options.base.settings = parse_setting("substeps=4");
+    options.base.settings.give(parse_setting("iterations=50"));
+    const StabilityMap map = map_scene({"scene.toml", struck}, parse_map_axis("dt=0.01..0.08:4log"),
+                                       parse_map_axis("body.heavy.velocity.x=6,12"), options);
+    ASSERT_EQ(map.methods[0].limits.size(), 2U);
+    for (const MapLimit &limit : map.methods[0].limits) {
+        EXPECT_EQ(limit.failing.failing, Failing::passed_through);
+        // A cell is a factor of 2, cut into 32 parts.
+        EXPECT_NEAR(between(map.x, limit.low, limit.high) / theory_dt(limit.y), 1, 0.02);
+    }
+}
+
+TEST(StabilityMap, TheoryIsReadFromTheScene) {
+    const StabilityMap map = map_of(struck, "dt=0.01,0.02", "body.heavy.velocity.x=6,12",
+                                    {"soft_step", "tgs_soft"}, nullptr, 0.1);
+    const std::vector<TheoryCurve> curves = theory_of(map);
+    ASSERT_EQ(curves.size(), 1U);
+    ASSERT_EQ(curves[0].methods.size(), 1U);
+    EXPECT_EQ(curves[0].methods[0]->name, "tgs_soft");
+    for (const glm::dvec2 &point : curves[0].points)
+        EXPECT_NEAR(point.x, theory_dt(point.y), 1e-12);
+    // Not for a body that does not strike, nor where there is nothing to pass through.
+    EXPECT_FALSE(struck_before_wall(map.scene, "resting", 0));
+    EXPECT_FALSE(struck_before_wall(map.scene, "heavy", 1));
+    SceneDesc open = map.scene;
+    open.bodies.erase(open.bodies.begin());
+    EXPECT_FALSE(struck_before_wall(open, "heavy", 0));
+    EXPECT_TRUE(struck_before_wall(map.scene, "heavy", 0));
+}
+
+// Semi-implicit Euler falls by g t (t + dt) / 2: 5.085 m, the least that is true enough, it comes
+// to with 1 + dt = 2 (10 - 5.085) / g. RK4 makes no error in free fall.
+TEST(StabilityMap, FindsTheStepUpToWhichAnIntegratorIsTrueEnough) {
+    const StabilityMap map = map_of(falling, "dt=1/2000..1/25:5log", "gravity.y=-9.81,-9.8",
+                                    {"semi_implicit_euler", "rk4"});
+    ASSERT_EQ(map.methods.size(), 2U);
+    for (const MethodMap &of_method : map.methods) {
+        const bool is_first_order = of_method.method->name == "semi_implicit_euler";
+        EXPECT_EQ(of_method.limits.size(), is_first_order ? 2U : 0U);
+        for (const MapLimit &limit : of_method.limits) {
+            EXPECT_EQ(limit.failing.failing, Failing::missed);
+            EXPECT_EQ(limit.failing.what, "height");
+            // A cell is a factor of 80^(1/4), cut into 32 parts.
+            EXPECT_NEAR(between(map.x, limit.low, limit.high), 2 * (10 - 5.085) / -limit.y - 1,
+                        0.035 * limit.low);
+        }
+    }
+}
+
+TEST(StabilityMap, IsTheSameForAnyNumberOfThreads) {
+    TaskPool tasks(3);
+    const auto map = [&](TaskPool *pool) {
+        return csv_of(map_of(struck, "dt=0.005..0.08:4log", "body.heavy.velocity.x=6,24",
+                             {"tgs_soft", "soft_step"}, pool, 0.3));
+    };
+    const std::string one = map(nullptr);
+    EXPECT_EQ(one, map(&tasks));
+    const auto rows = read_csv(one);
+    EXPECT_EQ(rows[0][2], "dt");
+    EXPECT_EQ(rows[0][3], "body.heavy.velocity.x");
+    EXPECT_EQ(rows.size(), 1U + 2 * 8 + 2);
+    for (const auto &row : rows)
+        EXPECT_EQ(row.size(), rows[0].size());
+}
+
+TEST(StabilityMap, OfACountGoesThroughWholeNumbers) {
+    const std::string stack = std::string(falling) + R"(
+[[body]]
+name = "box"
+shape = "box"
+half_extents = [0.5, 0.5, 0.5]
+position = [20, 0.5, 0]
+repeat = { kind = "stack", count = 2 }
+)";
+    const StabilityMap map =
+        map_of(stack.c_str(), "body.box.repeat.count=1..3:6", "dt=0.1,0.2", {"rk4", "tgs_soft"});
+    EXPECT_EQ(map.x.values, (std::vector<double>{1, 2, 3}));
+    EXPECT_EQ(map.methods.size(), 1U);
+    EXPECT_EQ(map.left_out.size(), 1U); // rk4 has no contacts
+}
+
+TEST(StabilityMap, SaysWhatIsWrongWithAnAxis) {
+    EXPECT_NE(complaint(falling, "body.bal.mass=1..2", "dt=0.1,0.2").find("\"ball\"?"),
+              std::string::npos);
+    EXPECT_NE(complaint(falling, "body.ball.radius=-1..2", "dt=0.1,0.2").find("radius"),
+              std::string::npos);
+    EXPECT_NE(complaint(falling, "body.ball.rdius=1..2", "dt=0.1,0.2").find("\"radius\"?"),
+              std::string::npos);
+    EXPECT_NE(complaint(falling, "world.substeps=1..2", "dt=0.1,0.2").find("write substeps"),
+              std::string::npos);
+    EXPECT_NE(complaint(falling, "dt=0.1,0.2", "dt=0.1,0.2").find("both axes"), std::string::npos);
+    MapOptions options;
+    options.duration = 3;
+    EXPECT_THROW((void)map_scene({"scene.toml", falling}, parse_map_axis("dt=0.1,0.2"),
+                                 parse_map_axis("substeps=1,2"), options),
+                 std::invalid_argument);
+}
+
+// A map that goes on from any of its first rows comes to the same table.
+TEST(StabilityMap, GoesOnFromWhatIsLeftOfIt) {
+    const SceneText scene{"scene.toml", struck};
+    const MapAxis x = parse_map_axis("dt=0.005..0.08:4log"),
+                  y = parse_map_axis("body.heavy.velocity.x=6,24");
+    MapOptions options;
+    options.methods = {"tgs_soft"};
+    options.duration = 0.3;
+    const auto run = [&] {
+        StabilityMap map = map_scene(scene, x, y, options);
+        map.fingerprint = map_fingerprint(scene, x, y, options);
+        return csv_of(map);
+    };
+    const std::string whole = run();
+    for (const std::size_t length : {whole.size() / 2, whole.size() - 5, whole.size()}) {
+        std::istringstream partial(whole.substr(0, length));
+        options.known = read_map_csv(partial, map_fingerprint(scene, x, y, options));
+        EXPECT_GT(options.known.cells.size(), 2U);
+        EXPECT_EQ(run(), whole) << length;
+    }
+    // What is known is not run: a row that is not true stays as it is.
+    for (auto &[place, known] : options.known.cells)
+        known.failing = {Failing::drift, "a \"chain\", torn"};
+    options.known.limits.clear();
+    const std::string told = run();
+    EXPECT_EQ(read_csv(told).size(), 1U + 8);
+    std::istringstream back(told);
+    const KnownRows again = read_map_csv(back, map_fingerprint(scene, x, y, options));
+    EXPECT_EQ(again.cells.begin()->second.failing.what, "a \"chain\", torn");
+}
+
+TEST(StabilityMap, GoesOnFromNothingElse) {
+    const SceneText scene{"scene.toml", struck};
+    const MapAxis x = parse_map_axis("dt=0.01,0.02"), y = parse_map_axis("substeps=1,2");
+    const MapOptions options;
+    const std::string own = map_fingerprint(scene, x, y, options);
+    EXPECT_EQ(own, map_fingerprint(scene, x, y, options));
+    MapOptions longer = options;
+    longer.duration = 2;
+    MapOptions other = options;
+    other.base.settings = parse_setting("iterations=2");
+    EXPECT_NE(own, map_fingerprint(scene, x, y, longer));
+    EXPECT_NE(own, map_fingerprint(scene, x, y, other));
+    EXPECT_NE(own, map_fingerprint(scene, y, x, options));
+    EXPECT_NE(own, map_fingerprint({"scene.toml", falling}, x, y, options));
+}
+
+TEST(StabilityMap, StopsWhenToldAndKeepsWhatWasDone) {
+    MapOptions options;
+    options.methods = {"rk4"};
+    int asked = 0;
+    options.stop = [&] { return ++asked > 40; };
+    const StabilityMap map = map_scene({"scene.toml", falling}, parse_map_axis("dt=0.05,0.1"),
+                                       parse_map_axis("substeps=1,2,4,8"), options);
+    EXPECT_TRUE(map.interrupted);
+    EXPECT_TRUE(map.methods[0].cells.front());
+    EXPECT_FALSE(map.methods[0].cells.back());
+    std::ostringstream text;
+    print(text, map);
+    EXPECT_NE(text.str().find("interrupted"), std::string::npos);
+}
+
+} // namespace
+} // namespace plumb
