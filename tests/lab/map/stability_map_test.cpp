@@ -107,6 +107,9 @@ TEST(StabilityMap, WhatIsStruckPassesAWallWhereTheoryHasItUnlessTheMethodLooksAh
         for (std::size_t row = 0; row < 3; ++row)
             for (std::size_t column = 0; column < 9; ++column) {
                 const double dt = map.x.values[column];
+                // Within a cell of the limit, either.
+                if (!looks && std::abs(std::log2(dt / theory_dt(map.y.values[row]))) <= 0.5)
+                    continue;
                 const bool passes = !looks && dt > theory_dt(map.y.values[row]);
                 const RunFailing &failing = map.cell(of_method, column, row)->failing;
                 EXPECT_EQ(failing.failing, passes ? Failing::passed_through : Failing::none)
