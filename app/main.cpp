@@ -16,6 +16,7 @@
 #include "app/sandbox/run_sandbox.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/snapshot.h"
+#include "engine/scene/recording.h"
 #include "engine/scene/scene_file_spelling.h"
 
 #include <CLI/CLI.hpp>
@@ -252,6 +253,25 @@ int run(const Common &common, const RunArguments &arguments) {
     return code_of(make_snapshots(snapshot, std::cout, std::cerr));
 }
 
+// In a window if there is one to be had, else without. What is wrong with the file is said by the
+// latter.
+int replay_or_play(const Common &common, ReplayCommand command, bool no_window) {
+    TaskPool tasks(common.threads);
+    command.tasks = &tasks;
+    if (!no_window && load_recording(command.recording).ok()) {
+        SandboxOptions options;
+        options.scenes = common.catalogue;
+        options.recording = command.recording;
+        options.shader_dir = common.shader_dir();
+        options.out_dir = common.out;
+        options.tasks = &tasks;
+        const SandboxResult result = run_sandbox(options);
+        if (result.why_no_window.empty())
+            return result.exit_code;
+    }
+    return code_of(replay(command, std::cout, std::cerr));
+}
+
 struct SnapshotArguments {
     std::string at;
     std::uint64_t every = 0, steps = 0;
@@ -389,15 +409,16 @@ int main_with_errors(int argc, char **argv) {
     ReplayCommand replayed;
     CLI::App *replay_command = app.add_subcommand(
         "replay",
-        "Runs a recording again, without a window, and says whether and where it differs");
+        "Runs a recording again in the sandbox, or where there is no display without it, and says "
+        "whether and where it differs");
     replay_command->add_option("FILE", replayed.recording, "From `plumb run --record FILE`")
         ->required();
+    bool no_window = false;
+    replay_command->add_flag("--no-window", no_window,
+                             "Without the sandbox: as fast as it goes, and prints the last hash");
+    add_out(*replay_command, common, "out");
     add_threads(*replay_command, common);
-    replay_command->callback([&] {
-        TaskPool tasks(common.threads);
-        replayed.tasks = &tasks;
-        result = code_of(replay(replayed, std::cout, std::cerr));
-    });
+    replay_command->callback([&] { result = replay_or_play(common, replayed, no_window); });
 
     SnapshotArguments pictures;
     CLI::App *snapshot_command =

@@ -27,11 +27,7 @@ ExitCode replay(const ReplayCommand &command, std::ostream &out, std::ostream &e
         for (;; simulation->step()) {
             if (!replay.obey(*simulation)) {
                 line.clear();
-                err << path << ": the replay first differs at step " << simulation->step_count()
-                    << ": recorded "
-                    << hash_text(
-                           recording.hashes[simulation->step_count() - recording.first_step()])
-                    << ", now " << hash_text(simulation->hash()) << '\n';
+                err << path << ": " << replay.difference(*simulation) << '\n';
                 return ExitCode::outside_tolerance;
             }
             if (replay.is_at_end(*simulation))

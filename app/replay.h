@@ -1,4 +1,4 @@
-// `plumb replay`: a recorded run again, held to what it was.
+// `plumb replay` without a window: a recorded run again, held to what it was.
 #pragma once
 
 #include "app/lab/exit_code.h"

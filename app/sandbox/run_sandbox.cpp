@@ -96,7 +96,9 @@ Sandbox make_sandbox(const SandboxOptions &options) {
     if (!options.record.empty())
         sandbox.session().record();
     sandbox.clock().set_paused(options.paused);
-    if (!options.initial_scene.empty())
+    if (!options.recording.empty())
+        sandbox.open_recording(options.recording);
+    else if (!options.initial_scene.empty())
         sandbox.open(options.initial_scene);
     else if (!options.scenes.empty())
         sandbox.open(options.scenes.front().path);
@@ -118,13 +120,16 @@ void write_screenshot(Sandbox &sandbox, const Framebuffer &target) {
 int finish(const SandboxOptions &options, const Sandbox &sandbox, const Stage &stage) {
     if (!options.screenshot.empty())
         write_png(options.screenshot, stage.target.read());
-    if (options.max_frames && !sandbox.session().running()) {
+    const ExitCode replayed = sandbox.session().replay_outcome();
+    const bool could_not_run = options.max_frames && !sandbox.session().running();
+    if (could_not_run || replayed != ExitCode::fine)
         for (const Message &message : sandbox.session().messages().all())
             std::cerr << message.text << '\n';
+    if (could_not_run) {
         return static_cast<int>(sandbox.session().memory_ran_out() ? ExitCode::no_room
                                                                    : ExitCode::bad_input);
     }
-    return 0;
+    return static_cast<int>(replayed);
 }
 
 // Runs the loop, and then writes the recording, whatever ended the loop. A place that cannot be

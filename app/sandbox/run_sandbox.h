@@ -18,6 +18,7 @@ namespace plumb {
 struct SandboxOptions {
     std::vector<SceneEntry> scenes;      // to choose from
     std::filesystem::path initial_scene; // empty: the first of `scenes`
+    std::filesystem::path recording;     // to be played instead
     GlChoice gl = GlChoice::automatic;
     glm::ivec2 size{1280, 800};
     std::filesystem::path shader_dir;
@@ -35,8 +36,8 @@ struct SandboxOptions {
 };
 
 struct SandboxResult {
-    int exit_code =
-        0; // an ExitCode: bad_input if the initial scene could not run in the frames asked
+    int exit_code = 0; // an ExitCode: bad_input if the initial scene could not run in the frames
+                       // asked; of a recording that was played, Session::replay_outcome
     // Not empty: nothing was run, because there is no window, for this reason.
     std::string why_no_window;
 };

@@ -55,6 +55,14 @@ bool Sandbox::open(const SceneDesc &scene, const std::filesystem::path &path) {
     return true;
 }
 
+bool Sandbox::open_recording(const std::filesystem::path &path) {
+    session_.messages().clear();
+    if (!session_.open_recording(path))
+        return false;
+    started(true);
+    return true;
+}
+
 void Sandbox::started(bool another_scene) {
     tools_.let_go(session_);
     if (another_scene) {

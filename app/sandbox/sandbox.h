@@ -35,6 +35,7 @@ class Sandbox {
     // With the scene's own camera and nothing selected. False, with messages, if it cannot run.
     bool open(const std::filesystem::path &path);
     bool open(const SceneDesc &scene, const std::filesystem::path &path = {});
+    bool open_recording(const std::filesystem::path &path);
 
     void perform(Action action);
     // `in_text_field`: plain keys are being typed there, and only those with Ctrl, F1 and Esc act.

@@ -60,18 +60,45 @@ bool Session::open(const std::filesystem::path &path) {
         messages_.error(path.filename().string() + ": " + reason(failure));
         return false;
     }
-    for (const SceneMessage &message : file.messages)
+    say(path, file.messages);
+    return file.ok() && open(file.scene, path);
+}
+
+void Session::say(const std::filesystem::path &path, const std::vector<SceneMessage> &all) {
+    for (const SceneMessage &message : all)
         messages_.say(message.severity == SceneMessage::Severity::error
                           ? Message::Severity::error
                           : Message::Severity::warning,
                       format_message(path.filename().string(), message));
-    return file.ok() && open(file.scene, path);
 }
 
 bool Session::open(const SceneDesc &scene, const std::filesystem::path &path) {
     if (!start(scene, options_, {}))
         return false;
+    recording_.reset();
     path_ = path;
+    return true;
+}
+
+bool Session::open_recording(const std::filesystem::path &path) {
+    RecordingResult file;
+    try {
+        file = load_recording(path);
+    } catch (const std::bad_alloc &failure) {
+        messages_.error(path.filename().string() + ": " + reason(failure));
+        return false;
+    }
+    say(path, file.messages);
+    return file.ok() && play(file.recording, path);
+}
+
+bool Session::play(const Recording &recording, const std::filesystem::path &path) {
+    auto kept = std::make_unique<const Recording>(recording);
+    if (!start(kept->scene, {}, {}))
+        return false;
+    recording_ = std::move(kept);
+    replay_.emplace(*recording_);
+    path_ = std::filesystem::path(path); // it may be path_ itself
     return true;
 }
 
@@ -81,7 +108,7 @@ bool Session::reload() {
         return false;
     }
     const std::filesystem::path path = path_; // open() assigns it
-    if (!open(path))
+    if (!(recording_ ? open_recording(path) : open(path)))
         return false;
     messages_.note("Read " + path.filename().string() + " again.");
     return true;
@@ -90,12 +117,16 @@ bool Session::reload() {
 bool Session::restart() {
     if (!simulation_)
         return false;
+    if (recording_)
+        return play(Recording(*recording_), path_);
     RunOptions options = options_;
     options.method = std::string(simulation_->method().name);
     return start(SceneDesc(scene_), options, simulation_->settings());
 }
 
 bool Session::restart_as_written() {
+    if (recording_)
+        return play(Recording(*recording_), path_);
     return simulation_ && start(SceneDesc(scene_), options_, {});
 }
 
@@ -115,6 +146,8 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
         watch_ = std::move(watch);
         history_.clear(); // before the simulation that made it
         simulation_ = std::move(simulation);
+        replay_.reset();
+        replay_outcome_ = ExitCode::fine;
         recorder_.reset();
         if (records_ && simulation_->has_world())
             recorder_.emplace(*simulation_);
@@ -139,6 +172,10 @@ bool Session::step() {
     if (!simulation_ || stopped_ || !simulation_->has_world())
         return false;
     try {
+        if (grab_)
+            leave_recording();
+        if (replay_ && !obey_replay())
+            return false;
         pull_grabbed();
         history_.remember(*simulation_);
         if (recorder_)
@@ -172,6 +209,43 @@ bool Session::step() {
     return true;
 }
 
+// False at the end, and where the run is not the recorded one.
+bool Session::obey_replay() {
+    const std::string file = path_.filename().string();
+    try {
+        if (!replay_->obey(*simulation_)) {
+            replay_outcome_ = ExitCode::outside_tolerance;
+            messages_.error(file + ": " + replay_->difference(*simulation_));
+        }
+    } catch (const CommandFailure &failure) {
+        replay_outcome_ = ExitCode::bad_input;
+        messages_.error(file + ':' + std::to_string(failure.line) + ": " + failure.what());
+    }
+    if (replay_outcome_ != ExitCode::fine) {
+        stopped_ = true;
+        replay_.reset();
+        return false;
+    }
+    if (!recording_->commands.empty() &&
+        recording_->commands.front().step <= simulation_->step_count())
+        disturb(recording_->commands.front().step + 1);
+    if (present_.size() != simulation_->body_count())
+        settle_poses();
+    if (!replay_->is_at_end(*simulation_))
+        return true;
+    messages_.note("The recording ends here, with the recorded state " +
+                   hash_text(simulation_->hash()) + '.');
+    return false;
+}
+
+void Session::leave_recording() {
+    if (!replay_)
+        return;
+    messages_.note("From step " + std::to_string(simulation_->step_count()) +
+                   " on this is no longer the recorded run.");
+    replay_.reset();
+}
+
 bool Session::step_back() {
     if (!simulation_)
         return false;
@@ -185,11 +259,10 @@ bool Session::step_back() {
         watch_->go_back(*simulation_);
         if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
             disturbed_from_.reset();
-        if (simulation_->method().name != method)
-            apply(SetMethod{method});
-        if (const auto changed = GivenSettings::differences(simulation_->settings(), settings);
-            !changed.empty())
-            apply(SetSettings{changed});
+        if (replay_) // it knows what was chosen then
+            replay_->went_back(*simulation_);
+        else
+            choose_again(method, settings);
     } catch (const std::exception &failure) {
         messages_.error("Cannot step back: " + reason(failure));
         return false;
@@ -201,6 +274,14 @@ bool Session::step_back() {
         graph->take_back();
     settle_poses();
     return true;
+}
+
+void Session::choose_again(const std::string &method, const StepSettings &settings) {
+    if (simulation_->method().name != method)
+        apply(SetMethod{method});
+    if (const auto changed = GivenSettings::differences(simulation_->settings(), settings);
+        !changed.empty())
+        apply(SetSettings{changed});
 }
 
 bool Session::set_method(std::string_view name) {
@@ -244,6 +325,7 @@ bool Session::set_settings(const StepSettings &settings) {
 }
 
 void Session::apply(const Command &command) {
+    leave_recording();
     simulation_->apply(command);
     if (recorder_)
         recorder_->add(*simulation_, command);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/files/output_file.h"
+#include "app/lab/exit_code.h"
 #include "app/lab/expectation_watch.h"
 #include "app/sandbox/graphs.h"
 #include "app/sandbox/history.h"
@@ -59,6 +60,13 @@ class Session {
     bool open(const std::filesystem::path &path);
     // A scene from elsewhere; `path` is where reload would look, and may be empty.
     bool open(const SceneDesc &scene, const std::filesystem::path &path = {});
+    // A recording's file: the steps that follow do what was done in it, and each state is compared.
+    // There is no step beyond its end, until something else is done to the world: from there on the
+    // run is no longer the recorded one.
+    bool open_recording(const std::filesystem::path &path);
+    // outside_tolerance when a state was not the recorded one, bad_input when a command could not
+    // be obeyed; a message says where.
+    [[nodiscard]] ExitCode replay_outcome() const { return replay_outcome_; }
     // The file again, as it is now. A file that is broken leaves the running scene as it is.
     bool reload();
     // From the start, with the method and settings now chosen.
@@ -137,7 +145,12 @@ class Session {
     bool start(const SceneDesc &scene, const RunOptions &options,
                const std::optional<StepSettings> &settings);
     [[nodiscard]] std::string reason(const std::exception &failure);
+    void say(const std::filesystem::path &path, const std::vector<SceneMessage> &all);
     void apply(const Command &command);
+    bool play(const Recording &recording, const std::filesystem::path &path);
+    bool obey_replay();
+    void leave_recording();
+    void choose_again(const std::string &method, const StepSettings &settings);
     void pull_grabbed();
     void see_impacts();
     void settle_poses();
@@ -168,6 +181,9 @@ class Session {
     SessionGraphs graphs_;
     StepTimes times_;
     Messages messages_;
+    std::unique_ptr<const Recording> recording_; // that was opened
+    std::optional<Replay> replay_;               // of it, until something else is done
+    ExitCode replay_outcome_ = ExitCode::fine;
 };
 
 } // namespace plumb

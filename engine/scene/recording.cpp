@@ -63,4 +63,17 @@ bool Replay::obey(Simulation &simulation) {
     return state >= recording_.hashes.size() || simulation.hash() == recording_.hashes[state];
 }
 
+std::string Replay::difference(const Simulation &simulation) const {
+    const std::uint64_t step = simulation.step_count();
+    return "the replay first differs at step " + std::to_string(step) + ": recorded " +
+           hash_text(recording_.hashes.at(step - recording_.first_step())) + ", now " +
+           hash_text(simulation.hash());
+}
+
+void Replay::went_back(const Simulation &simulation) {
+    const auto later = std::ranges::upper_bound(recording_.commands, simulation.step_count(), {},
+                                                &RecordedCommand::step);
+    next_ = static_cast<std::size_t>(later - recording_.commands.begin());
+}
+
 } // namespace plumb

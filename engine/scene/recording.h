@@ -86,6 +86,10 @@ class Replay {
     // Gives the simulation the commands that were given at its present step, and compares. False
     // when the state is not the one that was recorded. Throws CommandFailure.
     bool obey(Simulation &simulation);
+    // "the replay first differs at step 12: recorded 1f…, now 2e…", after `obey` was false.
+    std::string difference(const Simulation &simulation) const;
+    // An earlier state has been restored, as it was after `obey`.
+    void went_back(const Simulation &simulation);
     bool is_at_end(const Simulation &simulation) const {
         return simulation.step_count() >= recording_.last_step();
     }

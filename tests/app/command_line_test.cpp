@@ -77,7 +77,7 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
         {"run",
          {"SCENE", "--method", "--gl", "--out", "--size", "--frames", "--screenshot", "--record"},
          true},
-        {"replay", {"FILE", "--threads"}, false},
+        {"replay", {"FILE", "--no-window", "--out", "--threads"}, false},
         {"snapshot",
          {"SCENE", "--method", "--at", "--every", "--steps", "--size", "--out", "--ui", "--samples",
           "--gl"},

@@ -35,7 +35,7 @@ TEST(Replay, EndsWithTheHashThatWasRecorded) {
         run_program("hash stack.toml --substeps 2 --steps 30", folder.path());
     for (const char *threads : {"", " --threads 3"}) {
         const ProgramResult again =
-            run_program(std::string("replay run.toml") + threads, folder.path());
+            run_program(std::string("replay --no-window run.toml") + threads, folder.path());
         EXPECT_EQ(again.exit_code, 0) << again.err;
         EXPECT_EQ(again.out.substr(0, 16), hash.out.substr(0, 16)) << again.out;
         EXPECT_TRUE(has(again.out, "step 30")) << again.out;
@@ -51,7 +51,7 @@ TEST(Replay, SaysAtWhichStepItFirstDiffers) {
     // As if a push that was recorded had not been there.
     recording.commands.push_back({12, ApplyImpulse{"crate_1", {10, 0, 0}, {0, 1.6, 0}}, 0});
     folder.write("pushed.toml", write_recording(recording));
-    const ProgramResult pushed = run_program("replay pushed.toml", folder.path());
+    const ProgramResult pushed = run_program("replay --no-window pushed.toml", folder.path());
     EXPECT_EQ(pushed.exit_code, 1) << pushed.out;
     EXPECT_TRUE(pushed.out.empty()) << pushed.out;
     EXPECT_TRUE(has(pushed.err, "first differs at step 12")) << pushed.err;
@@ -64,17 +64,17 @@ TEST(Replay, ABadRecordingIsExitCode2WithItsPlace) {
     const std::string good = text_of(folder.path() / "run.toml");
     const auto line = std::to_string(std::ranges::count(good, '\n') + 2);
     folder.write("word.toml", good + "\n[[command]]\nstep = 3\ndo = \"jump\"\n");
-    const ProgramResult word = run_program("replay word.toml", folder.path());
+    const ProgramResult word = run_program("replay --no-window word.toml", folder.path());
     EXPECT_EQ(word.exit_code, 2) << word.out;
     EXPECT_TRUE(has(word.err, "word.toml:" + std::to_string(std::ranges::count(good, '\n') + 4) +
                                   ":6: error: "))
         << word.err;
     folder.write("body.toml", good + "\n[[command]]\nstep = 3\ndo = \"remove\"\nbody = \"x\"\n");
-    const ProgramResult body = run_program("replay body.toml", folder.path());
+    const ProgramResult body = run_program("replay --no-window body.toml", folder.path());
     EXPECT_EQ(body.exit_code, 2) << body.out;
     EXPECT_TRUE(has(body.err, "body.toml:" + line + ": error: there is no body \"x\"")) << body.err;
-    EXPECT_EQ(run_program("replay stack.toml", folder.path()).exit_code, 2);
-    EXPECT_EQ(run_program("replay nothing.toml", folder.path()).exit_code, 2);
+    EXPECT_EQ(run_program("replay --no-window stack.toml", folder.path()).exit_code, 2);
+    EXPECT_EQ(run_program("replay --no-window nothing.toml", folder.path()).exit_code, 2);
 }
 
 TEST(Record, WhatCannotBeRecordedIsSaid) {

@@ -421,6 +421,84 @@ TEST_F(SessionTest, ARecordingIsTheWayToThePresentState) {
     EXPECT_EQ(replayed_hash(), session.simulation()->hash());
 }
 
+// A recorded run is played again, forth and back, until something else is done.
+TEST_F(SessionTest, ARecordingIsPlayedAgain) {
+    const std::filesystem::path path = folder / "run.toml";
+    std::vector<std::uint64_t> hashes;
+    {
+        Session session;
+        session.record();
+        ASSERT_TRUE(session.open(folder / "stack.toml"));
+        hashes_of_steps(session, 3);
+        Grab grab{
+            session.simulation()->find_body("crate_3").value(), {0.5, 0.5, 0}, {1, 5, 0}, 1e5};
+        session.grab(grab);
+        hashes_of_steps(session, 4);
+        session.grab(std::nullopt);
+        session.shoot({-4, 1, 0}, {20, 0, 0}, 0.3);
+        hashes_of_steps(session, 5);
+        ASSERT_TRUE(session.set_method("sequential_impulses"));
+        hashes_of_steps(session, 3);
+        hashes.push_back(session.simulation()->hash());
+        OutputFile file(path);
+        session.write_recording(file);
+    }
+    Session session;
+    ASSERT_TRUE(session.open_recording(path));
+    const auto play_to_the_end = [&] {
+        while (session.step()) {
+        }
+        EXPECT_EQ(session.simulation()->step_count(), 15u);
+        EXPECT_EQ(session.simulation()->hash(), hashes.back());
+        EXPECT_EQ(session.present_poses().size(), session.simulation()->body_count());
+        EXPECT_EQ(session.replay_outcome(), ExitCode::fine);
+        EXPECT_FALSE(session.stopped());
+    };
+    play_to_the_end();
+    EXPECT_TRUE(session.disturbed());
+    EXPECT_FALSE(session.step()) << "there is nothing beyond the end";
+    for (int i = 0; i < 10; ++i)
+        ASSERT_TRUE(session.step_back()); // before the shot and the other method
+    play_to_the_end();
+    ASSERT_TRUE(session.restart());
+    EXPECT_EQ(session.simulation()->step_count(), 0u);
+    play_to_the_end();
+    ASSERT_TRUE(session.shoot({-4, 1, 0}, {20, 0, 0}, 0.3));
+    EXPECT_TRUE(session.step()) << "from here on it is another run";
+    ASSERT_TRUE(session.reload());
+    play_to_the_end();
+}
+
+TEST_F(SessionTest, APlayedRecordingSaysWhereItDiffers) {
+    const std::filesystem::path path = folder / "run.toml";
+    Session recorded;
+    recorded.record();
+    ASSERT_TRUE(recorded.open(folder / "stack.toml"));
+    hashes_of_steps(recorded, 9);
+    {
+        OutputFile file(path);
+        recorded.write_recording(file);
+    }
+    Recording recording = load_recording(path).recording;
+    recording.commands.push_back({4, ApplyImpulse{"crate_3", {10, 0, 0}, {0, 3, 0}}, 0});
+    write("pushed.toml", write_recording(recording));
+    Session session;
+    ASSERT_TRUE(session.open_recording(folder / "pushed.toml"));
+    while (session.step()) {
+    }
+    EXPECT_EQ(session.simulation()->step_count(), 4u);
+    EXPECT_EQ(session.replay_outcome(), ExitCode::outside_tolerance);
+    EXPECT_NE(session.messages().all().back().text.find("first differs at step 4"),
+              std::string::npos);
+    recording.commands.back() = {4, RemoveBody{"nobody"}, 0};
+    write("removed.toml", write_recording(recording));
+    ASSERT_TRUE(session.open_recording(folder / "removed.toml"));
+    while (session.step()) {
+    }
+    EXPECT_EQ(session.simulation()->step_count(), 4u);
+    EXPECT_EQ(session.replay_outcome(), ExitCode::bad_input);
+}
+
 TEST(SessionWithFake, ARunThatWasMeddledWithSaysSo) {
     Session session({}, nullptr, make_fake());
     ASSERT_TRUE(session.open(expecting()));
