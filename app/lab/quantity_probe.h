@@ -1,6 +1,7 @@
 // Reads a scene's quantities (engine/scene/expect.h) from a running simulation.
 #pragma once
 
+#include "engine/scene/expect.h"
 #include "engine/scene/simulation.h"
 
 #include <cstddef>
@@ -30,15 +31,13 @@ class QuantityProbe {
 
   private:
     struct Item {
-        std::string quantity;
+        const QuantityInfo *quantity;
         std::size_t body = 0;
         BodyState start;
     };
     std::vector<Item> items_;
     bool measures_ = false;
-    Measures start_;
-    double momentum_scale_ = 0;         // kg m/s, sum of m |v| at the start
-    double angular_momentum_scale_ = 0; // kg m^2/s, sum of |r x m v| + |I w| at the start
+    SceneStart start_;
 };
 
 } // namespace plumb

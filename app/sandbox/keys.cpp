@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace plumb {
 
@@ -21,101 +22,142 @@ Chord shift(char32_t key) {
     return {key, false, true};
 }
 
-const std::vector<ActionInfo> &table() {
-    static const std::vector<ActionInfo> rows = {
+// Nothing past the last action.
+std::optional<ActionInfo> row(Action action) {
+    switch (action) {
         // clang-format off
-        {Action::pause, "Pause",
-         "Stops and goes on.",
-         Place::transport, false, {plain('p'), plain(' ')}},
-        {Action::step, "Step",
-         "One step on.",
-         Place::transport, true, {plain('.'), plain(right)}},
-        {Action::step_5, "5 steps",
-         "Five steps on.",
-         Place::transport, true, {shift(right)}},
-        {Action::step_back, "Step back",
-         "One step back, to the very state before it.",
-         Place::transport, true, {plain(','), plain(left)}},
-        {Action::step_back_5, "5 back",
-         "Five steps back.",
-         Place::transport, true, {shift(left)}},
-        {Action::restart, "Restart",
-         "From the start, with the method and settings chosen.",
-         Place::transport, false, {plain('r'), plain(backspace)}},
-        {Action::slower, "Slower",
-         "Half the speed.",
-         Place::transport, true, {plain('-')}},
-        {Action::faster, "Faster",
-         "Twice the speed.",
-         Place::transport, true, {plain('='), plain('+')}},
-        {Action::find_scene, "Find scene",
-         "Type a part of its name; Enter opens the first.",
-         Place::scenes, false, {ctrl('o')}},
-        {Action::previous_scene, "Previous scene",
-         "The one above in the list.",
-         Place::scenes, true, {plain('[')}},
-        {Action::next_scene, "Next scene",
-         "The one below in the list.",
-         Place::scenes, true, {plain(']')}},
-        {Action::reload, "Reload",
-         "Reads the file again; camera and pause stay.",
-         Place::scenes, false, {ctrl('l')}},
-        {Action::save_scene, "Save",
-         "Writes the present state as a scene file.",
-         Place::scenes, false, {ctrl('s')}},
-        {Action::previous_method, "Previous method",
-         "Of those that can run the scene.",
-         Place::settings, true, {plain('<')}},
-        {Action::next_method, "Next method",
-         "Of those that can run the scene.",
-         Place::settings, true, {plain('>')}},
-        {Action::toggle_contacts, "Contacts",
-         "Contact points, normals and forces; impacts.",
-         Place::view, false, {plain('c')}},
-        {Action::toggle_joints, "Joints",
-         "Joints and their anchors.",
-         Place::view, false, {plain('j')}},
-        {Action::toggle_wireframe, "Wireframe",
-         "Edges instead of surfaces.",
-         Place::view, false, {plain('w')}},
-        {Action::toggle_bounds, "Bounds",
-         "The axis-aligned boxes around bodies.",
-         Place::view, false, {plain('b')}},
-        {Action::toggle_velocities, "Velocities",
-         "How far each body goes in a quarter second.",
-         Place::view, false, {plain('v')}},
-        {Action::frame, "Frame",
-         "Shows the selected body, or all that moves.",
-         Place::view, false, {plain('f')}},
-        {Action::home, "Home",
-         "The scene's own camera, which goes along when all that moves would leave the picture.",
-         Place::view, false, {plain(home)}},
-        {Action::toggle_help, "Help",
-         "This list.",
-         Place::general, false, {plain(f1), plain('?')}},
-        {Action::toggle_panels, "Hide panels",
-         "Shows the scene alone.",
-         Place::general, false, {plain(tab)}},
-        {Action::toggle_diagnostics, "Diagnostics",
-         "Times, energy and measures.",
-         Place::general, false, {plain('m')}},
-        {Action::larger_panels, "Larger panels",
-         "Text and panels, by a tenth.",
-         Place::general, true, {ctrl('='), ctrl('+')}},
-        {Action::smaller_panels, "Smaller panels",
-         "Text and panels, by a tenth.",
-         Place::general, true, {ctrl('-')}},
-        {Action::screenshot, "Screenshot",
-         "Writes what is seen as a PNG.",
-         Place::general, false, {ctrl('p')}},
-        {Action::dismiss, "Back",
-         "Closes help, search or messages; then lets go the selection.",
-         Place::general, false, {plain(escape)}},
-        {Action::quit, "Quit",
-         "Closes the window.",
-         Place::general, false, {ctrl('q')}},
+    case Action::pause:
+        return ActionInfo{action, "Pause",
+                          "Stops and goes on.",
+                          Place::transport, false, {plain('p'), plain(' ')}};
+    case Action::step:
+        return ActionInfo{action, "Step",
+                          "One step on.",
+                          Place::transport, true, {plain('.'), plain(right)}};
+    case Action::step_5:
+        return ActionInfo{action, "5 steps",
+                          "Five steps on.",
+                          Place::transport, true, {shift(right)}};
+    case Action::step_back:
+        return ActionInfo{action, "Step back",
+                          "One step back, to the very state before it.",
+                          Place::transport, true, {plain(','), plain(left)}};
+    case Action::step_back_5:
+        return ActionInfo{action, "5 back",
+                          "Five steps back.",
+                          Place::transport, true, {shift(left)}};
+    case Action::restart:
+        return ActionInfo{action, "Restart",
+                          "From the start, with the method and settings chosen.",
+                          Place::transport, false, {plain('r'), plain(backspace)}};
+    case Action::slower:
+        return ActionInfo{action, "Slower",
+                          "Half the speed.",
+                          Place::transport, true, {plain('-')}};
+    case Action::faster:
+        return ActionInfo{action, "Faster",
+                          "Twice the speed.",
+                          Place::transport, true, {plain('='), plain('+')}};
+    case Action::find_scene:
+        return ActionInfo{action, "Find scene",
+                          "Type a part of its name; Enter opens the first.",
+                          Place::scenes, false, {ctrl('o')}};
+    case Action::previous_scene:
+        return ActionInfo{action, "Previous scene",
+                          "The one above in the list.",
+                          Place::scenes, true, {plain('[')}};
+    case Action::next_scene:
+        return ActionInfo{action, "Next scene",
+                          "The one below in the list.",
+                          Place::scenes, true, {plain(']')}};
+    case Action::reload:
+        return ActionInfo{action, "Reload",
+                          "Reads the file again; camera and pause stay.",
+                          Place::scenes, false, {ctrl('l')}};
+    case Action::save_scene:
+        return ActionInfo{action, "Save",
+                          "Writes the present state as a scene file.",
+                          Place::scenes, false, {ctrl('s')}};
+    case Action::previous_method:
+        return ActionInfo{action, "Previous method",
+                          "Of those that can run the scene.",
+                          Place::settings, true, {plain('<')}};
+    case Action::next_method:
+        return ActionInfo{action, "Next method",
+                          "Of those that can run the scene.",
+                          Place::settings, true, {plain('>')}};
+    case Action::toggle_contacts:
+        return ActionInfo{action, "Contacts",
+                          "Contact points, normals and forces; impacts.",
+                          Place::view, false, {plain('c')}};
+    case Action::toggle_joints:
+        return ActionInfo{action, "Joints",
+                          "Joints and their anchors.",
+                          Place::view, false, {plain('j')}};
+    case Action::toggle_wireframe:
+        return ActionInfo{action, "Wireframe",
+                          "Edges instead of surfaces.",
+                          Place::view, false, {plain('w')}};
+    case Action::toggle_bounds:
+        return ActionInfo{action, "Bounds",
+                          "The axis-aligned boxes around bodies.",
+                          Place::view, false, {plain('b')}};
+    case Action::toggle_velocities:
+        return ActionInfo{action, "Velocities",
+                          "How far each body goes in a quarter second.",
+                          Place::view, false, {plain('v')}};
+    case Action::frame:
+        return ActionInfo{action, "Frame",
+                          "Shows the selected body, or all that moves.",
+                          Place::view, false, {plain('f')}};
+    case Action::home:
+        return ActionInfo{action, "Home",
+                          "The scene's own camera, which goes along when all that moves would leave the picture.",
+                          Place::view, false, {plain(home)}};
+    case Action::toggle_help:
+        return ActionInfo{action, "Help",
+                          "This list.",
+                          Place::general, false, {plain(f1), plain('?')}};
+    case Action::toggle_panels:
+        return ActionInfo{action, "Hide panels",
+                          "Shows the scene alone.",
+                          Place::general, false, {plain(tab)}};
+    case Action::toggle_diagnostics:
+        return ActionInfo{action, "Diagnostics",
+                          "Times, energy and measures.",
+                          Place::general, false, {plain('m')}};
+    case Action::larger_panels:
+        return ActionInfo{action, "Larger panels",
+                          "Text and panels, by a tenth.",
+                          Place::general, true, {ctrl('='), ctrl('+')}};
+    case Action::smaller_panels:
+        return ActionInfo{action, "Smaller panels",
+                          "Text and panels, by a tenth.",
+                          Place::general, true, {ctrl('-')}};
+    case Action::screenshot:
+        return ActionInfo{action, "Screenshot",
+                          "Writes what is seen as a PNG.",
+                          Place::general, false, {ctrl('p')}};
+    case Action::dismiss:
+        return ActionInfo{action, "Back",
+                          "Closes help, search or messages; then lets go the selection.",
+                          Place::general, false, {plain(escape)}};
+    case Action::quit:
+        return ActionInfo{action, "Quit",
+                          "Closes the window.",
+                          Place::general, false, {ctrl('q')}};
         // clang-format on
-    };
+    }
+    return {};
+}
+
+const std::vector<ActionInfo> &table() {
+    static const std::vector<ActionInfo> rows = [] {
+        std::vector<ActionInfo> all;
+        for (int i = 0; const auto info = row(static_cast<Action>(i)); ++i)
+            all.push_back(*info);
+        return all;
+    }();
     return rows;
 }
 
@@ -161,9 +203,7 @@ std::span<const ActionInfo> actions() {
 }
 
 const ActionInfo &info(Action action) {
-    const auto found = std::ranges::find(table(), action, &ActionInfo::action);
-    PLUMB_CHECK(found != table().end(), "action " << static_cast<int>(action) << " has no row");
-    return *found;
+    return table().at(static_cast<std::size_t>(action));
 }
 
 const ActionInfo *find_action(const Chord &chord) {

@@ -9,6 +9,7 @@
 
 namespace plumb {
 
+// In the order of the help.
 enum class Action {
     pause,
     step,
@@ -16,12 +17,13 @@ enum class Action {
     step_back,
     step_back_5,
     restart,
-    reload,
     slower,
     faster,
+    find_scene,
     previous_scene,
     next_scene,
-    find_scene,
+    reload,
+    save_scene,
     previous_method,
     next_method,
     toggle_contacts,
@@ -31,14 +33,13 @@ enum class Action {
     toggle_velocities,
     frame,
     home,
+    toggle_help,
     toggle_panels,
     toggle_diagnostics,
-    toggle_help,
     larger_panels,
     smaller_panels,
-    dismiss,
     screenshot,
-    save_scene,
+    dismiss,
     quit,
 };
 

@@ -25,9 +25,9 @@ enum class PanelId : std::size_t {
     diagnostics,
     transport,
     messages,
-    help
+    help // the last
 };
-inline constexpr std::size_t panel_count = 8;
+inline constexpr std::size_t panel_count = static_cast<std::size_t>(PanelId::help) + 1;
 
 // One for each panel, by its id.
 template <typename T> struct PerPanel : std::array<T, panel_count> {

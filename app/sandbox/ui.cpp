@@ -3,17 +3,18 @@
 #include "app/sandbox/widgets.h"
 
 #include <array>
+#include <optional>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h> // ClearActiveID: to leave a text field by Esc
 
 namespace plumb {
 
-struct Ui::Row {
-    PanelId id;
-    const char *name;
-    void (*contents)(PanelContext &);
-    bool is_clicked; // rows that are only read may stand closer than those that are clicked
+struct PanelRow {
+    PanelId id = PanelId::scenes;
+    const char *name = "";
+    void (*contents)(PanelContext &) = nullptr;
+    bool is_clicked = false; // rows that are only read may stand closer than those that are clicked
 };
 
 namespace {
@@ -48,6 +49,29 @@ bool is_shown(PanelId id, const PanelContext &context) {
         return view.help;
     }
     return false;
+}
+
+// Nothing past the last panel.
+constexpr std::optional<PanelRow> row(PanelId id) {
+    switch (id) {
+    case PanelId::scenes:
+        return PanelRow{id, "scenes", scenes_panel, true};
+    case PanelId::settings:
+        return PanelRow{id, "settings", settings_panel, true};
+    case PanelId::view:
+        return PanelRow{id, "view", view_panel, true};
+    case PanelId::details:
+        return PanelRow{id, "details", details_panel, false};
+    case PanelId::diagnostics:
+        return PanelRow{id, "diagnostics", diagnostics_panel, false};
+    case PanelId::transport:
+        return PanelRow{id, "transport", transport_panel, true};
+    case PanelId::messages:
+        return PanelRow{id, "messages", messages_panel, false};
+    case PanelId::help:
+        return PanelRow{id, "help", help_panel, false};
+    }
+    return {};
 }
 
 } // namespace
@@ -88,25 +112,20 @@ void Ui::begin_frame() {
 }
 
 const ImDrawData &Ui::draw(PanelContext &context) {
-    static constexpr std::array<Row, panel_count> rows{
-        Row{PanelId::scenes, "scenes", scenes_panel, true},
-        Row{PanelId::settings, "settings", settings_panel, true},
-        Row{PanelId::view, "view", view_panel, true},
-        Row{PanelId::details, "details", details_panel, false},
-        Row{PanelId::diagnostics, "diagnostics", diagnostics_panel, false},
-        Row{PanelId::transport, "transport", transport_panel, true},
-        Row{PanelId::messages, "messages", messages_panel, false},
-        Row{PanelId::help, "help", help_panel, false}};
+    static_assert(!row(static_cast<PanelId>(panel_count)), "panel_count counts all panels");
+    std::array<PanelRow, panel_count> rows;
+    for (std::size_t i = 0; i < panel_count; ++i)
+        rows[i] = row(static_cast<PanelId>(i)).value();
     panels_.clear();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const glm::vec2 window(size.x, size.y);
     context.view.is_roomy = is_roomy(window, scale_);
     PerPanel<float> wished{};
-    for (const Row &row : rows)
+    for (const PanelRow &row : rows)
         if (is_shown(row.id, context))
             wished[row.id] = heights_[row.id] > 0 ? heights_[row.id] : unknown_height;
     const PerPanel<Rect> rects = lay_out(window, scale_, wished);
-    for (const Row &row : rows)
+    for (const PanelRow &row : rows)
         if (wished[row.id] > 0)
             panel(context, row, rects[row.id]);
 
@@ -122,7 +141,7 @@ const ImDrawData &Ui::draw(PanelContext &context) {
     return *ImGui::GetDrawData();
 }
 
-void Ui::panel(PanelContext &context, const Row &row, const Rect &rect) {
+void Ui::panel(PanelContext &context, const PanelRow &row, const Rect &rect) {
     ImGui::SetNextWindowPos({rect.min.x, rect.min.y});
     ImGui::SetNextWindowSizeConstraints({rect.size.x, rect.size.y}, {rect.size.x, rect.size.y});
     ImGui::SetNextWindowSize({rect.size.x, rect.size.y});

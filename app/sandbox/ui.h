@@ -15,6 +15,8 @@ struct ImGuiContext;
 
 namespace plumb {
 
+struct PanelRow; // what there is to know of a panel
+
 // Use: Ui ui(scale); ImguiRenderer renderer(shader_dir); then each frame, after ImGui's input is
 // filled in (by its GLFW back end, or by fill_input), `draw`, and hand the data to the renderer.
 class Ui {
@@ -52,8 +54,7 @@ class Ui {
     [[nodiscard]] const Fonts &fonts() const { return fonts_; }
 
   private:
-    struct Row;
-    void panel(PanelContext &context, const Row &row, const Rect &rect);
+    void panel(PanelContext &context, const PanelRow &row, const Rect &rect);
 
     ImGuiContext *imgui_ = nullptr;
     float scale_ = 1;

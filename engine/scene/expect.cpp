@@ -1,56 +1,130 @@
 #include "engine/scene/expect.h"
 
 #include "engine/core/check.h"
+#include "engine/scene/simulation.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 namespace plumb {
 
 namespace {
 
+// The angle between two directions, in [0, pi]. By atan2, which keeps its digits where acos loses
+// half of them: near 0 and pi.
+double angle_between(const glm::dvec3 &a, const glm::dvec3 &b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+glm::dvec3 up(const BodyState &body) {
+    return body.orientation * glm::dvec3(0, 1, 0);
+}
+
+glm::dvec3 local_spin(const BodyState &body) {
+    return glm::conjugate(body.orientation) * body.angular_velocity;
+}
+
 constexpr std::array all_quantities{
-    QuantityInfo{"position.x", "m", true, "centre of mass, world"},
-    QuantityInfo{"position.y", "m", true, "centre of mass, world"},
-    QuantityInfo{"position.z", "m", true, "centre of mass, world"},
-    QuantityInfo{"velocity.x", "m/s", true, "of the centre of mass, world"},
-    QuantityInfo{"velocity.y", "m/s", true, "of the centre of mass, world"},
-    QuantityInfo{"velocity.z", "m/s", true, "of the centre of mass, world"},
-    QuantityInfo{"speed", "m/s", true, "length of the velocity"},
-    QuantityInfo{"angular_velocity.x", "rad/s", true, "world frame"},
-    QuantityInfo{"angular_velocity.y", "rad/s", true, "world frame"},
-    QuantityInfo{"angular_velocity.z", "rad/s", true, "world frame"},
-    QuantityInfo{"angular_speed", "rad/s", true, "length of the angular velocity"},
-    QuantityInfo{"angular_velocity_local.x", "rad/s", true, "body's frame"},
-    QuantityInfo{"angular_velocity_local.y", "rad/s", true, "body's frame"},
-    QuantityInfo{"angular_velocity_local.z", "rad/s", true, "body's frame"},
-    QuantityInfo{"displacement", "m", true,
+    QuantityInfo{"position.x", "m",
+                 [](const BodyState &now, const BodyState &) { return now.position.x; },
+                 "centre of mass, world"},
+    QuantityInfo{"position.y", "m",
+                 [](const BodyState &now, const BodyState &) { return now.position.y; },
+                 "centre of mass, world"},
+    QuantityInfo{"position.z", "m",
+                 [](const BodyState &now, const BodyState &) { return now.position.z; },
+                 "centre of mass, world"},
+    QuantityInfo{"velocity.x", "m/s",
+                 [](const BodyState &now, const BodyState &) { return now.velocity.x; },
+                 "of the centre of mass, world"},
+    QuantityInfo{"velocity.y", "m/s",
+                 [](const BodyState &now, const BodyState &) { return now.velocity.y; },
+                 "of the centre of mass, world"},
+    QuantityInfo{"velocity.z", "m/s",
+                 [](const BodyState &now, const BodyState &) { return now.velocity.z; },
+                 "of the centre of mass, world"},
+    QuantityInfo{"speed", "m/s",
+                 [](const BodyState &now, const BodyState &) { return glm::length(now.velocity); },
+                 "length of the velocity"},
+    QuantityInfo{"angular_velocity.x", "rad/s",
+                 [](const BodyState &now, const BodyState &) { return now.angular_velocity.x; },
+                 "world frame"},
+    QuantityInfo{"angular_velocity.y", "rad/s",
+                 [](const BodyState &now, const BodyState &) { return now.angular_velocity.y; },
+                 "world frame"},
+    QuantityInfo{"angular_velocity.z", "rad/s",
+                 [](const BodyState &now, const BodyState &) { return now.angular_velocity.z; },
+                 "world frame"},
+    QuantityInfo{
+        "angular_speed", "rad/s",
+        [](const BodyState &now, const BodyState &) { return glm::length(now.angular_velocity); },
+        "length of the angular velocity"},
+    QuantityInfo{"angular_velocity_local.x", "rad/s",
+                 [](const BodyState &now, const BodyState &) { return local_spin(now).x; },
+                 "body's frame"},
+    QuantityInfo{"angular_velocity_local.y", "rad/s",
+                 [](const BodyState &now, const BodyState &) { return local_spin(now).y; },
+                 "body's frame"},
+    QuantityInfo{"angular_velocity_local.z", "rad/s",
+                 [](const BodyState &now, const BodyState &) { return local_spin(now).z; },
+                 "body's frame"},
+    QuantityInfo{"displacement", "m",
+                 [](const BodyState &now, const BodyState &start) {
+                     return glm::length(now.position - start.position);
+                 },
                  "distance of the centre of mass from where it was at t = 0", true},
-    QuantityInfo{"tilt", "rad", true,
+    QuantityInfo{"tilt", "rad",
+                 [](const BodyState &now, const BodyState &start) {
+                     return angle_between(up(now), up(start));
+                 },
                  "angle between the body's y axis and where it pointed at t = 0, 0..pi", true},
-    QuantityInfo{"kinetic_energy", "J", false,
+    QuantityInfo{"kinetic_energy", "J",
+                 [](const Measures &now, const SceneStart &) { return now.kinetic_energy; },
                  "of all dynamic bodies, translation and rotation: sum of m v.v / 2 + w.I w / 2"},
-    QuantityInfo{"potential_energy", "J", false,
+    QuantityInfo{"potential_energy", "J",
+                 [](const Measures &now, const SceneStart &) { return now.potential_energy; },
                  "of all dynamic bodies in gravity: sum of -m g.r, r from the world's origin"},
-    QuantityInfo{"energy", "J", false, "kinetic_energy + potential_energy"},
-    QuantityInfo{"energy_error", "1", false,
+    QuantityInfo{"energy", "J",
+                 [](const Measures &now, const SceneStart &) { return now.energy(); },
+                 "kinetic_energy + potential_energy"},
+    QuantityInfo{"energy_error", "1",
+                 [](const Measures &now, const SceneStart &start) {
+                     return relative_change(now.energy() - start.measures.energy(),
+                                            start.measures.kinetic_energy +
+                                                std::abs(start.measures.potential_energy));
+                 },
                  "(E - E0) / (K0 + |U0|); 0 marks t = 0; the difference in J when the divisor is 0",
                  true},
-    QuantityInfo{"linear_momentum_error", "1", false,
+    QuantityInfo{"linear_momentum_error", "1",
+                 [](const Measures &now, const SceneStart &start) {
+                     return relative_change(
+                         glm::length(now.linear_momentum - start.measures.linear_momentum),
+                         start.momentum_scale);
+                 },
                  "|p - p0| / (sum of m |v| at t = 0); the difference in N s when the divisor is 0",
                  true},
-    QuantityInfo{"angular_momentum_error", "1", false,
+    QuantityInfo{"angular_momentum_error", "1",
+                 [](const Measures &now, const SceneStart &start) {
+                     return relative_change(
+                         glm::length(now.angular_momentum - start.measures.angular_momentum),
+                         start.angular_momentum_scale);
+                 },
                  "|L - L0| / (sum of |r x m v| + |I w| at t = 0), about the world's origin; the "
                  "difference in N m s when the divisor is 0",
                  true},
-    QuantityInfo{"penetration", "m", false,
+    QuantityInfo{"penetration", "m",
+                 [](const Measures &now, const SceneStart &) { return now.max_penetration; },
                  "depth of the deepest contact point of the scene; 0 when nothing overlaps"},
-    QuantityInfo{"mean_penetration", "m", false,
+    QuantityInfo{"mean_penetration", "m",
+                 [](const Measures &now, const SceneStart &) { return now.mean_penetration; },
                  "mean depth of the contact points that penetrate; 0 without contact points"},
     QuantityInfo{
-        "joint_drift", "m", false,
+        "joint_drift", "m",
+        [](const Measures &now, const SceneStart &) { return now.max_joint_drift; },
         "largest error of any joint: distance between the anchors (of a slider: across its axis), "
         "or how far it is beyond its least or greatest length (distance)"},
 };

@@ -2,19 +2,36 @@
 // boiled down to one number.
 #pragma once
 
+#include "engine/dynamics/measures.h"
+
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <variant>
 
 namespace plumb {
 
+struct BodyState;
+
+// A scene at the start, which its relative errors count from.
+struct SceneStart {
+    Measures measures;
+    double momentum_scale = 0;         // kg m/s, sum of m |v|
+    double angular_momentum_scale = 0; // kg m^2/s, sum of |r x m v| + |I w|
+};
+
 struct QuantityInfo {
+    using OfBody = double (*)(const BodyState &now, const BodyState &start);
+    using OfScene = double (*)(const Measures &now, const SceneStart &start);
+
     std::string_view name;
     std::string_view unit;
-    bool needs_body;
+    std::variant<OfBody, OfScene> value;
     std::string_view description;
     bool since_start = false; // counted from t = 0
+
+    constexpr bool needs_body() const { return std::holds_alternative<OfBody>(value); }
 };
 
 // All quantities, in the order in which they are to be listed.

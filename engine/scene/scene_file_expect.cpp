@@ -16,7 +16,7 @@ void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
     if (!chosen)
         return;
     expect.quantity = names[*chosen];
-    if (!quantities()[*chosen].needs_body) {
+    if (!quantities()[*chosen].needs_body()) {
         table.refuse({"body"}, expect.quantity, "it is of the whole scene");
         return;
     }

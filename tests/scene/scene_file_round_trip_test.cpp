@@ -412,7 +412,7 @@ class Scenes {
         const QuantityInfo &quantity =
             quantities()[random_.next_index(static_cast<std::uint32_t>(quantities().size()))];
         e.quantity = quantity.name;
-        if (quantity.needs_body)
+        if (quantity.needs_body())
             e.body = scene.bodies[random_.next_index(8)].name;
         const ReductionInfo &reduction =
             reductions()[random_.next_index(static_cast<std::uint32_t>(reductions().size()))];
