@@ -67,15 +67,16 @@ void colour(StepContext &context) {
     // going into a wall by what pushes it there.
     std::uint64_t of_others = 0;
     std::uint64_t used = 0;
-    const std::size_t count = context.contacts.size();
+    const std::vector<std::uint32_t> &active = context.active.contacts;
+    const std::size_t count = active.size();
     for (std::size_t turn = 0; turn < 2 * count; ++turn) {
-        const std::size_t i = turn < count ? turn : turn - count;
+        const std::uint32_t i = active[turn < count ? turn : turn - count];
         const Contact &contact = context.contacts[i];
         const bool is_last =
             !is_dynamic(context, contact.key.a) || !is_dynamic(context, contact.key.b);
         if (turn == count)
             of_others = used;
-        if (contact.sensor || is_last != (turn >= count))
+        if (is_last != (turn >= count))
             continue;
         const bool moves_a = is_dynamic(context, contact.key.a);
         const bool moves_b = is_dynamic(context, contact.key.b);
@@ -90,7 +91,7 @@ void colour(StepContext &context) {
             of_b |= std::uint64_t{1} << chosen;
             bucket = chosen * most_points + static_cast<std::uint32_t>(contact.manifold.count - 1);
         }
-        schedule.lanes.push_back({static_cast<std::uint32_t>(i), bucket});
+        schedule.lanes.push_back({i, bucket});
         ++schedule.bucket_sizes[bucket];
     }
 }
@@ -153,7 +154,7 @@ bool has_turned_far(const SolverBody &body) {
 // turned far, and of contacts made for the time of impact, whose arms are those of then.
 void correct_separations(StepContext &context) {
     const bool any_far = std::ranges::any_of(
-        context.moving, [&](std::uint32_t body) { return has_turned_far(context.bodies[body]); });
+        context.moving(), [&](std::uint32_t body) { return has_turned_far(context.bodies[body]); });
     for (ContactBlock &block : context.scratch.schedule.blocks)
         for (std::size_t lane = 0; (any_far || block.any_ahead) && lane < block.used; ++lane) {
             const Contact &contact = context.contacts[block.contacts[lane]];
@@ -182,7 +183,7 @@ void prepare_contact_columns(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
     schedule.blocks.clear();
     schedule.lanes.clear();
-    if (context.contacts.empty())
+    if (context.active.contacts.empty())
         return;
     colour(context);
     // A bucket's blocks come in order; the last bucket's have one lane each.

@@ -65,16 +65,16 @@ void solve_friction(const ContactConstraint &contact, ContactPointConstraint &po
 void prepare_contacts(StepContext &context, Prepare which) {
     std::vector<ContactConstraint> &constraints = context.scratch.contacts;
     constraints.clear();
-    for (std::size_t i = 0; i < context.contacts.size(); ++i) {
+    for (const std::uint32_t i : context.active.contacts) {
         const Contact &contact = context.contacts[i];
-        if (contact.sensor || (which == Prepare::bouncing && contact.restitution == Real(0)))
+        if (which == Prepare::bouncing && contact.restitution == Real(0))
             continue;
         ContactConstraint &out = constraints.emplace_back();
         const SolverBody &a = context.bodies[contact.key.a];
         const SolverBody &b = context.bodies[contact.key.b];
         const Real rounding = context.model.colliders[contact.collider_a].rounding +
                               context.model.colliders[contact.collider_b].rounding;
-        out.contact = static_cast<std::uint32_t>(i);
+        out.contact = i;
         out.a = contact.key.a;
         out.b = contact.key.b;
         out.normal = contact.manifold.normal;

@@ -341,16 +341,14 @@ void weigh_with_groups(StepContext &context) {
 template <typename Use> void emit_all(StepContext &context, Use &&use) {
     std::vector<RowBlock> &rows = context.scratch.rows;
     RowWriter writer(rows);
-    for (std::uint32_t i = 0; i < context.model.joints.size(); ++i) {
+    for (const std::uint32_t i : context.active.joints) {
         const Joint &joint = context.model.joints[i];
-        if (!joint.alive || context.joints[i].broken)
-            continue;
         rows.clear();
         emit_rows(joint, context.body(joint.a), context.body(joint.b), writer);
         for (const RowBlock &block : rows)
             use(i, joint.a, joint.b, block);
     }
-    if (context.grab.is_holding()) {
+    if (context.active.holds_grab) {
         rows.clear();
         emit_rows(context.grab, context.world_frame, context.body(context.grab.body), writer);
         for (const RowBlock &block : rows)
@@ -370,7 +368,7 @@ void prepare_joints(StepContext &context) {
     std::vector<JointConstraint> &constraints = context.scratch.joints;
     constraints.clear();
     context.scratch.joint_system.release();
-    if (context.model.alive_joints == 0 && !context.grab.is_holding())
+    if (context.active.joints.empty() && !context.active.holds_grab)
         return;
     emit_all(context,
              [&](std::uint32_t joint, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
@@ -492,9 +490,9 @@ void store_joints(StepContext &context) {
             joint.rows.bounds != RowBounds::motor && glm::length(total) * rate > break_force)
             memory.broken = true;
     }
-    for (JointMemory &memory : context.joints)
-        if (memory.broken)
-            memory.impulses = {};
+    for (const std::uint32_t i : context.active.joints)
+        if (context.joints[i].broken)
+            context.joints[i].impulses = {};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -94,7 +94,7 @@ void follow_loads(StepContext &context, Real h) {
     if (context.scratch.joints.empty())
         return;
     joint_stiffness(context, h, stiffness);
-    for (const std::uint32_t i : context.moving)
+    for (const std::uint32_t i : context.moving())
         if (context.model.bodies[i].kind == BodyKind::dynamic && stiffness[i] > Real(0))
             raise_inertia(context.bodies[i], context.model.bodies[i], stiffness[i], h);
 

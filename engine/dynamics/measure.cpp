@@ -140,7 +140,7 @@ World::JointLoad World::joint_load(std::uint32_t joint) const {
     RowWriter writer(blocks);
     emit_rows(one, joint_motion(one.a), joint_motion(one.b), writer);
     JointLoad load;
-    const Real rate = static_cast<Real>(settings_.substeps) / static_cast<Real>(settings_.dt);
+    const auto rate = static_cast<Real>(substeps_of(island_body(one.a, one.b)) / settings_.dt);
     for (const RowBlock &block : blocks)
         for (int i = 0; i < block.count; ++i) {
             const auto index = static_cast<std::size_t>(i);

@@ -39,16 +39,22 @@ struct SolverScratch {
 struct StepContext {
     const Model &model;
     const StepSettings &settings;
-    std::span<SolverBody> bodies;          // one for each body of the model, holes included
-    std::span<const std::uint32_t> moving; // dynamic and kinematic bodies, ascending
-    std::span<Contact> contacts;           // ascending by key
-    std::span<JointMemory> joints;         // one for each joint of the model
+    std::span<SolverBody> bodies; // one for each body of the model, holes included
+    // What is to be advanced: dynamic and kinematic bodies, and the contacts and joints that they
+    // have; ascending. Those left out are advanced by themselves, and share nothing with these.
+    const IslandGroup &active;
+    std::span<Contact> contacts;   // ascending by key
+    std::span<JointMemory> joints; // one for each joint of the model
     Grab &grab;
     SolverBody &world_frame; // stands for the world in joints: it never moves
     SolverScratch &scratch;
     StepReport &report; // the method counts its work here
     std::vector<Impact> &impacts;
 
+    std::span<const std::uint32_t> moving() const { return active.moving; }
+    bool is_free() const {
+        return active.contacts.empty() && active.joints.empty() && !active.holds_grab;
+    }
     SolverBody &body(std::uint32_t index) {
         return index == Joint::world ? world_frame : bodies[index];
     }

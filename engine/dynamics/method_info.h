@@ -3,6 +3,7 @@
 
 #include "engine/dynamics/settings.h"
 
+#include <algorithm>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,10 @@ struct MethodInfo {
     // struck to; otherwise all contacts are those of the start of the step.
     bool looks_ahead = false;
     std::vector<SettingGroup> reads; // of the settings, beside those that every method reads
+    // Whether each island may take substeps of its own.
+    bool chooses_substeps() const {
+        return std::ranges::find(reads, SettingGroup::chosen) != reads.end();
+    }
     // What it runs with where nothing else is said.
     StepSettings defaults{.substeps = 1, .iterations = 1};
 };

@@ -234,9 +234,9 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
 
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
-    flights.resize(context.moving.size());
+    flights.resize(context.moving().size());
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        const std::uint32_t body = context.moving[i];
+        const std::uint32_t body = context.moving()[i];
         flights[i] = begin_flight(context.bodies[body], context.model.bodies[body], gravity, h,
                                   kick, context.settings.gyroscopic_iterations);
     }
@@ -246,7 +246,7 @@ void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick)
 void end_flights(StepContext &context, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
     for (std::size_t i = 0; i < flights.size(); ++i) {
-        const std::uint32_t body = context.moving[i];
+        const std::uint32_t body = context.moving()[i];
         const std::vector<Real> &stiffness = context.scratch.stiffness;
         move_held(context.bodies[body], context.model.bodies[body], flights[i], h,
                   context.settings.gyroscopic_iterations,
@@ -257,7 +257,7 @@ void end_flights(StepContext &context, Real h, Kick kick) {
 }
 
 void kick(StepContext &context, const Vec3 &gravity, Real h) {
-    for (const std::uint32_t i : context.moving) {
+    for (const std::uint32_t i : context.moving()) {
         const Body &body = context.model.bodies[i];
         SolverBody &motion = context.bodies[i];
         if (body.kind != BodyKind::dynamic)
@@ -272,11 +272,11 @@ void kick(StepContext &context, const Vec3 &gravity, Real h) {
         }
         motion.angular_velocity *= damped(body.angular_damping, h).kept;
     }
-    context.report.body_passes += context.moving.size();
+    context.report.body_passes += context.moving().size();
 }
 
 void drift(StepContext &context, Real h) {
-    for (const std::uint32_t i : context.moving) {
+    for (const std::uint32_t i : context.moving()) {
         const Body &body = context.model.bodies[i];
         SolverBody &motion = context.bodies[i];
         motion.position += h * motion.velocity;
@@ -284,7 +284,7 @@ void drift(StepContext &context, Real h) {
         if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
             motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
     }
-    context.report.body_passes += context.moving.size();
+    context.report.body_passes += context.moving().size();
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

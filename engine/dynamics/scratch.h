@@ -53,6 +53,14 @@ struct Scratch {
     Grab grab;
     SolverBody world_frame;
     SolverScratch solver;
+    std::vector<Pace> paces;
+    Islands islands;
+    std::vector<IslandGroup> groups; // the first group_count of them
+    std::size_t group_count = 0;
+    std::vector<JointSystem> joint_systems; // one for each group, which is often that of last step
+    std::vector<double> loads;     // of each body: the square of the substeps that it wants
+    std::vector<double> stiffness; // of each body, that its joints' forces make (N m)
+    int step_parts = 1;            // into which the world's step is cut
     std::vector<Impact> impacts;
 };
 

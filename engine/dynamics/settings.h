@@ -22,8 +22,11 @@ namespace plumb {
 struct StepSettings {
     glm::dvec3 gravity{0, -9.81, 0};
     double dt = 1.0 / 60.0;
-    int substeps = 4;   // the default of a method stands in its row of the registry
-    int iterations = 1; // likewise
+    int substeps = 4;     // the default of a method stands in its row of the registry
+    int max_substeps = 1; // likewise
+    int iterations = 1;   // likewise
+    double substep_tolerance = 3e-4;
+    int substep_budget = 8192;
     double speculative_distance = 0.02;
     double kept_travel = 0.005;
     double penetration_slop = 0.0005;
@@ -45,6 +48,7 @@ struct StepSettings {
 enum class SettingGroup {
     world,       // of the scene: the same for all methods
     step,        // how any method cuts a step
+    chosen,      // substeps of each island's own
     constraints, // whatever solves contacts and joints
     kept,        // manifolds kept while bodies rest against each other
     baumgarte,   // drift removed through the velocities
@@ -72,6 +76,15 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "Time that one step takes in the world."},
     {"substeps", &StepSettings::substeps, "", 1, 10000, SettingGroup::step,
      "Into how many parts a step is cut; collision is found once a step."},
+    {"max_substeps", &StepSettings::max_substeps, "", 1, 10000, SettingGroup::chosen,
+     "Above substeps: bodies that act on each other take as many substeps, from substeps to these, "
+     "as their loads ask for; else all take substeps."},
+    {"substep_tolerance", &StepSettings::substep_tolerance, "", 1e-9, 1, SettingGroup::chosen,
+     "How deep a resting contact may be, as a share of the bodies' least width, and how far a "
+     "joint may drift, as a share of its arms: the depth falls with the square of the substeps."},
+    {"substep_budget", &StepSettings::substep_budget, "", 0, 65536, SettingGroup::chosen,
+     "Contacts and joints times substeps, up to which bodies that act on each other get more than "
+     "the least: what is small is made true, what is large stays fast."},
     {"iterations", &StepSettings::iterations, "", 1, 10000, SettingGroup::constraints,
      "Passes over all constraints in each substep."},
     {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,

@@ -3,6 +3,7 @@
 
 #include "engine/dynamics/body.h"
 #include "engine/dynamics/contact.h"
+#include "engine/dynamics/islands.h"
 #include "engine/dynamics/joint.h"
 
 #include <vector>
@@ -12,6 +13,7 @@ namespace plumb::inline PLUMB_PRECISION {
 // Flat arrays of plain values: a save is a copy, and a copy continues with the same bits.
 struct State {
     std::vector<Motion> motions;         // one for each body of the model
+    std::vector<Pace> paces;             // likewise
     std::vector<JointMemory> joints;     // one for each joint of the model
     std::vector<ContactMemory> contacts; // ascending by key
     std::vector<PointMemory> points;

@@ -61,6 +61,7 @@ void World::step(TaskPool *tasks, StepTimes *times) {
     report_ = StepReport{};
     scratch_.impacts.clear();
     const int parts = settings_.substeps > 1 && rides_on_turning() ? settings_.substeps : 1;
+    scratch_.step_parts = parts;
     if (parts == 1) {
         step_part(tasks, times);
     } else {
@@ -68,7 +69,7 @@ void World::step(TaskPool *tasks, StepTimes *times) {
         const State before = state_;
         try {
             settings_.dt /= parts;
-            settings_.substeps = 1;
+            settings_.substeps = settings_.max_substeps = 1;
             for (int part = 0; part < parts; ++part)
                 step_part(tasks, times);
             settings_ = whole;
@@ -99,8 +100,16 @@ void World::step_part(TaskPool *tasks, StepTimes *times) {
             const PhaseTimer timer(times ? &times->advance : nullptr);
             const std::size_t impacts = scratch_.impacts.size();
             const StepReport before = report_;
+            scratch_.paces = state_.paces;
             load_bodies();
             advance();
+            if (began_too_coarsely()) {
+                scratch_.impacts.resize(impacts);
+                report_.impacts = before.impacts;
+                report_.unresolved_impacts = before.unresolved_impacts;
+                load_bodies();
+                advance();
+            }
             constexpr int most_tries = 8;
             for (int tries = 1; tries < most_tries && find_surprises(); ++tries) {
                 scratch_.impacts.resize(impacts);
@@ -151,9 +160,18 @@ void World::load_bodies() {
 
 void World::advance() {
     Scratch &s = scratch_;
-    StepContext context{*model_, settings_,     s.bodies, s.moving, s.contacts, s.joints,
-                        s.grab,  s.world_frame, s.solver, report_,  s.impacts};
-    method_->advance(context);
+    choose_substeps();
+    for (std::size_t i = 0; i < s.group_count; ++i) {
+        StepSettings settings = settings_;
+        settings.substeps = s.groups[i].substeps;
+        StepContext context{*model_, settings,      s.bodies, s.groups[i], s.contacts, s.joints,
+                            s.grab,  s.world_frame, s.solver, report_,     s.impacts};
+        std::swap(s.solver.joint_system, s.joint_systems[i]);
+        method_->advance(context);
+        if (chooses_substeps())
+            note_needs(s.groups[i]);
+        std::swap(s.solver.joint_system, s.joint_systems[i]);
+    }
     report_.moving_bodies = static_cast<std::uint32_t>(s.moving.size());
     report_.contact_points = 0;
     report_.joints = model_->alive_joints;
@@ -200,6 +218,7 @@ void World::finish() {
     std::swap(state_.contacts, s.next_memory);
     std::swap(state_.points, s.next_points);
     std::swap(state_.joints, s.joints);
+    std::swap(state_.paces, s.paces);
     state_.grab = s.grab;
     s.contacts_are_current = true;
 }

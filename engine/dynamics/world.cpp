@@ -144,6 +144,8 @@ BodyId World::add_body(const BodyDef &def) {
     Model &model = edit();
     const std::uint32_t slot = take_slot(model.bodies, model.free_bodies);
     state_.motions.resize(model.bodies.size());
+    state_.paces.resize(model.bodies.size());
+    state_.paces[slot] = def.pace;
     Body &body = model.bodies[slot];
     body.kind = def.kind;
     body.alive = true;
@@ -234,6 +236,7 @@ void World::remove_body(BodyId id) {
     body.first_collider = gone.first_collider;
     body.collider_room = gone.collider_room;
     state_.motions[id.index] = Motion{};
+    state_.paces[id.index] = Pace{};
     model.free_bodies.push_back(id.index);
 }
 

@@ -123,6 +123,10 @@ class World {
         Vec3 torque{Real(0)}; // N m
     };
     JointLoad joint_load(std::uint32_t joint) const;
+    // The substeps that a body's island took in the last step.
+    int substeps_of(std::uint32_t body) const;
+    // The one of two bodies in whose island their contact or joint is; either may be Joint::world.
+    std::uint32_t island_body(std::uint32_t a, std::uint32_t b) const;
     Vec3 anchor_a(const Joint &joint) const; // world
     Vec3 anchor_b(const Joint &joint) const;
     const Motion &joint_motion(std::uint32_t body) const; // the world's is the identity
@@ -141,6 +145,22 @@ class World {
     void advance();
     void gather_memory();
     void finish();
+
+    // Islands and their substeps (islands.cpp).
+    bool chooses_substeps() const;
+    bool moves(std::uint32_t body) const;
+    bool holds(std::uint32_t joint) const;
+    void find_islands();
+    void gather_needs();
+    void guess_needs();
+    int chosen_substeps(const Islands::Needs &needs) const;
+    void choose_substeps();
+    void set_pace(std::vector<Contact> &contacts) const;
+    void group_islands();
+    void note_contact_needs(const IslandGroup &group);
+    void note_joint_needs(const IslandGroup &group);
+    void note_needs(const IslandGroup &group);
+    bool began_too_coarsely() const;
 
     bool turn_together(std::uint32_t a, std::uint32_t b) const;
     bool rides_on_turning() const;

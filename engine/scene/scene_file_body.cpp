@@ -54,6 +54,23 @@ void read_inertia(const Table &table, BodyDesc &body) {
                     "none can be more than the other two together");
 }
 
+void read_pace(Reading &reading, const Table &table, BodyDesc &body) {
+    const toml::table *source = table_at(reading.report, table, "pace");
+    if (source == nullptr)
+        return;
+    static constexpr std::array<std::string_view, 2> keys{"substeps", "wanted"};
+    const Table sub(reading.report, *source, "pace of " + table.title(), keys);
+    for (const auto &[key, number] :
+         {std::pair("substeps", &body.pace.substeps), std::pair("wanted", &body.pace.wanted)}) {
+        constexpr std::uint64_t most = std::numeric_limits<std::uint16_t>::max();
+        const std::uint64_t given = sub.natural(key).value_or(0);
+        if (given > most)
+            sub.error(key, "that many substeps cannot have been taken",
+                      std::string(key) + " is 0 to " + std::to_string(most));
+        *number = static_cast<int>(std::min(given, most));
+    }
+}
+
 void read_mass(Reading &reading, const Table &table, BodyDesc &body, bool has_shape) {
     body.material = read_material_name(reading, table);
     if (const KindInfo &info = least_movable(body); info.moves != Moves::by_forces) {
@@ -246,7 +263,8 @@ void read_body(Reading &reading, const toml::table &source) {
                                "angular_damping",
                                "color",
                                "repeat",
-                               "mass_pose"});
+                               "mass_pose",
+                               "pace"});
         return all;
     }();
     const Table table(reading.report, source, title_of("body", source), keys);
@@ -257,6 +275,7 @@ void read_body(Reading &reading, const toml::table &source) {
     const bool has_shape = read_colliders(reading, table, body);
     read_kind(table, body);
     read_mass(reading, table, body, has_shape);
+    read_pace(reading, table, body);
     body.position = table.vector("position", moderate).value_or(body.position);
     body.orientation =
         table.has("shapes")

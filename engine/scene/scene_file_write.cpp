@@ -170,6 +170,12 @@ class SceneWriter {
                                   " }");
     }
 
+    void write_pace(const BodyDesc &body) {
+        if (body.pace.substeps > 0)
+            line("pace", "{ substeps = " + std::to_string(body.pace.substeps) +
+                             ", wanted = " + std::to_string(body.pace.wanted) + " }");
+    }
+
     void write_freedom(const BodyDesc &body) {
         std::string locked;
         for (std::size_t axis = 0; axis < body.locked.size(); ++axis)
@@ -201,6 +207,7 @@ class SceneWriter {
             line("kind", kinds[static_cast<std::size_t>(body.kind)]);
         write_shapes(body);
         write_mass(body);
+        write_pace(body);
         if (body.colliders.size() == 1 && is_plain(body.colliders.front()))
             lines(filter_fields(body.colliders.front()));
         line("position", array3(body.position));

@@ -39,8 +39,11 @@ struct AsSolid {
     }
     Solid operator()(const CylinderDesc &c) const {
         const f32::Vec3 up = along_y(c.half_height);
-        return f32::Cylinder{f32::Vec3(position) - up, f32::Vec3(position) + up,
-                             static_cast<float>(c.radius)};
+        const f32::Cylinder cylinder{f32::Vec3(position) - up, f32::Vec3(position) + up,
+                                     static_cast<float>(c.radius)};
+        if (cylinder.a == cylinder.b)
+            return {}; // so far from the other that it is none in float
+        return cylinder;
     }
     Solid operator()(const HullDesc &h) const {
         auto [made, is_new] = hulls.try_emplace(h.points.get());

@@ -17,7 +17,7 @@ double force_between(const World &world, BodyId a, BodyId b) {
             contact.key.b == std::max(a.index, b.index))
             for (std::size_t k = 0; k < std::size_t(contact.manifold.count); ++k)
                 sum += double(contact.impulses[k].x);
-    return sum / substep_of(world);
+    return sum * world.substeps_of(std::max(a.index, b.index)) / world.settings().dt;
 }
 
 World stack(const std::string &method, const StepSettings &settings, int n) {

@@ -105,6 +105,7 @@ World loaded(const World &from) {
         def.pose = {motion.position, motion.rotation};
         def.velocity = motion.velocity;
         def.angular_velocity = motion.angular_velocity;
+        def.pace = from.state().paces[i];
         ids[i] = world.add_body(def);
     }
     for (const Joint &joint : from.joints()) {

@@ -138,7 +138,7 @@ TEST_P(Saves, ASettledStepAllocatesNothing) {
         GTEST_SKIP() << "no joints";
     World world = heap(GetParam(), 100);
     TaskPool tasks(3);
-    run(world, 240);
+    run(world, 720);
     for (int i = 0; i < 5; ++i)
         world.step(&tasks);
     SavedWorld saved;

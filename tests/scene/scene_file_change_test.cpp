@@ -84,7 +84,7 @@ TEST(SceneFileChange, SaysWhatAPathShouldBe) {
               "\"body.bal.mass\": the scene's body has no \"bal\"; did you mean \"ball\"?");
     EXPECT_NE(complaint("body.ball.velocity.w").find("write x, y or z"), std::string::npos);
     EXPECT_NE(complaint("body.ball.shape").find("is a string, not a number"), std::string::npos);
-    EXPECT_NE(complaint("body.box.repeat").find("there are count"), std::string::npos)
+    EXPECT_NE(complaint("body.box.repeat").find("the only one is count"), std::string::npos)
         << complaint("body.box.repeat");
     EXPECT_NE(complaint("body.ball.small.velocity.x").find("gives no"), std::string::npos);
     EXPECT_NE(complaint("body").find("is an array, not a number"), std::string::npos);

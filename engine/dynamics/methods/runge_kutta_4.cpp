@@ -45,9 +45,9 @@ void advance(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     context.report.body_passes +=
-        4 * context.moving.size() * static_cast<std::size_t>(settings.substeps);
+        4 * context.moving().size() * static_cast<std::size_t>(settings.substeps);
     for (int substep = 0; substep < settings.substeps; ++substep)
-        for (const std::uint32_t i : context.moving) {
+        for (const std::uint32_t i : context.moving()) {
             const Body &body = context.model.bodies[i];
             SolverBody &motion = context.bodies[i];
             if (body.kind == BodyKind::kinematic) {

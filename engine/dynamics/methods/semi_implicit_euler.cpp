@@ -15,9 +15,9 @@ void advance(StepContext &context) {
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Vec3 gravity{settings.gravity};
     context.report.body_passes +=
-        context.moving.size() * static_cast<std::size_t>(settings.substeps);
+        context.moving().size() * static_cast<std::size_t>(settings.substeps);
     for (int substep = 0; substep < settings.substeps; ++substep)
-        for (const std::uint32_t i : context.moving) {
+        for (const std::uint32_t i : context.moving()) {
             const Body &body = context.model.bodies[i];
             SolverBody &motion = context.bodies[i];
             if (body.kind == BodyKind::dynamic) {

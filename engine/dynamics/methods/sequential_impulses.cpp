@@ -23,7 +23,7 @@ void push_apart(StepContext &context, const ContactBias &bias, Real h) {
         return;
     std::vector<std::array<Vec3, 2>> &velocities = context.scratch.velocities;
     velocities.clear();
-    for (const std::uint32_t i : context.moving) {
+    for (const std::uint32_t i : context.moving()) {
         SolverBody &body = context.bodies[i];
         velocities.push_back({body.velocity, body.angular_velocity});
         body.velocity = body.angular_velocity = Vec3{Real(0)};
@@ -31,7 +31,7 @@ void push_apart(StepContext &context, const ContactBias &bias, Real h) {
     refresh_joints(context);
     remember_joints(context);
     remember_contacts(context);
-    const JointPass holding{.h = h, .springs = Springs::skip, .skips_motors = true};
+    const JointPass holding{.softness = {}, .h = h, .springs = Springs::skip, .skips_motors = true};
     for (int i = 0; i < context.settings.iterations; ++i) {
         solve_joints(context, holding);
         solve_contacts(context, bias, h);
@@ -43,7 +43,7 @@ void push_apart(StepContext &context, const ContactBias &bias, Real h) {
         for (ContactPointConstraint &point : contact.points)
             point.impulse = point.remembered;
     for (std::size_t i = 0; i < velocities.size(); ++i) {
-        SolverBody &body = context.bodies[context.moving[i]];
+        SolverBody &body = context.bodies[context.moving()[i]];
         body.velocity = velocities[i][0];
         body.angular_velocity = velocities[i][1];
     }

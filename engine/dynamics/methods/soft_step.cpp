@@ -49,7 +49,7 @@ void advance(StepContext &context) {
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
     context.scratch.joint_system.arrange(context);
-    const bool is_free = context.contacts.empty() && context.scratch.joints.empty();
+    const bool is_free = context.is_free();
     for (int substep = 0; substep < settings.substeps; ++substep) {
         follow_loads(context, h);
         refresh_joints(context);
@@ -89,9 +89,10 @@ Method soft_step() {
              .contacts = true,
              .joints = true,
              .looks_ahead = true,
-             .reads = {SettingGroup::constraints, SettingGroup::kept, SettingGroup::soft,
-                       SettingGroup::impacts, SettingGroup::gyroscopic},
-             .defaults = {.substeps = 4, .iterations = 1, .contact_damping_ratio = 1}},
+             .reads = {SettingGroup::chosen, SettingGroup::constraints, SettingGroup::kept,
+                       SettingGroup::soft, SettingGroup::impacts, SettingGroup::gyroscopic},
+             .defaults =
+                 {.substeps = 4, .max_substeps = 64, .iterations = 1, .contact_damping_ratio = 1}},
             advance};
 }
 

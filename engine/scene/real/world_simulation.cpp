@@ -293,6 +293,8 @@ SceneDesc WorldSimulation::describe() const {
             const Motion &motion = world.motions()[i];
             body.mass_pose = {glm::dvec3{motion.position}, glm::dquat{motion.rotation}};
         }
+        const Pace &pace = world.state().paces[i];
+        body.pace = {pace.substeps, pace.wanted};
         body.position = now.position;
         body.orientation = now.orientation;
         body.velocity = now.velocity;
@@ -333,9 +335,10 @@ SceneDesc WorldSimulation::describe() const {
 
 std::vector<ContactView> WorldSimulation::contacts() const {
     const World &world = world_;
-    const double rate = world.settings().substeps / world.settings().dt;
     std::vector<ContactView> views;
     for (const Contact &contact : world.contacts()) {
+        const double rate = world.substeps_of(world.island_body(contact.key.a, contact.key.b)) /
+                            world.settings().dt;
         const TangentBasis basis = tangent_basis(contact.manifold.normal);
         for (int k = 0; k < contact.manifold.count; ++k) {
             const auto index = static_cast<std::size_t>(k);
@@ -416,7 +419,8 @@ std::vector<JointView> WorldSimulation::joints() const {
         const World::JointLoad load = world.joint_load(i);
         view.force = glm::dvec3{load.force};
         view.torque = glm::dvec3{load.torque};
-        const double rate = world.settings().substeps / world.settings().dt;
+        const double rate =
+            world.substeps_of(world.island_body(joint.a, joint.b)) / world.settings().dt;
         view.motor_force = desc.motor_speed
                                ? rate * static_cast<double>(world.state().joints[i].impulses.back())
                                : 0;

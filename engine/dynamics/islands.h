@@ -1,0 +1,70 @@
+// Islands: bodies that act on each other within a step, through contacts and joints. Each takes as
+// many substeps as its own loads ask for.
+#pragma once
+
+#include "engine/core/precision.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// A soft contact or joint gives way under its load by an amount that falls with the square of the
+// substeps; and joints' forces make bodies so stiff that too long a substep cannot follow them.
+// Both are known from what was borne in the last step, so how many substeps an island needs is
+// known before a step, from the state alone.
+//
+// What a body remembers of that.
+struct Pace {
+    std::uint16_t substeps = 0; // of its island in the last step; 0: those of the settings
+    std::uint16_t wanted = 0;   // what its own loads ask for
+};
+
+// Islands that take the same number of substeps: what a method advances at once. Indices of the
+// context's, each ascending.
+struct IslandGroup {
+    int substeps = 0;
+    std::vector<std::uint32_t> moving;
+    std::vector<std::uint32_t> contacts;
+    std::vector<std::uint32_t> joints;
+    bool holds_grab = false;
+};
+
+// The islands of a step, as trees of bodies. Kinematic bodies join what they touch, static ones do
+// not.
+struct Islands {
+    std::vector<std::uint32_t> parent; // of each body; of a root itself
+    struct Needs {                     // of a root's island
+        int work = 0;                  // contacts and joints
+        double mass = 0;               // kg
+        int wanted = 0;
+        int before = 0; // substeps of the last step, the most that any of its bodies took
+        bool rests = true;
+        int substeps = 0;
+    };
+    std::vector<Needs> needs;
+
+    std::uint32_t root_of(std::uint32_t body) {
+        while (parent[body] != body)
+            body = parent[body] = parent[parent[body]];
+        return body;
+    }
+    // The lesser root stays one, so that the trees depend on nothing but which are joined.
+    void join(std::uint32_t a, std::uint32_t b) {
+        a = root_of(a);
+        b = root_of(b);
+        if (a < b)
+            parent[b] = a;
+        else
+            parent[a] = b;
+    }
+};
+
+// The least of the numbers 1 to 8, 10, 12, 14, 16, 20, ... (three binary digits) that is not below
+// n: few numbers, so that many islands are advanced at once.
+int round_substeps_up(int n);
+int round_substeps_down(int n);
+// The next one below a rounded n > 1.
+int fewer_substeps(int n);
+
+} // namespace plumb::inline PLUMB_PRECISION

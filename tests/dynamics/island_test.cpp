@@ -1,0 +1,164 @@
+// Each island takes as many substeps as its own loads ask for.
+#include "tests/dynamics/worlds.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+constexpr double side = 1;
+
+BodyId add_box(World &world, double mass, const V &position) {
+    return world.add_body(
+        with_material(dynamic_body(block(V{0.5 * side}), mass, position), 0.6, 0));
+}
+
+BodyId add_stack(World &world, std::span<const double> masses, double x) {
+    BodyId top;
+    double height = 0.5 * side;
+    for (const double mass : masses) {
+        top = add_box(world, mass, V{x, height, 0});
+        height += side;
+    }
+    return top;
+}
+
+World floor_world() {
+    World world("soft_step", settings_for("soft_step"));
+    world.add_body(ground(0.6, 0));
+    return world;
+}
+
+TEST(Islands, SubstepsAreRoundedToThreeBinaryDigits) {
+    int last = 1;
+    for (int n = 1; n < 5000; ++n) {
+        const int up = round_substeps_up(n), down = round_substeps_down(n);
+        ASSERT_LE(down, n);
+        ASSERT_GE(up, n);
+        ASSERT_LE(up, 1.25 * n + 1);
+        ASSERT_EQ(round_substeps_up(up), up);
+        if (up != last) {
+            ASSERT_EQ(fewer_substeps(up), last) << up;
+        }
+        last = up;
+    }
+}
+
+// A stack of 60 at four substeps falls within 5 s (Rest.ATallStackStandsOnKeptContacts); deep in
+// the tolerance, it sinks by a part of a millimetre at each contact.
+TEST(Islands, ATallStackTakesWhatItNeedsAndStands) {
+    for (const std::size_t boxes : {10U, 30U, 60U}) {
+        World world = floor_world();
+        const std::vector<double> masses(boxes, 1.0);
+        const BodyId top = add_stack(world, masses, 0);
+        run(world, 60 * 30);
+        const double n = double(boxes);
+        EXPECT_GT(double(world.motions()[top.index].position.y), (n - 0.5) * side - 0.01) << boxes;
+        const Measures m = world.measure();
+        EXPECT_LT(m.kinetic_energy, 1e-6 * n * gravity * side * n / 2) << boxes;
+        EXPECT_LT(m.max_penetration, world.settings().substep_tolerance * side) << boxes;
+    }
+}
+
+TEST(Islands, ALightBoxBearsAHeavyOne) {
+    for (const double ratio : {30.0, 100.0, 300.0, 1000.0, 3000.0}) {
+        World world = floor_world();
+        const BodyId heavy = add_stack(world, std::array{1.0, ratio}, 0);
+        run(world, 60 * 30);
+        // Where the most substeps are too few, the depth grows with the load.
+        const double depth = world.settings().substep_tolerance * side * std::max(1.0, ratio / 400);
+        EXPECT_LT(world.measure().max_penetration, depth) << ratio;
+        EXPECT_NEAR(double(world.motions()[heavy.index].position.y), 1.5 * side, 2 * depth);
+    }
+}
+
+// Only those pay who need it, and no longer than they need it.
+TEST(Islands, TakeTheirOwnSubsteps) {
+    World world = floor_world();
+    const BodyId alone = add_box(world, 1, V{-5, 0.5, 0});
+    const BodyId flying = add_box(world, 1, V{-10, 50, 0});
+    const BodyId heavy = add_stack(world, std::array{1.0, 300.0}, 5);
+    run(world, 120);
+    const int least = world.settings().substeps;
+    EXPECT_EQ(world.substeps_of(alone.index), least);
+    EXPECT_EQ(world.substeps_of(flying.index), least);
+    EXPECT_GT(world.substeps_of(heavy.index), 8 * least);
+    EXPECT_EQ(world.substeps_of(heavy.index), world.substeps_of(heavy.index - 1));
+    world.remove_body(heavy);
+    run(world, 120);
+    EXPECT_EQ(world.substeps_of(heavy.index - 1), least);
+}
+
+// What is remembered is of one substep: with another number of them the load stays the same.
+TEST(Islands, KeepTheirLoadsWhenTheSubstepsChange) {
+    for (const bool fewer : {false, true}) {
+        World world = floor_world();
+        StepSettings settings = world.settings();
+        settings.substep_budget = fewer ? 8192 : 0;
+        world.set_settings(settings);
+        const BodyId top = add_stack(world, std::vector<double>(10, 1.0), 0);
+        run(world, 600);
+        const int before = world.substeps_of(top.index);
+        settings.substep_budget = fewer ? 0 : 8192;
+        world.set_settings(settings);
+        double fastest = 0;
+        for (int i = 0; i < 60; ++i) {
+            run(world, 1);
+            fastest = std::max(fastest, std::abs(double(world.motions()[top.index].velocity.y)));
+        }
+        EXPECT_EQ(world.substeps_of(top.index) < before, fewer);
+        // Soft contacts that are stiffened spring back: half the loads times the depths, 0.35 J, is
+        // 0.7 m/s at the top. Without their loads the boxes would be thrown at 2 m/s.
+        EXPECT_LT(fastest, 1) << fewer;
+    }
+}
+
+// A budget bounds what an island may cost, and never takes it below the least.
+TEST(Islands, KeepToTheBudget) {
+    World world = floor_world();
+    StepSettings settings = world.settings();
+    settings.substep_budget = 100;
+    world.set_settings(settings);
+    const BodyId top = add_stack(world, std::vector<double>(10, 1.0), 0);
+    const BodyId heavy = add_stack(world, std::array{1.0, 1000.0}, 5);
+    run(world, 60);
+    EXPECT_EQ(world.substeps_of(top.index), 10);
+    EXPECT_EQ(world.substeps_of(heavy.index), 48); // 100 / 2 contacts, rounded down
+    settings.substep_budget = 0;
+    world.set_settings(settings);
+    run(world, 60);
+    EXPECT_EQ(world.substeps_of(top.index), 4);
+}
+
+// A chain that hangs at rest with a heavy end stays at rest: no step begins so coarsely that the
+// joints are stretched first.
+TEST(Islands, AHangingChainWithAHeavyEndStaysAtRest) {
+    for (const double ratio : {1.0, 10.0, 100.0, 300.0, 1000.0}) {
+        World world("soft_step", settings_for("soft_step"));
+        BodyId last;
+        for (int i = 0; i < 10; ++i) {
+            JointDef joint;
+            joint.a = last;
+            joint.b = last = world.add_body(
+                dynamic_body(ball(i == 9 ? 0.3 : 0.1), i == 9 ? ratio : 1, V{0, -0.5 - i, 0}));
+            joint.anchor_a_local = narrow(V{0, i == 0 ? 0 : -0.5, 0});
+            joint.anchor_b_local = narrow(V{0, 0.5, 0});
+            world.add_joint(joint);
+        }
+        const double before = world.energy();
+        double highest = before;
+        for (int i = 0; i < 600; ++i) {
+            run(world, 1);
+            highest = std::max(highest, world.energy());
+        }
+        Real drift{0};
+        for (std::uint32_t j = 0; j < 10; ++j)
+            drift = std::max(drift, world.joint_error(j));
+        EXPECT_LT(double(drift), 1e-4) << ratio;
+        EXPECT_LT(highest - before, 1e-4 * ratio * gravity) << ratio;
+        EXPECT_LT(world.measure().kinetic_energy, 1e-4 * ratio * gravity) << ratio;
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
