@@ -46,7 +46,7 @@ struct JointPass {
     // Whether limits that are off and bear nothing are left to the next substep.
     bool loaded_only = false;
     Real force_share = Real(1); // of max_force * h, for motors and grabs
-    bool skips_motors = false; // as a pass over pseudo velocities does
+    bool skips_motors = false;  // as a pass over pseudo velocities does
 };
 
 // The length against which a block's drift is measured (m): that of its arms; 1 for angles.
