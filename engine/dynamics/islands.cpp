@@ -53,7 +53,7 @@ void scale(Contact &contact, Real share) {
 } // namespace
 
 int round_substeps_up(int n) {
-    const int digits = std::bit_width(static_cast<unsigned>(std::max(n, 0)));
+    const auto digits = static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(n, 0))));
     const int step = 1 << std::max(digits - 3, 0);
     return (n + step - 1) / step * step;
 }
@@ -64,7 +64,7 @@ int round_substeps_down(int n) {
 }
 
 int fewer_substeps(int n) {
-    const int digits = std::bit_width(static_cast<unsigned>(n - 1));
+    const auto digits = static_cast<int>(std::bit_width(static_cast<unsigned>(n - 1)));
     return n - (1 << std::max(digits - 3, 0));
 }
 
