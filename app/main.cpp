@@ -1,4 +1,5 @@
 // The command line.
+#include "app/command_options.h"
 #include "app/files/output_file.h"
 #include "app/hash.h"
 #include "app/lab/chart.h"
@@ -14,7 +15,6 @@
 #include "app/render/png.h"
 #include "app/replay.h"
 #include "app/sandbox/run_sandbox.h"
-#include "app/sandbox/scene_catalog.h"
 #include "app/snapshot.h"
 #include "engine/scene/recording.h"
 #include "engine/scene/scene_file_spelling.h"
@@ -23,7 +23,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <iostream>
 #include <new>
 #include <stdexcept>
@@ -54,164 +53,13 @@ int code_of(ExitCode code) {
     return static_cast<int>(code);
 }
 
-// What several commands ask for.
-struct Common {
-    std::filesystem::path data = find_data_dir();
-    std::vector<SceneEntry> catalogue = find_scenes(data / "scenes");
-    std::vector<std::string> scenes;
-    std::string method, precision, gl = "auto", size;
-    GivenSettings settings;
-    int threads = 1;
-    std::filesystem::path out;
-
-    std::vector<std::filesystem::path> scene_paths() const {
-        std::vector<std::filesystem::path> paths;
-        for (const std::string &name : scenes)
-            paths.push_back(resolve_scene(name, catalogue));
-        return paths;
-    }
-    RunOptions run() const {
-        RunOptions options;
-        options.method = method;
-        options.settings = settings;
-        if (!precision.empty())
-            options.precision = precision == "double" ? Precision::dual : Precision::single;
-        return options;
-    }
-    std::filesystem::path shader_dir() const { return data / "shaders"; }
-};
-
-std::string method_names() {
-    std::string names;
-    for (const MethodInfo &info : method_infos())
-        names += (names.empty() ? "" : ", ") + std::string(info.name);
-    return names;
-}
-
-CLI::Validator positive() {
-    return {[](const std::string &text) {
-                double value = 0;
-                return CLI::detail::lexical_cast(text, value) && value > 0
-                           ? std::string()
-                           : "must be a positive number, got " + text;
-            },
-            "POSITIVE"};
-}
-
-// An option that gives settings, each as `prefix` and what was typed.
-void add_setting(CLI::App &command, Common &common, const std::string &option,
-                 const std::string &prefix, const std::string &about, const std::string &type) {
-    command
-        .add_option_function<std::vector<std::string>>(
-            option,
-            [&common, option, prefix](const std::vector<std::string> &texts) {
-                for (const std::string &text : texts)
-                    try {
-                        common.settings.give(parse_setting(prefix + text));
-                    } catch (const std::invalid_argument &error) {
-                        throw CLI::ValidationError(option, error.what());
-                    }
-            },
-            about)
-        ->allow_extra_args(false)
-        ->type_name(type);
-}
-
-// The items of an option's list; none may be empty.
-std::vector<std::string> parse_list(const std::string &text) {
-    std::vector<std::string> items;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        if (end == begin)
-            throw std::invalid_argument("'" + text + "' has nothing between two commas");
-        items.push_back(text.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return items;
-}
-
-constexpr std::uint64_t most_steps = 1'000'000'000;
-
-std::vector<std::uint64_t> parse_steps(const std::string &text) {
-    std::vector<std::uint64_t> steps;
-    for (const std::string &item : parse_list(text)) {
-        std::uint64_t step = 0;
-        const char *end = item.data() + item.size();
-        const auto read = std::from_chars(item.data(), end, step);
-        if (read.ec != std::errc{} || read.ptr != end || step > most_steps)
-            throw std::invalid_argument("--at: '" + item +
-                                        "' is no step; whole numbers up to 1000000000, like "
-                                        "0,60,240");
-        steps.push_back(step);
-    }
-    return steps;
-}
-
-// Of options that count steps. CLI11 by itself reads -1 as the largest unsigned number.
-CLI::Range step_range() {
-    return {0, static_cast<int>(most_steps)};
-}
-
-void add_scenes(CLI::App &command, Common &common) {
-    command
-        .add_option("SCENE", common.scenes,
-                    "Scene files, or names from `plumb list`; a folder stands for all in it")
-        ->required();
-}
-
-void add_threads(CLI::App &command, Common &common) {
-    command
-        .add_option("--threads", common.threads,
-                    "Threads; the results are the same with any number")
-        ->check(CLI::Range(1, 256))
-        ->capture_default_str();
-}
-
-void add_run_options(CLI::App &command, Common &common, bool chart = false) {
-    if (!chart)
-        command.add_option("--method", common.method,
-                           "Instead of the scene's own: " + method_names());
-    add_setting(command, common, "--set", "",
-                "A setting from `plumb list --settings`, as in substeps=8, dt=1/120 or "
-                "gravity=0,-3,0; may be given several times",
-                "NAME=VALUE");
-    for (const char *name : {"dt", "substeps", "iterations"})
-        add_setting(command, common, std::string("--") + name, std::string(name) + "=",
-                    "The same as --set " + std::string(name) + "=VALUE", "VALUE");
-    command.add_option("--precision", common.precision, "float or double")
-        ->check(CLI::IsMember({"float", "double"}));
-    if (!chart) // which is timed on one thread
-        add_threads(command, common);
-}
-
-void add_gl(CLI::App &command, Common &common) {
-    command
-        .add_option("--gl", common.gl,
-                    "Where to draw: window, osmesa (in memory), or auto, which tries in this order")
-        ->check(CLI::IsMember({"auto", "window", "osmesa"}))
-        ->capture_default_str();
-}
-
-template <typename T>
-void add_ui_scale(CLI::App &command, T &scale, const std::string &by_default) {
-    command
-        .add_option("--ui-scale", scale,
-                    "How large text and panels are, 0.5 to 4 (" + by_default + ")")
-        ->check(CLI::Range(0.5, 4.0));
-}
-
-void add_out(CLI::App &command, Common &common, const std::string &by_default) {
-    common.out = by_default;
-    command.add_option("--out", common.out, "Folder for what is made")->capture_default_str();
-}
-
 struct RunArguments {
     std::optional<int> frames, samples;
     std::optional<float> ui_scale;
     std::filesystem::path screenshot, record;
 };
 
-int run(const Common &common, const RunArguments &arguments) {
+int run(const CommonOptions &common, const RunArguments &arguments) {
     TaskPool tasks(common.threads);
     SandboxOptions options;
     options.scenes = common.catalogue;
@@ -255,7 +103,7 @@ int run(const Common &common, const RunArguments &arguments) {
 
 // In a window if there is one to be had, else without. What is wrong with the file is said by the
 // latter.
-int replay_or_play(const Common &common, ReplayCommand command, bool no_window) {
+int replay_or_play(const CommonOptions &common, ReplayCommand command, bool no_window) {
     TaskPool tasks(common.threads);
     command.tasks = &tasks;
     if (!no_window && load_recording(command.recording).ok()) {
@@ -280,7 +128,7 @@ struct SnapshotArguments {
     float ui_scale = 1;
 };
 
-int snapshot(const Common &common, const SnapshotArguments &arguments) {
+int snapshot(const CommonOptions &common, const SnapshotArguments &arguments) {
     TaskPool tasks(common.threads);
     SnapshotCommand command;
     command.scenes = common.scene_paths();
@@ -345,7 +193,7 @@ struct BenchArguments {
 };
 
 // The other libraries are linked into a program of its own beside this one, which few people need.
-int bench(const BenchArguments &arguments, const Common &common) {
+int bench(const BenchArguments &arguments, const CommonOptions &common) {
     const std::filesystem::path program =
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plumb-bench";
     if (!std::filesystem::exists(program)) {
@@ -380,7 +228,7 @@ int main_with_errors(int argc, char **argv) {
     app.footer(exit_codes);
     app.require_subcommand(0, 1);
     app.set_version_flag("--version", PLUMB_VERSION);
-    Common common;
+    CommonOptions common;
     int result = 0;
 
     CLI::App *run_command = app.add_subcommand(

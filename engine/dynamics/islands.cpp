@@ -39,17 +39,6 @@ double largest(const Vec3 &v) {
     return static_cast<double>(std::max({v.x, v.y, v.z}));
 }
 
-// From `substeps` to another number: what is remembered is of one substep.
-Real share_of(int before, int now) {
-    return before == now ? Real(1) : static_cast<Real>(before) / static_cast<Real>(now);
-}
-
-void scale(Contact &contact, Real share) {
-    if (share != Real(1))
-        for (Vec3 &impulse : contact.impulses)
-            impulse *= share;
-}
-
 } // namespace
 
 int round_substeps_up(int n) {
@@ -170,9 +159,9 @@ void World::guess_needs() {
 
 // Up at once; down slowly and at rest: what stretched softly while it moved and is stiffened again
 // gains energy by it, and a tall stack would rock itself to pieces.
-int World::chosen_substeps(const Islands::Needs &needs) const {
+int World::chosen_substeps(const Islands::Needs &needs, int budget) const {
     const int least = settings_.substeps;
-    const int affordable = needs.work > 0 ? settings_.substep_budget / needs.work : least;
+    const int affordable = needs.work > 0 ? budget / needs.work : least;
     const int most =
         std::max(least, round_substeps_down(std::min(settings_.max_substeps, affordable)));
     const auto rounded = [&](double wanted) {
@@ -188,55 +177,46 @@ int World::chosen_substeps(const Islands::Needs &needs) const {
     return std::clamp(may_go_down ? fewer_substeps(needs.before) : needs.before, least, most);
 }
 
-// Sets everybody's pace for this step, and what is remembered to it.
+// Each island may take as much of the budget as any other; as much as keeps all of them to it.
+void World::share_budget() {
+    Scratch &s = scratch_;
+    std::vector<std::uint32_t> &roots = s.islands.roots;
+    roots.clear();
+    for (std::uint32_t i = 0; i < s.islands.needs.size(); ++i) {
+        s.islands.needs[i].substeps = settings_.substeps;
+        if (s.islands.needs[i].work > 0)
+            roots.push_back(i);
+    }
+    std::int64_t work = 0;
+    int each = settings_.substep_budget;
+    do {
+        work = 0;
+        for (const std::uint32_t root : roots) {
+            Islands::Needs &needs = s.islands.needs[root];
+            needs.substeps = chosen_substeps(needs, each);
+            if (needs.substeps > settings_.substeps)
+                work += std::int64_t{needs.work} * needs.substeps;
+        }
+        each = fewer_substeps(each);
+    } while (work > settings_.substep_budget);
+}
+
+// Remembered impulses stay as they are, though they are of one substep: scaling them to the new
+// number of substeps changed no stack, pyramid or pile that was tried.
 void World::choose_substeps() {
     Scratch &s = scratch_;
-    if (chooses_substeps()) {
+    const bool chooses = chooses_substeps();
+    if (chooses) {
         find_islands();
         gather_needs();
         guess_needs();
-        for (Islands::Needs &needs : s.islands.needs)
-            needs.substeps = chosen_substeps(needs);
+        share_budget();
     }
-    const int parts = s.step_parts;
-    const auto chosen = [&](std::uint32_t body) {
-        return chooses_substeps() ? s.islands.needs[s.islands.root_of(body)].substeps
-                                  : settings_.substeps * parts;
-    };
-    const auto before = [&](const std::vector<Pace> &paces, std::uint32_t body) {
-        return paces[body].substeps > 0 ? int{paces[body].substeps} : settings_.substeps * parts;
-    };
-    for (Contact &contact : s.contacts) {
-        const std::uint32_t body = island_body(contact.key.a, contact.key.b);
-        scale(contact, share_of(before(s.paces, body), chosen(body)));
-    }
-    // Joints are those of the state.
-    for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
-        const Joint &joint = model_->joints[i];
-        if (!holds(i))
-            continue;
-        const std::uint32_t body = island_body(joint.a, joint.b);
-        const Real share = share_of(before(state_.paces, body), chosen(body));
-        if (share != Real(1))
-            for (Real &impulse : s.joints[i].impulses)
-                impulse *= share;
-    }
-    if (s.grab.is_holding())
-        s.grab.impulse *= share_of(before(state_.paces, s.grab.body), chosen(s.grab.body));
     group_islands();
     for (const std::uint32_t i : s.moving)
         s.paces[i].substeps =
-            chooses_substeps() ? static_cast<std::uint16_t>(chosen(i)) : std::uint16_t{0};
-}
-
-// Contacts that were found for another try of the step remember what the state does.
-void World::set_pace(std::vector<Contact> &contacts) const {
-    const Scratch &s = scratch_;
-    for (Contact &contact : contacts) {
-        const std::uint32_t body = island_body(contact.key.a, contact.key.b);
-        const int now = s.paces[body].substeps;
-        scale(contact, now > 0 ? share_of(substeps_of(body), now) : Real(1));
-    }
+            chooses ? static_cast<std::uint16_t>(s.islands.needs[s.islands.root_of(i)].substeps)
+                    : std::uint16_t{0};
 }
 
 // In the order of their substeps.

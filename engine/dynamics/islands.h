@@ -43,6 +43,7 @@ struct Islands {
         int substeps = 0;
     };
     std::vector<Needs> needs;
+    std::vector<std::uint32_t> roots; // of islands that have contacts or joints
 
     std::uint32_t root_of(std::uint32_t body) {
         while (parent[body] != body)
@@ -64,7 +65,7 @@ struct Islands {
 // n: few numbers, so that many islands are advanced at once.
 int round_substeps_up(int n);
 int round_substeps_down(int n);
-// The next one below a rounded n > 1.
+// The next one below a rounded n > 0; below others, one about as far below.
 int fewer_substeps(int n);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -232,7 +232,6 @@ bool World::find_surprises() {
     });
     if (s.more.empty())
         return false;
-    set_pace(s.more);
     s.contacts.insert(s.contacts.end(), s.more.begin(), s.more.end());
     std::ranges::sort(s.contacts, {}, &Contact::key);
     return true;

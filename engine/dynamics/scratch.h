@@ -60,7 +60,6 @@ struct Scratch {
     std::vector<JointSystem> joint_systems; // one for each group, which is often that of last step
     std::vector<double> loads;     // of each body: the square of the substeps that it wants
     std::vector<double> stiffness; // of each body, that its joints' forces make (N m)
-    int step_parts = 1;            // into which the world's step is cut
     std::vector<Impact> impacts;
 };
 

@@ -83,8 +83,9 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "How deep a resting contact may be, as a share of the bodies' least width, and how far a "
      "joint may drift, as a share of its arms: the depth falls with the square of the substeps."},
     {"substep_budget", &StepSettings::substep_budget, "", 0, 65536, SettingGroup::chosen,
-     "Contacts and joints times substeps, up to which bodies that act on each other get more than "
-     "the least: what is small is made true, what is large stays fast."},
+     "How much work bodies may cost together, in contacts and joints times substeps, before they "
+     "get fewer substeps than they ask for: what is small is made true, what is large stays "
+     "fast."},
     {"iterations", &StepSettings::iterations, "", 1, 10000, SettingGroup::constraints,
      "Passes over all constraints in each substep."},
     {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,

@@ -61,7 +61,6 @@ void World::step(TaskPool *tasks, StepTimes *times) {
     report_ = StepReport{};
     scratch_.impacts.clear();
     const int parts = settings_.substeps > 1 && rides_on_turning() ? settings_.substeps : 1;
-    scratch_.step_parts = parts;
     if (parts == 1) {
         step_part(tasks, times);
     } else {

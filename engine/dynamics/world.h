@@ -153,9 +153,9 @@ class World {
     void find_islands();
     void gather_needs();
     void guess_needs();
-    int chosen_substeps(const Islands::Needs &needs) const;
+    int chosen_substeps(const Islands::Needs &needs, int budget) const;
+    void share_budget();
     void choose_substeps();
-    void set_pace(std::vector<Contact> &contacts) const;
     void group_islands();
     void note_contact_needs(const IslandGroup &group);
     void note_joint_needs(const IslandGroup &group);

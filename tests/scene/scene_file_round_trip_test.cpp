@@ -96,6 +96,8 @@ std::vector<std::string> words(const SceneDesc &scene) {
             w.number(c.sensor);
         }
         w.add(b.center_of_mass), w.add(b.inertia), w.add(b.mass_pose), w.add(b.gravity_scale);
+        w.number(static_cast<std::uint64_t>(b.pace.substeps));
+        w.number(static_cast<std::uint64_t>(b.pace.wanted));
         w.add(b.linear_damping), w.add(b.angular_damping);
         for (const bool is_locked : b.locked)
             w.number(is_locked);
@@ -330,6 +332,9 @@ class Scenes {
                 b.mass_pose = MassPoseDesc{vector(), rotation()};
             }
         }
+        if (one_in(3))
+            b.pace = {1 + static_cast<int>(random_.next_index(10000)),
+                      static_cast<int>(random_.next_index(65536))};
         for (bool &is_locked : b.locked)
             is_locked = one_in(4);
         if (one_in(3)) {

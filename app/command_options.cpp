@@ -1,0 +1,131 @@
+#include "app/command_options.h"
+
+#include "engine/dynamics/method_info.h"
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+#include <system_error>
+
+namespace plumb {
+
+namespace {
+
+constexpr std::uint64_t most_steps = 1'000'000'000;
+
+// An option that gives settings, each as `prefix` and what was typed.
+void add_setting(CLI::App &command, CommonOptions &common, const std::string &option,
+                 const std::string &prefix, const std::string &about, const std::string &type) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            option,
+            [&common, option, prefix](const std::vector<std::string> &texts) {
+                for (const std::string &text : texts)
+                    try {
+                        common.settings.give(parse_setting(prefix + text));
+                    } catch (const std::invalid_argument &error) {
+                        throw CLI::ValidationError(option, error.what());
+                    }
+            },
+            about)
+        ->allow_extra_args(false)
+        ->type_name(type);
+}
+
+} // namespace
+
+std::string method_names() {
+    std::string names;
+    for (const MethodInfo &info : method_infos())
+        names += (names.empty() ? "" : ", ") + std::string(info.name);
+    return names;
+}
+
+CLI::Validator positive() {
+    return {[](const std::string &text) {
+                double value = 0;
+                return CLI::detail::lexical_cast(text, value) && value > 0
+                           ? std::string()
+                           : "must be a positive number, got " + text;
+            },
+            "POSITIVE"};
+}
+
+std::vector<std::string> parse_list(const std::string &text) {
+    std::vector<std::string> items;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        if (end == begin)
+            throw std::invalid_argument("'" + text + "' has nothing between two commas");
+        items.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return items;
+}
+
+std::vector<std::uint64_t> parse_steps(const std::string &text) {
+    std::vector<std::uint64_t> steps;
+    for (const std::string &item : parse_list(text)) {
+        std::uint64_t step = 0;
+        const char *end = item.data() + item.size();
+        const auto read = std::from_chars(item.data(), end, step);
+        if (read.ec != std::errc{} || read.ptr != end || step > most_steps)
+            throw std::invalid_argument("--at: '" + item +
+                                        "' is no step; whole numbers up to 1000000000, like "
+                                        "0,60,240");
+        steps.push_back(step);
+    }
+    return steps;
+}
+
+// Of options that count steps. CLI11 by itself reads -1 as the largest unsigned number.
+CLI::Range step_range() {
+    return {0, static_cast<int>(most_steps)};
+}
+
+void add_scenes(CLI::App &command, CommonOptions &common) {
+    command
+        .add_option("SCENE", common.scenes,
+                    "Scene files, or names from `plumb list`; a folder stands for all in it")
+        ->required();
+}
+
+void add_threads(CLI::App &command, CommonOptions &common) {
+    command
+        .add_option("--threads", common.threads,
+                    "Threads; the results are the same with any number")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
+}
+
+void add_run_options(CLI::App &command, CommonOptions &common, bool chart) {
+    if (!chart)
+        command.add_option("--method", common.method,
+                           "Instead of the scene's own: " + method_names());
+    add_setting(command, common, "--set", "",
+                "A setting from `plumb list --settings`, as in substeps=8, dt=1/120 or "
+                "gravity=0,-3,0; may be given several times",
+                "NAME=VALUE");
+    for (const char *name : {"dt", "substeps", "iterations"})
+        add_setting(command, common, std::string("--") + name, std::string(name) + "=",
+                    "The same as --set " + std::string(name) + "=VALUE", "VALUE");
+    command.add_option("--precision", common.precision, "float or double")
+        ->check(CLI::IsMember({"float", "double"}));
+    if (!chart) // which is timed on one thread
+        add_threads(command, common);
+}
+
+void add_gl(CLI::App &command, CommonOptions &common) {
+    command
+        .add_option("--gl", common.gl,
+                    "Where to draw: window, osmesa (in memory), or auto, which tries in this order")
+        ->check(CLI::IsMember({"auto", "window", "osmesa"}))
+        ->capture_default_str();
+}
+
+void add_out(CLI::App &command, CommonOptions &common, const std::string &by_default) {
+    common.out = by_default;
+    command.add_option("--out", common.out, "Folder for what is made")->capture_default_str();
+}
+
+} // namespace plumb

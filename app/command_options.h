@@ -1,0 +1,70 @@
+// The command line's options that several commands share, and how they are read.
+#pragma once
+
+#include "app/sandbox/scene_catalog.h"
+#include "engine/scene/simulation.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+// What several commands ask for.
+struct CommonOptions {
+    std::filesystem::path data = find_data_dir();
+    std::vector<SceneEntry> catalogue = find_scenes(data / "scenes");
+    std::vector<std::string> scenes;
+    std::string method, precision, gl = "auto", size;
+    GivenSettings settings;
+    int threads = 1;
+    std::filesystem::path out;
+
+    std::vector<std::filesystem::path> scene_paths() const {
+        std::vector<std::filesystem::path> paths;
+        for (const std::string &name : scenes)
+            paths.push_back(resolve_scene(name, catalogue));
+        return paths;
+    }
+    RunOptions run() const {
+        RunOptions options;
+        options.method = method;
+        options.settings = settings;
+        if (!precision.empty())
+            options.precision = precision == "double" ? Precision::dual : Precision::single;
+        return options;
+    }
+    std::filesystem::path shader_dir() const { return data / "shaders"; }
+};
+
+// "soft_step, tgs_soft, ...": for help.
+std::string method_names();
+
+// What an option takes: a number above 0; a count of steps.
+CLI::Validator positive();
+CLI::Range step_range();
+
+// The items of an option's list; throws std::invalid_argument where one is empty.
+std::vector<std::string> parse_list(const std::string &text);
+// "0,60,240"; throws likewise.
+std::vector<std::uint64_t> parse_steps(const std::string &text);
+
+void add_scenes(CLI::App &command, CommonOptions &common);
+void add_threads(CLI::App &command, CommonOptions &common);
+// Of a chart: no method, as it runs several, and no threads, as it is timed on one.
+void add_run_options(CLI::App &command, CommonOptions &common, bool chart = false);
+void add_gl(CLI::App &command, CommonOptions &common);
+void add_out(CLI::App &command, CommonOptions &common, const std::string &by_default);
+
+template <typename T>
+void add_ui_scale(CLI::App &command, T &scale, const std::string &by_default) {
+    command
+        .add_option("--ui-scale", scale,
+                    "How large text and panels are, 0.5 to 4 (" + by_default + ")")
+        ->check(CLI::Range(0.5, 4.0));
+}
+
+} // namespace plumb
