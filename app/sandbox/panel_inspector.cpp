@@ -178,7 +178,7 @@ void inspector_panel(PanelContext &context) {
         return;
     }
     value_row("Velocity", triple(state.velocity) + " m/s");
-    value_row("Speed", number(glm::length(state.velocity), "m/s"));
+    value_row("Speed", state.asleep ? "asleep" : number(glm::length(state.velocity), "m/s"));
     value_row("Spin", triple(state.angular_velocity) + " 1/s");
     ImGui::Separator();
     contact_rows(context, *body);

@@ -65,7 +65,6 @@ struct BodyDef {
                                         // principal axes, as of a world that is continued
     Vec3 velocity{Real(0)};             // of the centre of mass, m/s
     Vec3 angular_velocity{Real(0)};     // rad/s, world
-    Pace pace;                          // of a world that is continued
     // Of the world's axes: which translations, then which rotations, never change.
     std::array<bool, 6> locked{};
     Real gravity_scale = Real(1);

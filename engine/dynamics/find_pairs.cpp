@@ -77,15 +77,16 @@ bool World::place_colliders() const {
     s.swept.resize(count);
     s.leaves.resize(count, DynamicTree::none);
     s.moved.assign(count, 0);
+    s.stays.resize(count, 0);
     bool any_moved = false;
     for (std::uint32_t i = 0; i < count; ++i) {
         const Collider &collider = model_->colliders[i];
         if (collider.body == no_body)
             continue;
-        const bool stays = model_->bodies[collider.body].kind == BodyKind::fixed &&
-                           s.leaves[i] != DynamicTree::none;
-        if (stays)
+        const bool is_still = s.still[collider.body] != 0;
+        if (is_still && s.stays[i] != 0 && s.leaves[i] != DynamicTree::none)
             continue;
+        s.stays[i] = is_still ? 1 : 0;
         const Motion &motion = state_.motions[collider.body];
         if (has_diverged(motion)) { // diverged: the report says so; nothing to collide
             s.swept[i] = Aabb{};
@@ -123,6 +124,9 @@ bool World::may_touch(std::uint32_t i, std::uint32_t j) const {
 }
 
 void World::add_candidate(std::uint32_t i, std::uint32_t j) const {
+    if (scratch_.still[model_->colliders[i].body] != 0 &&
+        scratch_.still[model_->colliders[j].body] != 0)
+        return;
     if (model_->colliders[i].body > model_->colliders[j].body)
         std::swap(i, j);
     const Collider &a = model_->colliders[i];

@@ -67,10 +67,10 @@ int World::substeps_of(std::uint32_t body) const {
 }
 
 bool World::moves(std::uint32_t body) const {
-    return body != Joint::world && model_->bodies[body].kind != BodyKind::fixed;
+    return body != Joint::world && scratch_.still[body] == 0;
 }
 
-// Whether a joint is there, whole, and between what can move.
+// Whether a joint is there, whole, and between what moves.
 bool World::holds(std::uint32_t joint) const {
     const Joint &one = model_->joints[joint];
     return one.alive && !scratch_.joints[joint].broken && (moves(one.a) || moves(one.b));
@@ -79,9 +79,7 @@ bool World::holds(std::uint32_t joint) const {
 void World::find_islands() {
     Scratch &s = scratch_;
     Islands &islands = s.islands;
-    islands.parent.resize(model_->bodies.size());
-    for (std::uint32_t i = 0; i < islands.parent.size(); ++i)
-        islands.parent[i] = i;
+    islands.start(model_->bodies.size());
     for (const Contact &contact : s.contacts)
         if (!contact.sensor && moves(contact.key.a) && moves(contact.key.b))
             islands.join(contact.key.a, contact.key.b);
@@ -92,9 +90,12 @@ void World::find_islands() {
     }
 }
 
-// The body of the two in whose island a contact or joint is.
 std::uint32_t World::island_body(std::uint32_t a, std::uint32_t b) const {
-    return moves(a) ? a : b;
+    const auto is = [&](std::uint32_t body, BodyKind kind) {
+        return body != Joint::world && model_->bodies[body].kind == kind;
+    };
+    const bool is_b = is(b, BodyKind::dynamic) && !is(a, BodyKind::dynamic);
+    return is_b || is(a, BodyKind::fixed) || a == Joint::world ? b : a;
 }
 
 void World::gather_needs() {

@@ -5,6 +5,7 @@
 #include "engine/core/precision.h"
 
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -14,10 +15,13 @@ namespace plumb::inline PLUMB_PRECISION {
 // Both are known from what was borne in the last step, so how many substeps an island needs is
 // known before a step, from the state alone.
 //
-// What a body remembers of that.
+// What a body remembers of that, and of its rest (sleep.cpp).
 struct Pace {
     std::uint16_t substeps = 0; // of its island in the last step; 0: those of the settings
     std::uint16_t wanted = 0;   // what its own loads ask for
+    std::uint16_t rested = 0;   // steps for which it has been at rest, or `asleep`
+    static constexpr std::uint16_t asleep = 0xFFFF; // its island is not stepped any more
+    bool is_asleep() const { return rested == asleep; }
 };
 
 // Islands that take the same number of substeps: what a method advances at once. Indices of the
@@ -45,6 +49,11 @@ struct Islands {
     std::vector<Needs> needs;
     std::vector<std::uint32_t> roots; // of islands that have contacts or joints
 
+    // Each body by itself.
+    void start(std::size_t bodies) {
+        parent.resize(bodies);
+        std::iota(parent.begin(), parent.end(), std::uint32_t{0});
+    }
     std::uint32_t root_of(std::uint32_t body) {
         while (parent[body] != body)
             body = parent[body] = parent[parent[body]];

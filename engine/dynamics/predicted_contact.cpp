@@ -195,7 +195,7 @@ Real World::least_half_width(const Body &body) const {
 // After a try of the step: whether bodies that something struck went far, for their size, where
 // nothing was looked for, and met something there. Its contacts are added, and the step is to be
 // tried again.
-bool World::find_surprises() {
+bool World::find_surprises(TaskPool *tasks) {
     if (!method_->info.looks_ahead)
         return false;
     Scratch &s = scratch_;
@@ -232,6 +232,11 @@ bool World::find_surprises() {
     });
     if (s.more.empty())
         return false;
+    if (wake_touched(s.more)) {
+        s.surprised.clear();
+        find_contacts(tasks);
+        return true;
+    }
     s.contacts.insert(s.contacts.end(), s.more.begin(), s.more.end());
     std::ranges::sort(s.contacts, {}, &Contact::key);
     return true;

@@ -27,6 +27,7 @@ struct Scratch {
     std::vector<Shape> placed; // in the world; of surfaces nothing
     std::vector<Aabb> swept;
     std::vector<std::uint8_t> moved;
+    std::vector<std::uint8_t> stays;      // placed where it still is
     std::vector<std::uint64_t> fat_pairs; // of colliders whose fat boxes touch, ascending
     std::vector<Candidate> candidates;
     // Of candidates with one fixed body: (the other collider << 32 | the fixed one), ascending.
@@ -45,6 +46,12 @@ struct Scratch {
     std::vector<std::vector<std::uint32_t>> triangles;
     std::vector<ContactMemory> next_memory;
     std::vector<PointMemory> next_points;
+
+    // Of each body: whether it does not move in this step (fixed, asleep, or driven at no speed),
+    // so that it need not be met with others that do not.
+    std::vector<std::uint8_t> still;
+    std::size_t awake = 0; // bodies that move
+    std::vector<std::uint8_t> marked;
 
     // The step's copy of the state, which becomes the state when the step has come to its end.
     std::vector<SolverBody> bodies;

@@ -22,9 +22,10 @@ namespace plumb {
 struct StepSettings {
     glm::dvec3 gravity{0, -9.81, 0};
     double dt = 1.0 / 60.0;
-    int substeps = 4;     // the default of a method stands in its row of the registry
-    int max_substeps = 1; // likewise
-    int iterations = 1;   // likewise
+    int substeps = 4;       // the default of a method stands in its row of the registry
+    int max_substeps = 1;   // likewise
+    double sleep_after = 0; // likewise
+    int iterations = 1;     // likewise
     double substep_tolerance = 3e-4;
     int substep_budget = 8192;
     double speculative_distance = 0.02;
@@ -49,6 +50,7 @@ enum class SettingGroup {
     world,       // of the scene: the same for all methods
     step,        // how any method cuts a step
     chosen,      // substeps of each island's own
+    sleep,       // what rests is not stepped
     constraints, // whatever solves contacts and joints
     kept,        // manifolds kept while bodies rest against each other
     baumgarte,   // drift removed through the velocities
@@ -86,6 +88,9 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "How much work bodies may cost together, in contacts and joints times substeps, before they "
      "get fewer substeps than they ask for: what is small is made true, what is large stays "
      "fast."},
+    {"sleep_after", &StepSettings::sleep_after, "s", 0, 1e9, SettingGroup::sleep,
+     "Bodies that act on each other and have been at rest for so long sleep, and cost nothing, "
+     "until something touches them or they are changed; 0: never."},
     {"iterations", &StepSettings::iterations, "", 1, 10000, SettingGroup::constraints,
      "Passes over all constraints in each substep."},
     {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,

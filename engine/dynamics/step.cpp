@@ -84,22 +84,20 @@ void World::step(TaskPool *tasks, StepTimes *times) {
 // All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
 // left half done is thrown away.
 void World::step_part(TaskPool *tasks, StepTimes *times) {
-    scratch_.contacts_are_current = false;
     scratch_.surprised.clear();
+    scratch_.paces = state_.paces;
+    note_still(true);
+    if (scratch_.awake == 0) { // all that there is sleeps, or never moves
+        report_.joints = model_->alive_joints;
+        return;
+    }
+    scratch_.contacts_are_current = false;
     try {
-        {
-            const PhaseTimer timer(times ? &times->find_pairs : nullptr);
-            find_pairs();
-        }
-        {
-            const PhaseTimer timer(times ? &times->collide : nullptr);
-            collide(tasks);
-        }
+        find_contacts(tasks, times);
         {
             const PhaseTimer timer(times ? &times->advance : nullptr);
             const std::size_t impacts = scratch_.impacts.size();
             const StepReport before = report_;
-            scratch_.paces = state_.paces;
             load_bodies();
             advance();
             if (began_too_coarsely()) {
@@ -110,7 +108,7 @@ void World::step_part(TaskPool *tasks, StepTimes *times) {
                 advance();
             }
             constexpr int most_tries = 8;
-            for (int tries = 1; tries < most_tries && find_surprises(); ++tries) {
+            for (int tries = 1; tries < most_tries && find_surprises(tasks); ++tries) {
                 scratch_.impacts.resize(impacts);
                 report_.impacts = before.impacts;
                 report_.unresolved_impacts = before.unresolved_impacts;
@@ -122,6 +120,7 @@ void World::step_part(TaskPool *tasks, StepTimes *times) {
         {
             const PhaseTimer timer(times ? &times->finish : nullptr);
             gather_memory();
+            fall_asleep();
             finish();
         }
     } catch (...) {
@@ -130,16 +129,30 @@ void World::step_part(TaskPool *tasks, StepTimes *times) {
     }
 }
 
+// Of all that moves. What that touches and sleeps is woken, and looked at again.
+void World::find_contacts(TaskPool *tasks, StepTimes *times) {
+    do {
+        {
+            const PhaseTimer timer(times ? &times->find_pairs : nullptr);
+            find_pairs();
+        }
+        const PhaseTimer timer(times ? &times->collide : nullptr);
+        collide(tasks);
+    } while (wake_touched(scratch_.contacts));
+}
+
 void World::load_bodies() {
     Scratch &s = scratch_;
     s.bodies.resize(state_.motions.size());
     s.moving.clear();
     for (std::uint32_t i = 0; i < s.bodies.size(); ++i) {
+        if (s.paces[i].is_asleep()) // nobody asks for it
+            continue;
         const Body &body = model_->bodies[i];
         SolverBody &out = s.bodies[i];
         out = SolverBody{};
         static_cast<Motion &>(out) = state_.motions[i];
-        if (!body.alive || body.kind == BodyKind::fixed)
+        if (s.still[i] != 0)
             continue;
         s.moving.push_back(i);
         if (body.kind != BodyKind::dynamic)
@@ -171,7 +184,7 @@ void World::advance() {
             note_needs(s.groups[i]);
         std::swap(s.solver.joint_system, s.joint_systems[i]);
     }
-    report_.moving_bodies = static_cast<std::uint32_t>(s.moving.size());
+    report_.moving_bodies = static_cast<std::uint32_t>(s.awake);
     report_.contact_points = 0;
     report_.joints = model_->alive_joints;
     report_.pairs = static_cast<std::uint32_t>(s.candidates.size());
@@ -189,24 +202,40 @@ void World::advance() {
 
 // A contact that bears no load is not remembered. Of a collision within the step nothing is
 // remembered of its friction: what stopped the two from sliding then is no load of the next step.
+void World::remember(const Contact &contact) {
+    Scratch &s = scratch_;
+    const auto count = static_cast<std::size_t>(contact.manifold.count);
+    const auto impulses = std::span(contact.impulses).first(count);
+    if (std::ranges::all_of(impulses, [](const Vec3 &one) { return one == Vec3{Real(0)}; }))
+        return;
+    s.next_memory.push_back({contact.key, static_cast<std::uint32_t>(s.next_points.size()),
+                             static_cast<std::uint32_t>(count), contact.origin});
+    const bool is_collision = contact.is_new && contact.moment == Moment::touch;
+    for (std::size_t k = 0; k < count; ++k)
+        s.next_points.push_back({contact.manifold.points[k].feature,
+                                 is_collision ? Vec3{impulses[k].x, Real(0), Real(0)} : impulses[k],
+                                 contact.anchors[k].core_a, contact.anchors[k].core_b});
+}
+
+// What is remembered of contacts between those that were still stays as it is.
 void World::gather_memory() {
     Scratch &s = scratch_;
     s.next_memory.clear();
     s.next_points.clear();
-    for (const Contact &contact : s.contacts) {
-        const auto count = static_cast<std::size_t>(contact.manifold.count);
-        const auto impulses = std::span(contact.impulses).first(count);
-        if (std::ranges::all_of(impulses, [](const Vec3 &one) { return one == Vec3{Real(0)}; }))
+    auto contact = s.contacts.begin();
+    for (const ContactMemory &memory : state_.contacts) {
+        if (s.still[memory.key.a] == 0 || s.still[memory.key.b] == 0)
             continue;
-        s.next_memory.push_back({contact.key, static_cast<std::uint32_t>(s.next_points.size()),
-                                 static_cast<std::uint32_t>(count), contact.origin});
-        const bool is_collision = contact.is_new && contact.moment == Moment::touch;
-        for (std::size_t k = 0; k < count; ++k)
-            s.next_points.push_back(
-                {contact.manifold.points[k].feature,
-                 is_collision ? Vec3{impulses[k].x, Real(0), Real(0)} : impulses[k],
-                 contact.anchors[k].core_a, contact.anchors[k].core_b});
+        for (; contact != s.contacts.end() && contact->key < memory.key; ++contact)
+            remember(*contact);
+        s.next_memory.push_back(memory);
+        s.next_memory.back().first_point = static_cast<std::uint32_t>(s.next_points.size());
+        const auto points =
+            std::span(state_.points).subspan(memory.first_point, memory.point_count);
+        s.next_points.insert(s.next_points.end(), points.begin(), points.end());
     }
+    for (; contact != s.contacts.end(); ++contact)
+        remember(*contact);
 }
 
 // Here nothing can fail any more.
@@ -219,7 +248,8 @@ void World::finish() {
     std::swap(state_.joints, s.joints);
     std::swap(state_.paces, s.paces);
     state_.grab = s.grab;
-    s.contacts_are_current = true;
+    // Those of what slept were not looked for.
+    s.contacts_are_current = std::ranges::none_of(state_.paces, &Pace::is_asleep);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

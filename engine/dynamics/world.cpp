@@ -98,6 +98,7 @@ World::World(std::string_view method, const StepSettings &settings)
 void World::set_method(std::string_view method) {
     const Method *found = find_method(method);
     PLUMB_CHECK(found != nullptr, "no method is called '" << method << "'");
+    wake_all();
     method_ = found;
 }
 
@@ -107,6 +108,7 @@ void World::set_settings(const StepSettings &settings) {
         state_.time_before = time();
         state_.steps_before = state_.step_count;
     }
+    wake_all();
     use(settings);
 }
 
@@ -145,7 +147,7 @@ BodyId World::add_body(const BodyDef &def) {
     const std::uint32_t slot = take_slot(model.bodies, model.free_bodies);
     state_.motions.resize(model.bodies.size());
     state_.paces.resize(model.bodies.size());
-    state_.paces[slot] = def.pace;
+    state_.paces[slot] = Pace{};
     Body &body = model.bodies[slot];
     body.kind = def.kind;
     body.alive = true;
@@ -219,6 +221,7 @@ void World::remove_body(BodyId id) {
             (model.joints[j].a == id.index || model.joints[j].b == id.index))
             remove_joint({j, model.joints[j].generation});
     Body &body = model.bodies[id.index];
+    wake(id.index);
     forget_places_of(body);
     forget_contacts_of(id.index);
     for (std::uint32_t i = 0; i < body.collider_count; ++i) {
@@ -337,6 +340,9 @@ JointId World::add_joint(const JointDef &def) {
     };
     into_mass_frame(a, joint.anchor_a_local, joint.frame_a_local);
     into_mass_frame(b, joint.anchor_b_local, joint.frame_b_local);
+    for (const std::uint32_t body : {a, b})
+        if (body != Joint::world)
+            wake(body);
     ++model.alive_joints;
     if (!def.collide_connected && a != Joint::world && b != Joint::world) {
         const std::uint64_t key = body_pair(a, b);
@@ -349,6 +355,9 @@ void World::remove_joint(JointId id) {
     PLUMB_CHECK(is_alive(id), "joint " << id.index << " is not alive");
     Model &model = edit();
     Joint &joint = model.joints[id.index];
+    for (const std::uint32_t body : {joint.a, joint.b})
+        if (body != Joint::world)
+            wake(body);
     if (!joint.collide_connected && joint.a != Joint::world && joint.b != Joint::world)
         model.joined.erase(std::ranges::lower_bound(model.joined, body_pair(joint.a, joint.b)));
     const std::uint32_t next_generation = joint.generation + 1;
@@ -379,6 +388,12 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
     check_velocity(velocity, angular_velocity);
     check_pose(pose);
     const Body &body = bodies()[id.index];
+    // What sleeps is not looked at when something that does not move is put there.
+    if (body.kind != BodyKind::dynamic && velocity == Vec3{Real(0)} &&
+        angular_velocity == Vec3{Real(0)})
+        wake_all();
+    else
+        wake(id.index);
     Motion &motion = state_.motions[id.index];
     motion = {pose.position, pose.rotation, velocity, angular_velocity};
     if (body.has_mass_frame) {
@@ -392,7 +407,6 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
             motion.angular_velocity[i] = Real(0);
     }
     forget_places_of(body);
-    scratch_.contacts_are_current = false;
 }
 
 void World::apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point) {
@@ -401,6 +415,7 @@ void World::apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point) {
     const Body &body = bodies()[id.index];
     if (body.kind != BodyKind::dynamic)
         return;
+    wake(id.index);
     Motion &motion = state_.motions[id.index];
     Vec3 change = (Real(1) / body.mass) * impulse;
     for (int i = 0; i < 3 && body.has_locks; ++i)
@@ -418,6 +433,7 @@ void World::grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real ma
     const Body &body = bodies()[id.index];
     if (body.kind != BodyKind::dynamic)
         return;
+    wake(id.index);
     state_.grab = Grab{};
     state_.grab.body = id.index;
     state_.grab.point_local =
@@ -434,6 +450,13 @@ void World::move_grab(const Vec3 &target) {
 
 void World::release() {
     state_.grab = Grab{};
+}
+
+void World::set_pace(BodyId id, const Pace &pace) {
+    PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
+    state_.paces[id.index] = pace;
+    if (!sleeps())
+        state_.paces[id.index].rested = 0;
 }
 
 void World::set_step_count(std::uint64_t count) {
@@ -462,6 +485,7 @@ void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
 
 const std::vector<Contact> &World::contacts() const {
     if (!scratch_.contacts_are_current) {
+        note_still(false);
         find_pairs();
         collide(nullptr);
         scratch_.contacts_are_current = true;
@@ -482,13 +506,8 @@ void World::restore(const SavedWorld &saved) {
         // Edits copy a model that is shared, so this one is not changed while `saved` lives.
         model_ = std::const_pointer_cast<Model>(saved.model);
         scratch_ = Scratch{};
-    } else {
-        for (std::size_t i = 0; i < state_.motions.size(); ++i)
-            if (model_->bodies[i].kind == BodyKind::fixed &&
-                (state_.motions[i].position != saved.state.motions[i].position ||
-                 state_.motions[i].rotation != saved.state.motions[i].rotation))
-                forget_places_of(model_->bodies[i]);
     }
+    scratch_.stays.clear();
     state_ = saved.state;
     method_ = saved.method;
     use(saved.settings);

@@ -97,6 +97,8 @@ class World {
     void step(TaskPool *tasks, StepTimes *times = nullptr);
     const StepReport &report() const { return report_; }
     std::uint64_t step_count() const { return state_.step_count; }
+    // For a world that continues a saved one, when its bodies and joints are there again.
+    void set_pace(BodyId id, const Pace &pace);
     // For a world that continues a saved one; all its steps count as of the present dt.
     void set_step_count(std::uint64_t count);
     // Simulated time (s): step k is where it should be.
@@ -139,10 +141,12 @@ class World {
   private:
     // The phases of a step; those that are const work on scratch alone.
     void step_part(TaskPool *tasks, StepTimes *times);
+    void find_contacts(TaskPool *tasks, StepTimes *times = nullptr);
     void find_pairs() const;
     void collide(TaskPool *tasks) const;
     void load_bodies();
     void advance();
+    void remember(const Contact &contact);
     void gather_memory();
     void finish();
 
@@ -161,6 +165,17 @@ class World {
     void note_joint_needs(const IslandGroup &group);
     void note_needs(const IslandGroup &group);
     bool began_too_coarsely() const;
+
+    // Sleep (sleep.cpp).
+    bool sleeps() const;
+    void note_still(bool asleep) const;
+    void find_sleeping_islands(const std::vector<Pace> &paces) const;
+    void wake_marked(std::vector<Pace> &paces) const;
+    bool wake_touched(const std::vector<Contact> &contacts);
+    void wake(std::uint32_t body);
+    void wake_all();
+    bool is_at_rest(std::uint32_t body) const;
+    void fall_asleep();
 
     bool turn_together(std::uint32_t a, std::uint32_t b) const;
     bool rides_on_turning() const;
@@ -186,7 +201,7 @@ class World {
     // Contacts of what does not touch yet (predicted_contact.cpp).
     const Motion &going(std::uint32_t body) const;
     Real least_half_width(const Body &body) const;
-    bool find_surprises();
+    bool find_surprises(TaskPool *tasks);
     Real contact_reach(const Candidate &candidate) const;
     Real turning_reach(std::uint32_t body) const;
     Real way_of(const Candidate &candidate) const;

@@ -81,11 +81,13 @@ struct BodyDesc {
     std::optional<glm::vec3> colour;
     // State: the centre of mass and the principal axes that a saved scene continues from, exactly.
     std::optional<MassPoseDesc> mass_pose;
-    // State: the substeps that its island took in the last step, 0 for those of the settings, and
-    // those that its own loads ask for.
+    // State: the substeps that its island took in the last step, 0 for those of the settings;
+    // those that its own loads ask for; and for how many steps it has been at rest, 65535 when it
+    // sleeps.
     struct Pace {
         int substeps = 0;
         int wanted = 0;
+        int rested = 0;
     };
     Pace pace;
 };

@@ -58,14 +58,15 @@ void read_pace(Reading &reading, const Table &table, BodyDesc &body) {
     const toml::table *source = table_at(reading.report, table, "pace");
     if (source == nullptr)
         return;
-    static constexpr std::array<std::string_view, 2> keys{"substeps", "wanted"};
+    static constexpr std::array<std::string_view, 3> keys{"substeps", "wanted", "rested"};
     const Table sub(reading.report, *source, "pace of " + table.title(), keys);
     for (const auto &[key, number] :
-         {std::pair("substeps", &body.pace.substeps), std::pair("wanted", &body.pace.wanted)}) {
+         {std::pair("substeps", &body.pace.substeps), std::pair("wanted", &body.pace.wanted),
+          std::pair("rested", &body.pace.rested)}) {
         constexpr std::uint64_t most = std::numeric_limits<std::uint16_t>::max();
         const std::uint64_t given = sub.natural(key).value_or(0);
         if (given > most)
-            sub.error(key, "that many substeps cannot have been taken",
+            sub.error(key, "that many cannot have been taken",
                       std::string(key) + " is 0 to " + std::to_string(most));
         *number = static_cast<int>(std::min(given, most));
     }

@@ -171,9 +171,11 @@ class SceneWriter {
     }
 
     void write_pace(const BodyDesc &body) {
-        if (body.pace.substeps > 0)
-            line("pace", "{ substeps = " + std::to_string(body.pace.substeps) +
-                             ", wanted = " + std::to_string(body.pace.wanted) + " }");
+        const BodyDesc::Pace &pace = body.pace;
+        if (pace.substeps > 0 || pace.rested > 0)
+            line("pace", "{ substeps = " + std::to_string(pace.substeps) +
+                             ", wanted = " + std::to_string(pace.wanted) +
+                             ", rested = " + std::to_string(pace.rested) + " }");
     }
 
     void write_freedom(const BodyDesc &body) {

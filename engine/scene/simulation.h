@@ -26,6 +26,7 @@ struct BodyState {
     glm::dquat orientation{1, 0, 0, 0};
     glm::dvec3 velocity{0};
     glm::dvec3 angular_velocity{0}; // world
+    bool asleep = false;            // at rest, and not stepped
 };
 
 // What does not change while a body lives.

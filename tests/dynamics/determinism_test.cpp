@@ -105,7 +105,6 @@ World loaded(const World &from) {
         def.pose = {motion.position, motion.rotation};
         def.velocity = motion.velocity;
         def.angular_velocity = motion.angular_velocity;
-        def.pace = from.state().paces[i];
         ids[i] = world.add_body(def);
     }
     for (const Joint &joint : from.joints()) {
@@ -134,6 +133,9 @@ World loaded(const World &from) {
             key, memory.origin,
             std::span(from.state().points).subspan(memory.first_point, memory.point_count));
     }
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        if (from.bodies()[i].alive)
+            world.set_pace(ids[i], from.state().paces[i]);
     world.set_step_count(from.step_count());
     return world;
 }

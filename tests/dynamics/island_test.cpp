@@ -75,6 +75,9 @@ TEST(Islands, ALightBoxBearsAHeavyOne) {
 // Only those pay who need it, and no longer than they need it.
 TEST(Islands, TakeTheirOwnSubsteps) {
     World world = floor_world();
+    StepSettings settings = world.settings();
+    settings.sleep_after = 0; // what sleeps keeps its number
+    world.set_settings(settings);
     const BodyId alone = add_box(world, 1, V{-5, 0.5, 0});
     const BodyId flying = add_box(world, 1, V{-10, 50, 0});
     const BodyId heavy = add_stack(world, std::array{1.0, 300.0}, 5);

@@ -152,6 +152,9 @@ TEST_P(Saves, ASettledStepAllocatesNothing) {
     if (!find_method(GetParam())->info.joints)
         GTEST_SKIP() << "no joints";
     World world = heap(GetParam(), 100);
+    StepSettings settings = world.settings();
+    settings.sleep_after = 0;
+    world.set_settings(settings);
     TaskPool tasks(3);
     ASSERT_TRUE(settles(world));
     for (int i = 0; i < 5; ++i)

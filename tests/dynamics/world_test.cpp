@@ -339,6 +339,7 @@ TEST(StepReport, Counts) {
     world.add_body(dynamic_body(ball(0.25), 1, V{3, 0.25, 0}));
     BodyDef mover = fixed_body(ball(0.25), V{0, 9, 0});
     mover.kind = BodyKind::kinematic;
+    mover.velocity = narrow(V{1, 0, 0});
     world.add_body(mover);
     JointDef joint;
     joint.b = high;

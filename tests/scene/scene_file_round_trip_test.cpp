@@ -98,6 +98,7 @@ std::vector<std::string> words(const SceneDesc &scene) {
         w.add(b.center_of_mass), w.add(b.inertia), w.add(b.mass_pose), w.add(b.gravity_scale);
         w.number(static_cast<std::uint64_t>(b.pace.substeps));
         w.number(static_cast<std::uint64_t>(b.pace.wanted));
+        w.number(static_cast<std::uint64_t>(b.pace.rested));
         w.add(b.linear_damping), w.add(b.angular_damping);
         for (const bool is_locked : b.locked)
             w.number(is_locked);
@@ -334,6 +335,7 @@ class Scenes {
         }
         if (one_in(3))
             b.pace = {1 + static_cast<int>(random_.next_index(10000)),
+                      static_cast<int>(random_.next_index(65536)),
                       static_cast<int>(random_.next_index(65536))};
         for (bool &is_locked : b.locked)
             is_locked = one_in(4);

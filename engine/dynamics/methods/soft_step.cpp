@@ -89,10 +89,14 @@ Method soft_step() {
              .contacts = true,
              .joints = true,
              .looks_ahead = true,
-             .reads = {SettingGroup::chosen, SettingGroup::constraints, SettingGroup::kept,
-                       SettingGroup::soft, SettingGroup::impacts, SettingGroup::gyroscopic},
-             .defaults =
-                 {.substeps = 4, .max_substeps = 64, .iterations = 1, .contact_damping_ratio = 1}},
+             .reads = {SettingGroup::chosen, SettingGroup::sleep, SettingGroup::constraints,
+                       SettingGroup::kept, SettingGroup::soft, SettingGroup::impacts,
+                       SettingGroup::gyroscopic},
+             .defaults = {.substeps = 4,
+                          .max_substeps = 64,
+                          .sleep_after = 0.5,
+                          .iterations = 1,
+                          .contact_damping_ratio = 1}},
             advance};
 }
 

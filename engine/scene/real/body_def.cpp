@@ -123,8 +123,6 @@ BodyDef body_def(const SceneDesc &scene, const BodyDesc &desc) {
     def.pose = {Vec3{desc.position}, unit(Quat{desc.orientation})};
     if (desc.mass_pose)
         def.mass_pose = {Vec3{desc.mass_pose->position}, unit(Quat{desc.mass_pose->orientation})};
-    def.pace = {static_cast<std::uint16_t>(desc.pace.substeps),
-                static_cast<std::uint16_t>(desc.pace.wanted)};
     def.velocity = Vec3{desc.velocity};
     def.angular_velocity = Vec3{desc.angular_velocity};
     def.locked = desc.locked;

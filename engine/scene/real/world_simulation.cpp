@@ -39,6 +39,10 @@ class WorldSimulation final : public Simulation {
             insert(joint);
         for (const ContactStateDesc &contact : scene.contacts)
             remember(contact);
+        for (const BodyDesc &body : scene.bodies)
+            world_.set_pace(id_of(body.name), {static_cast<std::uint16_t>(body.pace.substeps),
+                                               static_cast<std::uint16_t>(body.pace.wanted),
+                                               static_cast<std::uint16_t>(body.pace.rested)});
         world_.set_step_count(scene.step_count);
     }
 
@@ -89,7 +93,7 @@ class WorldSimulation final : public Simulation {
         const Motion &m = world_.motions().at(body);
         const Transform pose = world_.pose_of(static_cast<std::uint32_t>(body));
         return {glm::dvec3{pose.position}, glm::dquat{pose.rotation}, glm::dvec3{m.velocity},
-                glm::dvec3{m.angular_velocity}};
+                glm::dvec3{m.angular_velocity}, world_.state().paces[body].is_asleep()};
     }
     std::optional<std::size_t> find_body(std::string_view name) const override {
         const auto found = book_->index_of.find(name);
@@ -294,7 +298,7 @@ SceneDesc WorldSimulation::describe() const {
             body.mass_pose = {glm::dvec3{motion.position}, glm::dquat{motion.rotation}};
         }
         const Pace &pace = world.state().paces[i];
-        body.pace = {pace.substeps, pace.wanted};
+        body.pace = {pace.substeps, pace.wanted, pace.rested};
         body.position = now.position;
         body.orientation = now.orientation;
         body.velocity = now.velocity;

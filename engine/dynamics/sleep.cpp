@@ -1,0 +1,171 @@
+// Sleep: islands at rest are not stepped any more, until something touches, moves or leaves them.
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// At rest is what goes less far in sleep_after than substep_tolerance of its width, and no faster
+// than a share of what gravity adds in a step: nothing that drifts where there is no gravity.
+constexpr double rest_share = 4e-3;
+
+bool is_zero(const Vec3 &v) {
+    return v == Vec3{Real(0)};
+}
+
+} // namespace
+
+bool World::sleeps() const {
+    return settings_.sleep_after > 0 &&
+           std::ranges::find(method_->info.reads, SettingGroup::sleep) != method_->info.reads.end();
+}
+
+// Which bodies do not move in this step. `asleep`: whether what sleeps is among them.
+void World::note_still(bool asleep) const {
+    Scratch &s = scratch_;
+    s.still.resize(model_->bodies.size());
+    s.awake = 0;
+    for (std::size_t i = 0; i < s.still.size(); ++i) {
+        const Body &body = model_->bodies[i];
+        const Motion &motion = state_.motions[i];
+        bool moves = body.alive;
+        if (body.kind == BodyKind::fixed)
+            moves = false;
+        else if (body.kind == BodyKind::kinematic)
+            moves = moves && !(is_zero(motion.velocity) && is_zero(motion.angular_velocity));
+        else
+            moves = moves && !(asleep && s.paces[i].is_asleep());
+        s.still[i] = moves ? 0 : 1;
+        s.awake += moves ? 1 : 0;
+    }
+}
+
+// Joins those that sleep against each other.
+void World::find_sleeping_islands(const std::vector<Pace> &paces) const {
+    Islands &islands = scratch_.islands;
+    islands.start(model_->bodies.size());
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        if (a != Joint::world && b != Joint::world && paces[a].is_asleep() && paces[b].is_asleep())
+            islands.join(a, b);
+    };
+    for (const ContactMemory &memory : state_.contacts)
+        join(memory.key.a, memory.key.b);
+    for (std::size_t i = 0; i < model_->joints.size(); ++i)
+        if (model_->joints[i].alive && !state_.joints[i].broken)
+            join(model_->joints[i].a, model_->joints[i].b);
+}
+
+// Wakes the islands of the marked bodies.
+void World::wake_marked(std::vector<Pace> &paces) const {
+    Scratch &s = scratch_;
+    find_sleeping_islands(paces);
+    for (std::uint32_t i = 0; i < paces.size(); ++i)
+        if (s.marked[i] != 0)
+            s.marked[s.islands.root_of(i)] = 1;
+    for (std::uint32_t i = 0; i < paces.size(); ++i)
+        if (paces[i].is_asleep() && s.marked[s.islands.root_of(i)] != 0)
+            paces[i].rested = 0;
+}
+
+// Whether what moves touches what sleeps; which is then awake in this step.
+bool World::wake_touched(const std::vector<Contact> &contacts) {
+    Scratch &s = scratch_;
+    const auto wakes = [&](const Contact &contact) {
+        return !contact.sensor &&
+               (s.paces[contact.key.a].is_asleep() || s.paces[contact.key.b].is_asleep());
+    };
+    if (std::ranges::none_of(contacts, wakes))
+        return false;
+    s.marked.assign(s.paces.size(), 0);
+    for (const Contact &contact : contacts)
+        if (wakes(contact))
+            s.marked[contact.key.a] = s.marked[contact.key.b] = 1;
+    wake_marked(s.paces);
+    note_still(true);
+    return true;
+}
+
+// Between steps: wakes a body, what rests against it, and what hangs on it.
+void World::wake(std::uint32_t body) {
+    scratch_.contacts_are_current = false;
+    if (std::ranges::none_of(state_.paces, &Pace::is_asleep))
+        return;
+    std::vector<std::uint8_t> &marked = scratch_.marked;
+    marked.assign(state_.paces.size(), 0);
+    marked[body] = 1;
+    for (const ContactMemory &memory : state_.contacts)
+        if (memory.key.a == body || memory.key.b == body)
+            marked[memory.key.a] = marked[memory.key.b] = 1;
+    for (const Joint &joint : model_->joints)
+        for (const auto &[one, other] : {std::pair{joint.a, joint.b}, std::pair{joint.b, joint.a}})
+            if (joint.alive && one == body && other != Joint::world)
+                marked[other] = 1;
+    wake_marked(state_.paces);
+}
+
+void World::wake_all() {
+    scratch_.contacts_are_current = false;
+    for (Pace &pace : state_.paces)
+        pace.rested = 0;
+}
+
+// Whether a body moves too little to see, after a try of the step.
+bool World::is_at_rest(std::uint32_t index) const {
+    const Body &body = model_->bodies[index];
+    const Motion &motion = scratch_.bodies[index];
+    Real extent = Real(0);
+    for (std::uint32_t c = 0; c < body.collider_count; ++c)
+        extent = std::max(extent, model_->colliders[body.first_collider + c].extent);
+    const double width = 2 * static_cast<double>(least_half_width(body));
+    const double gravity = glm::length(glm::dvec3{gravity_on(body, Vec3{settings_.gravity})});
+    const auto limit =
+        static_cast<Real>(std::min(settings_.substep_tolerance * width / settings_.sleep_after,
+                                   rest_share * gravity * settings_.dt));
+    return glm::length(motion.velocity) + extent * glm::length(motion.angular_velocity) <= limit;
+}
+
+// Counts for how long each body has been at rest; islands that have been for long enough fall
+// asleep.
+void World::fall_asleep() {
+    if (!sleeps())
+        return;
+    Scratch &s = scratch_;
+    const double steps = std::ceil(settings_.sleep_after / settings_.dt);
+    const auto enough = static_cast<std::uint16_t>(std::clamp(steps, 1.0, Pace::asleep - 1.0));
+    bool any = false;
+    for (const std::uint32_t i : s.moving) {
+        std::uint16_t &rested = s.paces[i].rested;
+        if (model_->bodies[i].kind != BodyKind::dynamic || !is_at_rest(i))
+            rested = 0;
+        else if (rested < enough)
+            ++rested;
+        any = any || rested >= enough;
+    }
+    if (!any)
+        return;
+    find_islands();
+    s.marked.assign(s.bodies.size(), 0); // the roots of islands that stay awake
+    const auto stays_awake = [&](std::uint32_t body) { s.marked[s.islands.root_of(body)] = 1; };
+    for (const std::uint32_t i : s.moving)
+        if (s.paces[i].rested < enough)
+            stays_awake(i);
+    for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
+        const Joint &joint = model_->joints[i];
+        if (holds(i) && joint.motor && joint.motor->speed != Real(0))
+            stays_awake(island_body(joint.a, joint.b));
+    }
+    if (s.grab.is_holding())
+        stays_awake(s.grab.body);
+    for (const std::uint32_t i : s.moving)
+        if (s.marked[s.islands.root_of(i)] == 0) {
+            s.paces[i].rested = Pace::asleep;
+            s.bodies[i].velocity = s.bodies[i].angular_velocity = Vec3{Real(0)};
+        }
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,300 @@
+// What rests sleeps and costs nothing; what touches, moves or removes it wakes it; and nothing that
+// still moves is put to sleep.
+#include "tests/dynamics/worlds.h"
+
+#include <functional>
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+World floor_world(const StepSettings &settings = settings_for("soft_step")) {
+    World world("soft_step", settings);
+    world.add_body(ground(0.6, 0));
+    return world;
+}
+
+BodyId add_box(World &world, const V &position, double mass = 1) {
+    return world.add_body(with_material(dynamic_body(block(V{0.5}), mass, position), 0.6, 0));
+}
+
+// Boxes on each other; the lowest first.
+std::vector<BodyId> add_stack(World &world, int boxes, double x) {
+    std::vector<BodyId> ids;
+    for (int i = 0; i < boxes; ++i)
+        ids.push_back(add_box(world, V{x, 0.5 + i, 0}));
+    return ids;
+}
+
+bool sleeps(const World &world, BodyId id) {
+    return world.state().paces[id.index].is_asleep();
+}
+
+bool all_sleep(const World &world) {
+    for (std::size_t i = 0; i < world.bodies().size(); ++i)
+        if (world.bodies()[i].alive && world.bodies()[i].kind == BodyKind::dynamic &&
+            !world.state().paces[i].is_asleep())
+            return false;
+    return true;
+}
+
+bool run_until_all_sleep(World &world, double seconds) {
+    for (int i = 0; i < int(seconds / world.settings().dt) && !all_sleep(world); ++i)
+        world.step(nullptr);
+    return all_sleep(world);
+}
+
+TEST(Sleep, WhatRestsIsNotSteppedAnyMore) {
+    World world = floor_world();
+    const std::vector<BodyId> boxes = add_stack(world, 5, 0);
+    const BodyId ball_id =
+        world.add_body(with_material(dynamic_body(ball(0.3), 2, V{5, 0.3, 0}), 0.6, 0));
+    ASSERT_TRUE(run_until_all_sleep(world, 10));
+    const std::vector<Motion> before = world.state().motions;
+    run(world, 600);
+    EXPECT_EQ(world.report().moving_bodies, 0U);
+    EXPECT_EQ(world.report().pairs, 0U);
+    EXPECT_EQ(world.report().constraint_passes, 0U);
+    EXPECT_EQ(world.report().body_passes, 0U);
+    for (const BodyId id : {boxes.front(), boxes.back(), ball_id}) {
+        EXPECT_EQ(position_of(world, id), wide(before[id.index].position));
+        EXPECT_EQ(velocity_of(world, id), V{0});
+    }
+    // But it is all there, for those who ask.
+    EXPECT_EQ(world.contacts().size(), 6U);
+    EXPECT_GT(world.measure().max_penetration, 0);
+    EXPECT_LT(world.measure().max_penetration, world.settings().substep_tolerance);
+    EXPECT_EQ(world.measure().kinetic_energy, 0);
+}
+
+// Nobody loses a tenth of a millimetre by sleeping.
+TEST(Sleep, ChangesNothingThatCanBeSeen) {
+    StepSettings settings = settings_for("soft_step");
+    World sleeping = floor_world(settings);
+    settings.sleep_after = 0;
+    World awake = floor_world(settings);
+    for (World *world : {&sleeping, &awake}) {
+        add_stack(*world, 10, 0);
+        add_stack(*world, 3, 3);
+        world->add_body(with_material(
+            dynamic_body(Capsule{narrow(V{-0.5, 0, 0}), narrow(V{0.5, 0, 0}), Real(0.3)}, 1,
+                         V{6, 0.4, 0}),
+            0.6, 0));
+        run(*world, 60 * 30);
+    }
+    EXPECT_TRUE(all_sleep(sleeping));
+    EXPECT_FALSE(all_sleep(awake));
+    for (std::size_t i = 0; i < awake.motions().size(); ++i)
+        EXPECT_LT(glm::length(wide(sleeping.motions()[i].position - awake.motions()[i].position)),
+                  1e-4)
+            << i;
+}
+
+// Each of these wakes the stack that it concerns, in the same step, and no other.
+TEST(Sleep, WhatTouchesMovesOrLeavesAnIslandWakesIt) {
+    struct Waking {
+        const char *name;
+        std::function<void(World &, std::span<const BodyId>)> act;
+        double within; // s, until the stack is awake
+    };
+    const std::vector<Waking> all{
+        {"a ball strikes it",
+         [](World &world, std::span<const BodyId>) {
+             world.add_body(dynamic_body(ball(0.3), 1, V{-3, 2.5, 0}, V{10, 0, 0}));
+         },
+         0.5},
+        {"a ball strikes it fast",
+         [](World &world, std::span<const BodyId>) {
+             world.add_body(dynamic_body(ball(0.1), 1, V{-10, 2.5, 0}, V{300, 0, 0}));
+         },
+         0.1},
+        {"an impulse",
+         [](World &world, std::span<const BodyId> boxes) {
+             world.apply_impulse(boxes[2], narrow(V{0.1, 0, 0}),
+                                 world.motions()[boxes[2].index].position);
+         },
+         0.02},
+        {"its lowest is removed",
+         [](World &world, std::span<const BodyId> boxes) { world.remove_body(boxes[0]); }, 0.02},
+        {"its middle is moved away",
+         [](World &world, std::span<const BodyId> boxes) {
+             world.set_motion(boxes[2], {narrow(V{3, 5, 3}), identity_rotation}, Vec3{Real(0)},
+                              Vec3{Real(0)});
+         },
+         0.02},
+        {"something fixed is put into it",
+         [](World &world, std::span<const BodyId>) {
+             world.add_body(fixed_body(block(V{0.5}), V{0.8, 2.5, 0}));
+         },
+         0.02},
+        {"something driven comes",
+         [](World &world, std::span<const BodyId>) {
+             BodyDef pusher = fixed_body(block(V{0.5}), V{-1.5, 1.5, 0});
+             pusher.kind = BodyKind::kinematic;
+             pusher.velocity = narrow(V{1, 0, 0});
+             world.add_body(pusher);
+         },
+         1},
+        {"a joint",
+         [](World &world, std::span<const BodyId> boxes) {
+             JointDef joint;
+             joint.type = JointType::ball;
+             joint.a = boxes[4];
+             joint.anchor_b_local = narrow(V{0, 6, 0});
+             world.add_joint(joint);
+         },
+         0.02},
+        {"a grab",
+         [](World &world, std::span<const BodyId> boxes) {
+             world.grab(boxes[4], Vec3{Real(0)}, narrow(V{0, 8, 0}), Real(100));
+         },
+         0.02},
+    };
+    for (const Waking &waking : all) {
+        World world = floor_world();
+        const std::vector<BodyId> boxes = add_stack(world, 5, 0);
+        const std::vector<BodyId> others = add_stack(world, 5, 100);
+        ASSERT_TRUE(run_until_all_sleep(world, 10));
+        waking.act(world, boxes);
+        bool woke = false;
+        for (int i = 0; i < int(waking.within * 60) + 1 && !woke; ++i) {
+            world.step(nullptr);
+            woke = true;
+            for (const BodyId id : boxes)
+                woke = woke && (!world.is_alive(id) || !sleeps(world, id));
+        }
+        EXPECT_TRUE(woke) << waking.name;
+        run(world, 5);
+        const bool all_wake = std::string_view(waking.name) == "something fixed is put into it";
+        if (!all_wake) {
+            EXPECT_TRUE(sleeps(world, others.front())) << waking.name;
+        }
+    }
+}
+
+TEST(Sleep, OtherLawsWakeAll) {
+    World world = floor_world();
+    const std::vector<BodyId> boxes = add_stack(world, 3, 0);
+    ASSERT_TRUE(run_until_all_sleep(world, 10));
+    StepSettings settings = world.settings();
+    settings.gravity = {5, 0, 0};
+    world.set_settings(settings);
+    run(world, 60);
+    EXPECT_NEAR(velocity_of(world, boxes[1]).x, 5, 0.2);
+}
+
+// The same blow on a stack that slept and on one that never did.
+TEST(Sleep, WhatWakesGoesOnAsIfItHadNotSlept) {
+    StepSettings settings = settings_for("soft_step");
+    for (const double speed : {2.0, 10.0, 40.0}) {
+        std::vector<V> tops, momenta;
+        for (const double sleep_after : {0.5, 0.0}) {
+            settings.sleep_after = sleep_after;
+            World world = floor_world(settings);
+            const std::vector<BodyId> boxes = add_stack(world, 3, 0);
+            run(world, 300);
+            ASSERT_EQ(all_sleep(world), sleep_after > 0);
+            world.add_body(with_material(
+                dynamic_body(ball(0.3), 1, V{-1.5, 2.5, 0}, V{speed, 0, 0}), 0.6, 0.5));
+            run(world, int(60 * 1.2 / speed) + 3);
+            tops.push_back(velocity_of(world, boxes[2]));
+            momenta.push_back(world.measure().linear_momentum);
+        }
+        EXPECT_GT(glm::length(tops[0]), 0.1);
+        EXPECT_LT(glm::length(tops[0] - tops[1]), 0.02 * speed) << speed;
+        EXPECT_LT(glm::length(momenta[0] - momenta[1]), 0.02 * speed) << speed;
+    }
+}
+
+// All of these move, if slowly, and would be stopped by a coarser eye.
+TEST(Sleep, WhatMovesSlowlyStaysAwake) {
+    { // Where there is no gravity everything drifts on for ever.
+        World world("soft_step", weightless(settings_for("soft_step")));
+        const BodyId id = world.add_body(dynamic_body(block(V{0.5}), 1, V{0}, V{1e-5, 0, 0}));
+        run(world, 600);
+        EXPECT_NEAR(position_of(world, id).x, 1e-4, 1e-8);
+    }
+    { // A slope 0.05 degrees above the angle of friction.
+        const double angle = std::atan(0.5) + 0.05 * pi / 180;
+        const double a = gravity * (std::sin(angle) - 0.5 * std::cos(angle));
+        const V normal{-std::sin(angle), std::cos(angle), 0};
+        StepSettings settings = settings_for("soft_step");
+        std::vector<V> ends;
+        for (const double sleep_after : {0.5, 0.0}) {
+            settings.sleep_after = sleep_after;
+            World world("soft_step", settings);
+            world.add_body(ground(0.5, 0, normal));
+            BodyDef box = with_material(dynamic_body(block(V{0.5}), 1, 0.5 * normal), 0.5, 0);
+            box.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
+            const BodyId id = world.add_body(box);
+            run(world, 600);
+            ends.push_back(position_of(world, id));
+        }
+        EXPECT_EQ(ends[0], ends[1]);
+        EXPECT_NEAR(glm::length(ends[0] - 0.5 * normal), 0.5 * a * 100, 0.1 * 0.5 * a * 100);
+    }
+    { // A pendulum that swings by a hundredth of a degree.
+        World world("soft_step", settings_for("soft_step"));
+        const double swing = 0.01 * pi / 180;
+        JointDef joint;
+        joint.type = JointType::ball;
+        joint.b = world.add_body(
+            dynamic_body(ball(0.1), 1, V{10 * std::sin(swing), -10 * std::cos(swing), 0}));
+        joint.anchor_b_local = narrow(V{-10 * std::sin(swing), 10 * std::cos(swing), 0});
+        world.add_joint(joint);
+        run(world, 60 * 30);
+        double fastest = 0;
+        for (int i = 0; i < 600; ++i) {
+            run(world, 1);
+            fastest = std::max(fastest, glm::length(velocity_of(world, joint.b)));
+        }
+        EXPECT_NEAR(fastest, swing * std::sqrt(gravity * 10), 0.05 * fastest);
+    }
+}
+
+// It is state: a world that was saved asleep, or built anew from what is known of it, goes on with
+// the same bits.
+TEST(Sleep, IsSaved) {
+    World world = floor_world();
+    const std::vector<BodyId> boxes = add_stack(world, 4, 0);
+    const BodyId striker = world.add_body(
+        with_material(dynamic_body(ball(0.3), 1, V{-60, 10, 0}, V{25, 8.65, 0}), 0.6, 0.3));
+    std::vector<SavedWorld> saves;
+    std::vector<std::uint64_t> hashes;
+    bool slept = false, woke = false;
+    for (int i = 0; i < 600; ++i) {
+        if (i % 20 == 0)
+            world.save(saves.emplace_back());
+        world.step(nullptr);
+        slept = slept || sleeps(world, boxes[0]);
+        woke = woke || (slept && !sleeps(world, boxes[0]));
+        hashes.push_back(world.hash());
+    }
+    ASSERT_TRUE(slept && woke) << "the ball at " << position_of(world, striker).x;
+    for (std::size_t k = saves.size(); k-- > 0;) {
+        world.restore(saves[k]);
+        for (std::size_t i = 20 * k; i < std::min<std::size_t>(20 * k + 45, hashes.size()); ++i) {
+            world.step(nullptr);
+            if (i % 3 == 0)
+                world.measure(); // looks at what sleeps, and must leave no trace
+            ASSERT_EQ(world.hash(), hashes[i]) << k << ' ' << i;
+        }
+    }
+}
+
+// What a motor still drives does not sleep, however slowly that goes.
+TEST(Sleep, AMotorKeepsAwake) {
+    World world("soft_step", settings_for("soft_step"));
+    JointDef joint;
+    joint.type = JointType::hinge;
+    joint.b = world.add_body(dynamic_body(block(V{0.5}), 1000, V{0}));
+    joint.motor = JointMotor{Real(1), Real(0.5)};
+    world.add_joint(joint);
+    run(world, 600);
+    EXPECT_FALSE(sleeps(world, joint.b));
+    EXPECT_NEAR(glm::length(spin_of(world, joint.b)), 0.5 * 10 / (1000.0 / 6), 1e-3);
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
