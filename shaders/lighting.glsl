@@ -1,17 +1,19 @@
 // The share of the light that reaches a point, 0..1.
 uniform sampler2DShadow shadow_map;
 
-// A 5 x 5 tent over the map's texels from nine filtered fetches (Castano, "Shadow Mapping Summary",
-// The Witness, 2013).
-// `under` is how far the mesh lies there under the surface that it stands for, in metres.
-float light_reaching(vec3 position, vec3 normal, float under) {
-    if (light.w < 0.5)
-        return 1.0;
-    // A point on a slope moves off its surface by as much as the filter reaches across it.
+// Where light is asked for, off a surface: a point on a slope moves by as much as the filter reaches
+// across it.
+float off_surface(vec3 normal) {
     float cosine = clamp(dot(normal, to_light.xyz), 0.0, 1.0);
     float sine = sqrt(1.0 - cosine * cosine);
-    vec3 from = position + normal * (under + light.y * (0.6 + 2.4 * sine));
-    vec3 at = (shadow * vec4(from, 1.0)).xyz;
+    return light.y * (0.6 + 2.4 * sine);
+}
+
+// At a place of the map. A 5 x 5 tent over its texels from nine filtered fetches (Castano, "Shadow
+// Mapping Summary", The Witness, 2013).
+float light_at(vec3 at) {
+    if (light.w < 0.5)
+        return 1.0;
     float depth = min(at.z, 1.0);
 #ifdef HARD_SHADOWS
     return texture(shadow_map, vec3(at.xy, depth));
@@ -39,6 +41,12 @@ float light_reaching(vec3 position, vec3 normal, float under) {
     sum += w2.x * w2.y * texture(shadow_map, vec3(o2.x, o2.y, depth));
     return sum / 144.0;
 #endif
+}
+
+// `under` is how far the mesh lies there under the surface that it stands for, in metres.
+float light_reaching(vec3 position, vec3 normal, float under) {
+    vec3 from = position + normal * (under + off_surface(normal));
+    return light_at((shadow * vec4(from, 1.0)).xyz);
 }
 
 // Light from all around: white from above, cooler from the sides, dim and warm from the ground.

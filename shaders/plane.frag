@@ -6,50 +6,54 @@
 
 uniform vec4 axis_x;
 uniform vec4 axis_z;
-uniform vec4 normal;
 uniform float grid;
+flat in vec3 seen_x;
+flat in vec3 seen_z;
+flat in vec3 seen_normal;
+flat in vec3 foot;
+flat in vec3 shadow_x;
+flat in vec3 shadow_z;
+flat in vec3 shadow_foot;
+flat in vec3 lit;
+flat in vec3 direct;
 out vec4 result;
 
 // How much of a pixel the lines of a unit grid cover (Golus, "The Best Darn Grid Shader (Yet)", 2023): a
 // line is never drawn thinner than a pixel, only fainter, and a grid too fine to see becomes even.
-float grid_lines(vec2 at, vec2 per_pixel, float width) {
+// `pixels` are to a unit, `per_pixel` is its inverse.
+float grid_lines(vec2 at, vec2 per_pixel, vec2 pixels, float width) {
     vec2 drawn = clamp(vec2(width), per_pixel, vec2(0.5));
-    vec2 soft = 1.2 * per_pixel;
     vec2 from_line = 0.5 - abs(fract(at) - 0.5);
-    vec2 line = 1.0 - smoothstep(0.5 * drawn - 0.5 * soft, 0.5 * drawn + 0.5 * soft, from_line);
-    line *= clamp(vec2(width) / drawn, 0.0, 1.0);
+    vec2 beyond = clamp((from_line - 0.5 * drawn) * pixels / 1.2 + 0.5, 0.0, 1.0);
+    vec2 line = 1.0 - beyond * beyond * (3.0 - 2.0 * beyond);
+    line *= clamp(width * pixels, 2.0 * width, 1.0); // width / drawn
     line = mix(line, vec2(width), clamp(2.0 * per_pixel - 1.0, 0.0, 1.0));
     return max(line.x, line.y);
 }
 
 void main() {
-    // Where the ray through this pixel meets the plane; exact however large the square is.
-    vec2 clip = (2.0 * gl_FragCoord.xy / viewport.xy - 1.0 - centre.xy) * viewport.zw;
-    vec3 ray = transpose(mat3(view)) * vec3(clip, -1.0);
-    float height = dot(eye.xyz, normal.xyz) + normal.w;
-    float t = height / max(-dot(ray, normal.xyz), 1e-6);
-    vec3 position = eye.xyz + t * ray;
+    // Where the ray through this pixel meets the plane, from the target's foot; exact however large
+    // the square is.
+    vec3 ray = vec3((2.0 * gl_FragCoord.xy / viewport.xy - 1.0 - centre.xy) * viewport.zw, -1.0);
+    float t = foot.y / max(-dot(ray, seen_normal), 1e-6);
+    vec2 from_foot = foot.xz + t * vec2(dot(ray, seen_x), dot(ray, seen_z));
 
-    vec2 at = vec2(dot(position, axis_x.xyz) + axis_x.w, dot(position, axis_z.xyz) + axis_z.w);
-    vec2 dx = dFdx(at);
-    vec2 dy = dFdy(at);
-    vec2 per_pixel = sqrt(dx * dx + dy * dy);
     vec3 albedo = vec3(0.73, 0.735, 0.745);
     if (grid > 0.5) {
-        float fine = grid_lines(at, per_pixel, 0.02);
-        float coarse = grid_lines(0.1 * at, 0.1 * per_pixel, 0.005);
-        albedo *= 1.0 - 0.24 * fine;
-        albedo *= 1.0 - 0.34 * coarse;
+        vec2 at = from_foot + vec2(axis_x.w, axis_z.w);
+        vec2 dx = dFdx(at);
+        vec2 dy = dFdy(at);
+        vec2 per_pixel = max(sqrt(dx * dx + dy * dy), 1e-9);
+        vec2 pixels = 1.0 / per_pixel;
+        float fine = grid_lines(at, per_pixel, pixels, 0.02);
+        float coarse = grid_lines(0.1 * at, 0.1 * per_pixel, 10.0 * pixels, 0.005);
+        albedo *= (1.0 - 0.24 * fine) * (1.0 - 0.34 * coarse);
     }
 
-    float facing = max(dot(normal.xyz, to_light.xyz), 0.0);
-    vec3 all = ambient_light(normal.xyz) + light_colour * (to_light.w * facing);
-    float reaching = facing > 0.0 ? light_reaching(position, normal.xyz, 0.0) : 0.0;
-    vec3 some = ambient_light(normal.xyz) + light_colour * (to_light.w * facing * reaching);
+    float reaching = light_at(shadow_foot + from_foot.x * shadow_x + from_foot.y * shadow_z);
     // Far away the plane becomes the backdrop; shadows stay on it a little longer.
-    float away = length(position + normal.w * normal.xyz) / eye.w;
-    float fade = 1.0 - exp(-0.045 * away * away);
-    vec3 seen = mix(albedo * all, backdrop(gl_FragCoord.xy), fade);
-    seen *= mix(some / max(all, 1e-6), vec3(1.0), fade * fade);
+    float fade = 1.0 - exp(-0.045 / (eye.w * eye.w) * dot(from_foot, from_foot));
+    vec3 seen = mix(albedo * lit, backdrop(gl_FragCoord.xy), fade);
+    seen *= 1.0 - (1.0 - reaching) * (1.0 - fade * fade) * direct;
     result = vec4(dither(seen, gl_FragCoord.xy), 1.0);
 }

@@ -7,21 +7,20 @@ in vec3 position;
 in vec3 local;
 in vec3 local_normal;
 in vec3 profile;
-flat in vec4 rotation;
+flat in mat3 turned;
 flat in vec4 scale;
 flat in vec4 colour;
 uniform float glass; // 1: what is behind shows through
 out vec4 result;
 
-vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+float squared(float x) { return x * x; }
 
 void main() {
     vec3 albedo = mix(colour.rgb, vec3(1.0), 0.35 * colour.a);
-    vec3 bent = normalize(local_normal);
+    vec3 smooth_normal = normalize(local_normal);
     // Flat triangles are seen from both sides.
-    if (scale.w == 4.0 && !gl_FrontFacing)
-        bent = -bent;
-    vec3 normal = rotate(rotation, bent);
+    vec3 bent = scale.w == 4.0 && !gl_FrontFacing ? -smooth_normal : smooth_normal;
+    vec3 normal = turned * bent;
     vec3 per_pixel = fwidth(local);
 
     if (range.z > 0.5) {
@@ -46,22 +45,20 @@ void main() {
         }
     }
 
-    vec3 shaded = rotate(rotation, bent);
+    vec3 shaded = turned * bent;
     vec3 to_eye = normalize(eye.xyz - position);
     float facing = max(dot(shaded, to_light.xyz), 0.0);
     // A facet lies under the round surface that it stands for, by a share of the radius that depends
     // on the mesh, and so under the finer facets of the shadow map: light is asked for on the surface.
-    vec3 smooth_normal = normalize(local_normal);
     bool is_round = scale.w == 0.0 || scale.w == 2.0 || (scale.w == 3.0 && abs(smooth_normal.y) < 0.5);
     float under = is_round ? scale.x * max(1.0 - dot(profile, smooth_normal), 0.0) : 0.0;
     float reaching = facing > 0.0 ? light_reaching(position, normal, under) : 0.0;
     vec3 direct = light_colour * (to_light.w * facing * reaching);
     // A satin surface: a broad, weak gloss, and a little sheen at grazing angles.
     vec3 halfway = normalize(to_light.xyz + to_eye);
-    float gloss = 0.10 * pow(max(dot(shaded, halfway), 0.0), 32.0);
-    float sheen = 0.10 * pow(1.0 - max(dot(shaded, to_eye), 0.0), 4.0) * (0.5 + 0.5 * shaded.y);
-    vec3 lit = albedo * (ambient_light(shaded) + direct) + direct * gloss +
-               vec3(to_light.w * sheen);
+    float gloss = squared(squared(squared(squared(squared(max(dot(shaded, halfway), 0.0))))));
+    float sheen = squared(squared(1.0 - max(dot(shaded, to_eye), 0.0))) * (0.5 + 0.5 * shaded.y);
+    vec3 lit = albedo * (ambient_light(shaded) + direct) + 0.10 * (direct * gloss + to_light.w * sheen);
     // Glass is thicker where one looks along it.
     float along = 1.0 - abs(dot(shaded, to_eye));
     float opacity = glass > 0.5 ? mix(0.42, 0.85, along * along) : 1.0;

@@ -6,7 +6,7 @@ out vec3 position;
 out vec3 local;
 out vec3 local_normal;
 out vec3 profile; // the place on a round shape of radius 1, without its half height
-flat out vec4 rotation;
+flat out mat3 turned; // the shape's axes
 flat out vec4 scale;
 flat out vec4 colour;
 
@@ -14,9 +14,10 @@ void main() {
     local = local_position(0.0);
     local_normal = mesh_normal;
     profile = mesh_position;
-    rotation = instance_rotation;
+    turned = mat3(rotate(instance_rotation, vec3(1.0, 0.0, 0.0)), rotate(instance_rotation, vec3(0.0, 1.0, 0.0)),
+                  rotate(instance_rotation, vec3(0.0, 0.0, 1.0)));
     scale = instance_scale;
     colour = instance_colour;
-    position = instance_position.xyz + rotate(instance_rotation, local);
+    position = instance_position.xyz + turned * local;
     gl_Position = projection * (view * vec4(position, 1.0));
 }

@@ -56,16 +56,18 @@ DrawShape box_around(const DrawMesh &mesh) {
     return box;
 }
 
-// Nothing of the scene passes the depth test there.
+// Nothing of the scene passes the depth test there; what is left to see is the colour of the
+// backdrop, more or less.
 void hide(std::span<const PixelRect> rects, glm::ivec2 size) {
-    constexpr float grey = 0.75f; // of the backdrop, more or less
+    constexpr float grey = 0.75f;
     glClearColor(grey, grey, grey, 1);
+    glClear(GL_COLOR_BUFFER_BIT); // all of it at once, which costs less than parts
     glClearDepth(0);
     glEnable(GL_SCISSOR_TEST);
     for (const PixelRect &rect : rects) {
         glScissor(rect.min.x, size.y - rect.min.y - rect.size.y, std::max(rect.size.x, 0),
                   std::max(rect.size.y, 0));
-        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        glClear(GL_DEPTH_BUFFER_BIT);
     }
     glDisable(GL_SCISSOR_TEST);
     glClearDepth(1);
@@ -210,7 +212,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target, std::span<const P
             if (const DrawShape box = box_around(mesh); has_finite_pose(box))
                 reaching.push_back(box);
         shadow = fit_shadow(reaching, camera, aspect, list.light.direction, camera.target,
-                            ShadowMap::size);
+                            parts.shadow_map.size());
     }
     // What is out of view throws shadows, but need not be sorted or looked at again.
     if (shapes.size() >= least_shapes_to_cull)
@@ -241,7 +243,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target, std::span<const P
     frame.viewport = {size, tangent * aspect, tangent};
     frame.centre = {camera.centre, 0, 0};
     frame.light = {list.light.ambient, shadow ? shadow->texel : 0.0f,
-                   1.0f / static_cast<float>(ShadowMap::size), shadow ? 1.0f : 0.0f};
+                   1.0f / static_cast<float>(parts.shadow_map.size()), shadow ? 1.0f : 0.0f};
     frame.range = {relative.near_plane(), relative.far_plane(), list.view.edges ? 1.0f : 0.0f,
                    2 * tangent / size.y};
     glBindBuffer(GL_UNIFORM_BUFFER, parts.frame_buffer);
@@ -263,7 +265,7 @@ void Renderer::draw(const DrawList &list, Framebuffer &target, std::span<const P
     target.bind();
     glEnable(GL_FRAMEBUFFER_SRGB);
     glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT); // the backdrop covers what colour is left
-    if (parts.quality == Quality::plain)
+    if (parts.quality == Quality::plain && !covered.empty())
         hide(covered, target.size());
     // In view, and how large.
     const glm::vec3 eye = camera.eye();

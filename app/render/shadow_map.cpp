@@ -11,11 +11,11 @@
 namespace plumb {
 
 ShadowMap::ShadowMap(const std::filesystem::path &shader_dir, bool soft)
-    : program_(frame_program(shader_dir, "shadow.vert", "shadow.frag")) {
+    : program_(frame_program(shader_dir, "shadow.vert", "shadow.frag")), size_(soft ? 2048 : 1024) {
     glGenTextures(1, &texture_);
     glActiveTexture(GL_TEXTURE0 + shadow_unit);
     glBindTexture(GL_TEXTURE_2D, texture_);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size, size, 0, GL_DEPTH_COMPONENT,
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size_, size_, 0, GL_DEPTH_COMPONENT,
                  GL_UNSIGNED_INT, nullptr);
     // Outside the map everything is lit. (Without a GPU its empty border is extended, which is
     // cheaper.)
@@ -50,7 +50,7 @@ void ShadowMap::draw(const std::vector<DrawShape> &shapes,
                      const std::vector<const TriangleBatch *> &flat, const glm::vec3 &origin,
                      const ShadowFit &fit, const ShapeMeshes &meshes) const {
     glBindFramebuffer(GL_FRAMEBUFFER, target_);
-    glViewport(0, 0, size, size);
+    glViewport(0, 0, size_, size_);
     glClear(GL_DEPTH_BUFFER_BIT);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.0f, 4.0f);
@@ -61,7 +61,7 @@ void ShadowMap::draw(const std::vector<DrawShape> &shapes,
         const glm::vec3 at = shape.position - origin;
         const glm::vec4 centre = fit.texture_from_relative * glm::vec4(at, 1);
         const float metres = bounding_radius(shape);
-        const float radius = metres / (fit.texel * static_cast<float>(size));
+        const float radius = metres / (fit.texel * static_cast<float>(size_));
         const bool outside = centre.x < -radius || centre.x > 1 + radius || centre.y < -radius ||
                              centre.y > 1 + radius;
         // A quarter of the texels: a shadow's edge is soft.

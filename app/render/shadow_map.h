@@ -13,13 +13,13 @@ namespace plumb {
 
 class ShadowMap {
   public:
-    static constexpr int size = 2048; // texels, both ways
-
-    // `soft`: a fetch is between the four nearest texels.
+    // `soft`: a fetch is between the four nearest texels, and there are four times as many of them.
     ShadowMap(const std::filesystem::path &shader_dir, bool soft);
     ~ShadowMap();
     ShadowMap(const ShadowMap &) = delete;
     ShadowMap &operator=(const ShadowMap &) = delete;
+
+    [[nodiscard]] int size() const { return size_; } // texels, both ways
 
     // For the shaders of the frame.
     void bind() const;
@@ -30,6 +30,7 @@ class ShadowMap {
 
   private:
     ShaderProgram program_;
+    int size_;
     unsigned texture_ = 0;
     unsigned target_ = 0;
 };

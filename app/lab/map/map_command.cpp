@@ -6,6 +6,7 @@
 #include "app/lab/map/map_picture.h"
 #include "app/lab/map/map_resume.h"
 #include "app/lab/map/theory.h"
+#include "app/lab/progress.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
 #include "engine/scene/scene_file_change.h"
@@ -21,6 +22,8 @@ namespace {
 // The text of a scene without errors; what there is to say about it is printed. It is read once,
 // for it may come through a pipe.
 std::optional<SceneText> read_scene(const std::filesystem::path &path, std::ostream &err) {
+    ProgressLine line(err);
+    line.show(0, "reading " + path.string());
     SceneFileResult result;
     std::optional<std::string> text = read_scene_text(path, result.messages);
     if (text) {
@@ -29,6 +32,7 @@ std::optional<SceneText> read_scene(const std::filesystem::path &path, std::ostr
             methods.emplace_back(method.name);
         result = parse_scene(*text, path.string(), methods);
     }
+    line.clear();
     for (const SceneMessage &message : result.messages)
         err << format_message(path.string(), message) << '\n';
     if (!text || !result.ok())
@@ -60,6 +64,7 @@ ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &e
 
     const InterruptGuard interrupt;
     ProgressLine line(err);
+    line.show(0, command.scene.string());
     MapOptions options = command.options;
     options.stop = InterruptGuard::requested;
     options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
