@@ -72,6 +72,11 @@ void stack(PerPanel<Rect> &rects, const PerPanel<float> &wished, Spot side, cons
 
 } // namespace
 
+float scale_that_fits(float wished, glm::vec2 window) {
+    const float most = std::min(window.x / smallest_window.x, window.y / smallest_window.y);
+    return std::min(wished, std::max(std::floor(10 * most) / 10, 1.0f));
+}
+
 bool is_roomy(glm::vec2 window, float scale) {
     return window.x >= roomy.x * scale && window.y >= roomy.y * scale;
 }

@@ -42,6 +42,10 @@ template <typename T> struct PerPanel : std::array<T, panel_count> {
 inline constexpr glm::vec2 smallest_window{640, 400};
 [[nodiscard]] PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wished);
 
+// The scale of panels in a window where so large a one was asked for: above 1 no larger than leaves
+// it as much room as smallest_window has at 1, in whole tenths, so that all of them are in reach.
+[[nodiscard]] float scale_that_fits(float wished, glm::vec2 window);
+
 // Whether all panels can be open and leave room for the scene. In other windows they are closed
 // until somebody opens them.
 [[nodiscard]] bool is_roomy(glm::vec2 window, float scale);

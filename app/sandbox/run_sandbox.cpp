@@ -8,6 +8,7 @@
 #include "app/render/imgui_renderer.h"
 #include "app/render/png.h"
 #include "app/render/renderer.h"
+#include "app/sandbox/layout.h"
 #include "app/sandbox/sandbox.h"
 #include "app/sandbox/ui.h"
 #include "app/sandbox/window_input.h"
@@ -167,7 +168,9 @@ void draw_frames(const SandboxOptions &options, Sandbox &sandbox, Stage &stage) 
 
 int run_off_screen(const SandboxOptions &options, bool in_software) {
     Sandbox sandbox = make_sandbox(options);
-    Stage stage(options, in_software, options.ui_scale.value_or(1.0f), options.size);
+    Stage stage(options, in_software,
+                scale_that_fits(options.ui_scale.value_or(1.0f), glm::vec2(options.size)),
+                options.size);
     const InterruptGuard interrupt;
     with_recording(options, sandbox, [&] { draw_frames(options, sandbox, stage); });
     return finish(options, sandbox, stage);
@@ -193,7 +196,8 @@ float ui_scale(const SandboxOptions &options, const Window &window, const Sandbo
     const float dense = static_cast<float>(window.framebuffer_size().x) /
                         static_cast<float>(std::max(window.size().x, 1));
     const float monitor = window.content_scale() / (dense > 0 ? dense : 1);
-    return options.ui_scale.value_or(monitor) * sandbox.view().ui_scale;
+    return scale_that_fits(options.ui_scale.value_or(monitor) * sandbox.view().ui_scale,
+                           glm::vec2(window.size()));
 }
 
 void show_frames(const SandboxOptions &options, Window &window, WindowInput &input,

@@ -2,6 +2,7 @@
 
 #include "app/render/framebuffer.h"
 #include "app/render/imgui_renderer.h"
+#include "app/sandbox/layout.h"
 
 namespace plumb {
 
@@ -9,7 +10,7 @@ Image ui_snapshot(Sandbox &sandbox, Renderer &renderer, const std::filesystem::p
                   const UiSnapshotOptions &options, std::vector<Ui::Panel> *panels) {
     sandbox.clock().set_paused(true); // the state itself, not what lies between two steps
     sandbox.keep_in_picture();
-    Ui ui(options.scale);
+    Ui ui(scale_that_fits(options.scale, glm::vec2(options.size)));
     ImguiRenderer ui_renderer(shader_dir);
     const ImDrawData *data = nullptr;
     // Panels are as high as their contents were in the frame before, and ImGui lays out tables and

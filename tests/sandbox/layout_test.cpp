@@ -1,6 +1,7 @@
 #include "app/sandbox/layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "engine/core/random.h"
@@ -46,6 +47,26 @@ TEST(Layout, NothingOverlapsAndAllIsInside) {
             if (HasFailure())
                 return;
         }
+    }
+}
+
+TEST(Layout, NoScaleThatIsAskedForPutsPanelsOutOfReach) {
+    EXPECT_EQ(scale_that_fits(2, {2560, 1600}), 2.0f);
+    EXPECT_EQ(scale_that_fits(3, {1280, 800}), 2.0f);
+    EXPECT_EQ(scale_that_fits(3, smallest_window), 1.0f);
+    EXPECT_EQ(scale_that_fits(0.5f, {320, 200}), 0.5f);
+    Random random(4);
+    for (int i = 0; i < 2000; ++i) {
+        const glm::vec2 window(std::round(random.next_in(640, 3840)),
+                               std::round(random.next_in(400, 2160)));
+        const float scale = scale_that_fits(static_cast<float>(random.next_in(0.5, 4)), window);
+        PerPanel<float> wished{};
+        for (float &height : wished)
+            height = scale * static_cast<float>(random.next_in(40, 900));
+        if (!is_roomy(window, scale))
+            wished[PanelId::help] = 0;
+        expect_apart_and_inside(lay_out(window, scale, wished), window);
+        ASSERT_FALSE(HasFailure()) << "at a scale of " << scale;
     }
 }
 
