@@ -4,6 +4,7 @@
 #include "app/hash.h"
 #include "app/lab/chart.h"
 #include "app/lab/check.h"
+#include "app/lab/csv.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/map/stability_map.h"
 #include "app/lab/measure.h"
@@ -24,6 +25,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <iostream>
+#include <map>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -190,7 +192,24 @@ void refuse_options_of_scenes(const CLI::App &chart_command) {
 struct BenchArguments {
     std::string what;
     int rounds = 5;
+    double seconds = 0; // 0: each scene's own
+    double size = 1;
+    std::string only;
 };
+
+// Each thing to time has options of its own: the others would be passed over in silence.
+void refuse_options_of_others(const CLI::App &bench_command, const std::string &what) {
+    const std::map<std::string, std::string> reader{{"--rounds", "geometry"},
+                                                    {"--seconds", "dynamics"},
+                                                    {"--size", "dynamics"},
+                                                    {"--threads", "dynamics"}};
+    for (const CLI::Option *option : bench_command.get_options()) {
+        const auto only_for = reader.find(option->get_name());
+        if (option->count() > 0 && ((only_for != reader.end() && only_for->second != what) ||
+                                    (option->get_name() == "--only" && what == "geometry")))
+            throw std::invalid_argument("bench " + what + " takes no " + option->get_name());
+    }
+}
 
 // The other libraries are linked into a program of its own beside this one, which few people need.
 int bench(const BenchArguments &arguments, const CommonOptions &common) {
@@ -198,13 +217,27 @@ int bench(const BenchArguments &arguments, const CommonOptions &common) {
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plumb-bench";
     if (!std::filesystem::exists(program)) {
         std::cerr << "plumb: there is no " << program.string()
-                  << "; `./plumb bench geometry` in the source folder installs the libraries to "
-                     "compare with, and builds it\n";
+                  << "; `./plumb bench " + arguments.what +
+                         "` in the source folder installs the libraries "
+                         "to compare with, and builds it\n";
         return code_of(ExitCode::bad_input);
     }
-    const std::string rounds = std::to_string(arguments.rounds);
-    execl(program.c_str(), program.c_str(), arguments.what.c_str(), rounds.c_str(),
-          common.out.c_str(), common.shader_dir().c_str(), static_cast<char *>(nullptr));
+    std::vector<std::string> passed_on{program.string(),
+                                       arguments.what,
+                                       std::to_string(arguments.rounds),
+                                       common.out.string(),
+                                       common.shader_dir().string(),
+                                       exact_number(arguments.seconds),
+                                       exact_number(arguments.size),
+                                       std::to_string(common.threads)};
+    if (!arguments.only.empty())
+        for (std::string &name : parse_list(arguments.only))
+            passed_on.push_back(std::move(name));
+    std::vector<char *> pointers;
+    for (std::string &argument : passed_on)
+        pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    execv(program.c_str(), pointers.data());
     std::cerr << "plumb: cannot run " << program.string() << ": "
               << std::generic_category().message(errno) << '\n';
     return code_of(ExitCode::bad_input);
@@ -461,14 +494,45 @@ int main_with_errors(int argc, char **argv) {
     });
 
     BenchArguments bench_arguments;
+    int bench_threads = 2;
     CLI::App *bench_command = app.add_subcommand(
-        "bench", "Times the engine beside other libraries (run it as ./plumb bench geometry)");
-    bench_command->add_option("WHAT", bench_arguments.what, "Only: geometry")->required();
-    bench_command->add_option("--rounds", bench_arguments.rounds, "Of timings; their median counts")
+        "bench", "Compares the engine with other libraries (run it as ./plumb bench WHAT)");
+    bench_command
+        ->add_option("WHAT", bench_arguments.what,
+                     "geometry: what queries cost; dynamics: what steps of the same scenes cost in "
+                     "several engines, and how wrong they are; truth: what each engine makes of "
+                     "small problems whose answer is known, beside the aim")
+        ->required()
+        ->check(CLI::IsMember({"geometry", "dynamics", "truth"}));
+    bench_command
+        ->add_option("--rounds", bench_arguments.rounds,
+                     "geometry: of timings; their median counts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    bench_command
+        ->add_option("--only", bench_arguments.only,
+                     "dynamics, truth: the scenes or problems whose names begin so (all)")
+        ->type_name("NAME,...");
+    bench_command
+        ->add_option("--seconds", bench_arguments.seconds,
+                     "dynamics: how long a scene is run at most, in its own time (0.25 to 5, by "
+                     "scene)")
+        ->check(positive());
+    bench_command
+        ->add_option("--size", bench_arguments.size,
+                     "dynamics: of the scenes: 0.1 for about a tenth of the bodies")
+        ->check(CLI::Range(0.0001, 10.0))
+        ->capture_default_str();
+    bench_command
+        ->add_option("--threads", bench_threads, "dynamics: of Plumb, beside one; 1: only one")
+        ->check(CLI::Range(1, 256))
+        ->capture_default_str();
     add_out(*bench_command, common, "out");
-    bench_command->callback([&] { result = bench(bench_arguments, common); });
+    bench_command->callback([&] {
+        refuse_options_of_others(*bench_command, bench_arguments.what);
+        common.threads = bench_threads;
+        result = bench(bench_arguments, common);
+    });
 
     std::filesystem::path picture_a, picture_b, difference;
     int tolerance = 0;

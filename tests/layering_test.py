@@ -21,7 +21,7 @@ LIBRARIES = [
      r"|engine/dynamics/contact_kernels\.cpp|"
      r"tests/(geometry|space|dynamics)/[^/]+", None),
     (r"benchmark/", r"app/lab/[^/]+\.cpp", 1),
-    (r"Bullet|LinearMath/|fcl/|embree", r"tests/bench/[^/]+", None),
+    (r"Bullet|LinearMath/|fcl/|embree|\bode/", r"tests/bench/[^/]+", None),
     (r"GLFW/", r"app/render/window_context\.cpp|app/sandbox/[^/]+\.cpp", 3),
     (r"GL/osmesa\.h", r"app/render/[^/]+\.cpp", 1),
     (r"glad/|GL/", r"app/render/[^/]+", None),

@@ -1,0 +1,81 @@
+// Engines that run the same scenes, so that one set of measures judges them all.
+//
+// To add one: a file that derives Engine (engine_bullet.cpp is the pattern), a declaration of its
+// function below, and a line in `engines`. What it is asked for are poses and velocities, and what
+// it did in a step; nothing that it says of its own errors counts.
+#pragma once
+
+#include "engine/core/task_pool.h"
+#include "engine/scene/simulation.h"
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+struct BodyMass {
+    double mass = 0;       // kg; 0 for what is not dynamic
+    glm::dvec3 inertia{0}; // kg m^2, about the body's own axes, through its centre
+};
+
+// A scene with what every engine must be told alike. The body's frame lies at its centre of mass,
+// along its principal axes; joints are balls or hinges. Friction of a pair is the geometric mean,
+// restitution the larger, as in the scene's file.
+struct EngineScene {
+    SceneDesc desc;
+    std::vector<BodyMass> masses; // as many as bodies
+
+    explicit EngineScene(SceneDesc scene);
+    [[nodiscard]] double dt() const { return dt_; }                      // s
+    [[nodiscard]] const glm::dvec3 &gravity() const { return gravity_; } // m/s^2
+    [[nodiscard]] const MaterialDesc &material(const BodyDesc &body) const;
+    [[nodiscard]] std::size_t body(const std::string &name) const; // its index
+
+  private:
+    std::map<std::string, std::size_t> indices_; // of bodies, by name
+    double dt_ = 0;
+    glm::dvec3 gravity_{0};
+};
+
+// Of the last step.
+struct StepWork {
+    double collide = 0;       // share of the step's time that went into finding pairs and contacts
+    std::size_t contacts = 0; // pairs of bodies that touch, or nearly
+    // Contacts and joints that were solved, each as often as it was.
+    std::size_t passes = 0;
+};
+
+class Engine {
+  public:
+    Engine() = default;
+    virtual ~Engine() = default;
+    Engine(const Engine &) = delete;
+    Engine &operator=(const Engine &) = delete;
+
+    virtual void step() = 0; // by the scene's dt
+    // Counted outside of what is timed.
+    [[nodiscard]] virtual StepWork work() const = 0;
+    // By the body's place in the scene. Velocities of bodies that are not dynamic may be anything.
+    [[nodiscard]] virtual BodyState state(std::size_t body) const = 0;
+};
+
+struct EngineKind {
+    std::string name;
+    int threads = 1;
+    // What it cannot run gives null. The scene outlives the engine.
+    std::function<std::unique_ptr<Engine>(const EngineScene &)> create;
+};
+
+// All at their defaults, with sleeping off.
+[[nodiscard]] std::unique_ptr<Engine> plumb_engine(const EngineScene &scene, TaskPool *tasks);
+[[nodiscard]] std::unique_ptr<Engine> bullet_engine(const EngineScene &scene);
+[[nodiscard]] std::unique_ptr<Engine> ode_engine(const EngineScene &scene);
+
+// Those that were built, Plumb with one thread first; with `tasks`, Plumb on those threads second.
+[[nodiscard]] std::vector<EngineKind> engines(TaskPool *tasks);
+
+} // namespace plumb

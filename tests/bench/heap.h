@@ -1,0 +1,14 @@
+// How much of the heap is in use.
+#pragma once
+
+#include <malloc.h>
+
+namespace plumb {
+
+// Bytes in use, of the calling thread's arena and of what is mapped by itself.
+inline double heap_in_use() {
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+} // namespace plumb

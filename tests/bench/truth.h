@@ -1,0 +1,65 @@
+// Small problems whose answer is known, put to an engine at its defaults, 60 Hz.
+#pragma once
+
+#include "tests/bench/engine.h"
+#include "tests/bench/pose_measures.h"
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+// Poses or velocities are not finite any more, or the engine cannot run the scene.
+struct Diverged : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+struct CannotRun : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+struct Interrupted : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// One scene run by one engine.
+class Trial {
+  public:
+    // Throws CannotRun.
+    Trial(const EngineKind &kind, SceneDesc desc);
+
+    [[nodiscard]] const EngineScene &scene() const { return scene_; }
+    [[nodiscard]] const PoseMeasures &measures() const { return measures_; }
+    [[nodiscard]] double time() const { return static_cast<double>(steps_) * scene_.dt(); } // s
+    [[nodiscard]] const std::vector<BodyState> &states() const { return states_; }
+    [[nodiscard]] const BodyState &body(std::size_t index) const { return states_[index]; }
+    // By the velocities that the engine has: of all dynamic bodies, J.
+    [[nodiscard]] double energy() const;
+    [[nodiscard]] glm::dvec3 angular_momentum() const; // likewise, about the origin
+
+    // So many seconds on, calling `each` after every step. Throws Diverged and Interrupted.
+    void go(
+        double seconds, const std::function<void()> &each = [] {});
+
+  private:
+    EngineScene scene_;
+    PoseMeasures measures_;
+    std::unique_ptr<Engine> engine_;
+    std::vector<BodyState> states_;
+    std::size_t steps_ = 0;
+};
+
+struct Problem {
+    std::string name;
+    std::string what; // what is measured, and against what
+    std::string unit;
+    double aim = 0; // at most
+    std::function<double(const EngineKind &)> error;
+};
+
+[[nodiscard]] std::vector<Problem> motion_problems(); // free bodies and contacts
+[[nodiscard]] std::vector<Problem> joint_problems();
+[[nodiscard]] std::vector<Problem> standing_problems(); // stacks, pyramids, unlike masses
+[[nodiscard]] std::vector<Problem> fast_problems();     // what passes through, or should have
+
+} // namespace plumb

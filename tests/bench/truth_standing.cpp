@@ -1,0 +1,121 @@
+// What shall stand, and how deep it sinks.
+#include "tests/bench/scene_parts.h"
+#include "tests/bench/truth.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plumb {
+
+namespace {
+
+using namespace parts;
+
+// How far its top is from where it was after 30 s, in mm.
+double top(const EngineKind &kind, SceneDesc scene) {
+    Trial trial(kind, std::move(scene));
+    trial.go(30);
+    return 1e3 * trial.measures().top_displacement(trial.states());
+}
+
+SceneDesc stack(int count) {
+    SceneDesc scene = on_ground();
+    for (int i = 0; i < count; ++i)
+        add(scene, "box", BoxDesc{}, {0, 0.5 + i, 0});
+    return scene;
+}
+
+SceneDesc pyramid(int base) {
+    SceneDesc scene = on_ground();
+    add_pyramid(scene, base, 0);
+    return scene;
+}
+
+// Kinetic energy after 30 s against the potential.
+double unrest(const EngineKind &kind, SceneDesc scene) {
+    Trial trial(kind, std::move(scene));
+    trial.go(30 - trial.scene().dt());
+    const std::vector<BodyState> before = trial.states();
+    trial.go(trial.scene().dt());
+    double potential = 0;
+    for (std::size_t i = 0; i < trial.states().size(); ++i)
+        potential -= trial.scene().masses[i].mass *
+                     glm::dot(trial.scene().gravity(), trial.body(i).position);
+    return trial.measures().kinetic_energy(before, trial.states(), trial.scene().dt()) / potential;
+}
+
+// The deepest of the last second of five, or how far the upper box went where it fell off.
+double unlike_masses(const EngineKind &kind, double ratio) {
+    SceneDesc scene = on_ground();
+    add(scene, "light", BoxDesc{}, {0, 0.5, 0}).density = 1000;
+    add(scene, "heavy", BoxDesc{}, {0, 1.5, 0}).density = 1000 * ratio;
+    Trial trial(kind, scene);
+    trial.go(4);
+    double deepest = 0;
+    trial.go(1,
+             [&] { deepest = std::max(deepest, trial.measures().depth(trial.states()).deepest); });
+    const double moved = trial.measures().top_displacement(trial.states());
+    return 1e3 * (moved > 0.5 ? moved : deepest);
+}
+
+// Cards of 1 m that lean on each other at 20 degrees to the vertical, in storeys of tents with
+// level cards between: how far its top crept in 10 s.
+double card_house(const EngineKind &kind) {
+    SceneDesc scene = on_ground();
+    set_material(scene, 0.7, 0);
+    constexpr double half = 0.5, thin = 0.01, wide = 0.35;
+    const double lean = 0.349066, rise = 2 * half * std::cos(lean) + 2 * thin * std::sin(lean);
+    // From the middle of a tent to that of a card, so that the cards just touch at their tops.
+    const double aside = half * std::sin(lean) + thin * std::cos(lean);
+    const double across = 2 * (2 * aside + 0.02);
+    double floor = 0;
+    for (int storey = 0; storey < 3; ++storey) {
+        const int tents = 3 - storey;
+        for (int tent = 0; tent < tents; ++tent) {
+            const double x = (tent - 0.5 * (tents - 1)) * across;
+            for (const double side : {-1.0, 1.0}) {
+                BodyDesc &card = add(scene, "card", BoxDesc{{thin, half, wide}},
+                                     {x + side * aside, floor + 0.5 * rise, 0});
+                card.orientation = glm::angleAxis(side * lean, glm::dvec3(0, 0, 1));
+            }
+        }
+        floor += rise;
+        for (int i = 0; i + 1 < tents; ++i) {
+            add(scene, "level", BoxDesc{{0.5 * across - 0.005, thin, wide}},
+                {(i - 0.5 * (tents - 2)) * across, floor + thin, 0});
+        }
+        floor += tents > 1 ? 2 * thin : 0;
+    }
+    Trial trial(kind, scene);
+    trial.go(10);
+    double worst = 0;
+    for (std::size_t i = 0; i < trial.states().size(); ++i)
+        worst = std::max(worst, glm::distance(trial.body(i).position, scene.bodies[i].position));
+    return 1e3 * worst;
+}
+
+} // namespace
+
+std::vector<Problem> standing_problems() {
+    std::vector<Problem> problems;
+    for (const int count : {20, 30, 60})
+        problems.push_back({"stack_" + std::to_string(count),
+                            "how far its top is from its place after 30 s", "mm", 10,
+                            [=](const EngineKind &kind) { return top(kind, stack(count)); }});
+    problems.push_back({"stack_30_rest", "kinetic against potential energy after 30 s", "", 1e-6,
+                        [](const EngineKind &kind) { return unrest(kind, stack(30)); }});
+    for (const int base : {20, 40, 60, 100})
+        problems.push_back({"pyramid_" + std::to_string(base),
+                            "how far its top is from its place after 30 s", "mm", 500,
+                            [=](const EngineKind &kind) { return top(kind, pyramid(base)); }});
+    problems.push_back({"pyramid_20_rest", "kinetic against potential energy after 30 s", "", 1e-6,
+                        [](const EngineKind &kind) { return unrest(kind, pyramid(20)); }});
+    problems.push_back({"card_house", "how far any card went in 10 s", "mm", 0.5, card_house});
+    for (const auto &[ratio, aim] : {std::pair(30, 1.0), {100, 1.0}, {1000, 5.0}, {3000, 500.0}})
+        problems.push_back({"on_one_" + std::to_string(ratio),
+                            "depth of a box so many times as heavy on one", "mm", aim,
+                            [=](const EngineKind &kind) { return unlike_masses(kind, ratio); }});
+    return problems;
+}
+
+} // namespace plumb
