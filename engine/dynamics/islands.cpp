@@ -25,6 +25,10 @@ constexpr double spare = 1.25;
 constexpr double followed_together = 1.2;
 constexpr double followed_alone = 1.1;
 
+// How far a body under load may turn on its joints in a substep (rad): what it loses of its energy
+// falls with the square of that.
+constexpr double followed_turn = 0.1;
+
 std::uint16_t count_of(double substeps) {
     constexpr double most = std::numeric_limits<std::uint16_t>::max();
     // Not a number comes of what is about to diverge: that asks for nothing.
@@ -326,7 +330,7 @@ void World::note_joint_needs(const IslandGroup &group) {
             s.loads[body] = std::max(s.loads[body], squared);
         });
     }
-    // And the rate sqrt(sum F r / I) that they make.
+    // And the rate sqrt(sum F r / I) that they make, and how fast their bodies turn.
     for (const JointConstraint &joint : solver.joints)
         for_ends(joint, [&](std::uint32_t body, double) {
             if (model_->bodies[body].kind != BodyKind::dynamic || s.stiffness[body] == 0)
@@ -334,7 +338,12 @@ void World::note_joint_needs(const IslandGroup &group) {
             const double least = least_of(model_->bodies[body].inertia);
             const bool is_together = solver.joint_system.group_of(body) != JointSystem::none;
             const double rate = settings_.dt / (is_together ? followed_together : followed_alone);
-            s.loads[body] = std::max(s.loads[body], s.stiffness[body] / least * rate * rate);
+            // Only about what stands still: a chain that whips would be stiffened in the midst of
+            // it.
+            const double turn = moves(joint.a) && moves(joint.b) ? 0 : settings_.dt / followed_turn;
+            const Vec3 &spin = s.bodies[body].angular_velocity;
+            s.loads[body] = std::max({s.loads[body], s.stiffness[body] / least * rate * rate,
+                                      static_cast<double>(glm::dot(spin, spin)) * turn * turn});
         });
 }
 
