@@ -221,7 +221,8 @@ ExitCode bench_dynamics(const EngineBenchOptions &options) {
     CsvWriter csv(file.stream());
     write_header(csv);
     TaskPool tasks(options.threads);
-    std::printf("ms: median of a step, of the thread's own time (with several threads: of the "
+    std::printf("every engine at its defaults, 60 Hz, sleeping off\nms: median of a step, of the "
+                "thread's own time (with several threads: of the "
                 "wall's)\nratio: to Plumb's; B: bytes of heap; deepest, mean, drift, top: mm, "
                 "measured from poses by Plumb's geometry in double\n");
     for (std::size_t i = 0; i < scenes.size() && !InterruptGuard::requested(); ++i) {

@@ -94,7 +94,8 @@ ExitCode bench_truth(const EngineBenchOptions &options) {
         if (is_missed)
             missed.push_back(problem.name);
     }
-    std::printf("\nevery engine at its defaults, 60 Hz; the same measures of poses for all\n");
+    std::printf("\nevery engine at its defaults, 60 Hz, sleeping off; the same measures of poses "
+                "for all\n");
     std::printf("%zu of %zu aims reached\n", problems.size() - missed.size(), problems.size());
     std::fflush(stdout);
     file.finish();

@@ -7,7 +7,7 @@ namespace {
 class PlumbEngine final : public Engine {
   public:
     PlumbEngine(const EngineScene &scene, TaskPool *tasks)
-        : simulation_(Simulation::create(scene.desc, {}, tasks)) {}
+        : simulation_(Simulation::create(scene.desc, awake(), tasks)) {}
 
     void step() override {
         times_ = {};
@@ -21,6 +21,12 @@ class PlumbEngine final : public Engine {
     BodyState state(std::size_t body) const override { return simulation_->body_state(body); }
 
   private:
+    static RunOptions awake() {
+        RunOptions options;
+        options.settings.give(&StepSettings::sleep_after, 0.0); // never
+        return options;
+    }
+
     std::unique_ptr<Simulation> simulation_;
     StepTimes times_;
 };
