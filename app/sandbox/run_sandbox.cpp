@@ -97,6 +97,8 @@ Sandbox make_sandbox(const SandboxOptions &options) {
     if (!options.record.empty())
         sandbox.session().record();
     sandbox.clock().set_paused(options.paused);
+    ProgressLine line(std::cerr); // no window shows anything yet
+    line.show(0, "opening the scene");
     if (!options.recording.empty())
         sandbox.open_recording(options.recording);
     else if (!options.initial_scene.empty())
