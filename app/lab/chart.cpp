@@ -1,9 +1,9 @@
 #include "app/lab/chart.h"
 
-#include "app/lab/cpu_clock.h"
+#include "app/lab/end_timer.h"
 #include "app/lab/pareto.h"
 #include "app/lab/run_text.h"
-#include "engine/core/check.h"
+#include "app/lab/timing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,6 @@ namespace plumb {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// A timing lasts at least this long, so that the clock's own cost (below a microsecond) is lost in
-// it; a shorter segment is timed several times over.
-constexpr double shortest_timing = 0.01; // s
-constexpr int most_rounds = 1000;        // in one timing
 
 void judge_error(const ErrorMeasure &measure, ChartRun &run) {
     run.worst = worst_of(run.run.outcomes);
@@ -37,12 +32,6 @@ void judge_error(const ErrorMeasure &measure, ChartRun &run) {
     run.status = !std::isfinite(run.error) ? ChartStatus::no_result
                  : run.run.all_met()       ? ChartStatus::fine
                                            : ChartStatus::outside;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 void set_cost(ChartRun &run) {
@@ -69,35 +58,6 @@ void mark_front(SceneChart &chart) {
         chart.runs[i].pareto = front[i];
 }
 
-// What is needed to run the end of a run again and again.
-struct Timer {
-    std::unique_ptr<Simulation> simulation;
-    std::unique_ptr<Simulation::Saved> saved;
-    int steps = 0;  // in the timed segment
-    int rounds = 1; // in one timing
-
-    // CPU seconds per simulated second; nothing when a step failed.
-    std::optional<double> time() const {
-        double used = 0;
-        try {
-            simulation->restore(*saved);
-            // Brings code and data back into the caches after the other simulations' turn.
-            for (int i = 0; i < std::max(1, steps / 10); ++i)
-                simulation->step();
-            for (int round = 0; round < rounds; ++round) {
-                simulation->restore(*saved);
-                const double before = thread_cpu_time();
-                for (int i = 0; i < steps; ++i)
-                    simulation->step();
-                used += thread_cpu_time() - before;
-            }
-        } catch (const CheckFailure &) {
-            return std::nullopt;
-        }
-        return used / (rounds * steps * simulation->settings().dt);
-    }
-};
-
 struct PlannedRun {
     RunOptions options;
     ResolvedRun resolved;
@@ -120,6 +80,15 @@ std::vector<PlannedRun> plan(const SceneDesc &scene, const ChartOptions &options
         }
     }
     const std::vector<SweepPoint> points = sweep_points(chart.sweep);
+    // The least that islands take says little of what they take: where substeps are swept, and
+    // nothing is said of the most, just so many are charted, too.
+    const auto is_swept = [&](SettingMember member) {
+        return std::ranges::any_of(chart.sweep, [&](const SweepAxis &axis) {
+            return axis.setting.setting().member == member;
+        });
+    };
+    const bool both = is_swept(&StepSettings::substeps) && !is_swept(&StepSettings::max_substeps) &&
+                      !options.base.settings.has(*find_setting("max_substeps"));
     std::vector<PlannedRun> planned;
     for (const MethodInfo *method : methods) {
         if (std::string why = why_not(*method, scene); !why.empty()) {
@@ -127,21 +96,30 @@ std::vector<PlannedRun> plan(const SceneDesc &scene, const ChartOptions &options
             continue;
         }
         const std::size_t first = planned.size();
-        for (const SweepPoint &point : points) {
-            PlannedRun run;
-            run.options = options.base;
-            run.options.method = std::string(method->name);
-            run.point = point;
-            run.options.settings.give(given_by(chart.sweep, point));
-            run.resolved = resolve_run(scene, run.options);
-            const bool repeated = std::any_of(planned.begin() + static_cast<std::ptrdiff_t>(first),
-                                              planned.end(), [&](const PlannedRun &other) {
-                                                  return same_work(*method, run.resolved.settings,
-                                                                   other.resolved.settings);
-                                              });
-            if (!repeated)
-                planned.push_back(std::move(run));
+        std::vector<RunOptions> variants{options.base};
+        variants.front().method = std::string(method->name);
+        if (both && method->chooses_substeps()) {
+            const int most = resolve_run(scene, variants.front()).settings.max_substeps;
+            variants.push_back(variants.front());
+            variants[0].settings.give(&StepSettings::max_substeps, 1);
+            variants[1].settings.give(&StepSettings::max_substeps,
+                                      std::max(most, method->defaults.max_substeps));
         }
+        for (const RunOptions &variant : variants)
+            for (const SweepPoint &point : points) {
+                PlannedRun run;
+                run.options = variant;
+                run.point = point;
+                run.options.settings.give(given_by(chart.sweep, point));
+                run.resolved = resolve_run(scene, run.options);
+                const bool repeated = std::any_of(
+                    planned.begin() + static_cast<std::ptrdiff_t>(first), planned.end(),
+                    [&](const PlannedRun &other) {
+                        return same_work(*method, run.resolved.settings, other.resolved.settings);
+                    });
+                if (!repeated)
+                    planned.push_back(std::move(run));
+            }
     }
     return planned;
 }
@@ -197,7 +175,7 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
             return Simulation::create(s, o, nullptr);
         };
 
-    std::vector<Timer> timers;
+    std::vector<std::optional<EndTimer>> timers;
     bool had_contacts = false;
     for (const PlannedRun &next : planned) {
         if (stopped())
@@ -205,36 +183,25 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
         ChartRun run;
         run.resolved = next.resolved;
         run.point = next.point;
-        Timer timer;
-        timer.simulation = make(scene, next.options);
+        std::unique_ptr<Simulation> simulation = make(scene, next.options);
+        std::unique_ptr<Simulation::Saved> saved;
         JudgeOptions judging;
         judging.follow_errors = true;
         judging.duration = options.duration;
         judging.stop = options.stop;
         judging.at_time_seconds = end - chart.timed;
-        judging.at_time = [&] { timer.saved = timer.simulation->save(); };
+        judging.at_time = [&] { saved = simulation->save(); };
         judging.progress = [&](double fraction) {
             progress(0.5 * (static_cast<double>(timers.size()) + fraction) /
                          static_cast<double>(planned.size()),
                      run);
         };
-        run.run = judge_run(*timer.simulation, scene, judging);
+        run.run = judge_run(*simulation, scene, judging);
         judge_probes(scene, run.resolved.precision, run.run.outcomes);
         set_cost(run);
-        if (run.run.stopped)
-            timer.saved.reset();
-        if (run.run.divergence || !timer.saved) {
-            timer.simulation.reset();
-            timer.saved.reset();
-        } else {
-            timer.steps =
-                std::max(1, static_cast<int>(std::lround(chart.timed / run.resolved.settings.dt)));
-            const double segment = run.cost * timer.steps * run.resolved.settings.dt;
-            timer.rounds = segment > 0
-                               ? static_cast<int>(std::clamp(std::ceil(shortest_timing / segment),
-                                                             1.0, static_cast<double>(most_rounds)))
-                               : most_rounds;
-        }
+        timers.emplace_back();
+        if (saved && !run.run.divergence && !run.run.stopped)
+            timers.back().emplace(std::move(simulation), std::move(saved), chart.timed, run.cost);
         const double simulated = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
         if (simulated > 0) {
             run.body_passes = static_cast<double>(run.run.body_passes) / simulated;
@@ -243,7 +210,6 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
         had_contacts = had_contacts || run.run.had_contacts;
         if (everything_expected(scene).empty())
             chart.measure = followed_measure(scene, had_contacts);
-        timers.push_back(std::move(timer));
         chart.runs.push_back(std::move(run));
         for (ChartRun &done : chart.runs)
             judge_error(chart.measure, done);
@@ -255,11 +221,11 @@ SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
     for (int repeat = 0; repeat < options.repeats && !stopped(); ++repeat) {
         std::vector<std::optional<double>> round(timers.size());
         for (std::size_t i = 0; i < timers.size() && !stopped(); ++i) {
-            if (!timers[i].simulation)
+            if (!timers[i])
                 continue;
-            round[i] = timers[i].time();
+            round[i] = timers[i]->time();
             if (!round[i])
-                timers[i].simulation.reset();
+                timers[i].reset();
             progress(0.5 + 0.5 *
                                (repeat +
                                 static_cast<double>(i + 1) / static_cast<double>(timers.size())) /

@@ -62,6 +62,19 @@ bool is_worth_saying(const SceneChart &chart, SettingNumber number) {
     });
 }
 
+// Whether islands may take substeps of their own in it.
+bool chooses(const ChartRun &run) {
+    return run.resolved.method->chooses_substeps() && run.resolved.settings.max_substeps > 1;
+}
+
+// Whether the same method is there with just so many substeps and with at least so many.
+bool has_both_modes(const SceneChart &chart) {
+    return std::ranges::any_of(chart.runs, chooses) &&
+           std::ranges::any_of(chart.runs, [](const ChartRun &run) {
+               return run.resolved.method->chooses_substeps() && !chooses(run);
+           });
+}
+
 // "4", or "4 (Soft step), 1 (Runge-Kutta 4)" where methods differ: each value once.
 std::string values_by_method(const SceneChart &chart, SettingNumber number) {
     std::vector<std::pair<std::string, std::string>> groups; // value, titles
@@ -116,19 +129,26 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.limit_label = chart.measure.limit_label;
     content.left_out = chart.left_out;
 
+    const bool both = has_both_modes(chart);
     const MethodInfo *method = nullptr;
+    bool chosen = false;
     SweepPoint others; // the point less its first axis: each has its own line
     for (const ChartRun &run : chart.runs) {
         if (run.status == ChartStatus::unfinished || !(run.cost > 0))
             continue;
         const SweepPoint rest(run.point.begin() + 1, run.point.end());
-        if (run.resolved.method != method) {
+        if (run.resolved.method != method || (both && chooses(run) != chosen)) {
             method = run.resolved.method;
+            chosen = chooses(run);
             ChartSeries series;
             series.name = std::string(method->title);
             for (std::size_t i = 0; i < method_infos().size(); ++i)
                 if (&method_infos()[i] == method)
                     series.style = i;
+            if (both && method->chooses_substeps()) {
+                series.name += chosen ? ", at least so many" : ", just so many";
+                series.style += chosen ? 0 : method_infos().size();
+            }
             content.series.push_back(std::move(series));
             content.series.back().lines.emplace_back();
             others = rest;
@@ -161,7 +181,8 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     if (!chart.runs.empty()) {
         const ResolvedRun &first = chart.runs.front().resolved;
         for (const SettingNumber number : setting_numbers())
-            if (!swept(number) && is_worth_saying(chart, number))
+            if (!swept(number) && is_worth_saying(chart, number) &&
+                !(both && number.setting().name == "max_substeps"))
                 add(setting_name(number) + " " + values_by_method(chart, number));
         add(std::string(precision_name(first.precision)) + " precision");
         const bool timed = std::any_of(chart.runs.begin(), chart.runs.end(),

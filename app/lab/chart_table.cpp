@@ -124,9 +124,9 @@ void print(std::ostream &out, const SceneChart &chart) {
                           100 * (run.cost_high - run.cost_low) / run.cost);
         const std::string error =
             std::isfinite(run.error) ? with_unit(run.error, chart.measure.unit) : "-";
-        std::snprintf(line, sizeof line, "  %-22.22s %9d %9d %10s %14.5g %8s %14s  %s%s",
+        std::snprintf(line, sizeof line, "  %-22.22s %9s %9d %10s %14.5g %8s %14s  %s%s",
                       std::string(run.resolved.method->name).c_str(),
-                      run.resolved.settings.substeps, run.resolved.settings.iterations,
+                      substeps_text(run.resolved).c_str(), run.resolved.settings.iterations,
                       format_dt(run.resolved.settings.dt).c_str(), 1e3 * run.cost, spread,
                       error.c_str(), std::string(status_name(run.status)).c_str(),
                       run.pareto ? ", Pareto front" : "");

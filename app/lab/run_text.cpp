@@ -17,9 +17,15 @@ std::string_view precision_name(Precision precision) {
 }
 
 std::string run_text(const ResolvedRun &run) {
-    return std::string(run.method->name) + " substeps=" + std::to_string(run.settings.substeps) +
+    return std::string(run.method->name) + " substeps=" + substeps_text(run) +
            " iterations=" + std::to_string(run.settings.iterations) +
            " dt=" + format_dt(run.settings.dt) + " " + std::string(precision_name(run.precision));
+}
+
+std::string substeps_text(const ResolvedRun &run) {
+    const StepSettings &s = run.settings;
+    const bool chosen = run.method->chooses_substeps() && s.max_substeps > s.substeps;
+    return std::to_string(s.substeps) + (chosen ? ".." + std::to_string(s.max_substeps) : "");
 }
 
 std::string with_unit(double value, std::string_view unit) {

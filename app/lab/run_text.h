@@ -12,6 +12,9 @@ namespace plumb {
 // "soft_step substeps=4 iterations=1 dt=1/60 s float"
 [[nodiscard]] std::string run_text(const ResolvedRun &run);
 
+// "4", or "4..64" where islands may take more of their own.
+[[nodiscard]] std::string substeps_text(const ResolvedRun &run);
+
 // Six significant digits and the unit; "1" as a unit is left out.
 [[nodiscard]] std::string with_unit(double value, std::string_view unit);
 

@@ -66,7 +66,10 @@ time_interleaved(const std::vector<std::function<std::uint64_t()>> &works,
 
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
-    return values.empty() ? 0 : values[values.size() / 2];
+    const std::size_t half = values.size() / 2;
+    return values.empty()           ? 0
+           : values.size() % 2 == 1 ? values[half]
+                                    : 0.5 * (values[half - 1] + values[half]);
 }
 
 double median_ratio(const std::vector<double> &a, const std::vector<double> &b) {

@@ -56,6 +56,7 @@ ChartOptions quick(MakeSimulation make) {
     ChartOptions options;
     options.methods = {"soft_step"};
     options.sweep = {parse_sweep("substeps=1..8")};
+    options.base.settings.give(&StepSettings::max_substeps, 1);
     options.repeats = 3;
     options.make = std::move(make);
     return options;
@@ -98,6 +99,37 @@ TEST(Chart, ErrorsAreThoseOfAFullRun) {
     const std::vector<bool> front = pareto_front(choices);
     for (std::size_t i = 0; i < front.size(); ++i)
         EXPECT_EQ(chart.runs[i].pareto, front[i]);
+}
+
+TEST(Chart, JustSoManySubstepsAndAtLeastSoManyAreTwoCurves) {
+    ChartOptions options = quick(fakes());
+    options.base = {};
+    options.methods = {"soft_step", "tgs_soft"};
+    options.sweep = {parse_sweep("substeps=1,4")};
+    SceneDesc scene = falling_scene();
+    scene.world.settings.give(&StepSettings::max_substeps, 1); // of its own; the default is 64
+    const SceneChart chart = chart_scene(scene, options);
+    std::vector<std::pair<int, int>> runs;
+    for (const ChartRun &run : chart.runs)
+        runs.emplace_back(run.resolved.settings.substeps, run.resolved.settings.max_substeps);
+    EXPECT_EQ(runs,
+              (std::vector<std::pair<int, int>>{{1, 1}, {4, 1}, {1, 64}, {4, 64}, {1, 1}, {4, 1}}));
+    const ChartContent content = chart_content(chart, "");
+    ASSERT_EQ(content.series.size(), 3U);
+    EXPECT_EQ(content.series[0].name, "Soft step, just so many");
+    EXPECT_EQ(content.series[1].name, "Soft step, at least so many");
+    EXPECT_EQ(content.series[2].name, "TGS Soft");
+    EXPECT_NE(content.series[0].style, content.series[1].style);
+    EXPECT_EQ(content.footer.at(0).find("max_substeps"), std::string::npos) << content.footer[0];
+    std::ostringstream table;
+    print(table, chart);
+    EXPECT_NE(table.str().find(" 4..64 "), std::string::npos) << table.str();
+    // Where the most is given, or swept, that alone.
+    options.base.settings.give(&StepSettings::max_substeps, 8);
+    EXPECT_EQ(chart_scene(scene, options).runs.size(), 4U);
+    options.base = {};
+    options.sweep.push_back(parse_sweep("max_substeps=1,16"));
+    EXPECT_EQ(chart_scene(scene, options).runs.size(), 6U);
 }
 
 TEST(Chart, CsvHoldsEveryRunWithItsSettings) {
