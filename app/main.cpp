@@ -11,6 +11,7 @@
 #include "app/lab/query_chart.h"
 #include "app/lab/run_text.h"
 #include "app/lab/sweep.h"
+#include "app/lab/tune/tune.h"
 #include "app/list.h"
 #include "app/render/compare_images.h"
 #include "app/render/png.h"
@@ -43,7 +44,8 @@ constexpr std::uint64_t default_scene_step = 125;
 
 constexpr const char *exit_codes = "Exit codes:\n"
                                    "  0  fine\n"
-                                   "  1  outside a tolerance, or pictures or a replay differ\n"
+                                   "  1  outside a tolerance, or pictures or a replay differ; "
+                                   "nothing meets what is tuned\n"
                                    "  2  a bad scene or argument\n"
                                    "  3  the world diverged\n"
                                    "  4  no GL context\n"
@@ -491,6 +493,55 @@ int main_with_errors(int argc, char **argv) {
         map.shader_dir = common.shader_dir();
         map.command = command_text(argc, argv);
         result = code_of(map_scene(map, std::cout, std::cerr));
+    });
+
+    TuneCommand tuned;
+    std::string tune_methods, budget;
+    CLI::App *tune_command = app.add_subcommand(
+        "tune",
+        "Finds the cheapest method, precision, dt, substeps and iterations with which a scene "
+        "meets all that it expects of itself, with a margin and from several starts. What is given "
+        "by --methods, --precision, --set and the like stays as it is given");
+    tune_command->add_option("SCENE", common.scenes, "A scene file, or a name from `plumb list`")
+        ->required()
+        ->expected(1);
+    tune_command->add_option("--methods", tune_methods, "Of " + method_names() + " (all)")
+        ->type_name("METHOD,...");
+    tune_command
+        ->add_option("--tolerance", tuned.options.tolerance,
+                     "The share of each tolerance that may be used: the rest is the margin")
+        ->check(CLI::Range(0.01, 1.0))
+        ->capture_default_str();
+    tune_command
+        ->add_option("--starts", tuned.options.starts,
+                     "How often each is run beside the scene as it stands: with bodies shifted by "
+                     "up to a millionth, and another seed for what the file scatters")
+        ->check(CLI::Range(0, 100))
+        ->capture_default_str();
+    tune_command
+        ->add_option("--budget", budget,
+                     "The most CPU time that a frame of 1/60 s may cost; when the cheapest costs "
+                     "more, the exit code is 1")
+        ->type_name("1ms");
+    tune_command
+        ->add_option("--repeats", tuned.options.repeats,
+                     "Timings of each that may be the cheapest, in turns")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    tune_command->add_flag("--explain", tuned.explain,
+                           "Prints what was tried, what each cost and what it missed");
+    tune_command->add_flag("--write", tuned.write,
+                           "Writes what was chosen into the scene's file, and leaves all else in "
+                           "it as it is");
+    add_run_options(*tune_command, common, true);
+    tune_command->callback([&] {
+        tuned.scene = common.scene_paths().front();
+        if (!tune_methods.empty())
+            tuned.options.methods = parse_list(tune_methods);
+        if (!budget.empty())
+            tuned.options.budget = parse_budget(budget);
+        tuned.options.base = common.run();
+        result = code_of(tune_scene(tuned, std::cout, std::cerr));
     });
 
     BenchArguments bench_arguments;

@@ -137,6 +137,14 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
 
     const double end = run_end(scene, options.duration);
     const double start = simulation.time();
+    constexpr int looks = 32; // in a run, at whether to give up
+    double next_look = options.give_up ? start + (end - start) / looks : end;
+    const auto any_missed = [&] {
+        for (std::size_t i = 0; i < watch.size(); ++i)
+            if (watch.outcome(i).verdict == Verdict::missed)
+                return true;
+        return false;
+    };
     LastPositions last_positions;
     bool at_time_due = static_cast<bool>(options.at_time);
     follow(true);
@@ -176,6 +184,11 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
         follow(false);
         if (options.progress)
             options.progress((simulation.time() - start) / std::max(end - start, 1e-300));
+        if (simulation.time() >= next_look && next_look < end) {
+            if (any_missed())
+                break;
+            next_look = simulation.time() + (end - start) / looks;
+        }
     }
     run.time = simulation.time();
 

@@ -32,6 +32,8 @@ struct JudgeOptions {
     bool follow_errors = false;
     // For a scene without expectations: how long to run (s).
     double duration = 5;
+    // Ends the run once an expectation is missed whatever comes; it is looked at now and then.
+    bool give_up = false;
     // Asked before each step; true ends the run early. May be empty.
     std::function<bool()> stop;
     // Called after each step, with the fraction done. May be empty.

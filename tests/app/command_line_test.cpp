@@ -94,6 +94,10 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
          {"SCENE", "--x", "--y", "NAME=FROM..TO[:N][log]", "--methods", "--image", "--csv",
           "--seconds"},
          true},
+        {"tune",
+         {"SCENE", "--methods", "--tolerance", "--starts", "--budget", "--repeats", "--explain",
+          "--write", "--set", "--dt", "--substeps", "--iterations", "--precision"},
+         false}, // timed on one thread
         {"compare", {"A", "B", "--tolerance", "--difference"}, false},
     };
     const ProgramResult all = run_program("--help");
@@ -138,7 +142,12 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "map pendulum --x dtt=1..2 --y substeps=1,2",
                                   "map pendulum --x body.bbo.mass=1..2 --y substeps=1,2",
                                   "map pendulum --x dt=1/60,1/30 --y substeps=1,2 --seconds 1",
-                                  "map points --x dt=1/60,1/30 --y substeps=1,2"}) {
+                                  "map points --x dt=1/60,1/30 --y substeps=1,2",
+                                  "tune points",
+                                  "tune pendulum --tolerance 0",
+                                  "tune pendulum --budget 1",
+                                  "tune pendulum --methods soft_stop",
+                                  "tune free_fall pendulum"}) {
         const ProgramResult result = run_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments << '\n' << result.out << result.err;
         EXPECT_FALSE(result.err.empty()) << arguments;
@@ -232,6 +241,47 @@ TEST(CommandLine, AMapIsPrintedAndWritten) {
     EXPECT_TRUE(has(map.out, "  ....\n")) << map.out;
     EXPECT_TRUE(has(text_of(folder.path() / "map.csv"), "kind,method,dt,substeps,low,high,why"));
     EXPECT_TRUE(fs::exists(folder.path() / "map.png"));
+}
+
+TEST(CommandLine, WhatIsTunedIsWrittenAndNothingElse) {
+    const TemporaryFolder folder;
+    const std::string world = "# as it falls\n[world]\nmethod = \"semi_implicit_euler\"\n"
+                              "substeps = 64 # far too many\ndt = \"1/60\"\n\n";
+    const fs::path file = folder.write("fall.toml", world + falling_ball("5.095"));
+    // It falls g h t / 2 too far, by 0.082 m with one substep; 0.8 of 0.2 m are allowed.
+    const std::string tune = "tune fall.toml --methods semi_implicit_euler --dt 1/60 --repeats 1 ";
+    const ProgramResult looked = run_program(tune + "--explain", folder.path());
+    EXPECT_EQ(looked.exit_code, 0) << looked.err;
+    EXPECT_TRUE(has(looked.out, "semi_implicit_euler with 1 substep ")) << looked.out;
+    EXPECT_TRUE(has(looked.out, "the scene's own settings cost ")) << looked.out;
+    EXPECT_TRUE(has(looked.out, "Twice the substeps would cost ")) << looked.out;
+    EXPECT_TRUE(has(looked.out, "; CHOSEN")) << looked.out;
+    EXPECT_EQ(text_of(file), world + falling_ball("5.095")) << "only --write writes";
+
+    const ProgramResult wrote = run_program(tune + "--write --precision float", folder.path());
+    EXPECT_EQ(wrote.exit_code, 0) << wrote.err;
+    EXPECT_TRUE(has(wrote.err, "wrote ")) << wrote.err;
+    EXPECT_EQ(text_of(file), "# as it falls\n[world]\nmethod = \"semi_implicit_euler\"\n"
+                             "substeps = 1 # far too many\ndt = \"1/60\"\n\n" +
+                                 falling_ball("5.095"));
+    const ProgramResult again = run_program(tune + "--write --precision float", folder.path());
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_TRUE(has(again.out, "Nothing to write")) << again.out;
+    EXPECT_EQ(run_program("check fall.toml", folder.path()).exit_code, 0);
+}
+
+TEST(CommandLine, WhatCannotBeTunedIsExitCode1AndIsNotWritten) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("fall.toml", falling_ball("7")); // it is not
+    const ProgramResult result =
+        run_program("tune fall.toml --methods rk4 --substeps 1 --write", folder.path());
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    EXPECT_TRUE(has(result.out, "nothing that was tried meets its expectation")) << result.out;
+    EXPECT_EQ(text_of(file), falling_ball("7"));
+    const ProgramResult dear = run_program(
+        "tune fall.toml --methods rk4 --substeps 1 --write --budget 0.000001us", folder.path());
+    EXPECT_EQ(dear.exit_code, 1) << dear.err;
+    EXPECT_EQ(text_of(file), falling_ball("7"));
 }
 
 TEST(CommandLine, ADivergingWorldIsExitCode3) {

@@ -6,10 +6,8 @@
 #include "app/lab/map/map_picture.h"
 #include "app/lab/map/map_resume.h"
 #include "app/lab/map/theory.h"
-#include "app/lab/progress.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
-#include "engine/scene/scene_file_change.h"
 
 #include <fstream>
 #include <optional>
@@ -18,27 +16,6 @@
 namespace plumb {
 
 namespace {
-
-// The text of a scene without errors; what there is to say about it is printed. It is read once,
-// for it may come through a pipe.
-std::optional<SceneText> read_scene(const std::filesystem::path &path, std::ostream &err) {
-    ProgressLine line(err);
-    line.show(0, "reading " + path.string());
-    SceneFileResult result;
-    std::optional<std::string> text = read_scene_text(path, result.messages);
-    if (text) {
-        std::vector<std::string> methods;
-        for (const MethodInfo &method : method_infos())
-            methods.emplace_back(method.name);
-        result = parse_scene(*text, path.string(), methods);
-    }
-    line.clear();
-    for (const SceneMessage &message : result.messages)
-        err << format_message(path.string(), message) << '\n';
-    if (!text || !result.ok())
-        return std::nullopt;
-    return SceneText{path, std::move(*text)};
-}
 
 std::filesystem::path partial_of(const std::filesystem::path &csv) {
     return csv.string() + ".partial";

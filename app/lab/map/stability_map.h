@@ -5,6 +5,7 @@
 #include "app/lab/map/failing.h"
 #include "app/lab/map/map_axis.h"
 #include "app/lab/progress.h"
+#include "app/lab/scene_text.h"
 #include "engine/core/task_pool.h"
 #include "engine/scene/simulation.h"
 
@@ -20,12 +21,6 @@
 #include <vector>
 
 namespace plumb {
-
-// A scene file as text, which its numbers are changed in.
-struct SceneText {
-    std::filesystem::path path;
-    std::string text;
-};
 
 struct MapRun {
     RunFailing failing;

@@ -1,0 +1,126 @@
+#include "app/lab/tune/trial.h"
+
+#include "app/lab/end_timer.h"
+#include "app/lab/run_text.h"
+#include "app/lab/timing.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace plumb {
+
+namespace {
+
+// With a share of each tolerance. Bounds that are not above zero have none that could be shared.
+SceneDesc tightened(SceneDesc scene, double share) {
+    for (ExpectDesc &expect : scene.expects) {
+        expect.tolerance *= share;
+        if (expect.relation == ExpectDesc::Relation::at_most && expect.value > 0)
+            expect.value *= share;
+    }
+    return scene;
+}
+
+// What was measured, against the full tolerance.
+void judge_in_full(const SceneDesc &scene, const JudgedRun &judged, TunedRun &run) {
+    for (std::size_t i = 0; i < judged.outcomes.size(); ++i) {
+        const ExpectOutcome &outcome = judged.outcomes[i];
+        if (!outcome.judged())
+            continue;
+        const double error = judge(scene.expects[i], outcome.measured).scaled_error;
+        if (error > run.error) {
+            run.error = error;
+            run.worst = scene.expects[i].name;
+        }
+    }
+}
+
+} // namespace
+
+Trial::Trial(const std::vector<SceneDesc> &starts, const TuneOptions &options)
+    : starts_(starts), options_(options) {
+    for (const SceneDesc &start : starts)
+        tightened_.push_back(tightened(start, options.tolerance));
+}
+
+std::unique_ptr<Simulation> Trial::make(const SceneDesc &scene, const RunOptions &options) const {
+    return options_.make ? options_.make(scene, options)
+                         : Simulation::create(scene, options, nullptr);
+}
+
+TunedRun Trial::run(const RunOptions &options, const Progress &progress) const {
+    TunedRun run;
+    run.options = options;
+    run.resolved = resolve_run(scene(), options);
+    const std::string what = scene().name + ": " + run_text(run.resolved);
+    for (std::size_t start = 0; start < starts_.size(); ++start) {
+        const auto simulation = make(tightened_[start], options);
+        JudgeOptions judging;
+        judging.give_up = true;
+        judging.stop = options_.stop;
+        judging.progress = [&](double fraction) {
+            if (progress)
+                progress((static_cast<double>(start) + fraction) /
+                             static_cast<double>(starts_.size()),
+                         what);
+        };
+        const JudgedRun judged = judge_run(*simulation, tightened_[start], judging);
+        if (judged.stopped)
+            return run;
+        ++run.starts;
+        judge_in_full(starts_[start], judged, run);
+        if (const double simulated = static_cast<double>(judged.steps) * run.resolved.settings.dt;
+            simulated > 0) {
+            const double cost = judged.step_cpu_time / simulated;
+            run.cost = start == 0 ? cost : std::min(run.cost, cost);
+            if (start == 0)
+                run.work =
+                    static_cast<double>(judged.body_passes + judged.constraint_passes) / simulated;
+        }
+        if (!judged.all_met()) {
+            run.verdict = judged.divergence ? TuneVerdict::diverged : TuneVerdict::missed;
+            return run;
+        }
+    }
+    run.verdict = TuneVerdict::met;
+    return run;
+}
+
+void Trial::time(const std::vector<TunedRun *> &runs, const Progress &progress) const {
+    const double end = run_end(scene(), 0);
+    const double timed = std::min(options_.timed, end);
+    const double rounds = options_.repeats + 1; // the run to there counts as one
+    const auto tell = [&](int round, std::size_t i) {
+        if (progress)
+            progress((round + static_cast<double>(i) / static_cast<double>(runs.size())) / rounds,
+                     scene().name + ": timing " + run_text(runs[i]->resolved));
+    };
+    std::vector<EndTimer> timers;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        tell(0, i);
+        auto simulation = make(scene(), runs[i]->options);
+        std::unique_ptr<Simulation::Saved> saved;
+        JudgeOptions judging;
+        judging.stop = options_.stop;
+        judging.at_time_seconds = end - timed;
+        judging.at_time = [&] { saved = simulation->save(); };
+        if (judge_run(*simulation, scene(), judging).stopped)
+            return;
+        timers.emplace_back(std::move(simulation), std::move(saved), timed, runs[i]->cost);
+    }
+    std::vector<std::vector<double>> timings(runs.size());
+    for (int round = 0; round < options_.repeats; ++round)
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+            if (stopped())
+                return;
+            tell(round + 1, i);
+            timings[i].push_back(timers[i].time().value_or(runs[i]->cost));
+        }
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        runs[i]->cost = median(timings[i]);
+        runs[i]->timings = std::move(timings[i]);
+    }
+}
+
+} // namespace plumb

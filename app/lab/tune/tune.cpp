@@ -1,0 +1,256 @@
+#include "app/lab/tune/tune.h"
+
+#include "app/lab/timing.h"
+#include "app/lab/tune/search.h"
+#include "app/lab/tune/starts.h"
+#include "app/lab/tune/trial.h"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+namespace plumb {
+
+namespace {
+
+// What a run took says roughly what it costs: so many times as much as another, and it is not
+// timed.
+constexpr double out_of_question = 4;
+
+SettingNumber number_of(SettingMember member) {
+    const auto *const row = std::ranges::find(setting_rows, member, &SettingRow::member);
+    return {static_cast<std::size_t>(row - setting_rows.begin()), 0};
+}
+
+std::vector<const MethodInfo *> methods_of(const SceneDesc &scene, const TuneOptions &options,
+                                           std::vector<std::string> &left_out) {
+    std::vector<const MethodInfo *> methods;
+    for (const MethodInfo &method : method_infos())
+        if (options.methods.empty())
+            methods.push_back(&method);
+    for (const std::string &name : options.methods) {
+        RunOptions named;
+        named.method = name;
+        const MethodInfo *method = resolve_run(scene, named).method; // throws when unknown
+        if (std::ranges::find(methods, method) == methods.end())
+            methods.push_back(method);
+    }
+    std::erase_if(methods, [&](const MethodInfo *method) {
+        std::string why = why_not(*method, scene);
+        const bool cannot = !why.empty();
+        if (cannot)
+            left_out.push_back(std::move(why));
+        return cannot;
+    });
+    return methods;
+}
+
+class Rows {
+  public:
+    Rows(const SceneDesc &scene, const TuneOptions &options) : scene_(scene), options_(options) {}
+
+    // The plainest first: what it finds keeps most of the others from being run.
+    std::vector<TuneRow> of(const MethodInfo &method) const {
+        std::vector<TuneRow> rows;
+        RunOptions start = options_.base;
+        start.method = method.name;
+        for (const Precision precision : precisions())
+            for (const double dt : steps(start))
+                for (const int iterations : iteration_counts(method))
+                    for (const bool fixed : {true, false}) {
+                        TuneRow row{start, fixed};
+                        row.options.precision = precision;
+                        row.options.settings.give(&StepSettings::dt, dt);
+                        if (iterations > 0)
+                            row.options.settings.give(&StepSettings::iterations, iterations);
+                        if (set_mode(method, row) && (fixed || iterations <= 1))
+                            rows.push_back(std::move(row));
+                    }
+        return rows;
+    }
+
+    bool is_given(SettingMember member) const {
+        return options_.base.settings.find(number_of(member)).has_value();
+    }
+
+  private:
+    std::vector<Precision> precisions() const {
+        if (options_.base.precision)
+            return {*options_.base.precision};
+        return {Precision::single, Precision::dual};
+    }
+    std::vector<double> steps(const RunOptions &start) const {
+        const double dt = resolve_run(scene_, start).settings.dt;
+        if (is_given(&StepSettings::dt))
+            return {dt};
+        const SettingRow &row = number_of(&StepSettings::dt).setting();
+        std::vector<double> steps;
+        for (const double factor : {1.0, 2.0, 0.5, 0.25})
+            if (factor * dt >= row.min && factor * dt <= row.max)
+                steps.push_back(factor * dt);
+        return steps;
+    }
+    // 0: as it is.
+    std::vector<int> iteration_counts(const MethodInfo &method) const {
+        if (is_given(&StepSettings::iterations) ||
+            !reads(method, number_of(&StepSettings::iterations).setting()))
+            return {0};
+        return {1, 2, 4, 8};
+    }
+    // False where there is no such mode, or another is given.
+    bool set_mode(const MethodInfo &method, TuneRow &row) const {
+        if (!method.chooses_substeps())
+            return row.fixed_substeps;
+        if (is_given(&StepSettings::max_substeps)) {
+            const double most =
+                *options_.base.settings.find(number_of(&StepSettings::max_substeps));
+            return row.fixed_substeps == (most == 1);
+        }
+        row.options.settings.give(&StepSettings::max_substeps,
+                                  row.fixed_substeps ? 1 : method.defaults.max_substeps);
+        return true;
+    }
+
+    const SceneDesc &scene_;
+    const TuneOptions &options_;
+};
+
+bool same_kind(const ResolvedRun &a, const ResolvedRun &b) {
+    return a.method == b.method && a.precision == b.precision && a.settings.dt == b.settings.dt;
+}
+
+// Times those runs that may be the cheapest, with what they are compared with.
+void time_best(const Trial &trial, Tuning &tuning, const std::vector<std::size_t> &choices,
+               const Progress &progress) {
+    const auto run = [&](std::size_t i) -> const TunedRun & { return tuning.runs[i]; };
+    double least = run(choices.front()).cost;
+    for (const std::size_t i : choices)
+        least = std::min(least, run(i).cost);
+    std::vector<std::size_t> timed = choices;
+    std::erase_if(timed, [&](std::size_t i) {
+        return run(i).cost > out_of_question * least ||
+               std::ranges::any_of(choices, [&](std::size_t other) {
+                   return same_kind(run(i).resolved, run(other).resolved) &&
+                          run(other).work < run(i).work;
+               });
+    });
+    if (tuning.own().verdict != TuneVerdict::diverged &&
+        std::ranges::find(timed, std::size_t{0}) == timed.end())
+        timed.push_back(0);
+    std::vector<TunedRun *> runs;
+    for (const std::size_t i : timed)
+        runs.push_back(&tuning.runs[i]);
+    trial.time(runs, progress);
+}
+
+// The cheapest; of those that cost the same, what is the least work.
+std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choices) {
+    const auto cost = [&](std::size_t i) {
+        const TunedRun &run = tuning.runs[i];
+        return std::tuple(run.timings.empty(), run.cost);
+    };
+    const std::size_t least = *std::ranges::min_element(choices, {}, cost);
+    std::size_t best = least;
+    for (const std::size_t i : choices) {
+        const TunedRun &run = tuning.runs[i], &first = tuning.runs[least];
+        if (!run.timings.empty() && !first.timings.empty() &&
+            median_ratio(run.timings, first.timings) < same_cost &&
+            run.work < tuning.runs[best].work)
+            best = i;
+    }
+    return best;
+}
+
+// The chosen settings with twice the substeps, timed beside these and the scene's own.
+void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
+                const Progress &progress) {
+    RunOptions twice = tuning.runs[*tuning.chosen].options;
+    const int substeps = 2 * tuning.runs[*tuning.chosen].resolved.settings.substeps;
+    if (substeps > number_of(&StepSettings::substeps).setting().max)
+        return;
+    twice.settings.give(&StepSettings::substeps, substeps);
+    const std::size_t dearer = search.run(twice);
+    const TuneVerdict verdict = tuning.runs[dearer].verdict;
+    if (verdict == TuneVerdict::unfinished)
+        return;
+    tuning.dearer = dearer;
+    std::set<std::size_t> timed{*tuning.chosen};
+    for (const std::size_t i : {dearer, std::size_t{0}})
+        if (tuning.runs[i].verdict != TuneVerdict::diverged)
+            timed.insert(i);
+    std::vector<TunedRun *> runs;
+    for (const std::size_t i : timed)
+        runs.push_back(&tuning.runs[i]);
+    trial.time(runs, progress);
+}
+
+} // namespace
+
+Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
+    if (!(options.tolerance > 0 && options.tolerance <= 1))
+        throw std::invalid_argument("the share of the tolerances must be above 0 and at most 1");
+    const std::vector<SceneDesc> starts = starts_of(text, options.starts);
+    const SceneDesc &scene = starts.front();
+    if (!has_world(scene) || scene.expects.empty())
+        throw std::invalid_argument(
+            scene.name + (has_world(scene) ? " expects nothing of itself; add an "
+                                             "[[expect]] that the settings can be held to"
+                                           : " has only probes, and no motion to tune"));
+    Tuning tuning;
+    tuning.scene = scene.name;
+    tuning.expectations = scene.expects.size();
+    tuning.tolerance = options.tolerance;
+    tuning.starts = static_cast<int>(starts.size());
+    tuning.budget = options.budget;
+    const std::vector<const MethodInfo *> methods = methods_of(scene, options, tuning.left_out);
+    if (methods.empty())
+        throw std::invalid_argument(tuning.left_out.front());
+
+    const Trial trial(starts, options);
+    const Rows rows(scene, options);
+    std::vector<TuneRow> all;
+    for (const MethodInfo *method : methods)
+        for (TuneRow &row : rows.of(*method))
+            all.push_back(std::move(row));
+    const auto stopped = [&] { return options.stop && options.stop(); };
+    double from = 0, to = 0; // of the part of the work that is going on
+    const auto progress = [&](double fraction, const std::string &what) {
+        if (options.progress)
+            options.progress(from + (to - from) * fraction, what);
+    };
+    SubstepSearch search(trial, tuning.runs, stopped, progress);
+    constexpr double searching = 0.85, timing = 0.95;
+    const auto part = [&](std::size_t i) {
+        return searching * static_cast<double>(i) / static_cast<double>(all.size() + 1);
+    };
+    to = part(1);
+    (void)search.run(options.base);
+    for (std::size_t i = 0; i < all.size() && !stopped(); ++i) {
+        from = part(i + 1);
+        to = part(i + 2);
+        search.search(all[i]);
+    }
+
+    std::vector<std::size_t> choices;
+    for (std::size_t i = 0; i < tuning.runs.size(); ++i)
+        if (tuning.runs[i].verdict == TuneVerdict::met &&
+            std::ranges::find(methods, tuning.runs[i].resolved.method) != methods.end())
+            choices.push_back(i);
+    if (!choices.empty()) {
+        from = searching;
+        to = timing;
+        if (!stopped())
+            time_best(trial, tuning, choices, progress);
+        tuning.chosen = cheapest(tuning, choices);
+    }
+    if (tuning.chosen && !rows.is_given(&StepSettings::substeps) && !stopped()) {
+        from = timing;
+        to = 1;
+        add_dearer(trial, search, tuning, progress);
+    }
+    tuning.interrupted = stopped();
+    return tuning;
+}
+
+} // namespace plumb

@@ -1,0 +1,88 @@
+#include "app/lab/tune/tune.h"
+
+#include "app/files/output_file.h"
+#include "app/lab/interrupt.h"
+#include "engine/scene/given_settings.h"
+#include "engine/scene/scene_file_change.h"
+#include "engine/scene/scene_file_settings.h"
+
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace plumb {
+
+namespace {
+
+ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, std::ostream &err) {
+    const std::filesystem::path &path = scene.path;
+    if (*tuning.chosen == 0) {
+        out << "  Nothing to write: the file has these settings.\n";
+        return ExitCode::fine;
+    }
+    if (!std::filesystem::is_regular_file(path))
+        throw std::invalid_argument(path.string() + " is no file that can be written to");
+    std::vector<SceneMessage> messages;
+    if (read_scene_text(path, messages) != scene.text)
+        throw std::invalid_argument(path.string() +
+                                    " was changed in the meantime, and is left as it is");
+    const TunedRun &chosen = tuning.runs[*tuning.chosen];
+    std::string text;
+    try {
+        text = with_run(scene.text, path.string(), chosen.resolved);
+    } catch (const std::invalid_argument &error) {
+        throw std::invalid_argument(path.string() + ": the settings cannot be written into it; " +
+                                    error.what());
+    }
+    OutputFile file(path);
+    file.stream() << text;
+    file.finish();
+    err << "wrote " << path.string() << '\n';
+    if (chosen.resolved.settings.dt != tuning.own().resolved.settings.dt)
+        err << "dt holds for every method: whether the others still meet the scene, `plumb check "
+               "--all-methods` says\n";
+    return ExitCode::fine;
+}
+
+} // namespace
+
+double parse_budget(const std::string &text) {
+    constexpr double frames = 60; // a second
+    for (const auto &[unit, seconds] : {std::pair{"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}})
+        if (text.ends_with(unit))
+            try {
+                const std::string number = text.substr(0, text.size() - std::string(unit).size());
+                if (const double value = parse_number(number); value > 0)
+                    return value * seconds * frames;
+                break;
+            } catch (const std::invalid_argument &) {
+                break;
+            }
+    throw std::invalid_argument("--budget: '" + text +
+                                "' is no time; write a positive number and its unit, s, ms or us, "
+                                "as in 1ms");
+}
+
+ExitCode tune_scene(const TuneCommand &command, std::ostream &out, std::ostream &err) {
+    const std::optional<SceneText> scene = read_scene(command.scene, err);
+    if (!scene)
+        return ExitCode::bad_input;
+    const InterruptGuard interrupt;
+    ProgressLine line(err);
+    TuneOptions options = command.options;
+    options.stop = InterruptGuard::requested;
+    options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
+    const Tuning tuning = tune_scene(*scene, options);
+    line.clear();
+    print(out, tuning, command.explain);
+    out << std::flush;
+    if (tuning.interrupted) {
+        err << "interrupted after " << tuning.runs.size() << " settings; nothing is written\n";
+        return ExitCode::fine; // the program says that it was interrupted
+    }
+    if (!tuning.found())
+        return ExitCode::outside_tolerance;
+    return command.write ? write(*scene, tuning, out, err) : ExitCode::fine;
+}
+
+} // namespace plumb

@@ -1,0 +1,165 @@
+// What tuning came to, for people.
+#include "app/lab/run_text.h"
+#include "app/lab/sweep.h"
+#include "app/lab/tune/tune.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace plumb {
+
+namespace {
+
+std::string short_number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+bool has_iterations(const MethodInfo &method) {
+    return reads(method, *find_setting("iterations"));
+}
+
+std::string in_words(const ResolvedRun &run) {
+    const bool one = run.settings.substeps == 1 && substeps_text(run) == "1";
+    std::string text = std::string(run.method->name) + " with " + substeps_text(run) +
+                       (one ? " substep" : " substeps");
+    if (has_iterations(*run.method))
+        text += ", " + std::to_string(run.settings.iterations) +
+                (run.settings.iterations == 1 ? " iteration" : " iterations");
+    return text + " and a dt of " + format_dt(run.settings.dt) + ", in " +
+           std::string(precision_name(run.precision));
+}
+
+std::string error_text(const TunedRun &run) {
+    return short_number(run.error) + " of its tolerance" +
+           (run.worst.empty() ? "" : " (" + run.worst + ")");
+}
+
+std::string cost_text(const TunedRun &run) {
+    return short_number(1e3 * run.cost) + " ms of CPU time for a simulated second";
+}
+
+std::string_view verdict_name(TuneVerdict verdict) {
+    switch (verdict) {
+    case TuneVerdict::met:
+        return "met";
+    case TuneVerdict::missed:
+        return "missed";
+    case TuneVerdict::diverged:
+        return "diverged";
+    case TuneVerdict::unfinished:
+        return "unfinished";
+    }
+    return "";
+}
+
+void print_table(std::ostream &out, const Tuning &tuning) {
+    char line[256];
+    std::snprintf(line, sizeof line, "  %-20s %-7s %9s %9s %10s %10s %10s %9s\n", "method", "",
+                  "substeps", "iteration", "dt", "passes/s", "CPU ms/s", "error");
+    out << line;
+    for (std::size_t i = 0; i < tuning.runs.size(); ++i) {
+        const TunedRun &run = tuning.runs[i];
+        const ResolvedRun &r = run.resolved;
+        std::string cost = (run.timings.empty() ? "~" : "") + short_number(1e3 * run.cost);
+        std::snprintf(line, sizeof line, "  %-20.20s %-7s %9s %9s %10s %10.4g %10s %9s  %s",
+                      std::string(r.method->name).c_str(),
+                      std::string(precision_name(r.precision)).c_str(), substeps_text(r).c_str(),
+                      has_iterations(*r.method) ? std::to_string(r.settings.iterations).c_str()
+                                                : "-",
+                      format_dt(r.settings.dt).c_str(), run.work, cost.c_str(),
+                      run.verdict == TuneVerdict::diverged ? "-" : short_number(run.error).c_str(),
+                      std::string(verdict_name(run.verdict)).c_str());
+        out << line;
+        if (run.verdict == TuneVerdict::missed && run.starts > 1)
+            out << " at start " << run.starts;
+        if (!run.worst.empty())
+            out << "; worst: " << run.worst;
+        if (i == 0)
+            out << "; the scene's own";
+        if (i == tuning.chosen)
+            out << "; CHOSEN";
+        out << '\n';
+    }
+    out << "  passes/s: over bodies and constraints, as counted; ~: not timed, but one run's; "
+           "error: the worst in units\n  of its tolerance, at least so large where it was missed\n";
+}
+
+void print_choice(std::ostream &out, const Tuning &tuning) {
+    const TunedRun &chosen = tuning.runs[*tuning.chosen];
+    const TunedRun &own = tuning.own();
+    out << in_words(chosen.resolved) << ": " << cost_text(chosen) << ", worst error "
+        << error_text(chosen);
+    if (*tuning.chosen == 0)
+        out << "; these are the scene's own settings";
+    else if (own.verdict == TuneVerdict::met)
+        out << "; the scene's own settings cost " << short_number(own.cost / chosen.cost)
+            << " times as much";
+    else
+        out << "; the scene's own settings do not meet it: " << error_text(own);
+    out << ".\n";
+}
+
+void print_dearer(std::ostream &out, const Tuning &tuning) {
+    const TunedRun &chosen = tuning.runs[*tuning.chosen], &dearer = tuning.runs[*tuning.dearer];
+    out << "  Twice the substeps would cost " << short_number(dearer.cost / chosen.cost)
+        << " times as much and ";
+    if (dearer.verdict == TuneVerdict::diverged)
+        out << "diverge";
+    else if (dearer.verdict == TuneVerdict::missed)
+        out << "not meet it: the worst error is then " << error_text(dearer);
+    else if (dearer.error < chosen.error)
+        out << "bring the worst error to " << error_text(dearer);
+    else
+        out << "buy nothing: the worst error is then " << error_text(dearer);
+    out << ".\n";
+}
+
+// The nearest to its tolerance of those that missed.
+const TunedRun *nearest(const Tuning &tuning) {
+    const TunedRun *best = nullptr;
+    for (const TunedRun &run : tuning.runs)
+        if (run.verdict == TuneVerdict::missed && (best == nullptr || run.error < best->error))
+            best = &run;
+    return best;
+}
+
+} // namespace
+
+void print(std::ostream &out, const Tuning &tuning, bool explain) {
+    if (explain)
+        print_table(out, tuning);
+    for (const std::string &why : tuning.left_out)
+        out << "  left out: " << why << '\n';
+    const std::string all = tuning.expectations == 1
+                                ? "its expectation"
+                                : "all " + std::to_string(tuning.expectations) + " expectations";
+    const std::string held = all + " within " + short_number(tuning.tolerance) + " of " +
+                             (tuning.expectations == 1 ? "its tolerance" : "their tolerances") +
+                             ", from " + std::to_string(tuning.starts) +
+                             (tuning.starts == 1 ? " start" : " starts");
+    out << tuning.scene << ": ";
+    if (!tuning.chosen) {
+        out << "nothing that was tried meets " << held;
+        const TunedRun *run = nearest(tuning);
+        if (run != nullptr)
+            out << "; nearest is " << in_words(run->resolved) << ": worst error "
+                << error_text(*run);
+        out << ".\n";
+        if (run != nullptr && run->error <= 1)
+            out << "  --tolerance 1 asks for no margin: a bound may be one that the truth itself "
+                   "is close to.\n";
+        return;
+    }
+    out << (tuning.interrupted ? "the cheapest so far" : "the cheapest") << " that meets " << held
+        << ", is ";
+    print_choice(out, tuning);
+    if (tuning.dearer)
+        print_dearer(out, tuning);
+    if (!tuning.found())
+        out << "  That is beyond the budget, " << short_number(1e3 * *tuning.budget)
+            << " ms for a simulated second.\n";
+}
+
+} // namespace plumb
