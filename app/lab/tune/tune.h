@@ -25,8 +25,9 @@ struct TuneOptions {
     int starts = 3;                   // beside the scene as it stands; see starts.h
     std::optional<double> budget;     // s of CPU time for a simulated second
     int repeats = 5;                  // timings of each that comes into question
-    double timed = 2;                 // s, simulated: the end of the run, which is timed
-    std::function<bool()> stop;       // asked often; true ends early with what there is
+    double timed = 1e9; // s, simulated: the end of the run, which is timed; by default all of it,
+                        // for what comes to rest sleeps, and costs next to nothing at the end
+    std::function<bool()> stop; // asked often; true ends early with what there is
     Progress progress;
     MakeSimulation make; // empty: Simulation::create, on one thread
 };
