@@ -165,6 +165,7 @@ std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choic
 // The chosen settings with twice the substeps, timed beside these and the scene's own.
 void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
                 const Progress &progress) {
+    tuning.dearer.reset();
     RunOptions twice = tuning.runs[*tuning.chosen].options;
     const int substeps = 2 * tuning.runs[*tuning.chosen].resolved.settings.substeps;
     if (substeps > number_of(&StepSettings::substeps).setting().max)
@@ -183,6 +184,14 @@ void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
     for (const std::size_t i : timed)
         runs.push_back(&tuning.runs[i]);
     trial.time(runs, progress);
+}
+
+// Whether that met the scene, and was timed as cheaper than what is chosen.
+bool is_cheaper(const Tuning &tuning, std::optional<std::size_t> other) {
+    return other && tuning.runs[*other].verdict == TuneVerdict::met &&
+           !tuning.runs[*other].timings.empty() &&
+           median_ratio(tuning.runs[*other].timings, tuning.runs[*tuning.chosen].timings) <
+               1 / same_cost;
 }
 
 } // namespace
@@ -244,10 +253,14 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
             time_best(trial, tuning, choices, progress);
         tuning.chosen = cheapest(tuning, choices);
     }
-    if (tuning.chosen && !rows.is_given(&StepSettings::substeps) && !stopped()) {
+    // More substeps may even be cheaper: what is stiffer comes to rest, and sleeps, earlier.
+    while (tuning.chosen && !rows.is_given(&StepSettings::substeps) && !stopped()) {
         from = timing;
         to = 1;
         add_dearer(trial, search, tuning, progress);
+        if (!is_cheaper(tuning, tuning.dearer))
+            break;
+        tuning.chosen = tuning.dearer;
     }
     tuning.interrupted = stopped();
     return tuning;
