@@ -249,7 +249,7 @@ TEST(CommandLine, WhatIsTunedIsWrittenAndNothingElse) {
                               "substeps = 64 # far too many\ndt = \"1/60\"\n\n";
     const fs::path file = folder.write("fall.toml", world + falling_ball("5.095"));
     // It falls g h t / 2 too far, by 0.082 m with one substep; 0.8 of 0.2 m are allowed.
-    const std::string tune = "tune fall.toml --methods semi_implicit_euler --dt 1/60 --repeats 1 ";
+    const std::string tune = "tune fall.toml --methods semi_implicit_euler --dt 1/60 ";
     const ProgramResult looked = run_program(tune + "--explain", folder.path());
     EXPECT_EQ(looked.exit_code, 0) << looked.err;
     EXPECT_TRUE(has(looked.out, "semi_implicit_euler with 1 substep ")) << looked.out;

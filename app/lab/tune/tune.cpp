@@ -144,7 +144,16 @@ void time_best(const Trial &trial, Tuning &tuning, const std::vector<std::size_t
     trial.time(runs, progress);
 }
 
-// The cheapest; of those that cost the same, what is the least work.
+// Whether it cost more than the other in each round: of a few, or of very short ones, the median
+// would be noise.
+bool is_always_dearer(const TunedRun &run, const TunedRun &other) {
+    for (std::size_t i = 0; i < std::min(run.timings.size(), other.timings.size()); ++i)
+        if (run.timings[i] < same_cost * other.timings[i])
+            return false;
+    return true;
+}
+
+// The cheapest; of those that were not always dearer, what is the least work.
 std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choices) {
     const auto cost = [&](std::size_t i) {
         const TunedRun &run = tuning.runs[i];
@@ -154,8 +163,7 @@ std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choic
     std::size_t best = least;
     for (const std::size_t i : choices) {
         const TunedRun &run = tuning.runs[i], &first = tuning.runs[least];
-        if (!run.timings.empty() && !first.timings.empty() &&
-            median_ratio(run.timings, first.timings) < same_cost &&
+        if (!run.timings.empty() && !first.timings.empty() && !is_always_dearer(run, first) &&
             run.work < tuning.runs[best].work)
             best = i;
     }

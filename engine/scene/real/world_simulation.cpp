@@ -39,10 +39,12 @@ class WorldSimulation final : public Simulation {
             insert(joint);
         for (const ContactStateDesc &contact : scene.contacts)
             remember(contact);
-        for (const BodyDesc &body : scene.bodies)
-            world_.set_pace(id_of(body.name), {static_cast<std::uint16_t>(body.pace.substeps),
-                                               static_cast<std::uint16_t>(body.pace.wanted),
-                                               static_cast<std::uint16_t>(body.pace.rested)});
+        for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
+            const BodyDesc::Pace &pace = scene.bodies[i].pace;
+            world_.set_pace(world_.body_id(i), {static_cast<std::uint16_t>(pace.substeps),
+                                                static_cast<std::uint16_t>(pace.wanted),
+                                                static_cast<std::uint16_t>(pace.rested)});
+        }
         world_.set_step_count(scene.step_count);
     }
 
