@@ -90,6 +90,15 @@ Real World::contact_margin(const Candidate &candidate) const {
            turning_reach(candidate.key.a) + turning_reach(candidate.key.b);
 }
 
+// Where between the two surfaces a contact acts: -1 on a's, 1 on b's, 0 midway. On that of a body
+// which moves by forces, where the other does not, so that a ball rolls on its own radius though
+// it sinks in a little.
+Real World::acting_side(const ContactKey &key) const {
+    const bool a_moves = model_->bodies[key.a].kind == BodyKind::dynamic;
+    const bool b_moves = model_->bodies[key.b].kind == BodyKind::dynamic;
+    return static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
+}
+
 // A contact without its manifold.
 Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle,
                               std::vector<Contact> &out) const {
@@ -117,18 +126,21 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     const Real rounding_b = model_->colliders[candidate.collider_b].rounding;
     const Vec3 &normal = contact.manifold.normal;
     contact.origin = origin_of(normal, found.a, found.b);
+    const Real side = acting_side(contact.key);
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         ManifoldPoint &point = contact.manifold.points[index];
         ContactAnchor &anchor = contact.anchors[index];
-        anchor.arm_a = point.position - found.a.position;
-        anchor.arm_b = point.position - found.b.position;
         // The midpoint lies half the separation off either surface.
         const Real half = Real(0.5) * point.separation;
+        anchor.arm_a = point.position - found.a.position;
+        anchor.arm_b = point.position - found.b.position;
         anchor.core_a =
             glm::conjugate(found.a.rotation) * (anchor.arm_a - (half + rounding_a) * normal);
         anchor.core_b =
             glm::conjugate(found.b.rotation) * (anchor.arm_b + (half + rounding_b) * normal);
+        anchor.arm_a += side * half * normal;
+        anchor.arm_b += side * half * normal;
         if (found.moment != Moment::start)
             point.separation =
                 separation_along(normal, anchor.core_a, anchor.core_b, rounding_a + rounding_b,
@@ -169,6 +181,7 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
         return false;
     Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
     contact.origin = origin;
+    const Real side = acting_side(candidate.key);
     contact.manifold.normal = origin.normal;
     contact.manifold.count = static_cast<int>(before->point_count);
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -182,8 +195,8 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
         const Vec3 half = Real(0.5) *
                           glm::dot(origin.offset + (surface_b - surface_a), origin.normal) *
                           origin.normal;
-        anchor.arm_a = surface_a + half;
-        anchor.arm_b = surface_b - half;
+        anchor.arm_a = surface_a + (Real(1) + side) * half;
+        anchor.arm_b = surface_b - (Real(1) - side) * half;
         ManifoldPoint &to = contact.manifold.points[k];
         to.feature = point.feature;
         to.separation = separation_along(origin.normal, point.core_a, point.core_b,

@@ -188,6 +188,7 @@ class World {
     Manifold present_manifold(const Contact &contact) const;
     void collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
                            std::vector<std::uint32_t> &triangles) const;
+    Real acting_side(const ContactKey &key) const;
     Contact &begin_contact(const Candidate &candidate, std::uint32_t triangle,
                            std::vector<Contact> &out) const;
     bool keeps_contacts() const;
