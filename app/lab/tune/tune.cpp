@@ -139,6 +139,7 @@ void time_best(const Trial &trial, Tuning &tuning, const std::vector<std::size_t
         std::ranges::find(timed, std::size_t{0}) == timed.end())
         timed.push_back(0);
     std::vector<TunedRun *> runs;
+    runs.reserve(timed.size());
     for (const std::size_t i : timed)
         runs.push_back(&tuning.runs[i]);
     trial.time(runs, progress);
@@ -189,6 +190,7 @@ void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
         if (tuning.runs[i].verdict != TuneVerdict::diverged)
             timed.insert(i);
     std::vector<TunedRun *> runs;
+    runs.reserve(timed.size());
     for (const std::size_t i : timed)
         runs.push_back(&tuning.runs[i]);
     trial.time(runs, progress);

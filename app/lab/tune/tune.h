@@ -84,7 +84,7 @@ inline constexpr int most_substeps = 1024;
 //
 // Throws std::invalid_argument when the scene's motion is held to nothing, and for options that
 // make no sense.
-[[nodiscard]] Tuning tune_scene(const SceneText &scene, const TuneOptions &options);
+[[nodiscard]] Tuning tune_scene(const SceneText &text, const TuneOptions &options);
 
 // What was chosen, and what the dearer choice would buy; with `explain` a table of all runs.
 void print(std::ostream &out, const Tuning &tuning, bool explain);
