@@ -69,8 +69,10 @@ void World::step(TaskPool *tasks, StepTimes *times) {
         try {
             settings_.dt /= parts;
             settings_.substeps = settings_.max_substeps = 1;
+            scratch_.stays.clear(); // how far boxes are swept depends on dt
             for (int part = 0; part < parts; ++part)
                 step_part(tasks, times);
+            scratch_.stays.clear();
             settings_ = whole;
         } catch (...) {
             settings_ = whole;

@@ -164,7 +164,7 @@ TEST(Islands, WhatSpinsOnAJointKeepsItsEnergy) {
             world.add_joint(joint);
             const double before = world.energy();
             run(world, 300);
-            EXPECT_NEAR(world.energy(), before, 3e-3 * before) << spin << ' ' << arm;
+            EXPECT_NEAR(world.energy(), before, 2e-3 * before) << spin << ' ' << arm;
             EXPECT_LT(double(world.joint_error(0)), 2e-3 * arm) << spin << ' ' << arm;
         }
 }
