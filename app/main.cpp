@@ -508,8 +508,10 @@ int main_with_errors(int argc, char **argv) {
     tune_command->add_option("--methods", tune_methods, "Of " + method_names() + " (all)")
         ->type_name("METHOD,...");
     tune_command
-        ->add_option("--tolerance", tuned.options.tolerance,
-                     "The share of each tolerance that may be used: the rest is the margin")
+        ->add_option(
+            "--tolerance", tuned.options.tolerance,
+            "The share of each tolerance that may be used: the rest is the margin (lower bounds "
+            "have none)")
         ->check(CLI::Range(0.01, 1.0))
         ->capture_default_str();
     tune_command

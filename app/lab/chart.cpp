@@ -1,6 +1,7 @@
 #include "app/lab/chart.h"
 
 #include "app/lab/end_timer.h"
+#include "app/lab/method_choice.h"
 #include "app/lab/pareto.h"
 #include "app/lab/run_text.h"
 #include "app/lab/timing.h"
@@ -66,19 +67,8 @@ struct PlannedRun {
 
 std::vector<PlannedRun> plan(const SceneDesc &scene, const ChartOptions &options,
                              SceneChart &chart) {
-    std::vector<const MethodInfo *> methods;
-    if (options.methods.empty()) {
-        for (const MethodInfo &method : method_infos())
-            methods.push_back(&method);
-    } else {
-        for (const std::string &name : options.methods) {
-            RunOptions named = options.base;
-            named.method = name;
-            const MethodInfo *method = resolve_run(scene, named).method; // throws when unknown
-            if (std::find(methods.begin(), methods.end(), method) == methods.end())
-                methods.push_back(method);
-        }
-    }
+    const std::vector<const MethodInfo *> methods =
+        methods_for(scene, options.methods, chart.left_out);
     const std::vector<SweepPoint> points = sweep_points(chart.sweep);
     // The least that islands take says little of what they take: where substeps are swept, and
     // nothing is said of the most, just so many are charted, too.
@@ -91,10 +81,6 @@ std::vector<PlannedRun> plan(const SceneDesc &scene, const ChartOptions &options
                       !options.base.settings.has(*find_setting("max_substeps"));
     std::vector<PlannedRun> planned;
     for (const MethodInfo *method : methods) {
-        if (std::string why = why_not(*method, scene); !why.empty()) {
-            chart.left_out.push_back(std::move(why));
-            continue;
-        }
         const std::size_t first = planned.size();
         std::vector<RunOptions> variants{options.base};
         variants.front().method = std::string(method->name);

@@ -24,23 +24,33 @@ EndTimer::EndTimer(std::unique_ptr<Simulation> simulation, std::unique_ptr<Simul
     const double dt = simulation_->settings().dt;
     steps_ = std::max(1, static_cast<int>(std::lround(timed / dt)));
     const double segment = cost * steps_ * dt;
+    constexpr double patience = 0.05; // s
+    asking_ = static_cast<int>(std::clamp(patience / std::max(cost * dt, 1e-9), 1.0, 1e6));
     rounds_ = segment > 0 ? static_cast<int>(std::clamp(std::ceil(shortest_timing / segment), 1.0,
                                                         static_cast<double>(most_rounds)))
                           : most_rounds;
 }
 
-std::optional<double> EndTimer::time() const {
+std::optional<double> EndTimer::time(const std::function<bool()> &stop) const {
+    const auto go = [&](int steps) {
+        for (int i = 0; i < steps; ++i) {
+            if (i % asking_ == 0 && stop && stop())
+                return false;
+            simulation_->step();
+        }
+        return true;
+    };
     double used = 0;
     try {
         simulation_->restore(*saved_);
         // Brings code and data back into the caches after the other simulations' turn.
-        for (int i = 0; i < std::max(1, steps_ / 10); ++i)
-            simulation_->step();
+        if (!go(std::max(1, steps_ / 10)))
+            return std::nullopt;
         for (int round = 0; round < rounds_; ++round) {
             simulation_->restore(*saved_);
             const double before = thread_cpu_time();
-            for (int i = 0; i < steps_; ++i)
-                simulation_->step();
+            if (!go(steps_))
+                return std::nullopt;
             used += thread_cpu_time() - before;
         }
     } catch (const CheckFailure &) {

@@ -3,6 +3,7 @@
 
 #include "engine/scene/simulation.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -15,14 +16,16 @@ class EndTimer {
     EndTimer(std::unique_ptr<Simulation> simulation, std::unique_ptr<Simulation::Saved> saved,
              double timed, double cost);
 
-    // CPU seconds of this thread per simulated second; nothing when a step failed.
-    [[nodiscard]] std::optional<double> time() const;
+    // CPU seconds of this thread per simulated second; nothing when a step failed, or `stop`, asked
+    // some twenty times a second, was true.
+    [[nodiscard]] std::optional<double> time(const std::function<bool()> &stop = {}) const;
 
   private:
     std::unique_ptr<Simulation> simulation_;
     std::unique_ptr<Simulation::Saved> saved_;
     int steps_ = 1;  // in the timed segment
     int rounds_ = 1; // in one timing
+    int asking_ = 1; // after how many steps
 };
 
 } // namespace plumb

@@ -268,6 +268,20 @@ TEST(CommandLine, WhatIsTunedIsWrittenAndNothingElse) {
     EXPECT_EQ(again.exit_code, 0) << again.err;
     EXPECT_TRUE(has(again.out, "Nothing to write")) << again.out;
     EXPECT_EQ(run_program("check fall.toml", folder.path()).exit_code, 0);
+
+    // What is given and meets the scene is written, too.
+    const ProgramResult other =
+        run_program("tune fall.toml --methods semi_implicit_euler --dt 1/120 --substeps 2 --write "
+                    "--precision float",
+                    folder.path());
+    EXPECT_EQ(other.exit_code, 0) << other.err;
+    EXPECT_TRUE(has(other.out, "the scene's own settings, with what is given")) << other.out;
+    EXPECT_TRUE(has(other.err, "dt holds for every method")) << other.err;
+    EXPECT_TRUE(has(text_of(file), "substeps = 2 # far too many\ndt = \"1/120\"")) << text_of(file);
+    const ProgramResult moon =
+        run_program("tune fall.toml --set gravity=0,-9.81,0 --write", folder.path());
+    EXPECT_EQ(moon.exit_code, 2);
+    EXPECT_TRUE(has(moon.err, "--write keeps the scene's gravity")) << moon.err;
 }
 
 TEST(CommandLine, WhatCannotBeTunedIsExitCode1AndIsNotWritten) {

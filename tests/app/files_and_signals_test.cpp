@@ -208,6 +208,9 @@ TEST(Signals, CtrlCStopsEveryLongCommandAndKeepsWhatWasDone) {
           Command{"hash pyramid --set sleep_after=0 --steps 100000", {}},
           Command{"run pyramid --frames 100000 --size 64x64 --gl osmesa", {}},
           Command{"check pyramid --substeps 1000", {}},
+          Command{"tune pyramid --methods soft_step --substeps 200 --set max_substeps=1 --dt 1/60 "
+                  "--starts 0 --precision float --iterations 1",
+                  {}},
           Command{"chart pyramid --sweep substeps=256 --out .", {"pyramid.csv.partial"}},
           Command{"map pyramid --x dt=1/6000,1/3000 --y substeps=100,200 --methods soft_step --csv "
                   "m.csv",

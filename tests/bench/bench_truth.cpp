@@ -95,7 +95,7 @@ ExitCode bench_truth(const EngineBenchOptions &options) {
             missed.push_back(problem.name);
     }
     std::printf("\nevery engine at its defaults, 60 Hz, sleeping off; the same measures of poses "
-                "for all\n");
+                "and velocities for all\n");
     std::printf("%zu of %zu aims reached\n", problems.size() - missed.size(), problems.size());
     std::fflush(stdout);
     file.finish();

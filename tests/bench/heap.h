@@ -5,7 +5,7 @@
 
 namespace plumb {
 
-// Bytes in use, of the calling thread's arena and of what is mapped by itself.
+// Bytes in use.
 inline double heap_in_use() {
     const struct mallinfo2 info = mallinfo2();
     return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);

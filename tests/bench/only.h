@@ -4,6 +4,7 @@
 #include "engine/scene/scene_file_spelling.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -11,14 +12,19 @@
 
 namespace plumb {
 
-// All when no names are given, else those whose name is or begins with one of them. Throws
-// std::invalid_argument for what none begins with.
+// All when no names are given, else those whose name is one of them; for a name that is nobody's,
+// those that begin with it. Throws std::invalid_argument when none does.
 template <typename Named>
 std::vector<Named> chosen(std::vector<Named> all, const std::vector<std::string> &names) {
     if (names.empty())
         return all;
+    const auto is_meant = [&](const Named &one, const std::string &name) {
+        const bool is_whole =
+            std::ranges::any_of(all, [&](const Named &other) { return other.name == name; });
+        return is_whole ? one.name == name : one.name.starts_with(name);
+    };
     for (const std::string &name : names) {
-        if (std::ranges::any_of(all, [&](const Named &one) { return one.name.starts_with(name); }))
+        if (std::ranges::any_of(all, [&](const Named &one) { return is_meant(one, name); }))
             continue;
         std::vector<std::string_view> candidates;
         for (const Named &one : all)
@@ -26,11 +32,12 @@ std::vector<Named> chosen(std::vector<Named> all, const std::vector<std::string>
         throw std::invalid_argument("there is no '" + name + "'; " +
                                     did_you_mean(name, candidates));
     }
-    std::erase_if(all, [&](const Named &one) {
-        return std::ranges::none_of(
-            names, [&](const std::string &name) { return one.name.starts_with(name); });
+    std::vector<Named> some;
+    std::ranges::copy_if(all, std::back_inserter(some), [&](const Named &one) {
+        return std::ranges::any_of(names,
+                                   [&](const std::string &name) { return is_meant(one, name); });
     });
-    return all;
+    return some;
 }
 
 } // namespace plumb

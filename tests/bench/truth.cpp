@@ -2,6 +2,7 @@
 
 #include "app/lab/interrupt.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace plumb {
@@ -21,10 +22,16 @@ void Trial::go(double seconds, const std::function<void()> &each) {
         engine_->step();
         ++steps_;
         states_ = states_of(*engine_, scene_.desc.bodies.size());
-        if (!is_finite(states_))
+        if (!is_finite(states_) || !std::isfinite(energy()))
             throw Diverged("after " + std::to_string(time()) + " s");
         each();
     }
+}
+
+double Trial::worst(double seconds, const std::function<double()> &measure) {
+    double most = 0;
+    go(seconds, [&] { most = std::max(most, measure()); });
+    return most;
 }
 
 double Trial::energy() const {

@@ -40,6 +40,8 @@ class Trial {
     // So many seconds on, calling `each` after every step. Throws Diverged and Interrupted.
     void go(
         double seconds, const std::function<void()> &each = [] {});
+    // Likewise; the largest of what `measure` gives after each step.
+    [[nodiscard]] double worst(double seconds, const std::function<double()> &measure);
 
   private:
     EngineScene scene_;

@@ -41,10 +41,8 @@ double pendulum_energy(const EngineKind &kind) {
     SceneDesc scene;
     hang(scene, {0, 1, 0}, 60 * degree);
     Trial trial(kind, scene);
-    const double lowest = 0, begin = trial.energy() - lowest;
-    double worst = 0;
-    trial.go(60, [&] { worst = std::max(worst, std::abs((trial.energy() - lowest) / begin - 1)); });
-    return 100 * worst;
+    const double begin = trial.energy(); // 0 at the lowest
+    return 100 * trial.worst(60, [&] { return std::abs(trial.energy() / begin - 1); });
 }
 
 double pendulum_period(const EngineKind &kind) {
@@ -76,7 +74,7 @@ double cradle(const EngineKind &kind, int balls, int raised, double gap) {
     Trial trial(kind, scene);
     // With gaps each ball but the last is struck off and stops where the next hangs: it keeps what
     // energy that place has.
-    const double stopped = balls > 1 ? 1 - std::sqrt(1 - gap * gap) : 0;
+    const double stopped = 1 - std::sqrt(1 - gap * gap);
     const double risen =
         std::acos(std::cos(30 * degree) + (gap > 0 ? (balls - 1) * stopped : 0)) / degree;
     const auto angle = [&](int i) {
@@ -84,8 +82,8 @@ double cradle(const EngineKind &kind, int balls, int raised, double gap) {
         return std::atan2(arm.x, -arm.y) / degree;
     };
     if (gap > 0) {
-        double highest = 0;
-        trial.go(0.8 * period(30 * degree), [&] { highest = std::max(highest, angle(balls - 1)); });
+        const double highest =
+            trial.worst(0.8 * period(30 * degree), [&] { return angle(balls - 1); });
         return std::abs(highest - risen);
     }
     trial.go(0.5 * period(30 * degree));
@@ -116,18 +114,14 @@ double heavy_chain(const EngineKind &kind) {
     add(scene, "weight", SphereDesc{0.4}, 5.4 * along).mass = 100;
     add_joint(scene, JointType::ball, 9, 10, 5.0 * along);
     Trial trial(kind, scene);
-    double worst = 0;
-    trial.go(10, [&] { worst = std::max(worst, trial.measures().joint_drift(trial.states())); });
-    return 1e3 * worst;
+    return 1e3 * trial.worst(10, [&] { return trial.measures().joint_drift(trial.states()); });
 }
 
 double net(const EngineKind &kind, int side) {
     SceneDesc scene;
     add_net(scene, side, false);
     Trial trial(kind, scene);
-    double worst = 0;
-    trial.go(10, [&] { worst = std::max(worst, trial.measures().joint_drift(trial.states())); });
-    return 1e3 * worst;
+    return 1e3 * trial.worst(10, [&] { return trial.measures().joint_drift(trial.states()); });
 }
 
 // A plate on a ball joint at its side, spun so that it goes round without sinking: the steady
@@ -142,9 +136,7 @@ double precession(const EngineKind &kind) {
     plate.velocity = {0, 0, -0.3 * round};
     add_joint(scene, JointType::ball, the_world, 0, {0, 0, 0});
     Trial trial(kind, scene);
-    double worst = 0;
-    trial.go(5, [&] { worst = std::max(worst, std::abs(trial.body(0).position.y)); });
-    return 1e3 * worst;
+    return 1e3 * trial.worst(5, [&] { return std::abs(trial.body(0).position.y); });
 }
 
 // A rod that turns about its end.

@@ -97,20 +97,14 @@ SceneDesc spinning_book() {
 double spin_energy(const EngineKind &kind) {
     Trial trial(kind, spinning_book());
     const double begin = trial.energy();
-    double worst = 0;
-    trial.go(60, [&] { worst = std::max(worst, std::abs(trial.energy() / begin - 1)); });
-    return worst;
+    return trial.worst(60, [&] { return std::abs(trial.energy() / begin - 1); });
 }
 
 double spin_momentum(const EngineKind &kind) {
     Trial trial(kind, spinning_book());
     const glm::dvec3 begin = trial.angular_momentum();
-    double worst = 0;
-    trial.go(60, [&] {
-        worst =
-            std::max(worst, glm::distance(trial.angular_momentum(), begin) / glm::length(begin));
-    });
-    return worst;
+    return trial.worst(
+        60, [&] { return glm::distance(trial.angular_momentum(), begin) / glm::length(begin); });
 }
 
 // How often the book turns over, against Euler's equations by RK4 in 0.1 ms.

@@ -1,6 +1,7 @@
 #include "app/lab/map/stability_map.h"
 
 #include "app/lab/map/passage.h"
+#include "app/lab/method_choice.h"
 #include "engine/scene/scene_file_change.h"
 
 #include <algorithm>
@@ -86,31 +87,6 @@ MapAxis settled(const SceneText &text, const MapAxis &axis, const RunOptions &ba
         point.is_fine(std::floor(high), 0))
         return in_whole_numbers(axis);
     return axis;
-}
-
-std::vector<const MethodInfo *> chosen_methods(const SceneDesc &scene, const MapOptions &options,
-                                               std::vector<std::string> &left_out) {
-    std::vector<const MethodInfo *> methods;
-    for (const MethodInfo &method : method_infos())
-        methods.push_back(&method);
-    if (!options.methods.empty()) {
-        methods.clear();
-        for (const std::string &name : options.methods) {
-            RunOptions named = options.base;
-            named.method = name;
-            const MethodInfo *method = resolve_run(scene, named).method; // throws when unknown
-            if (std::ranges::find(methods, method) == methods.end())
-                methods.push_back(method);
-        }
-    }
-    std::erase_if(methods, [&](const MethodInfo *method) {
-        std::string why = why_not(*method, scene);
-        const bool cannot = !why.empty();
-        if (cannot)
-            left_out.push_back(std::move(why));
-        return cannot;
-    });
-    return methods;
 }
 
 // Runs work items on all threads, and says how far they are.
@@ -268,7 +244,7 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
                                     "of what it expects ends");
     map.x = settled(scene, x, options.base);
     map.y = settled(scene, y, options.base);
-    for (const MethodInfo *method : chosen_methods(map.scene, options, map.left_out))
+    for (const MethodInfo *method : methods_for(map.scene, options.methods, map.left_out))
         map.methods.push_back({method, {}, {}});
     if (map.methods.empty())
         throw std::invalid_argument("no method can run this scene");

@@ -89,34 +89,26 @@ TunedRun Trial::run(const RunOptions &options, const Progress &progress) const {
 
 void Trial::time(const std::vector<TunedRun *> &runs, const Progress &progress) const {
     const double end = run_end(scene(), 0);
-    const double timed = std::min(options_.timed, end);
-    const double rounds = options_.repeats + 1; // the run to there counts as one
-    const auto tell = [&](int round, std::size_t i) {
-        if (progress)
-            progress((round + static_cast<double>(i) / static_cast<double>(runs.size())) / rounds,
-                     scene().name + ": timing " + run_text(runs[i]->resolved));
-    };
+    const double rounds = options_.repeats;
     std::vector<EndTimer> timers;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-        tell(0, i);
-        auto simulation = make(scene(), runs[i]->options);
-        std::unique_ptr<Simulation::Saved> saved;
-        JudgeOptions judging;
-        judging.stop = options_.stop;
-        judging.at_time_seconds = end - timed;
-        judging.at_time = [&] { saved = simulation->save(); };
-        if (judge_run(*simulation, scene(), judging).stopped)
-            return;
-        timers.emplace_back(std::move(simulation), std::move(saved), timed, runs[i]->cost);
+    for (const TunedRun *run : runs) {
+        auto simulation = make(scene(), run->options);
+        auto saved = simulation->save();
+        timers.emplace_back(std::move(simulation), std::move(saved), end, run->cost);
     }
     std::vector<std::vector<double>> timings(runs.size());
     for (int round = 0; round < options_.repeats; ++round)
         for (std::size_t i = 0; i < runs.size(); ++i) {
             if (stopped())
                 return;
-            tell(round + 1, i);
-            timings[i].push_back(timers[i].time().value_or(runs[i]->cost));
+            if (progress)
+                progress((round + static_cast<double>(i) / static_cast<double>(runs.size())) /
+                             rounds,
+                         scene().name + ": timing " + run_text(runs[i]->resolved));
+            timings[i].push_back(timers[i].time(options_.stop).value_or(runs[i]->cost));
         }
+    if (stopped())
+        return;
     for (std::size_t i = 0; i < runs.size(); ++i) {
         runs[i]->cost = median(timings[i]);
         runs[i]->timings = std::move(timings[i]);

@@ -16,7 +16,8 @@ class Trial {
     // From start to start, until one misses. `progress` is called with the fraction done.
     [[nodiscard]] TunedRun run(const RunOptions &options, const Progress &progress) const;
 
-    // Times those runs against each other, in turns, from what they come to before their ends.
+    // Times those runs against each other, in turns and from start to end: what comes to rest
+    // sleeps, and costs next to nothing at the end.
     // Sets their timings and cost, or leaves them all as they are when it is interrupted.
     void time(const std::vector<TunedRun *> &runs, const Progress &progress) const;
 

@@ -1,12 +1,12 @@
 #include "app/lab/tune/tune.h"
 
+#include "app/lab/method_choice.h"
 #include "app/lab/timing.h"
 #include "app/lab/tune/search.h"
 #include "app/lab/tune/starts.h"
 #include "app/lab/tune/trial.h"
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 #include <tuple>
 
@@ -17,34 +17,6 @@ namespace {
 // What a run took says roughly what it costs: so many times as much as another, and it is not
 // timed.
 constexpr double out_of_question = 4;
-
-SettingNumber number_of(SettingMember member) {
-    const auto *const row = std::ranges::find(setting_rows, member, &SettingRow::member);
-    return {static_cast<std::size_t>(row - setting_rows.begin()), 0};
-}
-
-std::vector<const MethodInfo *> methods_of(const SceneDesc &scene, const TuneOptions &options,
-                                           std::vector<std::string> &left_out) {
-    std::vector<const MethodInfo *> methods;
-    for (const MethodInfo &method : method_infos())
-        if (options.methods.empty())
-            methods.push_back(&method);
-    for (const std::string &name : options.methods) {
-        RunOptions named;
-        named.method = name;
-        const MethodInfo *method = resolve_run(scene, named).method; // throws when unknown
-        if (std::ranges::find(methods, method) == methods.end())
-            methods.push_back(method);
-    }
-    std::erase_if(methods, [&](const MethodInfo *method) {
-        std::string why = why_not(*method, scene);
-        const bool cannot = !why.empty();
-        if (cannot)
-            left_out.push_back(std::move(why));
-        return cannot;
-    });
-    return methods;
-}
 
 class Rows {
   public:
@@ -70,8 +42,8 @@ class Rows {
         return rows;
     }
 
-    bool is_given(SettingMember member) const {
-        return options_.base.settings.find(number_of(member)).has_value();
+    bool is_given(std::string_view setting) const {
+        return options_.base.settings.has(*find_setting(setting));
     }
 
   private:
@@ -82,9 +54,9 @@ class Rows {
     }
     std::vector<double> steps(const RunOptions &start) const {
         const double dt = resolve_run(scene_, start).settings.dt;
-        if (is_given(&StepSettings::dt))
+        if (is_given("dt"))
             return {dt};
-        const SettingRow &row = number_of(&StepSettings::dt).setting();
+        const SettingRow &row = *find_setting("dt");
         std::vector<double> steps;
         for (const double factor : {1.0, 2.0, 0.5, 0.25})
             if (factor * dt >= row.min && factor * dt <= row.max)
@@ -93,8 +65,7 @@ class Rows {
     }
     // 0: as it is.
     std::vector<int> iteration_counts(const MethodInfo &method) const {
-        if (is_given(&StepSettings::iterations) ||
-            !reads(method, number_of(&StepSettings::iterations).setting()))
+        if (is_given("iterations") || !reads(method, *find_setting("iterations")))
             return {0};
         return {1, 2, 4, 8};
     }
@@ -102,9 +73,9 @@ class Rows {
     bool set_mode(const MethodInfo &method, TuneRow &row) const {
         if (!method.chooses_substeps())
             return row.fixed_substeps;
-        if (is_given(&StepSettings::max_substeps)) {
+        if (is_given("max_substeps")) {
             const double most =
-                *options_.base.settings.find(number_of(&StepSettings::max_substeps));
+                *options_.base.settings.find(find_setting_numbers("max_substeps").front());
             return row.fixed_substeps == (most == 1);
         }
         row.options.settings.give(&StepSettings::max_substeps,
@@ -154,7 +125,7 @@ bool is_always_dearer(const TunedRun &run, const TunedRun &other) {
     return true;
 }
 
-// The cheapest; of those that were not always dearer, what is the least work.
+// The cheapest; of those of its method that were not always dearer, what is the least work.
 std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choices) {
     const auto cost = [&](std::size_t i) {
         const TunedRun &run = tuning.runs[i];
@@ -164,20 +135,21 @@ std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choic
     std::size_t best = least;
     for (const std::size_t i : choices) {
         const TunedRun &run = tuning.runs[i], &first = tuning.runs[least];
-        if (!run.timings.empty() && !first.timings.empty() && !is_always_dearer(run, first) &&
+        if (run.resolved.method == first.resolved.method && !run.timings.empty() &&
+            !first.timings.empty() && !is_always_dearer(run, first) &&
             run.work < tuning.runs[best].work)
             best = i;
     }
     return best;
 }
 
-// The chosen settings with twice the substeps, timed beside these and the scene's own.
+// The chosen settings with twice the substeps, timed beside all that were.
 void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
                 const Progress &progress) {
     tuning.dearer.reset();
     RunOptions twice = tuning.runs[*tuning.chosen].options;
     const int substeps = 2 * tuning.runs[*tuning.chosen].resolved.settings.substeps;
-    if (substeps > number_of(&StepSettings::substeps).setting().max)
+    if (substeps > find_setting("substeps")->max)
         return;
     twice.settings.give(&StepSettings::substeps, substeps);
     const std::size_t dearer = search.run(twice);
@@ -185,14 +157,11 @@ void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
     if (verdict == TuneVerdict::unfinished)
         return;
     tuning.dearer = dearer;
-    std::set<std::size_t> timed{*tuning.chosen};
-    for (const std::size_t i : {dearer, std::size_t{0}})
-        if (tuning.runs[i].verdict != TuneVerdict::diverged)
-            timed.insert(i);
     std::vector<TunedRun *> runs;
-    runs.reserve(timed.size());
-    for (const std::size_t i : timed)
-        runs.push_back(&tuning.runs[i]);
+    for (std::size_t i = 0; i < tuning.runs.size(); ++i)
+        if (!tuning.runs[i].timings.empty() || i == tuning.chosen ||
+            (i == dearer && verdict != TuneVerdict::diverged))
+            runs.push_back(&tuning.runs[i]);
     trial.time(runs, progress);
 }
 
@@ -222,7 +191,11 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
     tuning.tolerance = options.tolerance;
     tuning.starts = static_cast<int>(starts.size());
     tuning.budget = options.budget;
-    const std::vector<const MethodInfo *> methods = methods_of(scene, options, tuning.left_out);
+    const ResolvedRun own = resolve_run(scene, {}), given = resolve_run(scene, options.base);
+    tuning.own_is_given = own.precision != given.precision ||
+                          !GivenSettings::differences(own.settings, given.settings).empty();
+    const std::vector<const MethodInfo *> methods =
+        methods_for(scene, options.methods, tuning.left_out);
     if (methods.empty())
         throw std::invalid_argument(tuning.left_out.front());
 
@@ -264,7 +237,7 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
         tuning.chosen = cheapest(tuning, choices);
     }
     // More substeps may even be cheaper: what is stiffer comes to rest, and sleeps, earlier.
-    while (tuning.chosen && !rows.is_given(&StepSettings::substeps) && !stopped()) {
+    while (tuning.chosen && !rows.is_given("substeps") && !stopped()) {
         from = timing;
         to = 1;
         add_dearer(trial, search, tuning, progress);

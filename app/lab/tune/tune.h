@@ -25,9 +25,7 @@ struct TuneOptions {
     int starts = 3;                   // beside the scene as it stands; see starts.h
     std::optional<double> budget;     // s of CPU time for a simulated second
     int repeats = 5;                  // timings of each that comes into question
-    double timed = 1e9; // s, simulated: the end of the run, which is timed; by default all of it,
-                        // for what comes to rest sleeps, and costs next to nothing at the end
-    std::function<bool()> stop; // asked often; true ends early with what there is
+    std::function<bool()> stop;       // asked often; true ends early with what there is
     Progress progress;
     MakeSimulation make; // empty: Simulation::create, on one thread
 };
@@ -55,8 +53,10 @@ struct Tuning {
     std::string scene;
     std::size_t expectations = 0;
     double tolerance = 1;
-    int starts = 0;             // of each run, the scene as it stands counted
-    std::vector<TunedRun> runs; // as they were tried; the first is as the scene has it
+    int starts = 0; // of each run, the scene as it stands counted
+    // As they were tried; the first is as the scene has it, but for what is given.
+    std::vector<TunedRun> runs;
+    bool own_is_given = false; // something is given that differs
     std::optional<std::size_t> chosen;
     std::optional<std::size_t> dearer; // the chosen one with twice the substeps
     std::optional<double> budget;
@@ -68,8 +68,7 @@ struct Tuning {
     [[nodiscard]] bool found() const { return chosen && !(budget && runs[*chosen].cost > *budget); }
 };
 
-// Costs that differ by less than this, paired, are taken for the same, and the counted work
-// decides.
+// What is not dearer by so much in every turn may cost the same, and the counted work decides.
 inline constexpr double same_cost = 1.03;
 // The most substeps that are tried.
 inline constexpr int most_substeps = 1024;

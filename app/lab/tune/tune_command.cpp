@@ -3,6 +3,7 @@
 #include "app/files/output_file.h"
 #include "app/lab/interrupt.h"
 #include "engine/scene/given_settings.h"
+#include "engine/scene/scene_file.h"
 #include "engine/scene/scene_file_change.h"
 #include "engine/scene/scene_file_settings.h"
 
@@ -16,12 +17,6 @@ namespace {
 
 ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, std::ostream &err) {
     const std::filesystem::path &path = scene.path;
-    if (*tuning.chosen == 0) {
-        out << "  Nothing to write: the file has these settings.\n";
-        return ExitCode::fine;
-    }
-    if (!std::filesystem::is_regular_file(path))
-        throw std::invalid_argument(path.string() + " is no file that can be written to");
     std::vector<SceneMessage> messages;
     if (read_scene_text(path, messages) != scene.text)
         throw std::invalid_argument(path.string() +
@@ -34,11 +29,16 @@ ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, 
         throw std::invalid_argument(path.string() + ": the settings cannot be written into it; " +
                                     error.what());
     }
+    if (text == scene.text) {
+        out << "  Nothing to write: the file has these settings.\n";
+        return ExitCode::fine;
+    }
     OutputFile file(path);
     file.stream() << text;
     file.finish();
     err << "wrote " << path.string() << '\n';
-    if (chosen.resolved.settings.dt != tuning.own().resolved.settings.dt)
+    const ResolvedRun before = resolve_run(parse_scene(scene.text, path.string()).scene, {});
+    if (chosen.resolved.settings.dt != before.settings.dt)
         err << "dt holds for every method: whether the others still meet the scene, `plumb check "
                "--all-methods` says\n";
     return ExitCode::fine;
@@ -67,6 +67,11 @@ ExitCode tune_scene(const TuneCommand &command, std::ostream &out, std::ostream 
     const std::optional<SceneText> scene = read_scene(command.scene, err);
     if (!scene)
         return ExitCode::bad_input;
+    if (command.write && !std::filesystem::is_regular_file(scene->path))
+        throw std::invalid_argument(scene->path.string() + " is no file that can be written to");
+    if (command.write && command.options.base.settings.has(*find_setting("gravity")))
+        throw std::invalid_argument("--write keeps the scene's gravity: what is tuned for another "
+                                    "cannot be written into it");
     const InterruptGuard interrupt;
     ProgressLine line(err);
     TuneOptions options = command.options;

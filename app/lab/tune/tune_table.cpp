@@ -1,6 +1,7 @@
 // What tuning came to, for people.
 #include "app/lab/run_text.h"
 #include "app/lab/sweep.h"
+#include "app/lab/timing.h"
 #include "app/lab/tune/tune.h"
 
 #include <algorithm>
@@ -77,7 +78,8 @@ void print_table(std::ostream &out, const Tuning &tuning) {
         if (!run.worst.empty())
             out << "; worst: " << run.worst;
         if (i == 0)
-            out << "; the scene's own";
+            out << (tuning.own_is_given ? "; the scene's own, with what is given"
+                                        : "; the scene's own");
         if (i == tuning.chosen)
             out << "; CHOSEN";
         out << '\n';
@@ -86,25 +88,33 @@ void print_table(std::ostream &out, const Tuning &tuning) {
            "error: the worst in units\n  of its tolerance, at least so large where it was missed\n";
 }
 
+// As they were paired, where they were timed.
+std::string times_as_much(const TunedRun &run, const TunedRun &other) {
+    const bool timed = !run.timings.empty() && !other.timings.empty();
+    return short_number(timed ? median_ratio(run.timings, other.timings) : run.cost / other.cost) +
+           " times as much";
+}
+
 void print_choice(std::ostream &out, const Tuning &tuning) {
     const TunedRun &chosen = tuning.runs[*tuning.chosen];
     const TunedRun &own = tuning.own();
     out << in_words(chosen.resolved) << ": " << cost_text(chosen) << ", worst error "
         << error_text(chosen);
+    const std::string owns = std::string("the scene's own settings") +
+                             (tuning.own_is_given ? ", with what is given," : "");
     if (*tuning.chosen == 0)
-        out << "; these are the scene's own settings";
+        out << "; these are the scene's own settings"
+            << (tuning.own_is_given ? ", with what is given" : "");
     else if (own.verdict == TuneVerdict::met)
-        out << "; the scene's own settings cost " << short_number(own.cost / chosen.cost)
-            << " times as much";
+        out << "; " << owns << " cost " << times_as_much(own, chosen);
     else
-        out << "; the scene's own settings do not meet it: " << error_text(own);
+        out << "; " << owns << " do not meet it: " << error_text(own);
     out << ".\n";
 }
 
 void print_dearer(std::ostream &out, const Tuning &tuning) {
     const TunedRun &chosen = tuning.runs[*tuning.chosen], &dearer = tuning.runs[*tuning.dearer];
-    out << "  Twice the substeps would cost " << short_number(dearer.cost / chosen.cost)
-        << " times as much and ";
+    out << "  Twice the substeps would cost " << times_as_much(dearer, chosen) << " and ";
     if (dearer.verdict == TuneVerdict::diverged)
         out << "diverge";
     else if (dearer.verdict == TuneVerdict::missed)

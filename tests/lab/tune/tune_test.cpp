@@ -46,7 +46,6 @@ TuneOptions quick(const std::vector<std::string> &methods,
     TuneOptions options;
     options.methods = methods;
     options.repeats = 1;
-    options.timed = 0.1;
     options.starts = 1;
     options.base.precision = Precision::dual;
     for (const std::string &setting : settings)

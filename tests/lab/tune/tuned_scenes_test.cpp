@@ -25,7 +25,6 @@ class TunedScene : public testing::TestWithParam<const char *> {
         options.methods = {"soft_step"};
         options.starts = 1;
         options.repeats = 1;
-        options.timed = 0.05;
         options.base.precision = Precision::single;
         options.base.settings.give(&StepSettings::dt, own.dt);
         options.base.settings.give(&StepSettings::iterations, own.iterations);
