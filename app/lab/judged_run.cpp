@@ -27,25 +27,20 @@ bool finite(const BodyState &state) {
 // Remembers where all bodies were, to say where things went wrong.
 class LastPositions {
   public:
-    void note(const Simulation &simulation) {
-        positions_.resize(simulation.body_count());
-        for (std::size_t i = 0; i < positions_.size(); ++i)
-            if (simulation.body_info(i).alive)
-                positions_[i] = simulation.body_state(i).position;
-    }
+    void note(const Simulation &simulation) { simulation.read(frame_, {}); }
 
     [[nodiscard]] Divergence diverged(const Simulation &simulation, std::uint64_t step,
                                       std::string message) const {
         Divergence divergence = find_divergence(simulation, step);
         divergence.message = std::move(message);
         const auto body = simulation.find_body(divergence.body);
-        if (!divergence.body.empty() && body && *body < positions_.size())
-            divergence.last_position = positions_[*body];
+        if (!divergence.body.empty() && body && *body < frame_.bodies.size())
+            divergence.last_position = frame_.bodies[*body].position;
         return divergence;
     }
 
   private:
-    std::vector<glm::dvec3> positions_;
+    Frame frame_;
 };
 
 ExpectDesc expect_of(const ProbeDesc &probe, const ProbeExpectDesc &expect) {
@@ -63,8 +58,9 @@ Divergence find_divergence(const Simulation &simulation, std::uint64_t step) {
     Divergence divergence;
     divergence.step = step;
     divergence.time = simulation.time();
-    for (std::size_t i = 0; i < simulation.body_count(); ++i)
-        if (simulation.body_info(i).alive && !finite(simulation.body_state(i))) {
+    const Frame frame = simulation.read();
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i)
+        if (simulation.body_info(i).alive && !finite(frame.bodies[i])) {
             divergence.body = simulation.body_info(i).name;
             break;
         }

@@ -8,6 +8,7 @@
 namespace plumb {
 
 QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names) {
+    simulation.read(frame_, {});
     for (const QuantityName &name : names) {
         const QuantityInfo *info = find_quantity(name.quantity);
         if (info == nullptr)
@@ -18,7 +19,8 @@ QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<Qua
             if (!body)
                 throw std::invalid_argument("there is no body \"" + name.body + "\"");
             item.body = *body;
-            item.start = simulation.body_state(*body);
+            item.start = frame_.bodies[*body];
+            bodies_ = true;
         }
         measures_ = measures_ || !info->needs_body();
         items_.push_back(item);
@@ -30,7 +32,7 @@ QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<Qua
         const BodyInfo &info = simulation.body_info(i);
         if (!info.alive || info.kind != BodyKind::dynamic)
             continue;
-        const BodyState state = simulation.body_state(i);
+        const BodyState &state = frame_.bodies[i];
         const glm::dvec3 local_spin = glm::conjugate(state.orientation) * state.angular_velocity;
         start_.momentum_scale += info.mass * glm::length(state.velocity);
         start_.angular_momentum_scale +=
@@ -39,13 +41,15 @@ QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<Qua
     }
 }
 
-std::vector<double> QuantityProbe::sample(const Simulation &simulation) const {
+std::vector<double> QuantityProbe::sample(const Simulation &simulation) {
+    if (bodies_)
+        simulation.read(frame_, {});
     const Measures now = measures_ ? simulation.measure() : Measures{};
     std::vector<double> values;
     values.reserve(items_.size());
     for (const Item &item : items_) {
         if (const auto *of_body = std::get_if<QuantityInfo::OfBody>(&item.quantity->value))
-            values.push_back((*of_body)(simulation.body_state(item.body), item.start));
+            values.push_back((*of_body)(frame_.bodies[item.body], item.start));
         else
             values.push_back(std::get<QuantityInfo::OfScene>(item.quantity->value)(now, start_));
     }

@@ -24,7 +24,7 @@ class QuantityProbe {
     QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names);
 
     // One value a name, in the same order. Calls measure() once, and only when a quantity needs it.
-    [[nodiscard]] std::vector<double> sample(const Simulation &simulation) const;
+    [[nodiscard]] std::vector<double> sample(const Simulation &simulation);
 
     // Whether sample() calls measure().
     [[nodiscard]] bool measures() const { return measures_; }
@@ -37,6 +37,8 @@ class QuantityProbe {
     };
     std::vector<Item> items_;
     bool measures_ = false;
+    bool bodies_ = false; // whether sample() reads them
+    Frame frame_;
     SceneStart start_;
 };
 

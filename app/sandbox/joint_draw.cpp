@@ -284,20 +284,20 @@ void add_sign(DrawList &list, const Seen &seen) {
 
 } // namespace
 
-std::vector<JointView> joints_at(const Simulation &simulation, std::span<const Pose> poses) {
-    std::vector<JointView> joints = simulation.joints();
+std::vector<JointView> joints_at(const Frame &frame, std::span<const BodyState> poses) {
+    std::vector<JointView> joints = frame.joints;
     for (JointView &joint : joints) {
         const auto move = [&](const std::optional<std::size_t> &body, glm::dvec3 &anchor,
-                              glm::dquat &frame) {
+                              glm::dquat &axes) {
             if (!body || *body >= poses.size())
                 return;
-            const BodyState now = simulation.body_state(*body);
-            const Pose &shown = poses[*body];
+            const BodyState &now = frame.bodies[*body];
+            const BodyState &shown = poses[*body];
             if (shown.position == now.position && shown.orientation == now.orientation)
                 return;
             const glm::dquat way = shown.orientation * glm::conjugate(now.orientation);
             anchor = shown.position + way * (anchor - now.position);
-            frame = way * frame;
+            axes = way * axes;
         };
         move(joint.body_a, joint.anchor_a, joint.frame_a);
         move(joint.body_b, joint.anchor_b, joint.frame_b);
@@ -309,7 +309,7 @@ std::vector<JointView> joints_at(const Simulation &simulation, std::span<const P
 
 bool is_about_joints(const Simulation &simulation) {
     std::vector<bool> joined(simulation.body_count());
-    for (const JointView &joint : simulation.joints())
+    for (const JointView &joint : simulation.read({.joints = true}).joints)
         for (const std::optional<std::size_t> &body : {joint.body_a, joint.body_b})
             if (body && joint.type != JointType::distance)
                 joined[*body] = true;

@@ -12,14 +12,14 @@ namespace plumb {
 
 // What joints are drawn by, besides themselves.
 struct JointSurroundings {
-    std::span<const Pose> poses;   // of the bodies, as they are shown
-    std::span<const double> reach; // of each body's shape from its origin, m; 0: no matter
+    std::span<const BodyState> poses; // of the bodies, as they are shown
+    std::span<const double> reach;    // of each body's shape from its origin, m; 0: no matter
     glm::dvec3 gravity{0, -9.81, 0};
 };
 
-// Of the last step, moved along with the bodies as they are shown.
-[[nodiscard]] std::vector<JointView> joints_at(const Simulation &simulation,
-                                               std::span<const Pose> poses);
+// The frame's, moved along with the bodies as they are shown.
+[[nodiscard]] std::vector<JointView> joints_at(const Frame &frame,
+                                               std::span<const BodyState> poses);
 
 // Whether most of the bodies that move hang on joints that nothing shows but their signs (a rod, a
 // rope or a spring is seen anyway): then these are what there is to see.

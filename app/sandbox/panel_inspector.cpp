@@ -71,11 +71,10 @@ std::string turn(const glm::dquat &orientation) {
     return result.data();
 }
 
-void contact_rows(const PanelContext &context, std::size_t body) {
-    const Simulation &simulation = *context.session.simulation();
+void contact_rows(const Frame &frame, std::size_t body) {
     std::size_t points = 0;
     double force = 0;
-    for (const ContactView &contact : simulation.contacts()) {
+    for (const ContactView &contact : frame.contacts) {
         if (contact.body_a == body || contact.body_b == body) {
             ++points;
             force += contact.normal_force;
@@ -127,16 +126,17 @@ void joint_rows(const JointView &joint) {
 }
 
 // Those that hold the body, each under its name and type.
-void joints_of(const PanelContext &context, std::size_t body) {
+void joints_of(const Simulation &simulation, const Frame &frame, std::size_t body) {
     constexpr std::size_t shown_at_most = 8;
     std::size_t count = 0;
-    for (const JointView &joint : context.session.simulation()->joints()) {
+    for (const JointView &joint : frame.joints) {
         if (joint.body_a != body && joint.body_b != body)
             continue;
         if (++count > shown_at_most)
             continue;
         ImGui::Separator();
-        value_row(joint.name, std::string(joint_type(joint.type).name) + " joint");
+        value_row(simulation.joint_name(joint.joint),
+                  std::string(joint_type(joint.type).name) + " joint");
         joint_rows(joint);
     }
     if (count > shown_at_most)
@@ -159,7 +159,8 @@ void inspector_panel(PanelContext &context) {
         return;
     }
     const BodyInfo &info = simulation->body_info(*body);
-    const BodyState state = simulation->body_state(*body);
+    const Frame frame = simulation->read({.joints = true, .contacts = true});
+    const BodyState &state = frame.bodies[*body];
     value_row("Name", info.name);
     value_row("Kind", text(info.kind));
     for (const ColliderDesc &collider : info.colliders)
@@ -174,15 +175,15 @@ void inspector_panel(PanelContext &context) {
     value_row("Position", triple(state.position) + " m");
     value_row("Turned", turn(state.orientation));
     if (info.kind == BodyKind::fixed) {
-        joints_of(context, *body);
+        joints_of(*simulation, frame, *body);
         return;
     }
     value_row("Velocity", triple(state.velocity) + " m/s");
     value_row("Speed", state.asleep ? "asleep" : number(glm::length(state.velocity), "m/s"));
     value_row("Spin", triple(state.angular_velocity) + " 1/s");
     ImGui::Separator();
-    contact_rows(context, *body);
-    joints_of(context, *body);
+    contact_rows(frame, *body);
+    joints_of(*simulation, frame, *body);
 }
 
 } // namespace plumb

@@ -5,24 +5,15 @@
 
 namespace plumb {
 
-std::vector<Pose> poses_of(const Simulation &simulation) {
-    std::vector<Pose> poses(simulation.body_count());
-    for (std::size_t body = 0; body < poses.size(); ++body) {
-        const BodyState state = simulation.body_state(body);
-        poses[body] = {state.position, state.orientation};
-    }
-    return poses;
-}
-
-std::vector<Pose> blend(const std::vector<Pose> &previous, const std::vector<Pose> &present,
-                        double alpha) {
-    std::vector<Pose> blended = present;
+std::vector<BodyState> blend(const std::vector<BodyState> &previous,
+                             const std::vector<BodyState> &present, double alpha) {
+    std::vector<BodyState> blended = present;
     if (alpha >= 1)
         return blended;
     const std::size_t common = std::min(previous.size(), present.size());
     for (std::size_t body = 0; body < common; ++body) {
-        const Pose &from = previous[body];
-        const Pose &to = present[body];
+        const BodyState &from = previous[body];
+        const BodyState &to = present[body];
         if (alpha <= 0) {
             blended[body] = from;
             continue;

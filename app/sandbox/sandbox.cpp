@@ -257,10 +257,10 @@ void Sandbox::keep_in_picture() {
         return;
     const Simulation &simulation = *session_.simulation();
     std::vector<glm::vec3> moving;
-    for (std::size_t body = 0; body < session_.present_poses().size(); ++body)
+    for (std::size_t body = 0; body < session_.present_bodies().size(); ++body)
         if (simulation.body_info(body).alive && simulation.body_info(body).kind != BodyKind::fixed)
-            moving.emplace_back(glm::mix(session_.previous_poses()[body].position,
-                                         session_.present_poses()[body].position, clock_.alpha()));
+            moving.emplace_back(glm::mix(session_.previous_bodies()[body].position,
+                                         session_.present_bodies()[body].position, clock_.alpha()));
     view_.followed = shift_to_see(camera, view_.aspect, moving);
     camera.target += view_.followed;
 }
@@ -418,7 +418,7 @@ DrawList Sandbox::draw_list() const {
     options.impacts = session_.impacts();
     DrawList list =
         draw_world(*session_.simulation(), view_.camera, options,
-                   blend(session_.previous_poses(), session_.present_poses(), clock_.alpha()));
+                   blend(session_.previous_bodies(), session_.present_bodies(), clock_.alpha()));
     draw_probes(list, session_.probes(), session_.answers(), view_.hovered_handle,
                 !session_.simulation()->has_world());
     if (session_.simulation()->has_world())

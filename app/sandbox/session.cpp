@@ -24,10 +24,11 @@ bool finite(const glm::dvec3 &v) {
 // "body "a", step 12, 0.2 s": where a motion has blown up.
 std::string where_not_finite(const Simulation &simulation) {
     std::string where;
-    for (std::size_t body = 0; body < simulation.body_count() && where.empty(); ++body) {
+    const Frame frame = simulation.read();
+    for (std::size_t body = 0; body < frame.bodies.size() && where.empty(); ++body) {
         if (!simulation.body_info(body).alive)
             continue;
-        const BodyState state = simulation.body_state(body);
+        const BodyState &state = frame.bodies[body];
         if (!finite(state.position) || !finite(state.velocity) || !finite(state.angular_velocity))
             where = "body \"" + simulation.body_info(body).name + "\", ";
     }
@@ -195,8 +196,8 @@ bool Session::step() {
     graphs_.advance.add(times_.advance);
     graphs_.finish.add(times_.finish);
     graphs_.energy.add(simulation_->energy());
-    previous_ = std::move(present_);
-    present_ = poses_of(*simulation_);
+    std::swap(previous_, present_.bodies);
+    read_present();
     see_impacts();
     if (!report.finite) {
         stopped_ = true;
@@ -229,7 +230,7 @@ bool Session::obey_replay() {
     if (!recording_->commands.empty() &&
         recording_->commands.front().step <= simulation_->step_count())
         disturb(recording_->commands.front().step + 1);
-    if (present_.size() != simulation_->body_count())
+    if (present_.bodies.size() != simulation_->body_count())
         settle_poses();
     if (!replay_->is_at_end(*simulation_))
         return true;
@@ -460,13 +461,17 @@ void Session::see_impacts() {
     for (SeenImpact &seen : impacts_)
         seen.age += simulation_->settings().dt;
     std::erase_if(impacts_, [](const SeenImpact &seen) { return seen.age >= impact_shown; });
-    for (const ImpactView &impact : simulation_->impacts())
+    for (const ImpactView &impact : present_.impacts)
         impacts_.push_back({impact, 0});
 }
 
+void Session::read_present() {
+    simulation_->read(present_, {.impacts = true});
+}
+
 void Session::settle_poses() {
-    present_ = poses_of(*simulation_);
-    previous_ = present_;
+    read_present();
+    previous_ = present_.bodies;
     impacts_.clear();
 }
 

@@ -129,8 +129,8 @@ class Session {
     bool save_scene(const std::filesystem::path &path);
 
     // Before and after the last step; the same after anything but a step.
-    [[nodiscard]] const std::vector<Pose> &previous_poses() const { return previous_; }
-    [[nodiscard]] const std::vector<Pose> &present_poses() const { return present_; }
+    [[nodiscard]] const std::vector<BodyState> &previous_bodies() const { return previous_; }
+    [[nodiscard]] const std::vector<BodyState> &present_bodies() const { return present_.bodies; }
     // Of the last impact_shown seconds, as long as nothing but steps came in between.
     static constexpr double impact_shown = 0.25;
     [[nodiscard]] const std::vector<SeenImpact> &impacts() const { return impacts_; }
@@ -153,6 +153,7 @@ class Session {
     void choose_again(const std::string &method, const StepSettings &settings);
     void pull_grabbed();
     void see_impacts();
+    void read_present();
     void settle_poses();
     void disturb(std::uint64_t first_step);
     void settings_changed();
@@ -176,7 +177,8 @@ class Session {
     std::vector<ProbeAnswer> answers_;
     bool stopped_ = false;
     bool memory_ran_out_ = false;
-    std::vector<Pose> previous_, present_;
+    std::vector<BodyState> previous_;
+    Frame present_; // bodies and impacts
     std::vector<SeenImpact> impacts_;
     SessionGraphs graphs_;
     StepTimes times_;

@@ -138,7 +138,7 @@ void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
         drag_ = Drag::orbit;
         return;
     }
-    const BodyState state = targets.session.simulation()->body_state(hit->body);
+    const BodyState &state = targets.session.present_bodies()[hit->body];
     const glm::dvec3 local = glm::conjugate(state.orientation) * (hit->point - state.position);
     grab_point_ = hit->point;
     grab_normal_ = -glm::dvec3(targets.camera.forward());

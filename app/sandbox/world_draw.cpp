@@ -43,7 +43,7 @@ glm::vec3 colour_of(const BodyInfo &body, std::size_t index) {
     return palette_colour(index);
 }
 
-void add_body(DrawList &list, const BodyInfo &body, const Pose &pose, std::size_t index,
+void add_body(DrawList &list, const BodyInfo &body, const BodyState &pose, std::size_t index,
               const WorldDrawOptions &options) {
     ShapeStyle style;
     style.colour = colour_of(body, index);
@@ -77,23 +77,23 @@ void add_arrow(DrawList &list, const glm::dvec3 &from, const glm::dvec3 &vector,
 
 // A contact goes along with the bodies that move, but does not turn with them: under a ball that
 // rolls it stays below.
-glm::dvec3 contact_place(const Simulation &simulation, const std::vector<Pose> &poses,
-                         const ContactView &contact) {
+glm::dvec3 contact_place(const Simulation &simulation, const Frame &frame,
+                         const std::vector<BodyState> &poses, const ContactView &contact) {
     glm::dvec3 shift(0);
     double moving = 0;
     for (const std::size_t body : {contact.body_a, contact.body_b}) {
         if (body >= poses.size() || simulation.body_info(body).kind == BodyKind::fixed)
             continue;
-        shift += poses[body].position - simulation.body_state(body).position;
+        shift += poses[body].position - frame.bodies[body].position;
         moving += 1;
     }
     return moving > 0 ? contact.position + shift / moving : contact.position;
 }
 
-void add_contacts(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses,
-                  double weight) {
-    for (const ContactView &contact : simulation.contacts()) {
-        const glm::dvec3 place = contact_place(simulation, poses, contact);
+void add_contacts(DrawList &list, const Simulation &simulation, const Frame &frame,
+                  const std::vector<BodyState> &poses, double weight) {
+    for (const ContactView &contact : frame.contacts) {
+        const glm::dvec3 place = contact_place(simulation, frame, poses, contact);
         // The stalk is half a metre for the weight of a middling body, and grows with the square
         // root of the force, so that light and heavy contacts are both seen.
         const double force = weight > 0 ? std::max(0.0, contact.normal_force) / weight : 0;
@@ -138,7 +138,7 @@ void add_impacts(DrawList &list, const std::vector<SeenImpact> &impacts, double 
     }
 }
 
-void add_bounds(DrawList &list, const BodyInfo &body, const Pose &pose) {
+void add_bounds(DrawList &list, const BodyInfo &body, const BodyState &pose) {
     glm::dvec3 min(std::numeric_limits<double>::infinity());
     glm::dvec3 max = -min;
     for (const ColliderDesc &collider : body.colliders) {
@@ -179,9 +179,9 @@ double typical_mass(const Simulation &simulation) {
     return *middle;
 }
 
-void add_joints(DrawList &list, const Simulation &simulation, const std::vector<Pose> &poses,
-                bool all) {
-    const std::vector<JointView> joints = joints_at(simulation, poses);
+void add_joints(DrawList &list, const Simulation &simulation, const Frame &frame,
+                const std::vector<BodyState> &poses, bool all) {
+    const std::vector<JointView> joints = joints_at(frame, poses);
     if (joints.empty())
         return;
     std::vector<double> reaches;
@@ -206,21 +206,23 @@ Camera camera_of(const CameraDesc &camera) {
 }
 
 DrawList draw_world(const Simulation &simulation, const Camera &camera,
-                    const WorldDrawOptions &options, const std::vector<Pose> &poses) {
+                    const WorldDrawOptions &options, const std::vector<BodyState> &poses) {
     DrawList list;
     list.camera = camera;
     list.view.wireframe = options.wireframe;
     list.view.shadows = options.shadows;
     list.view.grid = options.grid;
-    const std::vector<Pose> shown =
-        poses.size() == simulation.body_count() ? poses : poses_of(simulation);
+    const Frame frame = simulation.read({.joints = true, .contacts = options.contacts});
+    const std::vector<BodyState> &shown =
+        poses.size() == frame.bodies.size() ? poses : frame.bodies;
     for (std::size_t body = 0; body < shown.size(); ++body)
         if (simulation.body_info(body).alive)
             add_body(list, simulation.body_info(body), shown[body], body, options);
-    add_joints(list, simulation, shown, options.joints);
+    add_joints(list, simulation, frame, shown, options.joints);
     if (options.contacts) {
         const double mass = typical_mass(simulation);
-        add_contacts(list, simulation, shown, mass * glm::length(simulation.settings().gravity));
+        add_contacts(list, simulation, frame, shown,
+                     mass * glm::length(simulation.settings().gravity));
         add_impacts(list, options.impacts, mass);
     }
     if (options.bounds)
@@ -232,10 +234,10 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
             if (simulation.body_info(body).alive &&
                 simulation.body_info(body).kind != BodyKind::fixed)
                 // As far as the body goes in a quarter of a second.
-                add_arrow(list, shown[body].position, simulation.body_state(body).velocity * 0.25,
+                add_arrow(list, shown[body].position, frame.bodies[body].velocity * 0.25,
                           colours::ink);
     if (options.grab && options.grab->body < shown.size()) {
-        const Pose &pose = shown[options.grab->body];
+        const BodyState &pose = shown[options.grab->body];
         const glm::dvec3 held = pose.position + pose.orientation * options.grab->local_point;
         add_line(list, held, options.grab->target, colours::grab, 2);
         DrawPoint point;
@@ -247,9 +249,10 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
 }
 
 Around around(const Simulation &simulation, std::optional<std::size_t> body) {
+    const Frame frame = simulation.read();
     if (body && *body < simulation.body_count() && simulation.body_info(*body).alive) {
         const double radius = reach(simulation.body_info(*body));
-        return {glm::vec3(simulation.body_state(*body).position),
+        return {glm::vec3(frame.bodies[*body].position),
                 radius > 0 ? static_cast<float>(radius) : 5.0f};
     }
     // A floor may be far larger than what stands on it, so what never moves counts only alone.
@@ -258,7 +261,7 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
         glm::dvec3 high(std::numeric_limits<double>::lowest());
         for (std::size_t i = 0; i < simulation.body_count(); ++i) {
             const BodyInfo &info = simulation.body_info(i);
-            const glm::dvec3 at = simulation.body_state(i).position;
+            const glm::dvec3 at = frame.bodies[i].position;
             if (!info.alive ||
                 std::ranges::any_of(info.colliders, is_plane, &ColliderDesc::shape) ||
                 !std::isfinite(at.x + at.y + at.z) || (info.kind == BodyKind::fixed && !fixed_too))

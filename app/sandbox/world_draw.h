@@ -33,7 +33,7 @@ struct WorldDrawOptions {
 // are those of the last step, moved along with the bodies that are shown; velocities too are its.
 [[nodiscard]] DrawList draw_world(const Simulation &simulation, const Camera &camera,
                                   const WorldDrawOptions &options = {},
-                                  const std::vector<Pose> &poses = {});
+                                  const std::vector<BodyState> &poses = {});
 
 // A sphere around a body, or around all that can move, else around all but planes; half a metre at
 // the origin if there is nothing.

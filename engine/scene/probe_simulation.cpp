@@ -55,11 +55,11 @@ class ProbeSimulation final : public Simulation {
 
     std::size_t body_count() const override { return 0; }
     const BodyInfo &body_info(std::size_t body) const override { no_body(body); }
-    BodyState body_state(std::size_t body) const override { no_body(body); }
     std::optional<std::size_t> find_body(std::string_view) const override { return {}; }
-    std::vector<ContactView> contacts() const override { return {}; }
-    std::vector<JointView> joints() const override { return {}; }
-    std::vector<ImpactView> impacts() const override { return {}; }
+    const std::string &joint_name(std::size_t) const override {
+        PLUMB_CHECK(false, "there is no joint, as there is no world");
+    }
+    void read(Frame &into, const FrameParts &) const override { into = {}; }
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override { return {}; }
 
   private:

@@ -10,6 +10,7 @@
 #include "engine/dynamics/settings.h"
 #include "engine/dynamics/step_report.h"
 #include "engine/scene/command.h"
+#include "engine/scene/frame.h"
 #include "engine/scene/scene_desc.h"
 
 #include <cstdint>
@@ -21,14 +22,6 @@
 
 namespace plumb {
 
-struct BodyState {
-    glm::dvec3 position{0};
-    glm::dquat orientation{1, 0, 0, 0};
-    glm::dvec3 velocity{0};
-    glm::dvec3 angular_velocity{0}; // world
-    bool asleep = false;            // at rest, and not stepped
-};
-
 // What does not change while a body lives.
 struct BodyInfo {
     bool alive = false; // a removed body leaves a hole
@@ -39,51 +32,6 @@ struct BodyInfo {
     glm::dvec3 inertia{0}; // kg m^2, principal, body frame
     std::string material;
     std::optional<glm::vec3> colour; // body's or material's
-};
-
-struct ContactView {
-    std::size_t body_a = 0;
-    std::size_t body_b = 0;
-    glm::dvec3 position{0};       // world
-    glm::dvec3 normal{0};         // from a to b
-    double separation = 0;        // m
-    double normal_force = 0;      // N, mean over the last substep
-    glm::dvec3 friction_force{0}; // N, world, on b
-};
-
-struct JointView {
-    std::string name;
-    JointType type = JointType::ball;
-    std::optional<std::size_t> body_a, body_b; // empty: the world
-    glm::dvec3 anchor_a{0}, anchor_b{0};       // world, now
-    // World, now; the x axes are that of a hinge or slider. Fixed joints have frames too.
-    glm::dquat frame_a{1, 0, 0, 0}, frame_b{1, 0, 0, 0};
-    // Angle of a hinge (rad), place of a slider (m), distance of the anchors of a distance joint
-    // (m), and its rate; 0 for the others.
-    double position = 0;
-    double speed = 0;
-    // Of a hinge or slider where it has some; least and greatest length of a distance joint.
-    std::optional<std::array<double, 2>> limits;
-    std::optional<double> motor_speed; // rad/s or m/s
-    double max_motor_force = 0;        // N m or N
-    double motor_force = 0;            // now, likewise
-    double frequency = 0;              // Hz; 0: rigid
-    double break_force = 0;            // N; 0: never
-    bool broken = false;
-    double drift = 0;       // m, by which the anchors miss what they are held to
-    double angle_drift = 0; // rad, likewise of the frames
-    // Of all rows, on b, mean over the last substep: at its anchor (N), and about it (N m). World.
-    glm::dvec3 force{0};
-    glm::dvec3 torque{0};
-};
-
-// A bounce within the last step.
-struct ImpactView {
-    std::size_t body_a = 0;
-    std::size_t body_b = 0;
-    glm::dvec3 position{0}; // world
-    glm::dvec3 normal{0};   // from a to b
-    double impulse = 0;     // N s
 };
 
 struct Pick {
@@ -174,14 +122,19 @@ class Simulation {
 
     virtual std::size_t body_count() const = 0; // holes included
     virtual const BodyInfo &body_info(std::size_t body) const = 0;
-    virtual BodyState body_state(std::size_t body) const = 0;
     virtual std::optional<std::size_t> find_body(std::string_view name) const = 0;
     // The name, with a number behind it when it is taken already.
     std::string free_name(const std::string &name) const;
 
-    virtual std::vector<ContactView> contacts() const = 0; // of the last step
-    virtual std::vector<JointView> joints() const = 0;
-    virtual std::vector<ImpactView> impacts() const = 0; // of the last step
+    virtual const std::string &joint_name(std::size_t joint) const = 0; // a JointView's
+
+    // Into the memory of an older frame. What is not asked for comes out empty.
+    virtual void read(Frame &into, const FrameParts &parts) const = 0;
+    Frame read(const FrameParts &parts = {}) const {
+        Frame frame;
+        read(frame, parts);
+        return frame;
+    }
 
     // The nearest body on the ray origin + t * direction, t >= 0.
     virtual std::optional<Pick> pick(const glm::dvec3 &origin,

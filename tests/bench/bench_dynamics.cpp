@@ -73,7 +73,7 @@ void take_step(Run &run) {
 
 void measure(Run &run, const PoseMeasures &measures, const EngineScene &scene) {
     std::vector<BodyState> before = std::move(run.states);
-    run.states = states_of(*run.engine, scene.desc.bodies.size());
+    run.states = run.engine->states();
     if (!is_finite(run.states)) {
         run.diverged = true;
         run.engine = nullptr;
@@ -196,7 +196,7 @@ std::size_t go(const EngineScene &scene, std::size_t steps, std::vector<Run> &ru
             if (!run.engine)
                 continue;
             if (at_end) // for how it moves in the last step
-                run.states = states_of(*run.engine, bodies);
+                run.states = run.engine->states();
             else
                 run.states.clear();
             take_step(run);

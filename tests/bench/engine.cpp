@@ -18,7 +18,7 @@ class PlumbEngine final : public Engine {
         return {(times_.find_pairs + times_.collide) / times_.total(), report.contacts,
                 report.constraint_passes};
     }
-    BodyState state(std::size_t body) const override { return simulation_->body_state(body); }
+    std::vector<BodyState> states() const override { return simulation_->read().bodies; }
 
   private:
     static RunOptions awake() {

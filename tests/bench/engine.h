@@ -59,8 +59,9 @@ class Engine {
     virtual void step() = 0; // by the scene's dt
     // Counted outside of what is timed.
     [[nodiscard]] virtual StepWork work() const = 0;
-    // By the body's place in the scene. Velocities of bodies that are not dynamic may be anything.
-    [[nodiscard]] virtual BodyState state(std::size_t body) const = 0;
+    // In the order of the scene's bodies. Velocities of bodies that are not dynamic may be
+    // anything.
+    [[nodiscard]] virtual std::vector<BodyState> states() const = 0;
 };
 
 struct EngineKind {

@@ -109,7 +109,15 @@ class BulletEngine final : public Engine {
         return work;
     }
 
-    BodyState state(std::size_t body) const override {
+    std::vector<BodyState> states() const override {
+        std::vector<BodyState> states;
+        for (std::size_t body = 0; body < bodies_.size(); ++body)
+            states.push_back(state(body));
+        return states;
+    }
+
+  private:
+    BodyState state(std::size_t body) const {
         const btRigidBody &of_body = *bodies_[body];
         const btTransform &pose = of_body.getWorldTransform();
         const btQuaternion turn = pose.getRotation();
@@ -117,7 +125,6 @@ class BulletEngine final : public Engine {
                 from(of_body.getLinearVelocity()), from(of_body.getAngularVelocity())};
     }
 
-  private:
     struct Driven { // a kinematic body: Bullet takes its velocity from where it is put
         btRigidBody *body;
         btVector3 velocity, spin;

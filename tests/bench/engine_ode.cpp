@@ -111,7 +111,15 @@ class OdeEngine final : public Engine {
                     static_cast<std::size_t>(dWorldGetQuickStepNumIterations(world_))};
     }
 
-    BodyState state(std::size_t body) const override {
+    std::vector<BodyState> states() const override {
+        std::vector<BodyState> states;
+        for (std::size_t body = 0; body < bodies_.size(); ++body)
+            states.push_back(state(body));
+        return states;
+    }
+
+  private:
+    BodyState state(std::size_t body) const {
         const BodyDesc &desc = scene_.desc.bodies[body];
         dBodyID id = bodies_[body];
         if (id == nullptr)
@@ -121,7 +129,6 @@ class OdeEngine final : public Engine {
                 vector(dBodyGetLinearVel(id)), vector(dBodyGetAngularVel(id))};
     }
 
-  private:
     static constexpr int most_points = 8;
 
     void add_body(std::size_t index) {

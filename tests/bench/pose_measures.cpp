@@ -15,14 +15,6 @@ namespace plumb {
 
 static_assert(sizeof(Real) == sizeof(double));
 
-std::vector<BodyState> states_of(const Engine &engine, std::size_t bodies) {
-    std::vector<BodyState> states;
-    states.reserve(bodies);
-    for (std::size_t body = 0; body < bodies; ++body)
-        states.push_back(engine.state(body));
-    return states;
-}
-
 bool is_finite(std::span<const BodyState> states) {
     return std::ranges::all_of(states, [](const BodyState &state) {
         const glm::dvec3 &p = state.position;

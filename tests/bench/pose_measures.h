@@ -9,7 +9,6 @@
 
 namespace plumb {
 
-[[nodiscard]] std::vector<BodyState> states_of(const Engine &engine, std::size_t bodies);
 [[nodiscard]] bool is_finite(std::span<const BodyState> states);
 
 struct Depth {

@@ -11,7 +11,7 @@ Trial::Trial(const EngineKind &kind, SceneDesc desc)
     : scene_(std::move(desc)), measures_(scene_), engine_(kind.create(scene_)) {
     if (!engine_)
         throw CannotRun(kind.name);
-    states_ = states_of(*engine_, scene_.desc.bodies.size());
+    states_ = engine_->states();
 }
 
 void Trial::go(double seconds, const std::function<void()> &each) {
@@ -21,7 +21,7 @@ void Trial::go(double seconds, const std::function<void()> &each) {
             throw Interrupted("interrupted");
         engine_->step();
         ++steps_;
-        states_ = states_of(*engine_, scene_.desc.bodies.size());
+        states_ = engine_->states();
         if (!is_finite(states_) || !std::isfinite(energy()))
             throw Diverged("after " + std::to_string(time()) + " s");
         each();

@@ -420,11 +420,11 @@ TEST(QuantityProbe, ReadsBodiesAndScales) {
         measures.angular_momentum = {0, t, 0};
         return measures;
     };
-    const QuantityProbe probe(fake, {{"tilt", "ball"},
-                                     {"angular_velocity_local.y", "ball"},
-                                     {"angular_velocity_local.z", "ball"},
-                                     {"linear_momentum_error", ""},
-                                     {"angular_momentum_error", ""}});
+    QuantityProbe probe(fake, {{"tilt", "ball"},
+                               {"angular_velocity_local.y", "ball"},
+                               {"angular_velocity_local.z", "ball"},
+                               {"linear_momentum_error", ""},
+                               {"angular_momentum_error", ""}});
     EXPECT_TRUE(probe.measures());
     fake.step();
     const std::vector<double> values = probe.sample(fake);

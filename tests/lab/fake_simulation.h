@@ -28,6 +28,7 @@ class FakeSimulation : public Simulation {
     std::uint64_t throw_at_step = std::numeric_limits<std::uint64_t>::max();
     mutable int measure_calls = 0;
 
+    using Simulation::read;
     using Simulation::save;
     using Simulation::step;
     void step(StepTimes *) override {
@@ -69,18 +70,18 @@ class FakeSimulation : public Simulation {
 
     std::size_t body_count() const override { return 1; }
     const BodyInfo &body_info(std::size_t) const override { return info_; }
-    BodyState body_state(std::size_t) const override {
-        BodyState state = state_at(time());
+    void read(Frame &into, const FrameParts &) const override {
+        into = {};
+        into.step_count = steps_;
+        into.time = time();
+        BodyState &state = into.bodies.emplace_back(state_at(time()));
         if (steps_ >= nan_from_step)
             state.position.y = std::numeric_limits<double>::quiet_NaN();
-        return state;
     }
     std::optional<std::size_t> find_body(std::string_view name) const override {
         return name == info_.name ? std::optional<std::size_t>(0) : std::nullopt;
     }
-    std::vector<ContactView> contacts() const override { return {}; }
-    std::vector<JointView> joints() const override { return {}; }
-    std::vector<ImpactView> impacts() const override { return {}; }
+    const std::string &joint_name(std::size_t) const override { return info_.name; }
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override {
         return std::nullopt;
     }

@@ -25,6 +25,7 @@ class FakeSimulation final : public Simulation {
             insert(body);
     }
 
+    using Simulation::read;
     using Simulation::save;
     using Simulation::step;
     void step(StepTimes *times) override {
@@ -95,16 +96,19 @@ class FakeSimulation final : public Simulation {
 
     std::size_t body_count() const override { return state_.bodies.size(); }
     const BodyInfo &body_info(std::size_t body) const override { return infos_.at(body); }
-    BodyState body_state(std::size_t body) const override { return state_.bodies.at(body); }
     std::optional<std::size_t> find_body(std::string_view name) const override {
         for (std::size_t i = 0; i < infos_.size(); ++i)
             if (infos_[i].name == name)
                 return i;
         return {};
     }
-    std::vector<ContactView> contacts() const override { return {}; }
-    std::vector<JointView> joints() const override { return {}; }
-    std::vector<ImpactView> impacts() const override { return {}; }
+    const std::string &joint_name(std::size_t) const override { return infos_.front().name; }
+    void read(Frame &into, const FrameParts &) const override {
+        into = {};
+        into.step_count = state_.steps;
+        into.time = time();
+        into.bodies = state_.bodies;
+    }
 
     // Spheres only.
     std::optional<Pick> pick(const glm::dvec3 &origin, const glm::dvec3 &direction) const override {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 // A body 2 m to the right of the origin, as large as 1 m.
-const std::array<Pose, 1> poses{{{glm::dvec3(2, 0, 0), glm::dquat(1, 0, 0, 0)}}};
+const std::array<BodyState, 1> poses{{{glm::dvec3(2, 0, 0), glm::dquat(1, 0, 0, 0)}}};
 const std::array<double, 1> reach{1.0};
 const JointSurroundings surroundings{poses, reach, {0, -9.81, 0}};
 constexpr float size = 0.5f; // of signs: half of the body

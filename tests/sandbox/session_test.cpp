@@ -87,7 +87,7 @@ TEST_F(SessionTest, SteppingBackUndoesAShot) {
     ASSERT_TRUE(session.step_back());
     ASSERT_TRUE(session.step_back());
     EXPECT_EQ(session.simulation()->hash(), before);
-    EXPECT_EQ(session.present_poses().size(), session.simulation()->body_count());
+    EXPECT_EQ(session.present_bodies().size(), session.simulation()->body_count());
 }
 
 TEST_F(SessionTest, RestartIsTheStart) {
@@ -263,7 +263,7 @@ TEST(SessionWithFake, AnExplosionSaysWhatWhereAndWhen) {
     EXPECT_NE(text.find("\"right\""), std::string::npos) << text;
     EXPECT_NE(text.find("step 3"), std::string::npos) << text;
     ASSERT_TRUE(session.step_back());
-    EXPECT_TRUE(std::isfinite(session.simulation()->body_state(1).position.y));
+    EXPECT_TRUE(std::isfinite(session.simulation()->read().bodies[1].position.y));
 }
 
 TEST(SessionWithFake, PosesBeforeAndAfterTheLastStep) {
@@ -271,15 +271,15 @@ TEST(SessionWithFake, PosesBeforeAndAfterTheLastStep) {
     SceneDesc scene = two_balls();
     scene.world.settings.give(&StepSettings::dt, 0.5);
     ASSERT_TRUE(session.open(scene));
-    EXPECT_EQ(session.previous_poses()[0].position, session.present_poses()[0].position);
+    EXPECT_EQ(session.previous_bodies()[0].position, session.present_bodies()[0].position);
     session.step();
     session.step();
     // 0.25 m/s, half a second a step.
-    EXPECT_EQ(session.previous_poses()[0].position.y, 0.125);
-    EXPECT_EQ(session.present_poses()[0].position.y, 0.25);
+    EXPECT_EQ(session.previous_bodies()[0].position.y, 0.125);
+    EXPECT_EQ(session.present_bodies()[0].position.y, 0.25);
     session.step_back();
-    EXPECT_EQ(session.previous_poses()[0].position.y, 0.125);
-    EXPECT_EQ(session.present_poses()[0].position.y, 0.125);
+    EXPECT_EQ(session.previous_bodies()[0].position.y, 0.125);
+    EXPECT_EQ(session.present_bodies()[0].position.y, 0.125);
 }
 
 TEST(SessionWithFake, GraphsFollowStepsBothWays) {
@@ -450,7 +450,7 @@ TEST_F(SessionTest, ARecordingIsPlayedAgain) {
         }
         EXPECT_EQ(session.simulation()->step_count(), 15u);
         EXPECT_EQ(session.simulation()->hash(), hashes.back());
-        EXPECT_EQ(session.present_poses().size(), session.simulation()->body_count());
+        EXPECT_EQ(session.present_bodies().size(), session.simulation()->body_count());
         EXPECT_EQ(session.replay_outcome(), ExitCode::fine);
         EXPECT_FALSE(session.stopped());
     };

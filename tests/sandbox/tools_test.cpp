@@ -150,7 +150,7 @@ TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
 TEST_F(ToolsTest, ShiftClickShootsABallAlongTheRay) {
     send(Kind::press, ball, PointerButton::left, false, true);
     ASSERT_EQ(fake().body_count(), 3u);
-    const BodyState shot = fake().body_state(2);
+    const BodyState shot = fake().read().bodies[2];
     EXPECT_NEAR(glm::length(shot.velocity), tools.shot_speed, 1e-4);
     EXPECT_NEAR(shot.velocity.z, -tools.shot_speed, 1e-4);
     EXPECT_LT(shot.position.z, static_cast<double>(camera.eye().z));

@@ -78,7 +78,7 @@ TEST_F(WorldDraw, SelectionAndHoverMarkOneBodyEach) {
 }
 
 TEST_F(WorldDraw, ShowsTheGivenPoses) {
-    std::vector<Pose> poses = poses_of(*simulation);
+    std::vector<BodyState> poses = simulation->read().bodies;
     poses[2].position = {7, 8, 9};
     EXPECT_EQ(draw_world(*simulation, camera, {}, poses).shapes[1].position, glm::vec3(7, 8, 9));
 }
@@ -89,7 +89,7 @@ TEST_F(WorldDraw, ContactsBoundsAndVelocitiesWhenAskedFor) {
     WorldDrawOptions options;
     options.contacts = true;
     DrawList list = draw_world(*simulation, camera, options);
-    EXPECT_EQ(list.points.size(), simulation->contacts().size());
+    EXPECT_EQ(list.points.size(), simulation->read({.contacts = true}).contacts.size());
     EXPECT_GE(list.points.size(), 4u); // the box on its four corners
     options = {};
     options.bounds = true;
@@ -156,7 +156,7 @@ TEST(WorldDrawn, BetweenTwoStepsEverythingIsOfOneMoment) {
     const auto simulation = rod_towards({0.6, -0.8, 0});
     WorldDrawOptions options;
     options.joints = options.bounds = true;
-    std::vector<Pose> poses = poses_of(*simulation);
+    std::vector<BodyState> poses = simulation->read().bodies;
     poses[0].position = {0, -1, 0};
     poses[0].orientation = glm::angleAxis(1.0, glm::dvec3(0, 0, 1));
     const DrawList list = draw_world(*simulation, Camera(), options, poses);
@@ -176,9 +176,9 @@ TEST_F(WorldDraw, ContactsGoAlongWithTheBodiesThatAreShown) {
         simulation->step();
     WorldDrawOptions options;
     options.contacts = true;
-    std::vector<Pose> poses = poses_of(*simulation);
+    std::vector<BodyState> poses = simulation->read().bodies;
     const DrawList now = draw_world(*simulation, camera, options, poses);
-    for (Pose &pose : poses)
+    for (BodyState &pose : poses)
         pose.position.x -= 0.25;
     const DrawList before = draw_world(*simulation, camera, options, poses);
     ASSERT_EQ(now.points.size(), before.points.size());

@@ -265,10 +265,7 @@ std::vector<BodyState> motion_with(const SceneDesc &scene, const StepSettings &s
     simulation->set_settings(settings);
     for (int step = 0; step < 90; ++step)
         simulation->step();
-    std::vector<BodyState> states;
-    for (std::size_t body = 0; body < simulation->body_count(); ++body)
-        states.push_back(simulation->body_state(body));
-    return states;
+    return simulation->read().bodies;
 }
 
 bool same_motion(const std::vector<BodyState> &a, const std::vector<BodyState> &b) {

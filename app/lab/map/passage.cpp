@@ -81,10 +81,12 @@ struct PassageWatch::Parts {
     std::vector<Obstacle> obstacles;
     std::vector<Way> ways; // mover by mover
     std::string first;
+    Frame frame; // of the last sample
 };
 
 PassageWatch::PassageWatch(const SceneDesc &scene, const Simulation &simulation)
     : parts_(std::make_unique<Parts>()) {
+    simulation.read(parts_->frame, {});
     for (const BodyDesc &body : scene.bodies) {
         if (body.kind != BodyKind::fixed)
             continue;
@@ -109,7 +111,7 @@ PassageWatch::PassageWatch(const SceneDesc &scene, const Simulation &simulation)
             if (may_collide(own, parts_->obstacles[i].collider.filter) &&
                 !joined(scene, body.name, parts_->obstacles[i].name))
                 parts_->ways.push_back({parts_->movers.size(), i, std::nullopt});
-        parts_->movers.push_back({body.name, *index, simulation.body_state(*index).position});
+        parts_->movers.push_back({body.name, *index, parts_->frame.bodies[*index].position});
     }
 }
 
@@ -118,10 +120,11 @@ PassageWatch::~PassageWatch() = default;
 void PassageWatch::sample(const Simulation &simulation) {
     if (!parts_->first.empty())
         return;
+    simulation.read(parts_->frame, {});
     auto way = parts_->ways.begin();
     for (std::size_t i = 0; i < parts_->movers.size(); ++i) {
         Mover &mover = parts_->movers[i];
-        const glm::dvec3 now = simulation.body_state(mover.body).position;
+        const glm::dvec3 now = parts_->frame.bodies[mover.body].position;
         const Ray step = step_ray(mover.center, now);
         for (; way != parts_->ways.end() && way->mover == i; ++way) {
             const Obstacle &obstacle = parts_->obstacles[way->obstacle];

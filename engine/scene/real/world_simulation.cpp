@@ -91,20 +91,15 @@ class WorldSimulation final : public Simulation {
 
     std::size_t body_count() const override { return book_->infos.size(); }
     const BodyInfo &body_info(std::size_t body) const override { return book_->infos.at(body); }
-    BodyState body_state(std::size_t body) const override {
-        const Motion &m = world_.motions().at(body);
-        const Transform pose = world_.pose_of(static_cast<std::uint32_t>(body));
-        return {glm::dvec3{pose.position}, glm::dquat{pose.rotation}, glm::dvec3{m.velocity},
-                glm::dvec3{m.angular_velocity}, world_.state().paces[body].is_asleep()};
-    }
     std::optional<std::size_t> find_body(std::string_view name) const override {
         const auto found = book_->index_of.find(name);
         return found == book_->index_of.end() ? std::nullopt : std::optional{found->second};
     }
 
-    std::vector<ContactView> contacts() const override;
-    std::vector<JointView> joints() const override;
-    std::vector<ImpactView> impacts() const override;
+    const std::string &joint_name(std::size_t joint) const override {
+        return book_->scene.joints.at(joint).name;
+    }
+    void read(Frame &into, const FrameParts &parts) const override;
 
     std::optional<Pick> pick(const glm::dvec3 &origin, const glm::dvec3 &direction) const override {
         const auto hit = world_.raycast(Ray{Vec3{origin}, Vec3{direction}});
@@ -119,6 +114,10 @@ class WorldSimulation final : public Simulation {
         SavedWorld world;
         std::shared_ptr<Book> book;
     };
+
+    BodyState body_state(std::uint32_t body) const;
+    JointView joint_view(std::uint32_t joint) const;
+    void read_contacts(std::vector<ContactView> &views) const;
 
     void obey(const AddBody &command);
     void obey(const RemoveBody &command);
@@ -290,7 +289,7 @@ SceneDesc WorldSimulation::describe() const {
         return !expect.body.empty() && !book_->index_of.contains(expect.body);
     });
     out.world.precision = precision_;
-    for (std::size_t i = 0; i < book_->infos.size(); ++i) {
+    for (std::uint32_t i = 0; i < book_->infos.size(); ++i) {
         if (!book_->infos[i].alive)
             continue;
         BodyDesc body = book_->scene.bodies[i];
@@ -339,9 +338,36 @@ SceneDesc WorldSimulation::describe() const {
     return out;
 }
 
-std::vector<ContactView> WorldSimulation::contacts() const {
+BodyState WorldSimulation::body_state(std::uint32_t body) const {
+    const Motion &motion = world_.motions()[body];
+    const Transform pose = world_.pose_of(body);
+    return {glm::dvec3{pose.position}, glm::dquat{pose.rotation}, glm::dvec3{motion.velocity},
+            glm::dvec3{motion.angular_velocity}, world_.state().paces[body].is_asleep()};
+}
+
+void WorldSimulation::read(Frame &into, const FrameParts &parts) const {
+    into.step_count = world_.step_count();
+    into.time = world_.time();
+    into.bodies.resize(world_.motions().size());
+    for (std::uint32_t i = 0; i < into.bodies.size(); ++i)
+        into.bodies[i] = body_state(i);
+    into.joints.clear();
+    for (std::uint32_t i = 0; parts.joints && i < world_.joints().size(); ++i)
+        if (world_.joints()[i].alive)
+            into.joints.push_back(joint_view(i));
+    into.contacts.clear();
+    if (parts.contacts)
+        read_contacts(into.contacts);
+    into.impacts.clear();
+    if (parts.impacts)
+        for (const Impact &impact : world_.impacts())
+            into.impacts.push_back({impact.key.a, impact.key.b, glm::dvec3{impact.position},
+                                    glm::dvec3{impact.normal},
+                                    static_cast<double>(impact.impulse)});
+}
+
+void WorldSimulation::read_contacts(std::vector<ContactView> &views) const {
     const World &world = world_;
-    std::vector<ContactView> views;
     for (const Contact &contact : world.contacts()) {
         const double rate = world.substeps_of(world.island_body(contact.key.a, contact.key.b)) /
                             world.settings().dt;
@@ -357,7 +383,6 @@ std::vector<ContactView> WorldSimulation::contacts() const {
                              rate * glm::dvec3{impulse.y * basis.t1 + impulse.z * basis.t2}});
         }
     }
-    return views;
 }
 
 // Speed of b's anchor (or frame) against a's along the row that a hinge, slider or rod leaves free.
@@ -376,71 +401,56 @@ double free_speed(const Joint &joint, const Motion &a, const Motion &b, const Jo
     return length > 0 ? glm::dot(way / length, glm::dvec3{relative}) : 0;
 }
 
-std::vector<JointView> WorldSimulation::joints() const {
+JointView WorldSimulation::joint_view(std::uint32_t i) const {
     const World &world = world_;
-    std::vector<JointView> views;
-    for (std::uint32_t i = 0; i < world.joints().size(); ++i) {
-        const Joint &joint = world.joints()[i];
-        if (!joint.alive)
-            continue;
-        const JointDesc &desc = book_->scene.joints[i];
-        const Motion &a = world.joint_motion(joint.a);
-        const Motion &b = world.joint_motion(joint.b);
-        JointView view;
-        view.name = desc.name;
-        view.type = joint.type;
-        if (joint.a != Joint::world)
-            view.body_a = joint.a;
-        if (joint.b != Joint::world)
-            view.body_b = joint.b;
-        view.anchor_a = glm::dvec3{world.anchor_a(joint)};
-        view.anchor_b = glm::dvec3{world.anchor_b(joint)};
-        view.frame_a = glm::dquat{a.rotation * joint.frame_a_local};
-        view.frame_b = glm::dquat{b.rotation * joint.frame_b_local};
-        view.limits = desc.limits;
-        view.motor_speed = desc.motor_speed;
-        view.max_motor_force = desc.max_motor_force;
-        view.frequency = desc.frequency;
-        view.break_force = desc.break_force;
-        view.broken = world.state().joints[i].broken;
-        view.drift = static_cast<double>(world.joint_error(i));
-        switch (joint.type) {
-        case JointType::ball:
-        case JointType::fixed:
-            break;
-        case JointType::distance:
-            view.position = glm::distance(view.anchor_a, view.anchor_b);
-            view.limits = {desc.min_length, desc.max_length};
-            view.speed = free_speed(joint, a, b, view);
-            break;
-        case JointType::hinge:
-            view.position = static_cast<double>(hinge_angle(joint, a, b));
-            view.speed = free_speed(joint, a, b, view);
-            break;
-        case JointType::slider:
-            view.position = static_cast<double>(slider_place(joint, a, b));
-            view.speed = free_speed(joint, a, b, view);
-            break;
-        }
-        const World::JointLoad load = world.joint_load(i);
-        view.force = glm::dvec3{load.force};
-        view.torque = glm::dvec3{load.torque};
-        const double rate =
-            world.substeps_of(world.island_body(joint.a, joint.b)) / world.settings().dt;
-        view.motor_force = desc.motor_speed
-                               ? rate * static_cast<double>(world.state().joints[i].impulses.back())
-                               : 0;
-        views.push_back(view);
+    const Joint &joint = world.joints()[i];
+    const JointDesc &desc = book_->scene.joints[i];
+    const Motion &a = world.joint_motion(joint.a);
+    const Motion &b = world.joint_motion(joint.b);
+    JointView view;
+    view.joint = i;
+    view.type = joint.type;
+    if (joint.a != Joint::world)
+        view.body_a = joint.a;
+    if (joint.b != Joint::world)
+        view.body_b = joint.b;
+    view.anchor_a = glm::dvec3{world.anchor_a(joint)};
+    view.anchor_b = glm::dvec3{world.anchor_b(joint)};
+    view.frame_a = glm::dquat{a.rotation * joint.frame_a_local};
+    view.frame_b = glm::dquat{b.rotation * joint.frame_b_local};
+    view.limits = desc.limits;
+    view.motor_speed = desc.motor_speed;
+    view.max_motor_force = desc.max_motor_force;
+    view.frequency = desc.frequency;
+    view.break_force = desc.break_force;
+    view.broken = world.state().joints[i].broken;
+    view.drift = static_cast<double>(world.joint_error(i));
+    switch (joint.type) {
+    case JointType::ball:
+    case JointType::fixed:
+        break;
+    case JointType::distance:
+        view.position = glm::distance(view.anchor_a, view.anchor_b);
+        view.limits = {desc.min_length, desc.max_length};
+        view.speed = free_speed(joint, a, b, view);
+        break;
+    case JointType::hinge:
+        view.position = static_cast<double>(hinge_angle(joint, a, b));
+        view.speed = free_speed(joint, a, b, view);
+        break;
+    case JointType::slider:
+        view.position = static_cast<double>(slider_place(joint, a, b));
+        view.speed = free_speed(joint, a, b, view);
+        break;
     }
-    return views;
-}
-
-std::vector<ImpactView> WorldSimulation::impacts() const {
-    std::vector<ImpactView> views;
-    for (const Impact &impact : world_.impacts())
-        views.push_back({impact.key.a, impact.key.b, glm::dvec3{impact.position},
-                         glm::dvec3{impact.normal}, static_cast<double>(impact.impulse)});
-    return views;
+    const World::JointLoad load = world.joint_load(i);
+    view.force = glm::dvec3{load.force};
+    view.torque = glm::dvec3{load.torque};
+    const double rate =
+        world.substeps_of(world.island_body(joint.a, joint.b)) / world.settings().dt;
+    view.motor_force =
+        desc.motor_speed ? rate * static_cast<double>(world.state().joints[i].impulses.back()) : 0;
+    return view;
 }
 
 } // namespace

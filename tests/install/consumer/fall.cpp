@@ -26,7 +26,7 @@ int main() {
     const auto simulation = plumb::Simulation::create(scene, {}, nullptr);
     for (int i = 0; i < 60; ++i)
         simulation->step();
-    const double fallen = 100 - simulation->body_state(0).position.y;
+    const double fallen = 100 - simulation->read().bodies[0].position.y;
     std::printf("fell %.6f m in %.6f s; the ray %s the ball\n", fallen, simulation->time(),
                 seen ? "meets" : "misses");
     // g t^2 / 2 = 4.905 m; the default method's substep of 1/240 s may add g t dt / 2 = 0.0204 m.

@@ -1,0 +1,87 @@
+// All that is to be seen of a simulation at one moment, as flat arrays of plain values in double:
+// what the app blends and draws, and the lab measures.
+#pragma once
+
+#include "engine/dynamics/kinds.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+namespace plumb {
+
+struct BodyState {
+    glm::dvec3 position{0};
+    glm::dquat orientation{1, 0, 0, 0};
+    glm::dvec3 velocity{0};
+    glm::dvec3 angular_velocity{0}; // world
+    bool asleep = false;            // at rest, and not stepped
+};
+
+struct ContactView {
+    std::size_t body_a = 0;
+    std::size_t body_b = 0;
+    glm::dvec3 position{0};       // world
+    glm::dvec3 normal{0};         // from a to b
+    double separation = 0;        // m
+    double normal_force = 0;      // N, mean over the last substep
+    glm::dvec3 friction_force{0}; // N, world, on b
+};
+
+struct JointView {
+    std::size_t joint = 0; // see Simulation::joint_name
+    JointType type = JointType::ball;
+    std::optional<std::size_t> body_a, body_b; // empty: the world
+    glm::dvec3 anchor_a{0}, anchor_b{0};       // world, now
+    // World, now; the x axes are that of a hinge or slider. Fixed joints have frames too.
+    glm::dquat frame_a{1, 0, 0, 0}, frame_b{1, 0, 0, 0};
+    // Angle of a hinge (rad), place of a slider (m), distance of the anchors of a distance joint
+    // (m), and its rate; 0 for the others.
+    double position = 0;
+    double speed = 0;
+    // Of a hinge or slider where it has some; least and greatest length of a distance joint.
+    std::optional<std::array<double, 2>> limits;
+    std::optional<double> motor_speed; // rad/s or m/s
+    double max_motor_force = 0;        // N m or N
+    double motor_force = 0;            // now, likewise
+    double frequency = 0;              // Hz; 0: rigid
+    double break_force = 0;            // N; 0: never
+    bool broken = false;
+    double drift = 0;       // m, by which the anchors miss what they are held to
+    double angle_drift = 0; // rad, likewise of the frames
+    // Of all rows, on b, mean over the last substep: at its anchor (N), and about it (N m). World.
+    glm::dvec3 force{0};
+    glm::dvec3 torque{0};
+};
+
+// A bounce within the last step.
+struct ImpactView {
+    std::size_t body_a = 0;
+    std::size_t body_b = 0;
+    glm::dvec3 position{0}; // world
+    glm::dvec3 normal{0};   // from a to b
+    double impulse = 0;     // N s
+};
+
+// What is read besides the bodies; nothing is computed that is not asked for.
+struct FrameParts {
+    bool joints = false;
+    bool contacts = false;
+    bool impacts = false;
+};
+
+struct Frame {
+    std::uint64_t step_count = 0;
+    double time = 0;                   // s, since the start of the scene
+    std::vector<BodyState> bodies;     // by index, holes included
+    std::vector<JointView> joints;     // those that are there, ascending
+    std::vector<ContactView> contacts; // of the last step, a point each
+    std::vector<ImpactView> impacts;   // of the last step
+};
+
+} // namespace plumb
