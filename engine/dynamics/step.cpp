@@ -180,11 +180,14 @@ void World::advance() {
         settings.substeps = s.groups[i].substeps;
         StepContext context{*model_, settings,      s.bodies, s.groups[i], s.contacts, s.joints,
                             s.grab,  s.world_frame, s.solver, report_,     s.impacts};
-        std::swap(s.solver.joint_system, s.joint_systems[i]);
+        const bool has_joints = !s.groups[i].joints.empty();
+        if (has_joints)
+            std::swap(s.solver.joint_system, s.joint_systems[i]);
         method_->advance(context);
         if (chooses_substeps())
             note_needs(s.groups[i]);
-        std::swap(s.solver.joint_system, s.joint_systems[i]);
+        if (has_joints)
+            std::swap(s.solver.joint_system, s.joint_systems[i]);
     }
     report_.moving_bodies = static_cast<std::uint32_t>(s.awake);
     report_.contact_points = 0;

@@ -24,12 +24,13 @@ void advance(StepContext &context) {
                 motion.velocity +=
                     h * (gravity_on(body, gravity) - body.linear_damping * motion.velocity);
                 // Euler's equations in world axes: w' = -I^-1 (w x I w).
-                const Vec3 momentum =
-                    spin_momentum(motion.rotation, body.inertia, motion.angular_velocity);
-                const Vec3 torque_free =
-                    has_gyroscopic_spin(body)
-                        ? -(motion.inv_inertia * glm::cross(motion.angular_velocity, momentum))
-                        : Vec3{Real(0)};
+                Vec3 torque_free{Real(0)};
+                if (has_gyroscopic_spin(body)) {
+                    const Vec3 momentum =
+                        spin_momentum(motion.rotation, body.inertia, motion.angular_velocity);
+                    torque_free =
+                        -(motion.inv_inertia * glm::cross(motion.angular_velocity, momentum));
+                }
                 motion.angular_velocity +=
                     h * (torque_free - body.angular_damping * motion.angular_velocity);
             }
