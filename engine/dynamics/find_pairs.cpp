@@ -142,8 +142,11 @@ void World::add_candidate(std::uint32_t i, std::uint32_t j) const {
 void World::find_pairs() const {
     Scratch &s = scratch_;
     s.candidates.clear();
-    if (!needs_contacts())
+    if (!needs_contacts()) {
+        if (needs_particle_contacts())
+            place_colliders();
         return;
+    }
     const auto count = static_cast<std::uint32_t>(model_->colliders.size());
     if (place_colliders()) {
         std::erase_if(s.fat_pairs, [&](std::uint64_t key) {

@@ -159,6 +159,33 @@ std::uint64_t World::hash() const {
             add(hash, point.core_b);
         }
     }
+    for (std::size_t i = 0; i < model_->particles.size(); ++i) {
+        const Particle &particle = model_->particles[i];
+        for (const Real value : {particle.inv_mass, particle.mass, particle.radius,
+                                 particle.material.friction, particle.material.restitution})
+            hash.add(value);
+        add(hash, state_.particles[i].position);
+        add(hash, state_.particles[i].velocity);
+    }
+    for (std::size_t i = 0; i < model_->springs.size(); ++i) {
+        const Spring &spring = model_->springs[i];
+        for (const SpringEnd &end : {spring.a, spring.b}) {
+            const bool is_body = end.kind == SpringEnd::Kind::body;
+            hash.add(static_cast<std::uint64_t>(end.kind));
+            hash.add(is_body ? rank[end.index] : std::uint64_t{end.index});
+            add(hash, end.anchor);
+        }
+        for (const Real value :
+             {spring.rest_length, spring.stiffness, spring.damping, spring.tear_strain})
+            hash.add(value);
+        hash.add(std::uint64_t{state_.torn[i]});
+    }
+    if (state_.grab.holds_particle()) {
+        hash.add(std::uint64_t{state_.grab.particle});
+        add(hash, state_.grab.target);
+        hash.add(state_.grab.max_force);
+        hash.add(state_.grab.held_mass);
+    }
     if (state_.grab.is_holding()) {
         hash.add(rank[state_.grab.body]);
         add(hash, state_.grab.point_local);

@@ -92,6 +92,8 @@ void World::find_islands() {
         if (holds(i) && moves(joint.a) && moves(joint.b))
             islands.join(joint.a, joint.b);
     }
+    if (model_->has_particles())
+        join_particles();
 }
 
 std::uint32_t World::island_body(std::uint32_t a, std::uint32_t b) const {
@@ -124,6 +126,8 @@ void World::gather_needs() {
             continue;
         ++islands.needs[islands.root_of(island_body(joint.a, joint.b))].work;
     }
+    if (model_->has_particles())
+        gather_particle_needs();
 }
 
 // What joints will bear in their first step is not known: as much as if all of the island hung on
@@ -244,6 +248,7 @@ void World::group_islands() {
         group.joints.clear();
         group.joints.reserve(model_->alive_joints);
         group.holds_grab = false;
+        group.has_particles = false;
         return group;
     };
     const bool chooses = chooses_substeps();
@@ -261,6 +266,10 @@ void World::group_islands() {
             group_of(island_body(model_->joints[i].a, model_->joints[i].b)).joints.push_back(i);
     if (s.grab.is_holding())
         group_of(s.grab.body).holds_grab = true;
+    if (model_->has_particles()) {
+        const auto particles = static_cast<std::uint32_t>(model_->bodies.size());
+        group_of(particles).has_particles = true;
+    }
     if (s.joint_systems.size() < s.group_count)
         s.joint_systems.resize(s.group_count);
 }

@@ -32,6 +32,7 @@ struct IslandGroup {
     std::vector<std::uint32_t> contacts;
     std::vector<std::uint32_t> joints;
     bool holds_grab = false;
+    bool has_particles = false; // all of them, with all springs
 };
 
 // The islands of a step, as trees of bodies. Kinematic bodies join what they touch, static ones do

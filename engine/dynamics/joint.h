@@ -75,18 +75,22 @@ struct Joint {
     bool alive = false;
 };
 
-// A hand that pulls a body's point to a target like a damped spring that is never stronger than
-// `max_force`. Part of the state: nothing but commands changes it.
+// A hand that pulls a body's point, or a particle, to a target like a damped spring that is never
+// stronger than `max_force`. Part of the state: nothing but commands changes it.
 struct Grab {
-    std::uint32_t body = UINT32_MAX; // none: nothing is held
-    Vec3 point_local{Real(0)};       // in the mass frame
-    Vec3 target{Real(0)};            // world
-    Real max_force = Real(0);        // N
-    Real frequency = Real(5);        // Hz
+    std::uint32_t body = UINT32_MAX;     // none: no body is held
+    std::uint32_t particle = UINT32_MAX; // likewise
+    Vec3 point_local{Real(0)};           // in the mass frame
+    Vec3 target{Real(0)};                // world
+    Real max_force = Real(0);            // N
+    Real frequency = Real(5);            // Hz
     Real damping_ratio = Real(1);
-    Vec3 impulse{Real(0)}; // what the solver remembers (N s)
+    Vec3 impulse{Real(0)}; // what the solver remembers (N s); of a body
+    // A particle is held as if it bore the mass of all that its springs lead to (kg).
+    Real held_mass = Real(0);
 
     bool is_holding() const { return body != UINT32_MAX; }
+    bool holds_particle() const { return particle != UINT32_MAX; }
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -40,6 +40,8 @@ double World::energy() const {
             const BodyMeasure one = measure_of(bodies()[i], state_.motions[i], settings_.gravity);
             sum += one.kinetic + one.potential;
         }
+    if (model_->has_particles())
+        sum += particle_energy();
     return sum;
 }
 
@@ -110,6 +112,8 @@ Measures World::measure() const {
         }
     if (drift_count > 0)
         m.mean_joint_drift = drift_sum / drift_count;
+    if (model_->has_particles())
+        add_particles(m);
     return m;
 }
 

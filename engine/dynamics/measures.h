@@ -7,14 +7,15 @@ namespace plumb {
 
 struct Measures {
     double time = 0;                // s
-    double kinetic_energy = 0;      // J, linear and rotational, dynamic bodies
-    double potential_energy = 0;    // J in gravity, 0 at the world's origin
+    double kinetic_energy = 0;      // J, of dynamic bodies and particles
+    double potential_energy = 0;    // J in gravity, 0 at the world's origin, and in springs
     glm::dvec3 linear_momentum{0};  // kg m/s
     glm::dvec3 angular_momentum{0}; // kg m^2/s about the world's origin
     double max_penetration = 0;     // m, the deepest contact point at the present poses
     double mean_penetration = 0;    // m, mean over contact points that penetrate
     double max_joint_drift = 0;     // m, the worst joint error
     double mean_joint_drift = 0;    // m
+    double max_strain = 0;          // |length / rest length - 1|, the largest of springs not torn
     double energy() const { return kinetic_energy + potential_energy; }
 };
 

@@ -9,7 +9,9 @@
 #include "engine/dynamics/method_info.h"
 #include "engine/dynamics/model.h"
 #include "engine/dynamics/motion.h"
+#include "engine/dynamics/particle_constraint.h"
 #include "engine/dynamics/settings.h"
+#include "engine/dynamics/smooth_forces.h"
 #include "engine/dynamics/state.h"
 #include "engine/dynamics/step_report.h"
 
@@ -31,6 +33,13 @@ struct SolverScratch {
     std::vector<Real> stiffness;                 // of each body, see joint_stiffness
     std::vector<FreeFlight> flights;             // one for each moving body
     std::vector<std::array<Vec3, 2>> velocities; // likewise, while pseudo velocities are solved
+    std::vector<SpringConstraint> springs;
+    std::vector<ParticleContactConstraint> particle_contacts;
+    // Of each particle, of all its springs: stiffness and damping (N/m, N s/m).
+    std::vector<Vec2> particle_stiffness;
+    std::array<Accelerations, 4> accelerations; // of smooth methods
+    std::vector<Motion> motions;                // likewise, where the step began
+    std::vector<ParticleMotion> particle_motions;
 };
 
 // What a method is given: the world at the start of a step, to be advanced by settings.dt. Contacts
@@ -50,10 +59,14 @@ struct StepContext {
     SolverScratch &scratch;
     StepReport &report; // the method counts its work here
     std::vector<Impact> &impacts;
+    std::span<ParticleMotion> particles; // one for each particle of the model
+    std::span<const std::uint8_t> torn;  // one for each spring of the model
+    std::span<const ParticleContact> particle_contacts;
 
     std::span<const std::uint32_t> moving() const { return active.moving; }
     bool is_free() const {
-        return active.contacts.empty() && active.joints.empty() && !active.holds_grab;
+        return active.contacts.empty() && active.joints.empty() && !active.holds_grab &&
+               !active.has_particles;
     }
     SolverBody &body(std::uint32_t index) {
         return index == Joint::world ? world_frame : bodies[index];

@@ -16,6 +16,7 @@ struct MethodInfo {
     std::string_view source; // where it is published
     bool contacts = false;   // can hold bodies apart
     bool joints = false;     // can hold bodies together
+    bool springs = false;    // can move particles and springs
     // Whether what moves fast for its size is collided with where it will be, and where it was
     // struck to; otherwise all contacts are those of the start of the step.
     bool looks_ahead = false;

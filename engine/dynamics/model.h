@@ -1,8 +1,9 @@
-// What only an edit changes: bodies, colliders, joints.
+// What only an edit changes: bodies, colliders, joints, particles, springs.
 #pragma once
 
 #include "engine/dynamics/body.h"
 #include "engine/dynamics/joint.h"
+#include "engine/dynamics/particles.h"
 
 #include <vector>
 
@@ -13,6 +14,8 @@ struct Model {
     std::vector<Body> bodies;        // holes included (Body::alive)
     std::vector<Collider> colliders; // holes included (Collider::body); a body's are in a row
     std::vector<Joint> joints;       // holes included
+    std::vector<Particle> particles; // never removed
+    std::vector<Spring> springs;     // likewise
     std::vector<std::uint32_t> free_bodies;
     std::vector<std::uint32_t> free_joints;
     // Pairs of bodies that a joint keeps from colliding, (lesser << 32 | greater), ascending; a
@@ -22,6 +25,9 @@ struct Model {
     std::uint32_t alive_bodies = 0;
     std::uint32_t dynamic_bodies = 0;
     std::uint32_t alive_joints = 0;
+    std::uint32_t free_particles = 0; // not pinned
+
+    bool has_particles() const { return !particles.empty() || !springs.empty(); }
 };
 
 inline std::uint64_t body_pair(std::uint32_t a, std::uint32_t b) {

@@ -68,6 +68,13 @@ struct Scratch {
     std::vector<double> loads;     // of each body: the square of the substeps that it wants
     std::vector<double> stiffness; // of each body, that its joints' forces make (N m)
     std::vector<Impact> impacts;
+    std::vector<ParticleMotion> particles; // the step's copy
+    std::vector<std::uint8_t> torn;
+    std::vector<ParticleContact> particle_contacts; // by particle, then collider and triangle
+    std::vector<std::vector<ParticleContact>> particle_parts; // found by each part of a loop
+    std::vector<std::vector<std::uint32_t>> near_particle;    // colliders, likewise
+    std::vector<std::vector<std::uint32_t>> near_triangles;
+    std::vector<double> particle_rates; // see spring_rate
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

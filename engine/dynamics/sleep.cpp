@@ -79,9 +79,11 @@ bool World::wake_touched(const std::vector<Contact> &contacts) {
         return !contact.sensor &&
                (s.paces[contact.key.a].is_asleep() || s.paces[contact.key.b].is_asleep());
     };
-    if (std::ranges::none_of(contacts, wakes))
+    const bool by_particles = model_->has_particles() && mark_touched_by_particles();
+    if (!by_particles && std::ranges::none_of(contacts, wakes))
         return false;
-    s.marked.assign(s.paces.size(), 0);
+    if (!by_particles)
+        s.marked.assign(s.paces.size(), 0);
     for (const Contact &contact : contacts)
         if (wakes(contact))
             s.marked[contact.key.a] = s.marked[contact.key.b] = 1;
@@ -149,7 +151,7 @@ void World::fall_asleep() {
     if (!any)
         return;
     find_islands();
-    s.marked.assign(s.bodies.size(), 0); // the roots of islands that stay awake
+    s.marked.assign(s.bodies.size() + 1, 0); // the roots of islands that stay awake
     const auto stays_awake = [&](std::uint32_t body) { s.marked[s.islands.root_of(body)] = 1; };
     for (const std::uint32_t i : s.moving)
         if (s.paces[i].rested < enough)
@@ -161,6 +163,10 @@ void World::fall_asleep() {
     }
     if (s.grab.is_holding())
         stays_awake(s.grab.body);
+    if (model_->has_particles() && !std::ranges::all_of(s.particles, [&](const auto &motion) {
+            return is_particle_at_rest(motion);
+        }))
+        s.marked[s.islands.root_of(static_cast<std::uint32_t>(s.bodies.size()))] = 1;
     for (const std::uint32_t i : s.moving)
         if (s.marked[s.islands.root_of(i)] == 0) {
             s.paces[i].rested = Pace::asleep;

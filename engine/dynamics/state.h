@@ -5,6 +5,7 @@
 #include "engine/dynamics/contact.h"
 #include "engine/dynamics/islands.h"
 #include "engine/dynamics/joint.h"
+#include "engine/dynamics/particles.h"
 
 #include <vector>
 
@@ -17,6 +18,8 @@ struct State {
     std::vector<JointMemory> joints;     // one for each joint of the model
     std::vector<ContactMemory> contacts; // ascending by key
     std::vector<PointMemory> points;
+    std::vector<ParticleMotion> particles; // one for each particle of the model
+    std::vector<std::uint8_t> torn;        // one for each spring of the model
     Grab grab;
     std::uint64_t step_count = 0;
     // Simulated time is a product, not a sum, of each dt that was set.

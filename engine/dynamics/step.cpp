@@ -89,7 +89,8 @@ void World::step_part(TaskPool *tasks, StepTimes *times) {
     scratch_.surprised.clear();
     scratch_.paces = state_.paces;
     note_still(true);
-    if (scratch_.awake == 0) { // all that there is sleeps, or never moves
+    // All that there is sleeps, or never moves.
+    if (scratch_.awake == 0 && !moves_particles()) {
         report_.joints = model_->alive_joints;
         return;
     }
@@ -140,6 +141,8 @@ void World::find_contacts(TaskPool *tasks, StepTimes *times) {
         }
         const PhaseTimer timer(times ? &times->collide : nullptr);
         collide(tasks);
+        if (needs_particle_contacts())
+            find_particle_contacts(tasks);
     } while (wake_touched(scratch_.contacts));
 }
 
@@ -170,6 +173,8 @@ void World::load_bodies() {
     s.joints = state_.joints;
     s.grab = state_.grab;
     s.world_frame = SolverBody{};
+    if (model_->has_particles())
+        load_particles();
 }
 
 void World::advance() {
@@ -178,8 +183,9 @@ void World::advance() {
     for (std::size_t i = 0; i < s.group_count; ++i) {
         StepSettings settings = settings_;
         settings.substeps = s.groups[i].substeps;
-        StepContext context{*model_, settings,      s.bodies, s.groups[i], s.contacts, s.joints,
-                            s.grab,  s.world_frame, s.solver, report_,     s.impacts};
+        StepContext context{*model_,   settings,    s.bodies,      s.groups[i],        s.contacts,
+                            s.joints,  s.grab,      s.world_frame, s.solver,           report_,
+                            s.impacts, s.particles, s.torn,        s.particle_contacts};
         const bool has_joints = !s.groups[i].joints.empty();
         if (has_joints)
             std::swap(s.solver.joint_system, s.joint_systems[i]);
@@ -189,6 +195,8 @@ void World::advance() {
         if (has_joints)
             std::swap(s.solver.joint_system, s.joint_systems[i]);
     }
+    if (model_->has_particles())
+        end_particles();
     report_.moving_bodies = static_cast<std::uint32_t>(s.awake);
     report_.contact_points = 0;
     report_.joints = model_->alive_joints;
@@ -253,6 +261,10 @@ void World::finish() {
     std::swap(state_.joints, s.joints);
     std::swap(state_.paces, s.paces);
     state_.grab = s.grab;
+    if (model_->has_particles()) {
+        std::swap(state_.particles, s.particles);
+        std::swap(state_.torn, s.torn);
+    }
     // Those of what slept were not looked for.
     s.contacts_are_current = std::ranges::none_of(state_.paces, &Pace::is_asleep);
 }

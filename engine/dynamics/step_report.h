@@ -14,7 +14,9 @@ struct StepReport {
     std::uint32_t contacts = 0; // shapes touch, or nearly
     std::uint32_t contact_points = 0;
     std::uint32_t joints = 0;
-    std::uint32_t impacts = 0; // bounces resolved
+    std::uint32_t springs = 0;           // that are not torn
+    std::uint32_t particle_contacts = 0; // of particles with bodies, or nearly
+    std::uint32_t impacts = 0;           // bounces resolved
     // Substeps whose last allowed sweep still bounced something.
     std::uint32_t unresolved_impacts = 0;
     bool finite = true; // all positions and velocities

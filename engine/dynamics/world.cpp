@@ -222,6 +222,7 @@ void World::remove_body(BodyId id) {
             remove_joint({j, model.joints[j].generation});
     Body &body = model.bodies[id.index];
     wake(id.index);
+    tear_springs_of(id.index);
     forget_places_of(body);
     forget_contacts_of(id.index);
     for (std::uint32_t i = 0; i < body.collider_count; ++i) {
@@ -444,7 +445,7 @@ void World::grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real ma
 
 void World::move_grab(const Vec3 &target) {
     PLUMB_CHECK(is_finite(target), "a grab must be finite");
-    if (state_.grab.is_holding())
+    if (state_.grab.is_holding() || state_.grab.holds_particle())
         state_.grab.target = target;
 }
 

@@ -52,7 +52,8 @@ class World {
     // Fails a check on NaN, on a body without colliders, on a mass that is not positive, on a
     // dynamic half-space or surface, on a dynamic body without extent (a moment of inertia of 0).
     BodyId add_body(const BodyDef &def);
-    // Its contacts and joints go with it. An id no longer alive fails a check.
+    // Its contacts and joints go with it, and its springs tear. An id no longer alive fails a
+    // check.
     void remove_body(BodyId id);
     bool is_alive(BodyId id) const;
 
@@ -60,6 +61,11 @@ class World {
     JointId add_joint(const JointDef &def);
     void remove_joint(JointId id);
     bool is_alive(JointId id) const;
+
+    // Particles and springs are never removed. Both return the index. A mass or radius that is not
+    // positive, a NaN, a negative stiffness, an end that is not there, fail a check.
+    std::uint32_t add_particle(const ParticleDef &def);
+    std::uint32_t add_spring(const SpringDef &def);
 
     const Model &model() const { return *model_; }
     const State &state() const { return state_; }
@@ -87,6 +93,10 @@ class World {
     void grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force);
     void move_grab(const Vec3 &target); // nothing held: does nothing
     void release();
+    // Puts a particle somewhere, as a tool or a test does. A pinned one stays at rest there.
+    void set_particle(std::uint32_t index, const Vec3 &position, const Vec3 &velocity);
+    // As grab, of a particle that is not pinned; a pinned one is not held.
+    void grab_particle(std::uint32_t index, const Vec3 &target, Real max_force);
     // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
     // are known by feature; a contact that the next step does not find again is forgotten.
     void remember_contact(const ContactKey &key, const ContactOrigin &origin,
@@ -176,6 +186,27 @@ class World {
     void wake_all();
     bool is_at_rest(std::uint32_t body) const;
     void fall_asleep();
+
+    // Particles and springs (world_particles.cpp, find_particle_contacts.cpp).
+    bool moves_particles() const;
+    bool needs_particle_contacts() const;
+    void find_particle_contacts(TaskPool *tasks) const;
+    void collide_particle(std::uint32_t index, std::size_t part) const;
+    void add_particle_contact(std::uint32_t particle, std::uint32_t collider,
+                              const Manifold &manifold, const Motion &at,
+                              std::vector<ParticleContact> &out) const;
+    bool is_particle_at_rest(const ParticleMotion &motion) const;
+    bool is_spring_end_still(const SpringEnd &end) const;
+    bool mark_touched_by_particles() const;
+    void load_particles();
+    void join_particles();
+    void gather_particle_needs();
+    double spring_rate() const;
+    void tear_springs();
+    void tear_springs_of(std::uint32_t body);
+    void end_particles();
+    void add_particles(Measures &m) const;
+    double particle_energy() const;
 
     bool turn_together(std::uint32_t a, std::uint32_t b) const;
     bool rides_on_turning() const;

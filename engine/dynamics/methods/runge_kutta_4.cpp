@@ -1,8 +1,10 @@
-// The classical fourth-order Runge-Kutta method for free bodies (Kutta 1901; Hairer, Norsett,
-// Wanner 1993, "Solving Ordinary Differential Equations I", table II.1.2), on position, velocity,
-// orientation and spin.
+// The classical fourth-order Runge-Kutta method for free bodies, particles and springs (Kutta 1901;
+// Hairer, Norsett, Wanner 1993, "Solving Ordinary Differential Equations I", table II.1.2), on
+// position, velocity, orientation and spin.
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
+
+#include <array>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -11,66 +13,145 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The state of one free body, or its rate of change. Spin in the body's principal axes, where the
-// inertia is constant.
-struct FreeState {
-    Vec3 position{Real(0)};
-    Vec3 velocity{Real(0)};
-    Quat rotation{Real(0), Real(0), Real(0), Real(0)};
-    Vec3 spin{Real(0)};
+// Here a Motion is the state of one free body, or its rate of change, with the spin in the body's
+// principal axes, where the inertia is constant.
+Motion operator+(const Motion &state, const Motion &change) {
+    return {state.position + change.position, state.rotation + change.rotation,
+            state.velocity + change.velocity, state.angular_velocity + change.angular_velocity};
+}
+
+Motion operator*(Real scale, const Motion &rate) {
+    return {scale * rate.position, scale * rate.rotation, scale * rate.velocity,
+            scale * rate.angular_velocity};
+}
+
+ParticleMotion operator+(const ParticleMotion &state, const ParticleMotion &change) {
+    return {state.position + change.position, state.velocity + change.velocity};
+}
+
+ParticleMotion operator*(Real scale, const ParticleMotion &rate) {
+    return {scale * rate.position, scale * rate.velocity};
+}
+
+Motion rate_of(const Motion &state, const Body &body, const Vec3 &acceleration) {
+    const Vec3 &spin = state.angular_velocity;
+    const Vec3 torque_free = has_gyroscopic_spin(body)
+                                 ? -body.inv_inertia * glm::cross(spin, body.inertia * spin)
+                                 : Vec3{Real(0)};
+    // q' = q (0, w) / 2 with w in the body's axes.
+    const Quat turning = Real(0.5) * (state.rotation * Quat{Real(0), spin.x, spin.y, spin.z});
+    return {state.velocity, turning, acceleration, torque_free - body.angular_damping * spin};
+}
+
+// Where the substep began, the present stage, its rate, and the weighted sum of rates.
+template <typename Item> struct Stages {
+    std::vector<Item> &items;
+    std::size_t count;
+    Item &start(std::size_t i) { return items[i]; }
+    Item &stage(std::size_t i) { return items[count + i]; }
+    Item &rate(std::size_t i) { return items[2 * count + i]; }
+    Item &sum(std::size_t i) { return items[3 * count + i]; }
+    Stages(std::vector<Item> &memory, std::size_t n) : items(memory), count(n) {
+        items.resize(4 * n);
+    }
+    void begin(std::size_t i, const Item &now) { start(i) = stage(i) = now; }
+    void add(std::size_t i, bool first, Real weight) {
+        sum(i) = first ? rate(i) : sum(i) + weight * rate(i);
+    }
 };
 
-FreeState operator+(const FreeState &state, const FreeState &change) {
-    return {state.position + change.position, state.velocity + change.velocity,
-            state.rotation + change.rotation, state.spin + change.spin};
+struct Coefficients {
+    Real reach;  // from the start to where the rate is taken, in h
+    Real weight; // of that rate, in h / 6
+};
+constexpr std::array<Coefficients, 4> tableau{
+    {{Real(0), Real(1)}, {Real(0.5), Real(2)}, {Real(0.5), Real(2)}, {Real(1), Real(1)}}};
+
+// The motion that forces are taken at.
+void place(SolverBody &motion, const Motion &stage, const Body &body) {
+    motion.position = stage.position;
+    motion.velocity = stage.velocity;
+    motion.rotation = glm::normalize(stage.rotation);
+    motion.angular_velocity = rotated(motion.rotation, stage.angular_velocity);
+    motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
 }
 
-FreeState operator*(Real scale, const FreeState &rate) {
-    return {scale * rate.position, scale * rate.velocity, scale * rate.rotation, scale * rate.spin};
-}
+void take_substep(StepContext &context, Real h) {
+    const auto moving = context.moving();
+    const bool has_particles = context.active.has_particles;
+    Accelerations &now = context.scratch.accelerations[0];
+    Stages<Motion> bodies(context.scratch.motions, moving.size());
+    Stages<ParticleMotion> particles(context.scratch.particle_motions,
+                                     has_particles ? context.particles.size() : 0);
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        Motion start = context.bodies[moving[i]];
+        if (context.model.bodies[moving[i]].kind == BodyKind::dynamic)
+            start.angular_velocity =
+                rotated(glm::conjugate(start.rotation), start.angular_velocity);
+        bodies.begin(i, start);
+    }
+    for (std::size_t i = 0; i < particles.count; ++i)
+        particles.begin(i, context.particles[i]);
 
-FreeState rate_of(const FreeState &state, const Body &body, const Vec3 &gravity) {
-    const Vec3 torque_free =
-        has_gyroscopic_spin(body)
-            ? -body.inv_inertia * glm::cross(state.spin, body.inertia * state.spin)
-            : Vec3{Real(0)};
-    // q' = q (0, w) / 2 with w in the body's axes.
-    const Quat turning =
-        Real(0.5) * (state.rotation * Quat{Real(0), state.spin.x, state.spin.y, state.spin.z});
-    return {state.velocity, gravity - body.linear_damping * state.velocity, turning,
-            torque_free - body.angular_damping * state.spin};
+    for (const Coefficients &at : tableau) {
+        const bool first = at.reach == Real(0);
+        for (std::size_t i = 0; !first && i < moving.size(); ++i) {
+            const Body &body = context.model.bodies[moving[i]];
+            SolverBody &motion = context.bodies[moving[i]];
+            if (body.kind == BodyKind::dynamic) {
+                bodies.stage(i) = bodies.start(i) + (at.reach * h) * bodies.rate(i);
+                if (has_particles)
+                    place(motion, bodies.stage(i), body);
+                else
+                    motion.velocity = bodies.stage(i).velocity;
+            } else if (has_particles) {
+                const Motion &start = bodies.start(i);
+                motion.position = start.position + (at.reach * h) * start.velocity;
+                motion.rotation = turned(start.rotation, start.angular_velocity, at.reach * h);
+            }
+        }
+        for (std::size_t i = 0; !first && i < particles.count; ++i)
+            context.particles[i] = particles.start(i) + (at.reach * h) * particles.rate(i);
+
+        find_linear_accelerations(context, now);
+        for (std::size_t i = 0; i < moving.size(); ++i) {
+            const Body &body = context.model.bodies[moving[i]];
+            if (body.kind != BodyKind::dynamic)
+                continue;
+            bodies.rate(i) = rate_of(bodies.stage(i), body, now.bodies[i].linear);
+            if (has_particles) {
+                const SolverBody &motion = context.bodies[moving[i]];
+                bodies.rate(i).angular_velocity += rotated(
+                    glm::conjugate(motion.rotation), motion.inv_inertia * now.bodies[i].torque);
+            }
+            bodies.add(i, first, at.weight);
+        }
+        for (std::size_t i = 0; i < particles.count; ++i) {
+            particles.rate(i) = {context.particles[i].velocity, now.particles[i]};
+            particles.add(i, first, at.weight);
+        }
+    }
+
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        const Body &body = context.model.bodies[moving[i]];
+        SolverBody &motion = context.bodies[moving[i]];
+        if (body.kind == BodyKind::dynamic) {
+            place(motion, bodies.start(i) + (h / 6) * bodies.sum(i), body);
+            continue;
+        }
+        const Motion &start = bodies.start(i);
+        motion.position = start.position + h * start.velocity;
+        motion.rotation = turned(start.rotation, start.angular_velocity, h);
+    }
+    for (std::size_t i = 0; i < particles.count; ++i)
+        context.particles[i] = particles.start(i) + (h / 6) * particles.sum(i);
 }
 
 void advance(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
-    context.report.body_passes +=
-        4 * context.moving().size() * static_cast<std::size_t>(settings.substeps);
     for (int substep = 0; substep < settings.substeps; ++substep)
-        for (const std::uint32_t i : context.moving()) {
-            const Body &body = context.model.bodies[i];
-            SolverBody &motion = context.bodies[i];
-            if (body.kind == BodyKind::kinematic) {
-                motion.position += h * motion.velocity;
-                motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
-            }
-            if (body.kind != BodyKind::dynamic)
-                continue;
-            const Vec3 gravity = gravity_on(body, Vec3{settings.gravity});
-            const FreeState start{
-                motion.position, motion.velocity, motion.rotation,
-                rotated(glm::conjugate(motion.rotation), motion.angular_velocity)};
-            const FreeState k1 = rate_of(start, body, gravity);
-            const FreeState k2 = rate_of(start + (h / 2) * k1, body, gravity);
-            const FreeState k3 = rate_of(start + (h / 2) * k2, body, gravity);
-            const FreeState k4 = rate_of(start + h * k3, body, gravity);
-            const FreeState end = start + (h / 6) * (k1 + Real(2) * k2 + Real(2) * k3 + k4);
-            motion.position = end.position;
-            motion.velocity = end.velocity;
-            motion.rotation = glm::normalize(end.rotation);
-            motion.angular_velocity = rotated(motion.rotation, end.spin);
-            motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
-        }
+        take_substep(context, h);
 }
 
 } // namespace
@@ -81,6 +162,7 @@ Method rk4() {
              .source = "Kutta 1901",
              .contacts = false,
              .joints = false,
+             .springs = true,
              .reads = {},
              .defaults = {.substeps = 1, .iterations = 1}},
             advance};

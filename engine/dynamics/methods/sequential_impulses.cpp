@@ -58,10 +58,12 @@ void advance(StepContext &context) {
                            .push_velocity = static_cast<Real>(settings.push_velocity),
                            .slop = static_cast<Real>(settings.penetration_slop),
                            .frictionless = true};
+    const ParticlePush particle_push{rigid.bias_rate, push.push_velocity};
     const JointPass joint_pass{.softness = rigid, .h = h, .spring_time = h};
 
     prepare_contacts(context);
     prepare_joints(context);
+    prepare_particles(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::before);
@@ -70,11 +72,19 @@ void advance(StepContext &context) {
         remember_contacts(context);
         recall_joints(context, Real(1), Springs::solve);
         recall_contacts(context, Real(1));
+        kick_particles(context, gravity, h);
+        refresh_particles(context, h, SpringRule::implicit_euler);
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, joint_pass);
+            solve_springs(context);
+            solve_particle_contacts(context, particle_push, h);
             solve_contacts(context, ContactBias{}, h);
         }
         end_flights(context, h, Kick::before);
+        drift_particles(context, h);
+        // Speeds that only took penetration back end with the substep.
+        solve_particle_contacts(context, {.loaded_only = true}, h);
+        restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
         push_apart(context, push, h);
     }
     store_joints(context);
@@ -89,6 +99,7 @@ Method sequential_impulses() {
              .source = "Catto 2005, Iterative Dynamics with Temporal Coherence",
              .contacts = true,
              .joints = true,
+             .springs = true,
              .reads = {SettingGroup::constraints, SettingGroup::baumgarte, SettingGroup::impacts,
                        SettingGroup::gyroscopic},
              .defaults = {.substeps = 1, .iterations = 10}},

@@ -31,6 +31,8 @@ void advance(StepContext &context) {
                   static_cast<Real>(settings.contact_damping_ratio), h),
         static_cast<Real>(settings.push_velocity), Real(0)};
 
+    const ParticlePush particle_push{contact_bias.softness.bias_rate, contact_bias.push_velocity};
+
     ContactBias relax_bias;
     relax_bias.loaded_only = true;
 
@@ -48,6 +50,7 @@ void advance(StepContext &context) {
     prepare_contact_columns(context);
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
+    prepare_particles(context);
     context.scratch.joint_system.arrange(context);
     const bool is_free = context.is_free();
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -62,19 +65,28 @@ void advance(StepContext &context) {
         remember_joints(context);
         recall_joints(context, Real(0.5), Springs::solve);
         recall_contact_columns(context, Real(0.5), true);
+        kick_particles(context, gravity, Real(0.5) * h);
+        refresh_particles(context, h, SpringRule::midpoint);
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, holding);
+            solve_springs(context);
+            solve_particle_contacts(context, particle_push, h);
             solve_contact_columns(context, contact_bias, h);
         }
         end_flights(context, h, Kick::around);
+        drift_particles(context, h);
         refresh_joints(context);
         recall_joints(context, Real(0.5), Springs::skip);
         recall_contact_columns(context, Real(0.5), false);
         repeat_springs(context);
+        repeat_particle_springs(context);
+        kick_particles(context, gravity, Real(0.5) * h);
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, relaxing);
+            solve_particle_contacts(context, {.loaded_only = true}, h);
             solve_contact_columns(context, relax_bias, h);
         }
+        restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
     }
     store_joints(context);
     store_contact_columns(context);
@@ -88,6 +100,7 @@ Method soft_step() {
              .source = "Catto 2024, Solver2D; Macklin et al. 2019, Small Steps",
              .contacts = true,
              .joints = true,
+             .springs = true,
              .looks_ahead = true,
              .reads = {SettingGroup::chosen, SettingGroup::sleep, SettingGroup::constraints,
                        SettingGroup::kept, SettingGroup::soft, SettingGroup::impacts,

@@ -18,28 +18,37 @@ void advance(StepContext &context) {
     const ContactBias biased{make_soft(static_cast<Real>(settings.contact_frequency_ratio) * rate,
                                        static_cast<Real>(settings.contact_damping_ratio), h),
                              static_cast<Real>(settings.push_velocity), Real(0)};
+    const ParticlePush particle_push{biased.softness.bias_rate, biased.push_velocity};
     const JointPass holding{.softness = joint_softness, .h = h, .spring_time = h};
     const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .spring_time = h};
 
     prepare_contacts(context);
     prepare_joints(context);
+    prepare_particles(context);
     note_approach(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         kick(context, gravity, h);
+        kick_particles(context, gravity, h);
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
         recall_joints(context, Real(1), Springs::solve);
         recall_contacts(context, Real(1));
+        refresh_particles(context, h, SpringRule::implicit_euler);
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, holding);
+            solve_springs(context);
+            solve_particle_contacts(context, particle_push, h);
             solve_contacts(context, biased, h);
         }
         drift(context, h);
+        drift_particles(context, h);
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, relaxing);
+            solve_particle_contacts(context, {.loaded_only = true}, h);
             solve_contacts(context, ContactBias{}, h);
         }
+        restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
         note_loads(context);
     }
     restitute(context, static_cast<Real>(settings.restitution_threshold));
@@ -55,6 +64,7 @@ Method tgs_soft() {
              .source = "Catto 2024, Solver2D",
              .contacts = true,
              .joints = true,
+             .springs = true,
              .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::gyroscopic},
              .defaults = {.substeps = 4, .iterations = 1}},
             advance};

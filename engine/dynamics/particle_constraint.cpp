@@ -1,0 +1,323 @@
+#include "engine/dynamics/particle_constraint.h"
+
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// What a spring's end is fastened to, as far as impulses move it.
+struct EndMass {
+    const StepContext &context;
+    const SpringEnd &end;
+    const Vec3 &arm;
+
+    Real inverse_along(const Vec3 &axis) const {
+        if (end.kind == SpringEnd::Kind::particle)
+            return context.model.particles[end.index].inv_mass;
+        if (end.kind == SpringEnd::Kind::world)
+            return Real(0);
+        const SolverBody &body = context.bodies[end.index];
+        const Vec3 turn = glm::cross(arm, axis);
+        return body.inv_mass_along(axis) + glm::dot(body.inv_inertia * turn, turn);
+    }
+};
+
+void apply(StepContext &context, const SpringEnd &end, const Vec3 &arm, const Vec3 &impulse) {
+    if (end.kind == SpringEnd::Kind::particle)
+        context.particles[end.index].velocity +=
+            context.model.particles[end.index].inv_mass * impulse;
+    else if (end.kind == SpringEnd::Kind::body)
+        context.bodies[end.index].apply_impulse(impulse, arm);
+}
+
+Vec3 velocity_at(const StepContext &context, const SpringEnd &end, const Vec3 &arm) {
+    if (end.kind == SpringEnd::Kind::particle)
+        return context.particles[end.index].velocity;
+    return end.kind == SpringEnd::Kind::body ? context.bodies[end.index].velocity_at(arm)
+                                             : Vec3{Real(0)};
+}
+
+void apply(StepContext &context, const SpringConstraint &row, Real impulse) {
+    const Spring &spring = context.model.springs[row.spring];
+    apply(context, spring.a, row.r_a, -impulse * row.axis);
+    apply(context, spring.b, row.r_b, impulse * row.axis);
+}
+
+Real speed_of(const StepContext &context, const SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    return glm::dot(velocity_at(context, spring.b, row.r_b) -
+                        velocity_at(context, spring.a, row.r_a),
+                    row.axis);
+}
+
+// The line between a spring's ends as they are now; its length.
+Real align(const StepContext &context, SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    const SpringPoint a = spring_point(spring.a, context.bodies, context.particles);
+    const SpringPoint b = spring_point(spring.b, context.bodies, context.particles);
+    const Vec3 line = b.position - a.position;
+    const Real length = glm::length(line);
+    row.axis = length > Real(0) ? line / length : Vec3{Real(0)};
+    row.r_a = a.arm;
+    row.r_b = b.arm;
+    return length;
+}
+
+// Stiffness and damping of all springs at an end, as if along one line, per mass: 1/s^2 and 1/s.
+Vec2 rates_at(const StepContext &context, const SpringEnd &end, const Vec3 &arm,
+              const Spring &spring, const Vec3 &axis) {
+    const Vec2 sum = end.kind == SpringEnd::Kind::particle
+                         ? context.scratch.particle_stiffness[end.index]
+                         : Vec2{spring.stiffness, spring.damping};
+    return EndMass{context, end, arm}.inverse_along(axis) * sum;
+}
+
+// The larger of the two ends: none swings or slows down faster than twice that.
+Vec2 rates_of(const StepContext &context, const SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    return Real(2) * glm::max(rates_at(context, spring.a, row.r_a, spring, row.axis),
+                              rates_at(context, spring.b, row.r_b, spring, row.axis));
+}
+
+// A spring's row for a substep: k and c as softness over its share of h (Catto 2011, "Soft
+// Constraints": gamma = 1 / (h (c + h k)), beta / h = k / (c + h k)).
+//
+// It begins with the impulse of the explicit force at the middle or end of the substep, as far as
+// that is stable: where the substep follows all springs, the passes have little left to do, and
+// what hangs at rest hangs where the springs hold it, however few they are.
+void refresh(StepContext &context, SpringConstraint &row, Real h, SpringRule rule) {
+    const Spring &spring = context.model.springs[row.spring];
+    const Real length = align(context, row);
+    row.impulse = Real(0);
+    row.mass = Real(0);
+    row.share = Real(1);
+    if (row.axis == Vec3{Real(0)})
+        return;
+    const Vec2 rates = rates_of(context, row);
+    const Real turn = h * std::max(std::sqrt(rates.x), rates.y);
+    if (rule == SpringRule::midpoint)
+        row.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
+    const Real time = row.share * h;
+    const Real pull = spring.damping + time * spring.stiffness;
+    if (!(pull > Real(0)))
+        return;
+    const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
+                         EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+    row.softness = Real(1) / (time * pull);
+    row.bias = spring.stiffness * (length - spring.rest_length) / pull;
+    row.mass = inverse > Real(0) ? Real(1) / (inverse + row.softness) : Real(0);
+}
+
+// The guess is made for all springs from the same velocities.
+void guess(const StepContext &context, SpringConstraint &row, Real h) {
+    if (row.mass == Real(0))
+        return;
+    const Vec2 rates = rates_of(context, row);
+    const Real time = row.share * h;
+    const Real followed = Real(1) / std::max(Real(1), time * (time * rates.x + rates.y));
+    row.impulse = -followed * (row.bias + speed_of(context, row)) / row.softness;
+}
+
+void solve(StepContext &context, SpringConstraint &row) {
+    if (row.mass == Real(0))
+        return;
+    const Real change =
+        -row.mass * (speed_of(context, row) + row.bias + row.softness * row.impulse);
+    row.impulse += change;
+    apply(context, row, change);
+}
+
+// The hand's spring, critically damped, on a particle; never stronger than max_force.
+void pull_particle(StepContext &context, Real h) {
+    const Grab &grab = context.grab;
+    ParticleMotion &held = context.particles[grab.particle];
+    const Real omega = Real(2) * std::numbers::pi_v<Real> * grab.frequency;
+    const Real stiffness = grab.held_mass * omega * omega;
+    const Real damping = Real(2) * grab.damping_ratio * grab.held_mass * omega;
+    const Real pull = damping + h * stiffness;
+    const Real inv_mass = context.model.particles[grab.particle].inv_mass;
+    const Vec3 error = held.position - grab.target;
+    Vec3 impulse =
+        -(held.velocity + (stiffness / pull) * error) / (inv_mass + Real(1) / (h * pull));
+    const Real limit = grab.max_force * h;
+    const Real length = glm::length(impulse);
+    if (length > limit)
+        impulse *= limit / length;
+    held.velocity += inv_mass * impulse;
+}
+
+Vec3 relative_velocity(const StepContext &context, const ParticleContact &contact,
+                       const ParticleContactConstraint &row) {
+    return context.particles[contact.particle].velocity -
+           context.bodies[contact.body].velocity_at(row.arm);
+}
+
+void apply(StepContext &context, const ParticleContact &contact,
+           const ParticleContactConstraint &row, const Vec3 &impulse) {
+    context.particles[contact.particle].velocity +=
+        context.model.particles[contact.particle].inv_mass * impulse;
+    context.bodies[contact.body].apply_impulse(-impulse, row.arm);
+}
+
+Real separation_of(const StepContext &context, const ParticleContact &contact) {
+    const SolverBody &body = context.bodies[contact.body];
+    const Vec3 gap = (context.particles[contact.particle].position - body.position) -
+                     body.rotation * contact.anchor;
+    return glm::dot(gap, contact.normal) - context.model.particles[contact.particle].radius;
+}
+
+void refresh(StepContext &context, ParticleContactConstraint &row) {
+    const ParticleContact &contact = context.particle_contacts[row.contact];
+    const SolverBody &body = context.bodies[contact.body];
+    const Real inv_mass = context.model.particles[contact.particle].inv_mass;
+    row.arm = context.particles[contact.particle].position - body.position;
+    row.separation = separation_of(context, contact);
+    row.impulse = Vec3{Real(0)};
+    const auto coupling = [&](const Vec3 &u, const Vec3 &v) {
+        const Real linear = glm::dot(u, body.inv_mass * v) + inv_mass * glm::dot(u, v);
+        return linear + glm::dot(body.inv_inertia * glm::cross(row.arm, u), glm::cross(row.arm, v));
+    };
+    const Real normal = coupling(contact.normal, contact.normal);
+    row.normal_mass = normal > Real(0) ? Real(1) / normal : Real(0);
+    const Real k11 = coupling(row.tangents.t1, row.tangents.t1);
+    const Real k12 = coupling(row.tangents.t1, row.tangents.t2);
+    const Real k22 = coupling(row.tangents.t2, row.tangents.t2);
+    const Real half = Real(0.5) * (k11 - k22);
+    const Real largest = Real(0.5) * (k11 + k22) + std::sqrt(half * half + k12 * k12);
+    row.tangent_mass = largest > Real(0) ? Real(1) / largest : Real(0);
+    row.approach = glm::dot(relative_velocity(context, contact, row), contact.normal);
+}
+
+void solve_friction(StepContext &context, const ParticleContact &contact,
+                    ParticleContactConstraint &row) {
+    const Vec3 v = relative_velocity(context, contact, row);
+    Vec2 total{row.impulse.y - row.tangent_mass * glm::dot(v, row.tangents.t1),
+               row.impulse.z - row.tangent_mass * glm::dot(v, row.tangents.t2)};
+    const Real limit = contact.friction * row.impulse.x;
+    const Real length = glm::length(total);
+    if (length > limit)
+        total *= limit / length;
+    const Vec3 change =
+        (total.x - row.impulse.y) * row.tangents.t1 + (total.y - row.impulse.z) * row.tangents.t2;
+    row.impulse.y = total.x;
+    row.impulse.z = total.y;
+    apply(context, contact, row, change);
+}
+
+} // namespace
+
+void prepare_particles(StepContext &context) {
+    SolverScratch &s = context.scratch;
+    s.springs.clear();
+    s.particle_contacts.clear();
+    if (!context.active.has_particles)
+        return;
+    s.particle_stiffness.assign(context.particles.size(), Vec2{Real(0)});
+    for (std::uint32_t i = 0; i < context.model.springs.size(); ++i) {
+        if (context.torn[i] != 0)
+            continue;
+        s.springs.emplace_back().spring = i;
+        const Spring &spring = context.model.springs[i];
+        for (const SpringEnd &end : {spring.a, spring.b})
+            if (end.kind == SpringEnd::Kind::particle)
+                s.particle_stiffness[end.index] += Vec2{spring.stiffness, spring.damping};
+    }
+    for (std::uint32_t i = 0; i < context.particle_contacts.size(); ++i) {
+        ParticleContactConstraint &row = s.particle_contacts.emplace_back();
+        row.contact = i;
+        row.tangents = tangent_basis(context.particle_contacts[i].normal);
+    }
+}
+
+void kick_particles(StepContext &context, const Vec3 &gravity, Real h) {
+    if (!context.active.has_particles)
+        return;
+    for (std::size_t i = 0; i < context.particles.size(); ++i)
+        if (context.model.particles[i].inv_mass > Real(0))
+            context.particles[i].velocity += h * gravity;
+}
+
+void refresh_particles(StepContext &context, Real h, SpringRule rule) {
+    if (!context.active.has_particles)
+        return;
+    if (context.grab.holds_particle())
+        pull_particle(context, h);
+    SolverScratch &s = context.scratch;
+    for (SpringConstraint &row : s.springs) {
+        refresh(context, row, h, rule);
+        guess(context, row, h);
+    }
+    for (ParticleContactConstraint &row : s.particle_contacts)
+        refresh(context, row);
+    for (const SpringConstraint &row : s.springs)
+        apply(context, row, row.impulse);
+}
+
+void solve_springs(StepContext &context) {
+    for (SpringConstraint &row : context.scratch.springs)
+        solve(context, row);
+    context.report.constraint_passes += context.scratch.springs.size();
+}
+
+void solve_particle_contacts(StepContext &context, const ParticlePush &push, Real h) {
+    for (ParticleContactConstraint &row : context.scratch.particle_contacts) {
+        const ParticleContact &contact = context.particle_contacts[row.contact];
+        const bool is_open = row.separation > Real(0);
+        if (is_open && push.loaded_only && row.impulse.x == Real(0))
+            continue;
+        // The least speed at which they part.
+        const Real least =
+            is_open ? -row.separation / h : std::min(-push.rate * row.separation, push.velocity);
+        const Real speed = glm::dot(relative_velocity(context, contact, row), contact.normal);
+        const Real total = std::max(row.impulse.x + row.normal_mass * (least - speed), Real(0));
+        apply(context, contact, row, (total - row.impulse.x) * contact.normal);
+        row.impulse.x = total;
+        if (contact.friction > Real(0))
+            solve_friction(context, contact, row);
+    }
+    context.report.constraint_passes += context.scratch.particle_contacts.size();
+}
+
+void drift_particles(StepContext &context, Real h) {
+    if (!context.active.has_particles)
+        return;
+    for (ParticleMotion &motion : context.particles)
+        motion.position += h * motion.velocity;
+    for (ParticleContactConstraint &row : context.scratch.particle_contacts)
+        row.separation = separation_of(context, context.particle_contacts[row.contact]);
+    context.report.body_passes += context.particles.size();
+}
+
+void repeat_particle_springs(StepContext &context) {
+    for (SpringConstraint &row : context.scratch.springs) {
+        if (row.share == Real(1))
+            continue;
+        align(context, row);
+        apply(context, row, (Real(1) / row.share - Real(1)) * row.impulse);
+    }
+}
+
+void restitute_particles(StepContext &context, Real threshold) {
+    for (ParticleContactConstraint &row : context.scratch.particle_contacts) {
+        const ParticleContact &contact = context.particle_contacts[row.contact];
+        if (contact.restitution == Real(0) || row.impulse.x == Real(0) || row.approach > -threshold)
+            continue;
+        const Real speed = glm::dot(relative_velocity(context, contact, row), contact.normal);
+        const Real change = row.normal_mass * (-contact.restitution * row.approach - speed);
+        if (change <= Real(0))
+            continue;
+        row.impulse.x += change;
+        apply(context, contact, row, change * contact.normal);
+        ++context.report.impacts;
+    }
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,64 @@
+// Springs and contacts of particles as velocity constraints. All do nothing where the context has
+// no particles.
+#pragma once
+
+#include "engine/dynamics/particles.h"
+#include "engine/math/basis.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+struct StepContext;
+
+// A spring as a soft row (Catto 2011, "Soft Constraints").
+struct SpringConstraint {
+    std::uint32_t spring = 0; // index in the model
+    Vec3 axis{Real(0)};       // unit, from a to b; 0 where they are at one point
+    Vec3 r_a{Real(0)};        // arms on bodies, world
+    Vec3 r_b{Real(0)};
+    Real share = Real(1);    // of the substep for which the row is solved: 1/2 the midpoint rule, 1
+                             // implicit Euler
+    Real softness = Real(0); // gamma, 1/kg
+    Real bias = Real(0);     // beta / h times the error, m/s
+    Real mass = Real(0);     // 1 / (K + gamma)
+    Real impulse = Real(0);  // accumulated, along the axis on b (N s)
+};
+
+// One particle against one body: a row along the normal, two of friction.
+struct ParticleContactConstraint {
+    std::uint32_t contact = 0; // index in the context
+    TangentBasis tangents;
+    // From the body's centre of mass to the particle's: both feel the impulse on one line, so that
+    // friction, too, keeps the angular momentum.
+    Vec3 arm{Real(0)};
+    Real separation = Real(0); // m
+    Real normal_mass = Real(0);
+    Real tangent_mass = Real(0); // as ContactPointConstraint::tangent_mass
+    Vec3 impulse{Real(0)};       // accumulated in this substep: normal, t1, t2 (N s)
+    Real approach = Real(0);     // relative normal velocity as the substep began (m/s)
+};
+
+// What a pass does about penetration.
+struct ParticlePush {
+    Real rate = Real(0);      // 1/s: the part of the depth that is taken back; 0: left alone
+    Real velocity = Real(0);  // m/s, the fastest
+    bool loaded_only = false; // contacts that are open and bear nothing are left alone
+};
+
+// How springs follow the time of a substep. midpoint: for springs that h follows, the midpoint
+// rule, which keeps the energy, and for stiffer ones less and less of it, down to implicit Euler.
+enum class SpringRule { implicit_euler, midpoint };
+
+void prepare_particles(StepContext &context);
+void kick_particles(StepContext &context, const Vec3 &gravity, Real h);
+// Rows and contacts at the present poses; begins both with what they bear by themselves.
+void refresh_particles(StepContext &context, Real h, SpringRule rule);
+void solve_springs(StepContext &context);
+void solve_particle_contacts(StepContext &context, const ParticlePush &push, Real h);
+void drift_particles(StepContext &context, Real h);
+// After the move, the rest of the springs' substep: the same forces along the lines as they are
+// now.
+void repeat_particle_springs(StepContext &context);
+// Particles that struck a body in this substep leave it at the restitution's share of the speed.
+void restitute_particles(StepContext &context, Real threshold);
+
+} // namespace plumb::inline PLUMB_PRECISION
