@@ -46,10 +46,6 @@ KINDS = [
            "constexpr std::array all_quantities{\n"
            '    QuantityInfo{"dummy", "m", "nothing says what it is"},\n')],
          [("engine/scene/expect.cpp", "could not convert|cannot convert|no matching function")]),
-    Kind("panel",
-         [("app/sandbox/layout.h", "    help // the last\n", "    dummy,\n    help // the last\n")],
-         [("app/sandbox/layout.cpp", NOT_HANDLED), ("app/sandbox/ui.cpp", NOT_HANDLED)],
-         ["app/sandbox/panel.h", "app/sandbox/panel_dummy.cpp"]),
     Kind("command",
          [("engine/scene/command.h", "using Command = std::variant<",
            'struct Dummy {\n    static constexpr std::string_view name = "dummy";\n'
@@ -127,31 +123,42 @@ def check_scenes(source):
     return failed
 
 
+def check_linked(source, commands, build, kind, unit, edit, symbol):
+    """A row of a list and a file with its function: of a row without a file the linker tells."""
+    print(f"{kind}: 2 files")
+    with tempfile.TemporaryDirectory(prefix="plumb-one-place-") as folder:
+        overlay(source, folder, [edit])
+        compiled = os.path.join(folder, "unit.o")
+        command = compile_command(commands, source, folder, unit)
+        command.remove("-fsyntax-only")
+        subprocess.run([*command, "-c", "-o", compiled], cwd=build, check=True)
+        said = subprocess.run([command[0], compiled], capture_output=True, text=True).stderr
+        words = re.search(rf"undefined reference to .*::{symbol}\(.*'", said)
+        print(f"    the linker: {words[0]}" if words else said)
+        return [] if words else [f"{kind}: a row without a file links"]
+
+
 def check_methods(source, commands, build):
-    """A method is a file and a line of the registry. Of a line without a file the linker tells; of
-    a file without a line this does."""
-    print("method: 2 files")
+    """Of a method's file without a row nothing else would tell."""
     with open(os.path.join(source, REGISTRY)) as stream:
         listed = set(re.findall(r"METHOD\((\w+)\)", stream.read()))
-    failed = []
+    failed = check_linked(source, commands, build, "method", REGISTRY,
+                          (REGISTRY, "    METHOD(rk4)", "    METHOD(rk4) METHOD(dummy)"), "dummy")
     methods = os.path.dirname(os.path.join(source, REGISTRY))
     for name in sorted(os.listdir(methods)):
         with open(os.path.join(methods, name)) as stream:
             defined = re.findall(r"^Method (\w+)\(\) {", stream.read(), re.MULTILINE)
         if name != os.path.basename(REGISTRY) and not (defined and set(defined) <= listed):
             failed.append(f"{name} has no line in the registry")
-    with tempfile.TemporaryDirectory(prefix="plumb-one-place-") as folder:
-        overlay(source, folder, [(REGISTRY, "    METHOD(rk4)", "    METHOD(rk4) METHOD(dummy)")])
-        registry = os.path.join(folder, "registry.o")
-        command = compile_command(commands, source, folder, REGISTRY)
-        command.remove("-fsyntax-only")
-        subprocess.run([*command, "-c", "-o", registry], cwd=build, check=True)
-        said = subprocess.run([command[0], registry], capture_output=True, text=True).stderr
-        words = re.search(r"undefined reference to .*::dummy\(\)'", said)
-        print(f"    the linker: {words[0]}" if words else said)
-        if not words:
-            failed.append("a line without a file links")
     return failed
+
+
+def check_panels(source, commands, build):
+    return check_linked(
+        source, commands, build, "panel", "app/sandbox/ui.cpp",
+        ("app/sandbox/panels.h", "    PANEL(help, by_itself, help, false)",
+         "    PANEL(help, by_itself, help, false) PANEL(dummy, left, world, true)"),
+        "dummy_panel")
 
 
 def main():
@@ -167,6 +174,7 @@ def main():
         print("skipped: the words are GCC's")
         return SKIPPED
     failed = check_scenes(source) + check_methods(source, commands, build)
+    failed += check_panels(source, commands, build)
     for kind in KINDS:
         count = len(kind.files())
         print(f"{kind.name}: {count} file{'s' if count > 1 else ''}")

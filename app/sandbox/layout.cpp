@@ -18,36 +18,16 @@ constexpr glm::vec2 roomy{860, 600};
 // A picture less high than this share of the window is no picture.
 constexpr float least_picture = 0.2f;
 
-enum class Spot { left, right, by_itself };
-
-constexpr Spot spot(PanelId panel) {
-    switch (panel) {
-    case PanelId::scenes:
-    case PanelId::settings:
-    case PanelId::view:
-        return Spot::left;
-    case PanelId::details:
-    case PanelId::diagnostics:
-        return Spot::right;
-    case PanelId::transport:
-    case PanelId::messages:
-    case PanelId::help:
-        break;
-    }
-    return Spot::by_itself;
-}
-
 // Panels one below the other. If they do not fit, the highest are cut, all to one height.
-void stack(PerPanel<Rect> &rects, const PerPanel<float> &wished, Spot side, const Rect &column,
+void stack(PerPanel<Rect> &rects, const PerPanel<float> &wished, PanelSpot side, const Rect &column,
            float gap) {
     std::vector<PanelId> panels;
     std::vector<float> heights;
-    for (std::size_t i = 0; i < panel_count; ++i) {
-        const auto panel = static_cast<PanelId>(i);
-        if (spot(panel) != side || !(wished[panel] > 0))
+    for (const PanelRow &row : panel_rows) {
+        if (row.spot != side || !(wished[row.id] > 0))
             continue;
-        panels.push_back(panel);
-        heights.push_back(std::ceil(wished[panel]));
+        panels.push_back(row.id);
+        heights.push_back(std::ceil(wished[row.id]));
     }
     if (heights.empty())
         return;
@@ -103,8 +83,8 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
     const float above = bar_height > 0 ? std::max(bar_y - 2 * gap, 1.0f) : height;
     const float column = fits ? height : above;
 
-    stack(rects, wished, Spot::left, {{gap, gap}, {left, column}}, gap);
-    stack(rects, wished, Spot::right, {{right_x, gap}, {right, column}}, gap);
+    stack(rects, wished, PanelSpot::left, {{gap, gap}, {left, column}}, gap);
+    stack(rects, wished, PanelSpot::right, {{right_x, gap}, {right, column}}, gap);
 
     const bool alone = !is_roomy(window, scale) && wished[PanelId::help] > 0;
     const float over_x = alone ? gap : middle_x;

@@ -1,8 +1,8 @@
 // Where the panels stand: pure geometry, so that a test can see that nothing overlaps.
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include "app/sandbox/panels.h"
+
 #include <span>
 
 #include <glm/vec2.hpp>
@@ -13,27 +13,6 @@ struct Rect {
     glm::vec2 min{0};
     glm::vec2 size{0};
     [[nodiscard]] glm::vec2 max() const { return min + size; }
-};
-
-// Left: scenes, settings, view. Right: details of body or scene, diagnostics. In the middle the
-// scene, with the transport bar under it, messages above it, and help over it.
-enum class PanelId : std::size_t {
-    scenes,
-    settings,
-    view,
-    details,
-    diagnostics,
-    transport,
-    messages,
-    help // the last
-};
-inline constexpr std::size_t panel_count = static_cast<std::size_t>(PanelId::help) + 1;
-
-// One for each panel, by its id.
-template <typename T> struct PerPanel : std::array<T, panel_count> {
-    using std::array<T, panel_count>::operator[];
-    T &operator[](PanelId panel) { return (*this)[static_cast<std::size_t>(panel)]; }
-    const T &operator[](PanelId panel) const { return (*this)[static_cast<std::size_t>(panel)]; }
 };
 
 // Pixels. `wished` is how high each panel's contents are, 0 where there is none; a panel that does

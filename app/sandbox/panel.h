@@ -1,9 +1,10 @@
-// What a panel is given, and the panels: each draws into the current ImGui window.
+// What a panel is given, and what several share. The panels themselves: panels.h.
 #pragma once
 
 #include "app/sandbox/clock.h"
 #include "app/sandbox/keys.h"
 #include "app/sandbox/pace.h"
+#include "app/sandbox/panels.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/sandbox/session.h"
 #include "app/sandbox/theme.h"
@@ -41,19 +42,12 @@ struct PanelContext {
 // The sign alone, to go on in the same line.
 [[nodiscard]] bool title_sign(PanelContext &context, PanelId panel);
 
-void scenes_panel(PanelContext &context);
-void settings_panel(PanelContext &context); // this, the transport and the diagnostics: of a world
-void view_panel(PanelContext &context);
-void transport_panel(PanelContext &context);
-void details_panel(PanelContext &context);      // of the body selected, or of the scene
+// Parts of panels.
 void inspector_panel(PanelContext &context);    // of the selected body
 void expectations_panel(PanelContext &context); // of the scene, with its title and description
 void probes_panel(PanelContext &context);
 void probe_labels(const PanelContext &context); // over the scene, under the panels
-void diagnostics_panel(PanelContext &context);
-void measures_panel(PanelContext &context); // the lower part of the diagnostics
-void messages_panel(PanelContext &context);
-void help_panel(PanelContext &context);
+void measures_panel(PanelContext &context);     // the lower part of the diagnostics
 
 // The scenes whose path or title contains every word of `search`, in any case; indices. Those whose
 // name has them all come first, then those whose name and title have.

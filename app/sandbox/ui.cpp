@@ -2,20 +2,10 @@
 
 #include "app/sandbox/widgets.h"
 
-#include <array>
-#include <optional>
-
 #include <imgui/imgui.h>
 #include <imgui/imgui_internal.h> // ClearActiveID: to leave a text field by Esc
 
 namespace plumb {
-
-struct PanelRow {
-    PanelId id = PanelId::scenes;
-    const char *name = "";
-    void (*contents)(PanelContext &) = nullptr;
-    bool is_clicked = false; // rows that are only read may stand closer than those that are clicked
-};
 
 namespace {
 
@@ -27,51 +17,26 @@ bool has_world(const PanelContext &context) {
     return simulation != nullptr && simulation->has_world();
 }
 
-bool is_shown(PanelId id, const PanelContext &context) {
+bool is_shown(const PanelRow &row, const PanelContext &context) {
     const ViewState &view = context.view;
     // In a small window the help stands alone.
     const bool beside_help = view.panels && (view.is_roomy || !view.help);
-    switch (id) {
-    case PanelId::scenes:
-    case PanelId::details:
+    switch (row.needs) {
+    case PanelNeeds::nothing:
         return beside_help;
-    case PanelId::view:
+    case PanelNeeds::scene:
         return beside_help && context.session.running();
-    case PanelId::settings:
-    case PanelId::transport:
+    case PanelNeeds::world:
         return beside_help && has_world(context);
-    case PanelId::diagnostics:
+    case PanelNeeds::diagnostics:
         return beside_help && has_world(context) && view.diagnostics;
     // Errors and help are seen even when the panels are hidden.
-    case PanelId::messages:
+    case PanelNeeds::messages:
         return !context.session.messages().empty();
-    case PanelId::help:
+    case PanelNeeds::help:
         return view.help;
     }
     return false;
-}
-
-// Nothing past the last panel.
-constexpr std::optional<PanelRow> row(PanelId id) {
-    switch (id) {
-    case PanelId::scenes:
-        return PanelRow{id, "scenes", scenes_panel, true};
-    case PanelId::settings:
-        return PanelRow{id, "settings", settings_panel, true};
-    case PanelId::view:
-        return PanelRow{id, "view", view_panel, true};
-    case PanelId::details:
-        return PanelRow{id, "details", details_panel, false};
-    case PanelId::diagnostics:
-        return PanelRow{id, "diagnostics", diagnostics_panel, false};
-    case PanelId::transport:
-        return PanelRow{id, "transport", transport_panel, true};
-    case PanelId::messages:
-        return PanelRow{id, "messages", messages_panel, false};
-    case PanelId::help:
-        return PanelRow{id, "help", help_panel, false};
-    }
-    return {};
 }
 
 } // namespace
@@ -112,20 +77,16 @@ void Ui::begin_frame() {
 }
 
 const ImDrawData &Ui::draw(PanelContext &context) {
-    static_assert(!row(static_cast<PanelId>(panel_count)), "panel_count counts all panels");
-    std::array<PanelRow, panel_count> rows;
-    for (std::size_t i = 0; i < panel_count; ++i)
-        rows[i] = row(static_cast<PanelId>(i)).value();
     panels_.clear();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const glm::vec2 window(size.x, size.y);
     context.view.is_roomy = is_roomy(window, scale_);
     PerPanel<float> wished{};
-    for (const PanelRow &row : rows)
-        if (is_shown(row.id, context))
+    for (const PanelRow &row : panel_rows)
+        if (is_shown(row, context))
             wished[row.id] = heights_[row.id] > 0 ? heights_[row.id] : unknown_height;
     const PerPanel<Rect> rects = lay_out(window, scale_, wished);
-    for (const PanelRow &row : rows)
+    for (const PanelRow &row : panel_rows)
         if (wished[row.id] > 0)
             panel(context, row, rects[row.id]);
 
