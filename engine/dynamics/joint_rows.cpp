@@ -9,17 +9,23 @@ namespace plumb::inline PLUMB_PRECISION {
 
 void emit_rows(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows) {
     switch (joint.type) {
-    case JointType::ball:
-        return emit_ball(joint, a, b, rows);
-    case JointType::distance:
-        return emit_distance(joint, a, b, rows);
-    case JointType::hinge:
-        return emit_hinge(joint, a, b, rows);
-    case JointType::slider:
-        return emit_slider(joint, a, b, rows);
-    case JointType::fixed:
-        return emit_fixed(joint, a, b, rows);
+#define PLUMB_EMIT(name)                                                                           \
+    case JointType::name:                                                                          \
+        return emit_##name(joint, a, b, rows);
+        PLUMB_JOINT_TYPES(PLUMB_EMIT)
+#undef PLUMB_EMIT
     }
+}
+
+JointPlace place_of(const Joint &joint, const Motion &a, const Motion &b) {
+    switch (joint.type) {
+#define PLUMB_PLACE(name)                                                                          \
+    case JointType::name:                                                                          \
+        return place_of_##name(joint, a, b);
+        PLUMB_JOINT_TYPES(PLUMB_PLACE)
+#undef PLUMB_PLACE
+    }
+    return {};
 }
 
 Mat3 frame_a(const Joint &joint, const Motion &a) {
@@ -34,6 +40,13 @@ Quat relative_turn(const Joint &joint, const Motion &a, const Motion &b) {
     const Quat turn =
         glm::conjugate(a.rotation * joint.frame_a_local) * (b.rotation * joint.frame_b_local);
     return turn.w < Real(0) ? -turn : turn;
+}
+
+Vec3 anchor_velocity(const Joint &joint, const Motion &a, const Motion &b) {
+    const Vec3 arm_b = b.rotation * joint.anchor_b_local;
+    const Vec3 arm_a = b.position + arm_b - a.position;
+    return b.velocity + glm::cross(b.angular_velocity, arm_b) - a.velocity -
+           glm::cross(a.angular_velocity, arm_a);
 }
 
 void emit_point(const Joint &joint, const Motion &a, const Motion &b, std::size_t first_memory,

@@ -60,12 +60,20 @@ class RowWriter {
 void emit_rows(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
 void emit_rows(const Grab &grab, const Motion &world, const Motion &body, RowWriter &rows);
 
-// One file each in joints/.
-void emit_ball(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
-void emit_distance(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
-void emit_hinge(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
-void emit_slider(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
-void emit_fixed(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
+// How far b has come along or about what the joint leaves free, against a.
+struct JointPlace {
+    Real position = Real(0); // a hinge's angle (rad, -pi..pi), a slider's place (m), the distance
+                             // of a distance joint's anchors (m); 0 for the others
+    Real speed = Real(0);    // its rate
+};
+JointPlace place_of(const Joint &joint, const Motion &a, const Motion &b);
+
+// Those of one type: one file each in joints/.
+#define PLUMB_JOINT_FUNCTIONS(name)                                                                \
+    void emit_##name(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);       \
+    JointPlace place_of_##name(const Joint &joint, const Motion &a, const Motion &b);
+PLUMB_JOINT_TYPES(PLUMB_JOINT_FUNCTIONS)
+#undef PLUMB_JOINT_FUNCTIONS
 
 // The parts that several joints are made of.
 //
@@ -85,9 +93,8 @@ Mat3 frame_a(const Joint &joint, const Motion &a);
 Mat3 frame_b(const Joint &joint, const Motion &b);
 // The turn from frame a to frame b, in frame a.
 Quat relative_turn(const Joint &joint, const Motion &a, const Motion &b);
-// The angle of a hinge (rad, -pi..pi) and the place of a slider (m).
-Real hinge_angle(const Joint &joint, const Motion &a, const Motion &b);
-Real slider_place(const Joint &joint, const Motion &a, const Motion &b);
+// The velocity of anchor b against a's material at the same place (m/s, world).
+Vec3 anchor_velocity(const Joint &joint, const Motion &a, const Motion &b);
 
 // How far the joint's own rows, limits included, are from holding (m; angles times the distance of
 // one metre).

@@ -10,6 +10,15 @@ enum class BodyKind { fixed, kinematic, dynamic };
 // ball: a point of one body stays on a point of the other. distance: the two points stay between a
 // least and a greatest distance, like a massless rod or rope. hinge: the bodies share a point and
 // an axis, about which they turn. slider: they only move along an axis. fixed: they are one.
-enum class JointType { ball, distance, hinge, slider, fixed };
+//
+// The only list of them: each has a file in engine/dynamics/joints/, a row in
+// engine/scene/joint_type.cpp and a sign in app/sandbox/joint_draw.cpp.
+#define PLUMB_JOINT_TYPES(JOINT) JOINT(ball) JOINT(distance) JOINT(hinge) JOINT(slider) JOINT(fixed)
+
+enum class JointType {
+#define PLUMB_JOINT_TYPE(name) name,
+    PLUMB_JOINT_TYPES(PLUMB_JOINT_TYPE)
+#undef PLUMB_JOINT_TYPE
+};
 
 } // namespace plumb

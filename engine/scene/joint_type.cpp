@@ -27,11 +27,17 @@ std::vector<JointKey> limits_and_motor(std::string_view unit, const Bounds &boun
 // Null past the last type.
 const JointTypeInfo *find(JointType type) {
     using Frames = JointTypeInfo::Frames;
+    using Anchors = JointTypeInfo::Anchors;
     switch (type) {
     case JointType::ball: {
-        static const JointTypeInfo info{type,    "ball",         "holds two points together",
-                                        "a dot", false,          Frames::none,
-                                        {},      {"x", "y", "z"}};
+        static const JointTypeInfo info{type,
+                                        "ball",
+                                        "holds two points together",
+                                        "a dot",
+                                        Anchors::together,
+                                        Frames::none,
+                                        {},
+                                        {"x", "y", "z"}};
         return &info;
     }
     case JointType::distance: {
@@ -41,7 +47,7 @@ const JointTypeInfo *find(JointType type) {
             "holds two points at a distance, like a rod; between a least and a greatest one, like "
             "a rope; or, with a `frequency`, like a spring",
             "a rod, a rope that hangs slack where it is longer, or a coil",
-            true,
+            Anchors::apart,
             Frames::none,
             {{"length", JointKey::Length{}, "m", positive, "", "least and greatest length at once",
               "the distance of the anchors at the start"},
@@ -59,7 +65,7 @@ const JointTypeInfo *find(JointType type) {
             "holds two points and an axis together; the angle is how far b has turned about the "
             "axis against a",
             "its axis, and about it the arc of its limits with a hand at the present angle",
-            false,
+            Anchors::together,
             Frames::axis,
             limits_and_motor("rad", half_turn, "N m", "`[lower, upper]` angle"),
             {"x", "y", "z", "tilt about y", "tilt about z", "lower limit", "upper limit", "motor"}};
@@ -72,7 +78,7 @@ const JointTypeInfo *find(JointType type) {
             "lets b move along the axis alone, without turning against a; the position is how far "
             "its anchor is ahead of a's along the axis",
             "its rail, with a stop at each limit",
-            false,
+            Anchors::on_axis,
             Frames::axis,
             limits_and_motor("m", moderate, "N", "`[lower, upper]` position"),
             {"aside along y", "aside along z", "turn about x", "turn about y", "turn about z",
@@ -85,7 +91,7 @@ const JointTypeInfo *find(JointType type) {
             "fixed",
             "holds two bodies together as if they were one",
             "a small cross",
-            false,
+            Anchors::together,
             Frames::whole,
             {},
             {"x", "y", "z", "turn about x", "turn about y", "turn about z"}};

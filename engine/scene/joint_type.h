@@ -36,12 +36,14 @@ struct JointKey {
 struct JointTypeInfo {
     // axis: of the frames the x axes are the joint's axis. whole: each axis counts.
     enum class Frames { none, axis, whole };
+    // Where they begin. on_axis: of a's frame. apart: where none are given, at the centres.
+    enum class Anchors { together, on_axis, apart };
 
     JointType type;
     std::string_view name;
     std::string_view about;
     std::string_view drawn;
-    bool joins_centres; // where no anchors are given; else anchors are needed
+    Anchors anchors;
     Frames frames;
     std::vector<JointKey> keys;         // besides those that every joint has
     std::vector<std::string_view> rows; // what the impulses are of, in this order

@@ -67,7 +67,7 @@ void read_anchor(Reading &reading, const JointTable &source, const std::string &
         const bool has_any = table.has("anchor") || table.has(key) || table.has(local_key);
         if (has_any)
             return;
-        if (!source.type.joins_centres || is_world)
+        if (source.type.anchors != JointTypeInfo::Anchors::apart || is_world)
             reading.report.error(table.position(), table.title() + " has no " + key,
                                  "anchor = [x, y, z] is one point of the world for both bodies, " +
                                      key + " one for this body, " + local_key +
@@ -192,7 +192,7 @@ void read_chain(Reading &reading, JointTable &source, std::size_t errors) {
             return;
         a.body = first + i;
         b.body = first + i + 1;
-        if (!has_anchors && !source.type.joins_centres) {
+        if (!has_anchors && source.type.anchors != JointTypeInfo::Anchors::apart) {
             const glm::dvec3 middle = 0.5 * (to_world(reading.scene, a.body, {0, 0, 0}) +
                                              to_world(reading.scene, b.body, {0, 0, 0}));
             a.anchor_local = to_local(reading.scene, a.body, middle);

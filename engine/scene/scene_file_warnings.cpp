@@ -110,17 +110,15 @@ class Checker {
                      const std::optional<std::size_t> &b) const {
         const glm::dvec3 gap =
             to_world(b, joint.anchor_b_local) - to_world(a, joint.anchor_a_local);
-        switch (joint.type) {
-        case JointType::ball:
-        case JointType::hinge:
-        case JointType::fixed:
+        switch (joint_type(joint.type).anchors) {
+        case JointTypeInfo::Anchors::together:
             return glm::length(gap);
-        case JointType::slider: {
+        case JointTypeInfo::Anchors::on_axis: {
             const glm::dvec3 local = joint.frame_a_local * glm::dvec3(1, 0, 0);
             const glm::dvec3 axis = a ? scene_.bodies[*a].orientation * local : local;
             return glm::length(gap - glm::dot(gap, axis) * axis);
         }
-        case JointType::distance:
+        case JointTypeInfo::Anchors::apart:
             break; // a rod may be put where it is not yet as long as it is
         }
         return 0;

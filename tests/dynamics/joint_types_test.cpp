@@ -39,8 +39,7 @@ double place_of(const Joined &j) {
     const Joint &joint = j.world.joints()[j.joint];
     const Motion &a = j.world.joint_motion(joint.a);
     const Motion &b = j.world.joint_motion(joint.b);
-    return double(joint.type == JointType::hinge ? hinge_angle(joint, a, b)
-                                                 : slider_place(joint, a, b));
+    return double(place_of(joint, a, b).position);
 }
 
 StepSettings fine(const std::string &method, int substeps) {

@@ -7,4 +7,8 @@ void emit_ball(const Joint &joint, const Motion &a, const Motion &b, RowWriter &
     emit_point(joint, a, b, 0, rows);
 }
 
+JointPlace place_of_ball(const Joint &, const Motion &, const Motion &) {
+    return {};
+}
+
 } // namespace plumb::inline PLUMB_PRECISION

@@ -31,4 +31,13 @@ void emit_distance(const Joint &joint, const Motion &a, const Motion &b, RowWrit
         add(RowBounds::at_least, 1, joint.min_length);
 }
 
+JointPlace place_of_distance(const Joint &joint, const Motion &a, const Motion &b) {
+    const Vec3 from = a.position + a.rotation * joint.anchor_a_local;
+    const Vec3 to = b.position + b.rotation * joint.anchor_b_local;
+    const Real distance = glm::length(to - from);
+    if (!(distance > Real(0)))
+        return {};
+    return {distance, glm::dot(to - from, anchor_velocity(joint, a, b)) / distance};
+}
+
 } // namespace plumb::inline PLUMB_PRECISION

@@ -8,4 +8,8 @@ void emit_fixed(const Joint &joint, const Motion &a, const Motion &b, RowWriter 
     emit_same_turn(joint, a, b, 3, rows);
 }
 
+JointPlace place_of_fixed(const Joint &, const Motion &, const Motion &) {
+    return {};
+}
+
 } // namespace plumb::inline PLUMB_PRECISION

@@ -8,10 +8,14 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
+namespace {
+
 Real hinge_angle(const Joint &joint, const Motion &a, const Motion &b) {
     const Quat turn = relative_turn(joint, a, b);
     return Real(2) * std::atan2(turn.x, turn.w);
 }
+
+} // namespace
 
 void emit_hinge(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows) {
     emit_point(joint, a, b, 0, rows);
@@ -29,6 +33,11 @@ void emit_hinge(const Joint &joint, const Motion &a, const Motion &b, RowWriter 
     about.kind = RowKind::angular;
     about.axes[0] = axes[0];
     emit_limits_and_motor(joint, about, hinge_angle(joint, a, b), 5, rows);
+}
+
+JointPlace place_of_hinge(const Joint &joint, const Motion &a, const Motion &b) {
+    return {hinge_angle(joint, a, b),
+            glm::dot(frame_a(joint, a)[0], b.angular_velocity - a.angular_velocity)};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -8,12 +8,6 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-Real slider_place(const Joint &joint, const Motion &a, const Motion &b) {
-    const Vec3 from = a.position + a.rotation * joint.anchor_a_local;
-    const Vec3 to = b.position + b.rotation * joint.anchor_b_local;
-    return glm::dot(to - from, frame_a(joint, a)[0]);
-}
-
 void emit_slider(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows) {
     const Mat3 axes = frame_a(joint, a);
     const Vec3 r_a = a.rotation * joint.anchor_a_local;
@@ -39,6 +33,13 @@ void emit_slider(const Joint &joint, const Motion &a, const Motion &b, RowWriter
     along.r_b = r_b;
     along.turns_with_a = true;
     emit_limits_and_motor(joint, along, glm::dot(gap, axes[0]), 5, rows);
+}
+
+JointPlace place_of_slider(const Joint &joint, const Motion &a, const Motion &b) {
+    const Vec3 from = a.position + a.rotation * joint.anchor_a_local;
+    const Vec3 to = b.position + b.rotation * joint.anchor_b_local;
+    const Vec3 axis = frame_a(joint, a)[0];
+    return {glm::dot(to - from, axis), glm::dot(anchor_velocity(joint, a, b), axis)};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

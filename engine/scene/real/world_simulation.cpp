@@ -385,22 +385,6 @@ void WorldSimulation::read_contacts(std::vector<ContactView> &views) const {
     }
 }
 
-// Speed of b's anchor (or frame) against a's along the row that a hinge, slider or rod leaves free.
-double free_speed(const Joint &joint, const Motion &a, const Motion &b, const JointView &view) {
-    if (joint.type == JointType::hinge)
-        return static_cast<double>(
-            glm::dot(frame_a(joint, a)[0], b.angular_velocity - a.angular_velocity));
-    const Vec3 arm_b = b.rotation * joint.anchor_b_local;
-    const Vec3 place = b.position + arm_b;
-    const Vec3 relative = b.velocity + glm::cross(b.angular_velocity, arm_b) - a.velocity -
-                          glm::cross(a.angular_velocity, place - a.position);
-    if (joint.type == JointType::slider)
-        return static_cast<double>(glm::dot(frame_a(joint, a)[0], relative));
-    const glm::dvec3 way = view.anchor_b - view.anchor_a;
-    const double length = glm::length(way);
-    return length > 0 ? glm::dot(way / length, glm::dvec3{relative}) : 0;
-}
-
 JointView WorldSimulation::joint_view(std::uint32_t i) const {
     const World &world = world_;
     const Joint &joint = world.joints()[i];
@@ -425,24 +409,11 @@ JointView WorldSimulation::joint_view(std::uint32_t i) const {
     view.break_force = desc.break_force;
     view.broken = world.state().joints[i].broken;
     view.drift = static_cast<double>(world.joint_error(i));
-    switch (joint.type) {
-    case JointType::ball:
-    case JointType::fixed:
-        break;
-    case JointType::distance:
-        view.position = glm::distance(view.anchor_a, view.anchor_b);
+    const JointPlace place = place_of(joint, a, b);
+    view.position = static_cast<double>(place.position);
+    view.speed = static_cast<double>(place.speed);
+    if (desc.max_length > 0)
         view.limits = {desc.min_length, desc.max_length};
-        view.speed = free_speed(joint, a, b, view);
-        break;
-    case JointType::hinge:
-        view.position = static_cast<double>(hinge_angle(joint, a, b));
-        view.speed = free_speed(joint, a, b, view);
-        break;
-    case JointType::slider:
-        view.position = static_cast<double>(slider_place(joint, a, b));
-        view.speed = free_speed(joint, a, b, view);
-        break;
-    }
     const World::JointLoad load = world.joint_load(i);
     view.force = glm::dvec3{load.force};
     view.torque = glm::dvec3{load.torque};
