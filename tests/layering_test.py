@@ -20,6 +20,7 @@ LIBRARIES = [
     (r"hwy/", r"engine/(geometry|space)/[^/]+|engine/math/wide_vector-inl\.h"
      r"|engine/dynamics/contact_kernels\.cpp|"
      r"tests/(geometry|space|dynamics)/[^/]+", None),
+    (r"Eigen/", r"engine/dynamics/methods/backward_euler\.cpp", 1),
     (r"benchmark/", r"app/lab/[^/]+\.cpp", 1),
     (r"Bullet|LinearMath/|fcl/|embree|\bode/", r"tests/bench/[^/]+", None),
     (r"GLFW/", r"app/render/window_context\.cpp|app/sandbox/[^/]+\.cpp", 3),

@@ -291,8 +291,12 @@ void drift_particles(StepContext &context, Real h) {
         return;
     for (ParticleMotion &motion : context.particles)
         motion.position += h * motion.velocity;
-    for (ParticleContactConstraint &row : context.scratch.particle_contacts)
-        row.separation = separation_of(context, context.particle_contacts[row.contact]);
+    for (ParticleContactConstraint &row : context.scratch.particle_contacts) {
+        const ParticleContact &contact = context.particle_contacts[row.contact];
+        row.separation = separation_of(context, contact);
+        row.arm =
+            context.particles[contact.particle].position - context.bodies[contact.body].position;
+    }
     context.report.body_passes += context.particles.size();
 }
 

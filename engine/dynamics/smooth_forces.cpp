@@ -135,6 +135,25 @@ void drift_smoothly(StepContext &context, Real h) {
             motion.position += h * motion.velocity;
 }
 
+void remember_velocities(StepContext &context) {
+    SolverScratch &s = context.scratch;
+    s.velocities.clear();
+    for (const std::uint32_t i : context.moving())
+        s.velocities.push_back({context.bodies[i].velocity, context.bodies[i].angular_velocity});
+    s.particle_motions.assign(context.particles.begin(), context.particles.end());
+}
+
+void recall_velocities(StepContext &context) {
+    const SolverScratch &s = context.scratch;
+    for (std::size_t i = 0; i < s.velocities.size(); ++i) {
+        SolverBody &motion = context.bodies[context.moving()[i]];
+        motion.velocity = s.velocities[i][0];
+        motion.angular_velocity = s.velocities[i][1];
+    }
+    for (std::size_t i = 0; i < s.particle_motions.size(); ++i)
+        context.particles[i].velocity = s.particle_motions[i].velocity;
+}
+
 bool depend_on_velocities(const StepContext &context) {
     const bool damped_bodies = std::ranges::any_of(context.moving(), [&](std::uint32_t i) {
         const Body &body = context.model.bodies[i];

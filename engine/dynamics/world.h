@@ -192,6 +192,7 @@ class World {
     bool needs_particle_contacts() const;
     void find_particle_contacts(TaskPool *tasks) const;
     void collide_particle(std::uint32_t index, std::size_t part) const;
+    void collide_particle(std::uint32_t index, std::uint32_t collider, std::size_t part) const;
     void add_particle_contact(std::uint32_t particle, std::uint32_t collider,
                               const Manifold &manifold, const Motion &at,
                               std::vector<ParticleContact> &out) const;

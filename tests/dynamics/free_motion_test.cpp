@@ -10,8 +10,19 @@ using namespace trial;
 class FreeMotion : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, FreeMotion, testing::ValuesIn(all_methods()), name_of);
 
-// x0 + v0 t + g t^2 / 2. A known failing: semi-implicit Euler, which TGS Soft moves by, falls
-// g h t / 2 further, exactly.
+// Of the Euler methods: how much farther than x0 + v0 t + g t^2 / 2 one falls, in g h t / 2.
+double lag_of(const std::string &method) {
+    const bool ahead =
+        method == "semi_implicit_euler" || method == "backward_euler" || method == "tgs_soft";
+    return ahead ? 1 : method == "explicit_euler" ? -1 : 0;
+}
+// Those that take the gyroscopic torque from the spin of some moments, explicitly.
+bool has_explicit_spin(const std::string &method) {
+    return !find_method(method)->info.contacts;
+}
+
+// x0 + v0 t + g t^2 / 2. A known failing: semi-implicit and backward Euler, and TGS Soft, which
+// moves by the former, fall g h t / 2 further, exactly; explicit Euler as much less far.
 TEST_P(FreeMotion, FallsInClosedForm) {
     StepSettings settings = settings_for(GetParam());
     settings.gravity = V{1, -9.81, 0.25};
@@ -23,8 +34,7 @@ TEST_P(FreeMotion, FallsInClosedForm) {
         const V v0{0.5, 8, -1};
         const BodyId id = world.add_body(dynamic_body(ball(0.25), 2, x0, v0));
         const double h = substep_of(world);
-        const bool is_euler = GetParam() == "semi_implicit_euler" || GetParam() == "tgs_soft";
-        const double lag = is_euler ? 1 : 0;
+        const double lag = lag_of(GetParam());
         for (int i = 1; i <= 128; ++i) {
             world.step(nullptr);
             const double t = i * settings.dt;
@@ -41,7 +51,7 @@ TEST_P(FreeMotion, FallsInClosedForm) {
 
 // The order in the substep on a brick's torque-free spin, against long double.
 TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
-    const bool first = GetParam() == "semi_implicit_euler" || GetParam() == "tgs_soft";
+    const bool first = lag_of(GetParam()) != 0;
     const bool fourth = GetParam() == "rk4";
     const double order = first ? 1 : fourth ? 4 : 2;
     const V half{0.1, 0.2, 0.4};
@@ -73,9 +83,10 @@ TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), order, fourth ? 0.5 : 0.1) << errors[1];
 }
 
-// A brick spun about its middle axis, 20 s: it must tumble, at constant energy. Known failing:
-// semi-implicit Euler takes the gyroscopic torque at the start of a step, which feeds the spin with
-// energy. Runge-Kutta is bound by its order: (|w| h)^5 a substep.
+// A brick spun about its middle axis, 20 s: it must tumble, at constant energy. Known failing: the
+// Euler methods take the gyroscopic torque at the start of a step, which feeds the spin with
+// energy. The Verlets are second order there, and gain little. Runge-Kutta is bound by its order:
+// (|w| h)^5 a substep.
 TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
     World world(GetParam(), weightless(settings_for(GetParam())));
     BodyDef def = dynamic_body(block(V{0.1, 0.2, 0.4}), 2, V{0});
@@ -95,9 +106,13 @@ TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
     const double momentum_error = glm::distance(after.angular_momentum, before.angular_momentum) /
                                   glm::length(before.angular_momentum);
     RecordProperty("energy_gain", std::to_string(gain));
-    if (GetParam() == "semi_implicit_euler") {
-        EXPECT_GT(gain, 0.02);
-        EXPECT_LT(gain, 0.5);
+    if (has_explicit_spin(GetParam()) && lag_of(GetParam()) != 0) {
+        EXPECT_GT(std::abs(gain), 0.02); // explicit Euler loses
+        EXPECT_LT(std::abs(gain), 0.5);
+        return;
+    }
+    if (has_explicit_spin(GetParam()) && GetParam() != "rk4") {
+        EXPECT_NEAR(gain, 0, 0.02);
         return;
     }
     // rk4 at |w| h = 0.05: 0.05^5 for 1200 steps is below 4e-4; roundings for the rest, a tenth of
@@ -114,7 +129,7 @@ TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
 
 // At a radian a substep and more, where Newton's three iterations do not reach the root any more.
 TEST_P(FreeMotion, FastSpinDoesNotExplode) {
-    if (GetParam() == "semi_implicit_euler" || GetParam() == "rk4")
+    if (has_explicit_spin(GetParam()))
         GTEST_SKIP() << "explicit in the spin: bounded to |w| h of about 1";
     for (const double spin : {30.0, 100.0, 300.0, 1000.0}) {
         StepSettings settings = weightless(settings_for(GetParam()));

@@ -10,8 +10,12 @@
     METHOD(soft_step)                                                                              \
     METHOD(tgs_soft)                                                                               \
     METHOD(sequential_impulses)                                                                    \
+    METHOD(explicit_euler)                                                                         \
     METHOD(semi_implicit_euler)                                                                    \
-    METHOD(rk4)
+    METHOD(stormer_verlet)                                                                         \
+    METHOD(velocity_verlet)                                                                        \
+    METHOD(rk4)                                                                                    \
+    METHOD(backward_euler)
 
 namespace plumb::inline PLUMB_PRECISION {
 

@@ -1,0 +1,47 @@
+// Stormer-Verlet for free bodies, particles and springs, as drift, kick, drift: the places half way
+// obey x(n+1) - 2 x(n) + x(n-1) = h^2 a(x(n)) (Verlet 1967; Hairer, Lubich, Wanner 2006, "Geometric
+// Numerical Integration", section I.1.4), and nothing has to be remembered of the step before.
+// Second order, symplectic; one evaluation a substep.
+//
+// What depends on velocities is taken at the mean of those before and after the kick, by one
+// correction more.
+#include "engine/dynamics/method.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+void advance(StepContext &context) {
+    const StepSettings &settings = context.settings;
+    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    Accelerations &middle = context.scratch.accelerations[0];
+    const bool corrects = depend_on_velocities(context);
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        drift_smoothly(context, h / 2);
+        find_accelerations(context, middle);
+        if (corrects) {
+            remember_velocities(context);
+            kick_smoothly(context, middle, h / 2);
+            find_accelerations(context, middle);
+            recall_velocities(context);
+        }
+        kick_smoothly(context, middle, h);
+        drift_smoothly(context, h / 2);
+    }
+}
+
+} // namespace
+
+Method stormer_verlet() {
+    return {{.name = "stormer_verlet",
+             .title = "Stormer-Verlet",
+             .source = "Verlet 1967",
+             .contacts = false,
+             .joints = false,
+             .springs = true,
+             .reads = {},
+             .defaults = {.substeps = 1, .iterations = 1}},
+            advance};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

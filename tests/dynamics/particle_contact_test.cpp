@@ -1,0 +1,328 @@
+// Particles against bodies of every shape.
+#include "engine/geometry/quickhull.h"
+#include "tests/dynamics/particles.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+class ParticleContacts : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, ParticleContacts, testing::ValuesIn(particle_contact_methods()),
+                         name_of);
+
+constexpr double radius = 0.05;
+
+ParticleDef grain_at(const V &position, const V &velocity = V{0}) {
+    ParticleDef def = moving_particle(position, velocity, 0.1);
+    def.radius = Real(radius);
+    return def;
+}
+
+// A flat square of 4 m, of 8 x 8 cells.
+BodyDef flat(bool as_field) {
+    constexpr int n = 8;
+    constexpr double cell = 0.5;
+    BodyDef def;
+    def.kind = BodyKind::fixed;
+    std::shared_ptr<const TriangleSurface> &surface = def.colliders.emplace_back().surface;
+    if (as_field) {
+        HeightField field;
+        field.rows = field.columns = n + 1;
+        field.spacing = Real(cell);
+        field.origin = narrow(V{-0.5 * n * cell, 0, -0.5 * n * cell});
+        field.heights.assign((n + 1) * (n + 1), Real(0));
+        surface = std::make_shared<const TriangleSurface>(field, Sides::both);
+        return def;
+    }
+    TriangleMesh mesh;
+    for (int row = 0; row <= n; ++row)
+        for (int column = 0; column <= n; ++column)
+            mesh.vertices.push_back(
+                narrow(V{(column - 0.5 * n) * cell, 0, (row - 0.5 * n) * cell}));
+    for (std::uint32_t row = 0; row < n; ++row)
+        for (std::uint32_t column = 0; column < n; ++column) {
+            const std::uint32_t at = row * (n + 1) + column;
+            mesh.triangles.push_back({at, at + n + 1, at + n + 2});
+            mesh.triangles.push_back({at, at + n + 2, at + 1});
+        }
+    surface = std::make_shared<const TriangleSurface>(mesh, Sides::both);
+    return def;
+}
+
+struct Stand {
+    std::string name;
+    BodyDef body; // fixed
+    double top;   // m, at x = z = 0
+};
+
+std::vector<Stand> stands() {
+    std::vector<Stand> all;
+    all.push_back({"sphere", fixed_body(ball(0.4)), 0.4});
+    all.push_back({"box", fixed_body(block(V{0.5, 0.2, 0.5})), 0.2});
+    all.push_back({"capsule",
+                   fixed_body(Capsule{narrow(V{-0.5, 0, 0}), narrow(V{0.5, 0, 0}), Real(0.3)}),
+                   0.3});
+    all.push_back({"cylinder",
+                   fixed_body(Cylinder{narrow(V{0, -0.3, 0}), narrow(V{0, 0.3, 0}), Real(0.5)}),
+                   0.3});
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i)
+        corners.push_back(narrow(V{i & 1 ? 0.5 : -0.5, i & 2 ? 0.25 : -0.25, i & 4 ? 0.4 : -0.4}));
+    const auto mesh = std::make_shared<const HullMesh>(*convex_hull(corners, 64).mesh);
+    BodyDef hull = fixed_body(ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation});
+    hull.colliders[0].hull = mesh;
+    all.push_back({"hull", hull, 0.25});
+    BodyDef compound = fixed_body(block(V{0.6, 0.1, 0.6}));
+    compound.colliders.emplace_back().shape =
+        Box{narrow(V{0, 0.2, 0}), identity_rotation, narrow(V{0.2, 0.1, 0.2})};
+    all.push_back({"compound", compound, 0.3});
+    all.push_back({"half-space", ground(0.5, 0), 0});
+    all.push_back({"mesh", flat(false), 0});
+    all.push_back({"height field", flat(true), 0});
+    return all;
+}
+
+// Let fall from 30 cm, a particle comes to rest on the surface.
+TEST_P(ParticleContacts, ComeToRestOnEveryShape) {
+    for (const Stand &stand : stands()) {
+        World world(GetParam(), settings_for(GetParam()));
+        world.add_body(stand.body);
+        world.add_particle(grain_at(V{0, stand.top + radius + 0.3, 0}));
+        run(world, 120);
+        EXPECT_NEAR(particle_position(world, 0).y, stand.top + radius, 2e-4) << stand.name;
+        EXPECT_LT(glm::length(particle_velocity(world, 0)), 1e-5) << stand.name;
+    }
+}
+
+// At 100 m/s, 1.7 m a step, against walls of 1 cm: from ahead and at an angle, boxes and triangles,
+// and walls that come the other way.
+TEST_P(ParticleContacts, FastOnesDoNotPassAThinWall) {
+    Random random(3);
+    for (int trial = 0; trial < 60; ++trial) {
+        World world(GetParam(), weightless(settings_for(GetParam())));
+        const bool moves = trial % 3 == 2;
+        BodyDef wall = trial % 3 == 0 ? flat(false) : fixed_body(block(V{2, 0.005, 2}));
+        if (moves) {
+            wall.kind = BodyKind::kinematic;
+            wall.velocity = narrow(V{0, 50, 0});
+        }
+        world.add_body(wall);
+        const double away = random.next_in(0.1, 3);
+        V velocity{random.next_in(-20, 20), -100, random.next_in(-20, 20)};
+        if (moves)
+            velocity.y = -50;
+        const double time = away / 100;
+        world.add_particle(grain_at(V{-velocity.x * time, away, -velocity.z * time}, velocity));
+        run(world, 6);
+        const double wall_at = position_of(world, world.body_id(0)).y;
+        EXPECT_GT(particle_position(world, 0).y, wall_at) << trial;
+    }
+}
+
+// What flies past a ball 1 cm away is not turned aside.
+TEST_P(ParticleContacts, FastOnesPassWhatTheyMiss) {
+    World world(GetParam(), weightless(settings_for(GetParam())));
+    world.add_body(fixed_body(ball(0.3)));
+    world.add_particle(grain_at(V{-2, 0.36, 0}, V{60, 0, 0}));
+    run(world, 6);
+    EXPECT_NEAR(particle_velocity(world, 0).x, 60, 1e-4);
+    EXPECT_NEAR(particle_position(world, 0).y, 0.36, 1e-5);
+}
+
+// Below the angle of friction a particle stays to the micrometre; above it slides by
+// x = (sin - mu cos) g t^2 / 2.
+TEST_P(ParticleContacts, FrictionHoldsAndSlidesOnASlope) {
+    constexpr double mu = 0.5;
+    for (const double angle : {0.4, 0.6}) { // the limit is atan(0.5) = 0.4636
+        const V normal{std::sin(angle), std::cos(angle), 0};
+        World world(GetParam(), settings_for(GetParam()));
+        world.add_body(ground(mu, 0, normal));
+        ParticleDef def = grain_at(radius * normal);
+        def.material.friction = Real(mu);
+        world.add_particle(def);
+        run(world, 60);
+        const V down{std::cos(angle), -std::sin(angle), 0};
+        const double way = glm::dot(particle_position(world, 0) - radius * normal, down);
+        if (angle < std::atan(mu)) {
+            run(world, 600);
+            EXPECT_NEAR(glm::dot(particle_position(world, 0), down), way, 1e-6);
+            EXPECT_NEAR(way, 0, 1e-5);
+            continue;
+        }
+        const double a = gravity * (std::sin(angle) - mu * std::cos(angle));
+        const double h = substep_of(world);
+        // Semi-implicit Euler is a h t / 2 ahead.
+        EXPECT_NEAR(way, 0.5 * a, 0.5 * a * h + 1e-4);
+        EXPECT_NEAR(glm::dot(particle_velocity(world, 0), down), a, 1e-3 * a);
+    }
+}
+
+// Both feel it: momenta stay when particles strike spinning bodies that nothing holds.
+TEST_P(ParticleContacts, KeepMomenta) {
+    Random random(11);
+    for (int trial = 0; trial < 20; ++trial) {
+        StepSettings settings = weightless(settings_for(GetParam()));
+        settings.dt = 1.0 / 240;
+        World world(GetParam(), settings);
+        BodyDef def = dynamic_body(ball(0.3), 1.5, V{0, 0, 0}, any_vector(random, 0.3));
+        def.angular_velocity = narrow(any_vector(random, 4));
+        world.add_body(with_material(def, 0.6, 0.3));
+        for (int i = 0; i < 6; ++i) {
+            const V from = glm::normalize(any_vector(random, 1)) * 0.7;
+            world.add_particle(grain_at(from, -3.0 * from + any_vector(random, 0.3)));
+        }
+        const Measures before = world.measure();
+        const V spin = spin_of(world, world.body_id(0));
+        run(world, 120);
+        const Measures after = world.measure();
+        EXPECT_NE(spin_of(world, world.body_id(0)), spin);
+        EXPECT_LT(glm::distance(after.linear_momentum, before.linear_momentum), 200 * epsilon);
+        EXPECT_LT(glm::distance(after.angular_momentum, before.angular_momentum), 400 * epsilon);
+        EXPECT_LT(after.kinetic_energy, before.kinetic_energy);
+    }
+}
+
+TEST_P(ParticleContacts, BounceAtTheirRestitution) {
+    for (const double e : {0.5, 0.8}) {
+        World world(GetParam(), weightless(settings_for(GetParam())));
+        world.add_body(ground(0, e));
+        world.add_particle(grain_at(V{0, 1, 0}, V{1, -4, 0}));
+        run(world, 60);
+        EXPECT_NEAR(particle_velocity(world, 0).y, 4 * e, 1e-4);
+        EXPECT_NEAR(particle_velocity(world, 0).x, 1, 1e-5);
+    }
+}
+
+// A net over the ground with a ball in it.
+World trampoline(const std::string &method, int iterations, double damping) {
+    constexpr int n = 15;
+    StepSettings settings = settings_for(method);
+    settings.iterations = iterations;
+    World world(method, settings);
+    world.add_body(ground(0.5, 0, V{0, 1, 0}));
+    const auto at = [&](int i, int j) { return std::uint32_t(i * n + j); };
+    const double cell = 2.0 / (n - 1);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const bool pinned = i == 0 || j == 0 || i == n - 1 || j == n - 1;
+            world.add_particle(
+                particle_at(V{i * cell - 1, 1.5, j * cell - 1}, 2.0 / (n * n), pinned));
+        }
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            if (i + 1 < n)
+                world.add_spring(
+                    spring(of_particle(at(i, j)), of_particle(at(i + 1, j)), cell, 500, damping));
+            if (j + 1 < n)
+                world.add_spring(
+                    spring(of_particle(at(i, j)), of_particle(at(i, j + 1)), cell, 500, damping));
+        }
+    world.add_body(dynamic_body(ball(0.3), 3, V{0, 2.2, 0}));
+    return world;
+}
+
+// The pull of the springs on the frame, as a share of the weight of ball and net.
+double borne(const World &world) {
+    double pull = 0, weight = 3 * gravity;
+    const std::vector<Particle> &particles = world.model().particles;
+    for (const Particle &particle : particles)
+        weight += particle.inv_mass > 0 ? double(particle.mass) * gravity : 0;
+    for (const Spring &one : world.model().springs) {
+        const V line =
+            particle_position(world, one.b.index) - particle_position(world, one.a.index);
+        const double length = glm::length(line);
+        const double force = double(one.stiffness) * (length - double(one.rest_length));
+        const bool a_pinned = particles[one.a.index].inv_mass == 0;
+        const bool b_pinned = particles[one.b.index].inv_mass == 0;
+        if (a_pinned != b_pinned)
+            pull += force * (a_pinned ? -line.y : line.y) / length;
+    }
+    return pull / weight;
+}
+
+// At rest the springs bear the ball. It takes passes: what a heavy ball leans on are light
+// particles between stiff springs. Known failings: with one pass a substep TGS Soft's net is
+// stretched until it would bear more than twice the weight; and so, if less, is that of sequential
+// impulses with sixteen, whose substep is the whole step.
+TEST_P(ParticleContacts, ANetBearsABall) {
+    World world = trampoline(GetParam(), 16, 5);
+    run(world, 1200);
+    if (GetParam() == "sequential_impulses") {
+        EXPECT_GT(borne(world), 1.2);
+        return;
+    }
+    EXPECT_GT(position_of(world, world.body_id(1)).y, 1.3);
+    EXPECT_LT(glm::length(velocity_of(world, world.body_id(1))), 0.03);
+    EXPECT_NEAR(borne(world), 1, 0.02);
+    if (GetParam() == "tgs_soft") {
+        World coarse = trampoline(GetParam(), 1, 5);
+        run(coarse, 1200);
+        EXPECT_GT(borne(coarse), 2);
+    }
+}
+
+TEST_P(ParticleContacts, SameBitsSavedRestoredAndWithThreads) {
+    World alone = trampoline(GetParam(), 4, 1), shared = trampoline(GetParam(), 4, 1);
+    TaskPool tasks(4);
+    SavedWorld saved;
+    std::uint32_t contacts = 0;
+    for (int i = 0; i < 80; ++i) {
+        alone.step(nullptr);
+        shared.step(&tasks);
+        contacts = std::max(contacts, shared.report().particle_contacts);
+        ASSERT_EQ(alone.hash(), shared.hash()) << i;
+        if (i == 40)
+            alone.save(saved);
+    }
+    const std::uint64_t end = alone.hash();
+    alone.restore(saved);
+    ASSERT_NE(alone.hash(), end);
+    run(alone, 39);
+    EXPECT_EQ(alone.hash(), end);
+    EXPECT_GT(contacts, 4U);
+}
+
+// What particles touch or springs hold sleeps when all particles are at rest, and wakes when they
+// move.
+TEST(ParticleSleep, FollowsTheParticles) {
+    World world("soft_step", settings_for("soft_step"));
+    world.add_body(ground(0.5, 0));
+    const BodyId box = world.add_body(dynamic_body(block(V{0.3, 0.2, 0.3}), 5, V{0, 0.2, 0}));
+    const BodyId tied = world.add_body(dynamic_body(block(V{0.3, 0.2, 0.3}), 5, V{3, 0.2, 0}));
+    world.add_particle(grain_at(V{0, 0.4 + radius, 0}));
+    world.add_particle(particle_at(V{3, 2, 0}, 0.2));
+    world.add_spring(spring(of_world(V{3, 2.5, 0}), of_particle(1), 0.5, 200, 5));
+    world.add_spring(spring(of_particle(1), of_body(tied, V{0, 0.2, 0}), 1.6, 20, 1));
+    const auto sleeps = [&](BodyId id) { return world.state().paces[id.index].is_asleep(); };
+    run(world, 600);
+    ASSERT_TRUE(sleeps(box) && sleeps(tied));
+    const V on_box = particle_position(world, 0);
+    run(world, 60);
+    EXPECT_EQ(particle_position(world, 0), on_box);
+    world.set_particle(0, narrow(on_box), narrow(V{0, -1, 0.5}));
+    run(world, 1);
+    EXPECT_TRUE(!sleeps(box));
+    run(world, 600);
+    ASSERT_TRUE(sleeps(box) && sleeps(tied));
+    world.set_particle(1, narrow(particle_position(world, 1)), narrow(V{0, 1, 0}));
+    run(world, 1);
+    EXPECT_TRUE(!sleeps(tied));
+}
+
+// A thousand particles over five hundred bodies: each meets what is near it.
+TEST(ParticleContactCount, IsOfWhatIsNear) {
+    World world("soft_step", settings_for("soft_step"));
+    for (int i = 0; i < 500; ++i)
+        world.add_body(fixed_body(ball(0.2), V{0.5 * (i % 25), 0, 0.5 * (i / 25)}));
+    for (int i = 0; i < 1000; ++i) {
+        ParticleDef def = particle_at(V{0.3 * (i % 40), 0.23, 0.4 * (i / 40)});
+        world.add_particle(def);
+    }
+    run(world, 1);
+    EXPECT_LT(world.report().particle_contacts, 2000U);
+    EXPECT_GT(world.report().particle_contacts, 10U);
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
