@@ -155,6 +155,9 @@ void World::collide_particle(std::uint32_t index, std::size_t part) const {
 
 void World::find_particle_contacts(TaskPool *tasks) const {
     Scratch &s = scratch_;
+    s.particle_contacts.clear();
+    if (!needs_particle_contacts())
+        return;
     constexpr std::size_t grain = 64;
     const std::size_t count = model_->particles.size();
     const bool in_parts = tasks != nullptr && tasks->threads() > 1 && count > grain;
@@ -170,7 +173,6 @@ void World::find_particle_contacts(TaskPool *tasks) const {
         for (std::size_t i = begin; i < end; ++i)
             collide_particle(static_cast<std::uint32_t>(i), part);
     };
-    s.particle_contacts.clear();
     if (!in_parts) {
         collide_part(0, count);
         std::swap(s.particle_contacts, s.particle_parts.front());

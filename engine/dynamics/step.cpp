@@ -141,7 +141,7 @@ void World::find_contacts(TaskPool *tasks, StepTimes *times) {
         }
         const PhaseTimer timer(times ? &times->collide : nullptr);
         collide(tasks);
-        if (needs_particle_contacts())
+        if (model_->has_particles())
             find_particle_contacts(tasks);
     } while (wake_touched(scratch_.contacts));
 }

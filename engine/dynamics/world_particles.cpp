@@ -85,6 +85,7 @@ std::uint32_t World::add_spring(const SpringDef &def) {
 void World::set_particle(std::uint32_t index, const Vec3 &position, const Vec3 &velocity) {
     PLUMB_CHECK(index < model_->particles.size(), "there is no particle " << index);
     check_motion(position, velocity);
+    wake_all(); // what rests on it, or hangs on it
     const bool pinned = model_->particles[index].inv_mass == Real(0);
     state_.particles[index] = {position, pinned ? Vec3{Real(0)} : velocity};
 }

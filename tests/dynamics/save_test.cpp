@@ -178,6 +178,39 @@ TEST_P(Saves, ASettledStepAllocatesNothing) {
     EXPECT_EQ(allocations - before_save, 0U);
 }
 
+// Nor does one of particles, springs and what they touch.
+TEST_P(Saves, AStepOfParticlesAllocatesNothing) {
+    if (!find_method(GetParam())->info.joints)
+        GTEST_SKIP() << "no joints";
+    World world(GetParam(), settings_for(GetParam()));
+    world.add_body(ground(0.5, 0));
+    world.add_body(dynamic_body(block(V{0.2}), 1, V{0.5, 0.2, 0.5}));
+    for (int i = 0; i < 100; ++i) {
+        ParticleDef def;
+        def.position = narrow(V{0.1 * (i % 10), 0.5, 0.1 * (i / 10)});
+        def.mass = Real(0.01);
+        world.add_particle(def);
+        const auto to = [&](int other) {
+            SpringDef spring;
+            spring.a = {SpringEnd::Kind::particle, std::uint32_t(i), Vec3{Real(0)}};
+            spring.b = {SpringEnd::Kind::particle, std::uint32_t(other), Vec3{Real(0)}};
+            spring.rest_length = Real(0.1);
+            spring.stiffness = Real(20);
+            spring.damping = Real(0.2);
+            world.add_spring(spring);
+        };
+        if (i % 10 > 0)
+            to(i - 1);
+        if (i >= 10)
+            to(i - 10);
+    }
+    run(world, 600);
+    ASSERT_GT(world.report().particle_contacts, 50U);
+    const std::uint64_t before = allocations;
+    run(world, 60);
+    EXPECT_EQ(allocations - before, 0U);
+}
+
 // Memory may run out anywhere in a step: the world is as it was, and the step, taken again, is the
 // step that it would have been.
 TEST_P(Saves, AStepThatFailsLeavesTheStateAsItWas) {
