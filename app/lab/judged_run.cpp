@@ -64,6 +64,11 @@ Divergence find_divergence(const Simulation &simulation, std::uint64_t step) {
             divergence.body = simulation.body_info(i).name;
             break;
         }
+    for (std::size_t i = 0; i < frame.particles.size() && divergence.body.empty(); ++i)
+        if (!finite(frame.particles[i].position) || !finite(frame.particles[i].velocity)) {
+            divergence.body = simulation.soft_parts().particle_name(i);
+            divergence.is_particle = true;
+        }
     return divergence;
 }
 
@@ -78,7 +83,7 @@ std::string describe(const Divergence &divergence) {
         all = text;
     }
     if (!divergence.body.empty())
-        all += ": body \"" + divergence.body + "\"";
+        all += (divergence.is_particle ? ": particle \"" : ": body \"") + divergence.body + "\"";
     if (divergence.last_position) {
         const glm::dvec3 &p = *divergence.last_position;
         std::snprintf(text, sizeof text, ", last at (%.4g, %.4g, %.4g)", p.x, p.y, p.z);

@@ -19,6 +19,7 @@ struct Divergence {
     std::string body;       // the first whose state is not finite; empty when none is found
     std::optional<glm::dvec3> last_position; // of that body, a step before, where it is known
     std::string message;                     // what a failed check said; may be empty
+    bool is_particle = false;                // `body` names a particle
 };
 
 // "not finite after step 41 (0.683 s): body "top", last at (0.1, 9.2, 0)"

@@ -10,7 +10,7 @@
 
 namespace plumb {
 
-// One quantity, of one body where it needs one.
+// One quantity, of one body, particle or spring where it needs one.
 struct QuantityName {
     std::string quantity;
     std::string body;
@@ -32,12 +32,17 @@ class QuantityProbe {
   private:
     struct Item {
         const QuantityInfo *quantity;
-        std::size_t body = 0;
-        BodyState start;
+        enum class Of { scene, body, particle, spring } of = Of::scene;
+        std::size_t index = 0; // of that body, particle or spring
+        BodyState start;       // of a body, or of a particle as if it were one
     };
+    Item item_of(const Simulation &simulation, const QuantityInfo &quantity,
+                 const std::string &name) const;
+    double value_of(const Item &item, const Simulation &simulation, const Measures &now) const;
+
     std::vector<Item> items_;
     bool measures_ = false;
-    bool bodies_ = false; // whether sample() reads them
+    bool reads_ = false; // whether sample() needs a frame
     Frame frame_;
     SceneStart start_;
 };

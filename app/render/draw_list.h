@@ -32,13 +32,16 @@ struct DrawShape {
     bool glass = false;       // what is behind or inside shows through
 };
 
-// Flat triangles, each three corners, in a frame of their own.
+// Triangles, each three corners, in a frame of their own.
 using Corners = std::vector<glm::vec3>;
 
 // Seen from both sides. The renderer keeps what it made of the corners as long as they live: they
 // are not changed, and lists that show the same share them.
 struct DrawMesh {
     std::shared_ptr<const Corners> corners; // never null
+    // Unit, one for each corner, on the side of the triangle's front: it looks smooth. Kept and
+    // shared as the corners are. Null: the triangles look flat.
+    std::shared_ptr<const Corners> normals{};
     glm::vec3 position{0};
     glm::quat rotation{1, 0, 0, 0}; // unit
     glm::vec3 colour{0.7f};

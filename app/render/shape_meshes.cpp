@@ -81,8 +81,9 @@ TriangleBatch triangle_batch(const std::vector<DrawMesh> &meshes, const glm::vec
     TriangleBatch batch;
     for (const DrawMesh &mesh : meshes)
         if (mesh.glass == glass && finite(mesh.position))
-            batch.parts.push_back({mesh.corners, mesh.position - origin, mesh.rotation,
-                                   linear_from_srgb(mesh.colour), mesh.highlighted ? 1.0f : 0.0f});
+            batch.parts.push_back({mesh.corners, mesh.normals, mesh.position - origin,
+                                   mesh.rotation, linear_from_srgb(mesh.colour),
+                                   mesh.highlighted ? 1.0f : 0.0f});
     return batch;
 }
 
@@ -146,8 +147,10 @@ void ShapeMeshes::draw(const ShapeBatch &batch) const {
     }
 }
 
-const ShapeMeshes::Triangles &
-ShapeMeshes::triangles_of(const std::shared_ptr<const Corners> &corners) const {
+const ShapeMeshes::Triangles &ShapeMeshes::triangles_of(const TriangleBatch::Part &part) const {
+    const std::shared_ptr<const Corners> &corners = part.corners;
+    PLUMB_CHECK(!part.normals || part.normals->size() == corners->size(),
+                part.normals->size() << " normals for " << corners->size() << " corners");
     Triangles &kept = triangles_[corners.get()];
     if (kept.corners.lock() == corners)
         return kept;
@@ -160,8 +163,9 @@ ShapeMeshes::triangles_of(const std::shared_ptr<const Corners> &corners) const {
         const float twice_area = glm::length(across);
         if (!(twice_area > 0) || !std::isfinite(twice_area))
             continue;
-        for (const glm::vec3 &corner : three)
-            vertices.push_back({corner, across / twice_area, 0});
+        for (std::size_t k = 0; k < three.size(); ++k)
+            vertices.push_back(
+                {three[k], part.normals ? (*part.normals)[i + k] : across / twice_area, 0});
     }
     upload(kept.buffer, std::as_bytes(std::span(vertices)));
     kept.corners = corners;
@@ -183,7 +187,7 @@ void ShapeMeshes::draw(const TriangleBatch &batch) const {
     glBindVertexArray(triangle_array_);
     glVertexAttrib4f(5, 1, 1, 1, mesh_kind);
     for (const TriangleBatch::Part &part : batch.parts) {
-        const Triangles &triangles = triangles_of(part.corners);
+        const Triangles &triangles = triangles_of(part);
         if (triangles.count == 0)
             continue;
         glBindBuffer(GL_ARRAY_BUFFER, triangles.buffer);

@@ -71,7 +71,7 @@ ShapeBatch shape_batch(std::span<const DrawShape> shapes, const glm::vec3 &origi
 // All meshes that are glass, or all that are not.
 struct TriangleBatch {
     struct Part {
-        std::shared_ptr<const Corners> corners;
+        std::shared_ptr<const Corners> corners, normals;
         glm::vec3 position{0}; // relative to the camera's target
         glm::quat rotation{1, 0, 0, 0};
         glm::vec3 colour{0}; // linear
@@ -103,7 +103,7 @@ class ShapeMeshes {
         unsigned buffer = 0;
         int count = 0; // of vertices
     };
-    const Triangles &triangles_of(const std::shared_ptr<const Corners> &corners) const;
+    const Triangles &triangles_of(const TriangleBatch::Part &part) const;
 
     struct Range {
         std::size_t first_index = 0; // in bytes

@@ -2,6 +2,7 @@
 
 #include "app/render/culling.h"
 #include "app/sandbox/world_draw.h"
+#include "engine/scene/cloth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,16 @@ constexpr float widest = 16.0f / 9;
 constexpr float air = 1.1f;
 // A shape that reaches this many camera distances from its centre is a floor or a wall.
 constexpr float wide = 0.8f;
+
+// Whether something holds particles up.
+bool is_pinned(const SceneDesc &scene) {
+    return std::ranges::any_of(scene.particles, &ParticleDesc::pinned) ||
+           std::ranges::any_of(scene.cloths,
+                               [](const ClothDesc &cloth) { return !cloth.pins.empty(); }) ||
+           std::ranges::any_of(scene.springs, [](const SpringDesc &spring) {
+               return spring.a.empty() || spring.b.empty();
+           });
+}
 
 } // namespace
 
@@ -75,7 +86,8 @@ glm::vec3 shift_to_see(const Camera &camera, float aspect, std::span<const glm::
 }
 
 std::optional<DrawPlane> plane_behind(const SceneDesc &scene) {
-    bool is_held = !scene.joints.empty() || scene.world.settings.applied().gravity == glm::dvec3(0);
+    bool is_held = !scene.joints.empty() || is_pinned(scene) ||
+                   scene.world.settings.applied().gravity == glm::dvec3(0);
     double lowest = std::numeric_limits<double>::max();
     for (const BodyDesc &body : scene.bodies) {
         if (has_plane(body))
@@ -87,6 +99,11 @@ std::optional<DrawPlane> plane_behind(const SceneDesc &scene) {
                                              body.orientation * collider.orientation)
                                           .min.y);
     }
+    for (const ParticleDesc &particle : scene.particles)
+        lowest = std::min(lowest, particle.position.y - particle.radius);
+    for (const ClothDesc &cloth : scene.cloths)
+        for (std::uint32_t i = 0; i < particle_count(cloth); ++i)
+            lowest = std::min(lowest, start_of(cloth, i).position.y - cloth.radius);
     const Camera camera = camera_of(scene.camera);
     const float half_height = camera.distance * std::tan(0.5f * camera.fov);
     DrawPlane plane;

@@ -16,6 +16,7 @@ namespace plumb {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
+constexpr double wire_share = 0.006; // a wire's radius, of its length
 
 void add_line(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, float width = 2,
               const glm::vec3 &colour = colours::joint) {
@@ -137,7 +138,7 @@ void add_link(DrawList &list, const JointView &joint, const glm::dvec3 &gravity)
     const bool is_spring = joint.frequency > 0;
     const bool is_rope = least < greatest && !is_spring;
     const double size = is_rope || is_spring ? greatest : joint.position;
-    const double radius = 0.006 * size;
+    const double radius = wire_share * size;
     const std::vector<glm::dvec3> points =
         is_spring ? coil(joint.anchor_a, joint.anchor_b, greatest)
         : is_rope ? hanging(joint.anchor_a, joint.anchor_b, greatest, gravity)
@@ -321,6 +322,16 @@ bool is_about_joints(const Simulation &simulation) {
             ++(joined[body] ? with : without);
     }
     return with > without;
+}
+
+void draw_spring(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double rest_length) {
+    const std::vector<glm::dvec3> points = coil(a, b, rest_length);
+    for (std::size_t i = 1; i < points.size(); ++i)
+        add_capsule(list, points[i - 1], points[i], wire_share * rest_length);
+}
+
+void draw_wire(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double radius) {
+    add_capsule(list, a, b, radius);
 }
 
 void draw_links(DrawList &list, std::span<const JointView> joints,

@@ -29,6 +29,10 @@ struct JointSurroundings {
 void draw_links(DrawList &list, std::span<const JointView> joints,
                 const JointSurroundings &surroundings);
 
+// A coil from a to b as of a spring of that rest length, or a straight wire; m.
+void draw_spring(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double rest_length);
+void draw_wire(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double radius);
+
 // How each joint holds its bodies: its anchors, and what its type adds (a hinge's axis and arc, a
 // slider's rail, a fixed joint's cross), with limits and motor.
 void draw_joints(DrawList &list, std::span<const JointView> joints,

@@ -215,9 +215,11 @@ const ActionInfo *find_action(const Chord &chord) {
 
 std::span<const MouseInfo> mouse_gestures() {
     static constexpr std::array rows = {
-        MouseInfo{"Click", "Select", "The body under the pointer; beside all, none."},
+        MouseInfo{"Click", "Select",
+                  "The body, particle or cloth under the pointer; beside all, none."},
         MouseInfo{"Left drag on a disc", "Move a probe", "By one of its points; R puts it back."},
-        MouseInfo{"Ctrl + left drag", "Grab", "Pulls the body by the point that was grabbed."},
+        MouseInfo{"Ctrl + left drag", "Grab",
+                  "Pulls what is under the pointer by the point that was grabbed."},
         MouseInfo{"Shift + click", "Shoot", "A ball from the camera."},
         MouseInfo{"Left drag", "Orbit", "Turns the camera around its target."},
         MouseInfo{"Right drag", "Pan", "Moves the camera sideways."},

@@ -3,6 +3,7 @@
 #include "app/sandbox/widgets.h"
 #include "engine/scene/joint_type.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -143,15 +144,79 @@ void joints_of(const Simulation &simulation, const Frame &frame, std::size_t bod
         value_row("More joints", std::to_string(count - shown_at_most));
 }
 
+// Of all springs that pull at a particle, or of a whole cloth.
+template <typename Counts>
+void spring_rows(const Simulation &simulation, const Frame &frame, const Counts &counts) {
+    const SoftParts &parts = simulation.soft_parts();
+    std::size_t count = 0;
+    std::size_t torn = 0;
+    double strain = 0;
+    for (std::size_t i = 0; i < parts.springs.size(); ++i) {
+        const SpringInfo &spring = parts.springs[i];
+        if (!counts(spring))
+            continue;
+        ++count;
+        if (frame.torn[i] != 0) {
+            ++torn;
+            continue;
+        }
+        const double length = glm::distance(place_of(spring.a, frame.bodies, frame.particles),
+                                            place_of(spring.b, frame.bodies, frame.particles));
+        strain = std::max(strain, std::abs(length / spring.rest_length - 1));
+    }
+    value_row("Springs",
+              std::to_string(count) + (torn > 0 ? ", " + std::to_string(torn) + " torn" : ""));
+    value_row("Greatest strain", number(100 * strain, "%"));
+}
+
+void particle_rows(const PanelContext &context, std::size_t particle) {
+    const Simulation &simulation = *context.session.simulation();
+    const SoftParts &parts = simulation.soft_parts();
+    const ParticleInfo &info = parts.particles[particle];
+    const Frame &frame = context.session.present();
+    const ParticleState &state = frame.particles[particle];
+    value_row("Name", parts.particle_name(particle));
+    value_row("Kind", info.pinned ? "particle, pinned" : "particle");
+    value_row("Mass", number(info.mass, "kg"));
+    value_row("Radius", number(info.radius, "m"));
+    if (!info.material.empty())
+        value_row("Material", info.material);
+    ImGui::Separator();
+    value_row("Position", triple(state.position) + " m");
+    value_row("Velocity", triple(state.velocity) + " m/s");
+    value_row("Speed", number(glm::length(state.velocity), "m/s"));
+    ImGui::Separator();
+    const auto is_end = [&](const SpringEndInfo &end) {
+        return end.kind == SpringEndInfo::Kind::particle && end.index == particle;
+    };
+    spring_rows(simulation, frame,
+                [&](const SpringInfo &spring) { return is_end(spring.a) || is_end(spring.b); });
+    if (!info.cloth)
+        return;
+    const ClothInfo &cloth = parts.cloths[*info.cloth];
+    ImGui::Separator();
+    value_row("Cloth", cloth.name);
+    value_row("Its mass", number(parts.mass_around(particle), "kg"));
+    value_row("Its particles", std::to_string(cloth.particle_count));
+    spring_rows(simulation, frame,
+                [&](const SpringInfo &spring) { return spring.cloth == info.cloth; });
+}
+
 } // namespace
 
 void inspector_panel(PanelContext &context) {
     const Simulation *simulation = context.session.simulation();
     const std::optional<std::size_t> &body = context.view.selected;
+    const std::optional<std::size_t> &particle = context.view.selected_particle;
+    if (simulation && particle && *particle < context.session.present().particles.size()) {
+        particle_rows(context, *particle);
+        return;
+    }
     if (!simulation || !body || *body >= simulation->body_count() ||
         !simulation->body_info(*body).alive) {
         ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("Click a body to see its name, mass, pose and velocity.");
+        ImGui::TextDisabled(
+            "Click a body, a particle or a cloth to see its name, mass, place and velocity.");
         ImGui::Spacing();
         for (const MouseInfo &gesture : mouse_gestures())
             value_row(gesture.title, std::string(gesture.gesture));

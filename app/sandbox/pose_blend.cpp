@@ -26,4 +26,17 @@ std::vector<BodyState> blend(const std::vector<BodyState> &previous,
     return blended;
 }
 
+std::vector<ParticleState> blend(const std::vector<ParticleState> &previous,
+                                 const std::vector<ParticleState> &present, double alpha) {
+    std::vector<ParticleState> blended = present;
+    if (alpha >= 1)
+        return blended;
+    const std::size_t common = std::min(previous.size(), present.size());
+    for (std::size_t i = 0; i < common; ++i)
+        blended[i].position = alpha <= 0
+                                  ? previous[i].position
+                                  : glm::mix(previous[i].position, present[i].position, alpha);
+    return blended;
+}
+
 } // namespace plumb

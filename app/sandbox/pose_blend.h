@@ -13,4 +13,9 @@ namespace plumb {
 [[nodiscard]] std::vector<BodyState> blend(const std::vector<BodyState> &previous,
                                            const std::vector<BodyState> &present, double alpha);
 
+// Positions linearly, likewise.
+[[nodiscard]] std::vector<ParticleState> blend(const std::vector<ParticleState> &previous,
+                                               const std::vector<ParticleState> &present,
+                                               double alpha);
+
 } // namespace plumb

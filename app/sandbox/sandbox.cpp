@@ -67,10 +67,12 @@ void Sandbox::started(bool another_scene) {
     tools_.let_go(session_);
     if (another_scene) {
         view_.selected.reset();
+        view_.selected_particle.reset();
         view_.joints = is_about_joints(*session_.simulation());
         look_from(camera_of(session_.scene().camera));
     }
     view_.hovered.reset();
+    view_.hovered_particle.reset();
     view_.hovered_handle.reset();
     view_.pointed_at.reset();
     if (another_scene)
@@ -92,6 +94,10 @@ void Sandbox::follow_simulation() {
         view_.selected.reset();
     if (gone(view_.hovered))
         view_.hovered.reset();
+    const std::size_t particles = simulation->soft_parts().particles.size();
+    for (std::optional<std::size_t> *one : {&view_.selected_particle, &view_.hovered_particle})
+        if (*one && **one >= particles)
+            one->reset();
 }
 
 void Sandbox::perform(Action action) {
@@ -211,7 +217,8 @@ void Sandbox::handle(const KeyEvent &event, bool in_text_field) {
 }
 
 void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
-    tools_.handle(event, {session_, view_.camera, view_.selected, viewport});
+    tools_.handle(event,
+                  {session_, view_.camera, view_.selected, view_.selected_particle, viewport});
     // Whoever moves it or goes nearer wants to see something else.
     if (tools_.drag() == Tools::Drag::pan ||
         (event.kind == PointerEvent::Kind::wheel && !event.over_panel)) {
@@ -221,6 +228,7 @@ void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
     if (event.kind != PointerEvent::Kind::move)
         return;
     view_.hovered.reset();
+    view_.hovered_particle.reset();
     if (tools_.drag() != Tools::Drag::probe)
         view_.hovered_handle =
             event.over_panel || tools_.drag() != Tools::Drag::none
@@ -230,8 +238,10 @@ void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
     if (!event.over_panel)
         view_.pointed_at = point_at(session_, view_.camera.pick_ray(event.position, viewport));
     if (!event.over_panel && !view_.hovered_handle && tools_.drag() == Tools::Drag::none)
-        if (const auto hit = pick(session_, view_.camera, event.position, viewport))
+        if (const auto hit = pick(session_, view_.camera, event.position, viewport)) {
             view_.hovered = hit->body;
+            view_.hovered_particle = hit->particle;
+        }
 }
 
 void Sandbox::advance(std::int64_t nanoseconds) {
@@ -261,6 +271,12 @@ void Sandbox::keep_in_picture() {
         if (simulation.body_info(body).alive && simulation.body_info(body).kind != BodyKind::fixed)
             moving.emplace_back(glm::mix(session_.previous_bodies()[body].position,
                                          session_.present_bodies()[body].position, clock_.alpha()));
+    const std::vector<ParticleInfo> &particles = simulation.soft_parts().particles;
+    const std::vector<ParticleState> shown =
+        blend(session_.previous_particles(), session_.present().particles, clock_.alpha());
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (!particles[i].pinned)
+            moving.emplace_back(shown[i].position);
     view_.followed = shift_to_see(camera, view_.aspect, moving);
     camera.target += view_.followed;
 }
@@ -362,12 +378,19 @@ void Sandbox::look_from(Camera camera) {
 void Sandbox::frame_selection() {
     if (!session_.running())
         return;
-    const Around sphere = session_.simulation()->has_world()
-                              ? around(*session_.simulation(), view_.selected)
-                              : around(session_.answers());
+    Around sphere = session_.simulation()->has_world()
+                        ? around(*session_.simulation(), view_.selected)
+                        : around(session_.answers());
+    if (view_.selected_particle) {
+        sphere.centre = glm::vec3(session_.present().particles[*view_.selected_particle].position);
+        sphere.radius =
+            5 * static_cast<float>(
+                    session_.simulation()->soft_parts().particles[*view_.selected_particle].radius);
+    }
     // A body has its own width of air on each side, so that one sees where it is.
     Camera camera = view_.camera;
-    camera.frame(sphere.centre, sphere.radius, view_.selected ? 1.0f / 3 : 0.9f);
+    const bool is_one = view_.selected || view_.selected_particle;
+    camera.frame(sphere.centre, sphere.radius, is_one ? 1.0f / 3 : 0.9f);
     look_from(camera);
 }
 
@@ -378,8 +401,10 @@ void Sandbox::dismiss() {
         view_.search.clear();
     else if (!session_.messages().empty())
         session_.messages().clear();
-    else
+    else {
         view_.selected.reset();
+        view_.selected_particle.reset();
+    }
 }
 
 PanelContext Sandbox::panel_context(const Fonts &fonts, bool frozen) {
@@ -414,11 +439,14 @@ DrawList Sandbox::draw_list() const {
     options.wireframe = view_.wireframe;
     options.selected = view_.selected;
     options.hovered = view_.hovered;
+    options.selected_particle = view_.selected_particle;
+    options.hovered_particle = view_.hovered_particle;
     options.grab = session_.grabbed();
     options.impacts = session_.impacts();
-    DrawList list =
-        draw_world(*session_.simulation(), view_.camera, options,
-                   blend(session_.previous_bodies(), session_.present_bodies(), clock_.alpha()));
+    DrawList list = draw_world(
+        *session_.simulation(), view_.camera, options,
+        blend(session_.previous_bodies(), session_.present_bodies(), clock_.alpha()),
+        blend(session_.previous_particles(), session_.present().particles, clock_.alpha()));
     draw_probes(list, session_.probes(), session_.answers(), view_.hovered_handle,
                 !session_.simulation()->has_world());
     if (session_.simulation()->has_world())

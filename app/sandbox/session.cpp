@@ -32,6 +32,9 @@ std::string where_not_finite(const Simulation &simulation) {
         if (!finite(state.position) || !finite(state.velocity) || !finite(state.angular_velocity))
             where = "body \"" + simulation.body_info(body).name + "\", ";
     }
+    for (std::size_t i = 0; i < frame.particles.size() && where.empty(); ++i)
+        if (!finite(frame.particles[i].position) || !finite(frame.particles[i].velocity))
+            where = "particle \"" + simulation.soft_parts().particle_name(i) + "\", ";
     return where + "step " + std::to_string(simulation.step_count());
 }
 
@@ -196,7 +199,7 @@ bool Session::step() {
     graphs_.advance.add(times_.advance);
     graphs_.finish.add(times_.finish);
     graphs_.energy.add(simulation_->energy());
-    std::swap(previous_, present_.bodies);
+    std::swap(previous_, present_);
     read_present();
     see_impacts();
     if (!report.finite) {
@@ -344,7 +347,10 @@ void Session::pull_grabbed() {
     if (!grab_)
         return;
     disturb(simulation_->step_count() + 1);
-    if (!pulled_to_)
+    if (!pulled_to_ && grab_->particle)
+        apply(GrabParticle{simulation_->soft_parts().particle_name(*grab_->particle), grab_->target,
+                           grab_->max_force});
+    else if (!pulled_to_)
         apply(GrabBody{simulation_->body_info(grab_->body).name, grab_->local_point, grab_->target,
                        grab_->max_force});
     else if (*pulled_to_ != grab_->target)
@@ -391,6 +397,9 @@ void Session::save_mesh_files(const std::filesystem::path &folder) const {
     for (std::size_t body = 0; body < simulation_->body_count(); ++body)
         if (simulation_->body_info(body).alive)
             std::ranges::for_each(simulation_->body_info(body).colliders, add);
+    for (const ClothDesc &cloth : scene_.cloths)
+        if (cloth.mesh)
+            names.insert(cloth.file.name);
     for (const std::string &name : names) {
         const std::filesystem::path from = path_.parent_path() / name;
         const std::filesystem::path to = folder / name;
@@ -471,7 +480,7 @@ void Session::read_present() {
 
 void Session::settle_poses() {
     read_present();
-    previous_ = present_.bodies;
+    previous_ = present_;
     impacts_.clear();
 }
 

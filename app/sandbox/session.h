@@ -31,12 +31,13 @@ struct SessionGraphs {
     Graph energy;                               // J
 };
 
-// A body's point held to a moving target.
+// A body's point, or a particle, held to a moving target.
 struct Grab {
     std::size_t body = 0;
     glm::dvec3 local_point{0};
-    glm::dvec3 target{0}; // world
-    double max_force = 0; // N
+    glm::dvec3 target{0};                  // world
+    double max_force = 0;                  // N
+    std::optional<std::size_t> particle{}; // instead of the body
 };
 
 // An impact that has just been.
@@ -129,8 +130,12 @@ class Session {
     bool save_scene(const std::filesystem::path &path);
 
     // Before and after the last step; the same after anything but a step.
-    [[nodiscard]] const std::vector<BodyState> &previous_bodies() const { return previous_; }
+    [[nodiscard]] const std::vector<BodyState> &previous_bodies() const { return previous_.bodies; }
     [[nodiscard]] const std::vector<BodyState> &present_bodies() const { return present_.bodies; }
+    [[nodiscard]] const std::vector<ParticleState> &previous_particles() const {
+        return previous_.particles;
+    }
+    [[nodiscard]] const Frame &present() const { return present_; } // joints, contacts left out
     // Of the last impact_shown seconds, as long as nothing but steps came in between.
     static constexpr double impact_shown = 0.25;
     [[nodiscard]] const std::vector<SeenImpact> &impacts() const { return impacts_; }
@@ -177,7 +182,7 @@ class Session {
     std::vector<ProbeAnswer> answers_;
     bool stopped_ = false;
     bool memory_ran_out_ = false;
-    std::vector<BodyState> previous_;
+    Frame previous_;
     Frame present_; // bodies and impacts
     std::vector<SeenImpact> impacts_;
     SessionGraphs graphs_;

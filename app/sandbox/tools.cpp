@@ -1,6 +1,7 @@
 #include "app/sandbox/tools.h"
 
 #include "app/sandbox/probe_draw.h"
+#include "app/sandbox/soft_draw.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +10,27 @@
 
 namespace plumb {
 
-std::optional<Pick> pick(const Session &session, const Camera &camera, const glm::vec2 &pixel,
-                         const glm::vec2 &viewport) {
+std::optional<Picked> pick(const Session &session, const Camera &camera, const glm::vec2 &pixel,
+                           const glm::vec2 &viewport) {
     if (!session.running())
         return {};
     const PickRay ray = camera.pick_ray(pixel, viewport);
-    return session.simulation()->pick(glm::dvec3(ray.origin), glm::dvec3(ray.direction));
+    const glm::dvec3 origin(ray.origin);
+    const glm::dvec3 direction(ray.direction);
+    const std::optional<Pick> body = session.simulation()->pick(origin, direction);
+    std::optional<ParticlePick> particle;
+    if (const Frame &frame = session.present(); !frame.particles.empty()) {
+        const double a_pixel = 2.0 * static_cast<double>(camera.half_height() / viewport.y);
+        particle = pick_particle(
+            {session.simulation()->soft_parts(), frame.bodies, frame.particles, frame.torn}, origin,
+            glm::normalize(direction), Tools::click_slack * a_pixel);
+    }
+    const double to_body = body ? body->t * glm::length(direction) : 0;
+    if (particle && (!body || particle->t < to_body))
+        return Picked{std::nullopt, particle->particle, particle->point};
+    if (body)
+        return Picked{body->body, std::nullopt, body->point};
+    return std::nullopt;
 }
 
 void Tools::handle(const PointerEvent &event, const ToolTargets &targets) {
@@ -123,27 +139,37 @@ void Tools::release(const PointerEvent &event, const ToolTargets &targets) {
         targets.session.grab({});
     // Released over a panel, it is no click on the scene.
     if (drag_ == Drag::maybe_click && !event.over_panel) {
-        const std::optional<Pick> hit =
-            pick(targets.session, targets.camera, pressed_at_, targets.viewport);
-        targets.selected = hit ? std::optional(hit->body) : std::nullopt;
+        const Picked hit =
+            pick(targets.session, targets.camera, pressed_at_, targets.viewport).value_or(Picked{});
+        targets.selected = hit.body;
+        targets.selected_particle = hit.particle;
     }
     drag_ = Drag::none;
 }
 
 void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
-    const std::optional<Pick> hit =
-        pick(targets.session, targets.camera, event.position, targets.viewport);
-    const BodyInfo *info = hit ? &targets.session.simulation()->body_info(hit->body) : nullptr;
-    if (!info || info->kind != BodyKind::dynamic) {
+    const Simulation *simulation = targets.session.simulation();
+    const Picked hit =
+        pick(targets.session, targets.camera, event.position, targets.viewport).value_or(Picked{});
+    Grab grab;
+    grab.target = hit.point;
+    if (hit.particle && !simulation->soft_parts().particles[*hit.particle].pinned) {
+        grab.particle = hit.particle;
+        grab.max_force = grab_strength * simulation->soft_parts().mass_around(*hit.particle);
+    } else if (hit.body && simulation->body_info(*hit.body).kind == BodyKind::dynamic) {
+        const BodyState state = simulation->read().bodies[*hit.body];
+        grab.body = *hit.body;
+        grab.local_point = glm::conjugate(state.orientation) * (hit.point - state.position);
+        grab.max_force = grab_strength * simulation->body_info(*hit.body).mass;
+    } else {
         drag_ = Drag::orbit;
         return;
     }
-    const BodyState &state = targets.session.present_bodies()[hit->body];
-    const glm::dvec3 local = glm::conjugate(state.orientation) * (hit->point - state.position);
-    grab_point_ = hit->point;
+    grab_point_ = hit.point;
     grab_normal_ = -glm::dvec3(targets.camera.forward());
-    targets.session.grab(Grab{hit->body, local, hit->point, grab_strength * info->mass});
-    targets.selected = hit->body;
+    targets.session.grab(grab);
+    targets.selected = hit.body;
+    targets.selected_particle = hit.particle;
     drag_ = Drag::grab;
 }
 

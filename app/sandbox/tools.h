@@ -30,6 +30,7 @@ struct ToolTargets {
     Session &session;
     Camera &camera;
     std::optional<std::size_t> &selected;
+    std::optional<std::size_t> &selected_particle;
     glm::vec2 viewport{1}; // pixels
 };
 
@@ -73,8 +74,12 @@ class Tools {
     ProbeHandle handle_;        // that is dragged
 };
 
-// The body under a pixel.
-[[nodiscard]] std::optional<Pick> pick(const Session &session, const Camera &camera,
-                                       const glm::vec2 &pixel, const glm::vec2 &viewport);
+// The body or the particle under a pixel, whichever is nearer.
+struct Picked {
+    std::optional<std::size_t> body, particle;
+    glm::dvec3 point{0}; // on the body's surface, or the particle's centre
+};
+[[nodiscard]] std::optional<Picked> pick(const Session &session, const Camera &camera,
+                                         const glm::vec2 &pixel, const glm::vec2 &viewport);
 
 } // namespace plumb

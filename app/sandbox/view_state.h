@@ -28,6 +28,9 @@ struct ViewState {
     glm::vec3 followed{0};
     std::optional<std::size_t> selected;
     std::optional<std::size_t> hovered;
+    // At most one of a body and a particle is selected, and likewise hovered.
+    std::optional<std::size_t> selected_particle;
+    std::optional<std::size_t> hovered_particle;
     std::optional<ProbeHandle> hovered_handle;
     std::optional<ProbePoint> pointed_at; // of a picking probe's shapes, by the pointer's ray
     bool contacts = false;

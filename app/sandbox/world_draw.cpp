@@ -3,6 +3,7 @@
 #include "app/render/palette.h"
 #include "app/sandbox/joint_draw.h"
 #include "app/sandbox/shape_draw.h"
+#include "app/sandbox/soft_draw.h"
 
 #include <algorithm>
 #include <cmath>
@@ -179,6 +180,18 @@ double typical_mass(const Simulation &simulation) {
     return *middle;
 }
 
+// Where the grab has hold of what it holds; none of what is not there.
+std::optional<glm::dvec3> held_place(const Grab &grab, const std::vector<BodyState> &bodies,
+                                     const std::vector<ParticleState> &particles) {
+    if (grab.particle)
+        return *grab.particle < particles.size() ? std::optional(particles[*grab.particle].position)
+                                                 : std::nullopt;
+    if (grab.body >= bodies.size())
+        return std::nullopt;
+    const BodyState &pose = bodies[grab.body];
+    return pose.position + pose.orientation * grab.local_point;
+}
+
 void add_joints(DrawList &list, const Simulation &simulation, const Frame &frame,
                 const std::vector<BodyState> &poses, bool all) {
     const std::vector<JointView> joints = joints_at(frame, poses);
@@ -206,7 +219,8 @@ Camera camera_of(const CameraDesc &camera) {
 }
 
 DrawList draw_world(const Simulation &simulation, const Camera &camera,
-                    const WorldDrawOptions &options, const std::vector<BodyState> &poses) {
+                    const WorldDrawOptions &options, const std::vector<BodyState> &poses,
+                    const std::vector<ParticleState> &particles) {
     DrawList list;
     list.camera = camera;
     list.view.wireframe = options.wireframe;
@@ -218,6 +232,10 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
     for (std::size_t body = 0; body < shown.size(); ++body)
         if (simulation.body_info(body).alive)
             add_body(list, simulation.body_info(body), shown[body], body, options);
+    const std::vector<ParticleState> &shown_particles =
+        particles.size() == frame.particles.size() ? particles : frame.particles;
+    draw_soft_parts(list, {simulation.soft_parts(), shown, shown_particles, frame.torn},
+                    options.selected_particle, options.hovered_particle);
     add_joints(list, simulation, frame, shown, options.joints);
     if (options.contacts) {
         const double mass = typical_mass(simulation);
@@ -236,10 +254,10 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
                 // As far as the body goes in a quarter of a second.
                 add_arrow(list, shown[body].position, frame.bodies[body].velocity * 0.25,
                           colours::ink);
-    if (options.grab && options.grab->body < shown.size()) {
-        const BodyState &pose = shown[options.grab->body];
-        const glm::dvec3 held = pose.position + pose.orientation * options.grab->local_point;
-        add_line(list, held, options.grab->target, colours::grab, 2);
+    const auto held = options.grab ? held_place(*options.grab, shown, shown_particles)
+                                   : std::optional<glm::dvec3>{};
+    if (held) {
+        add_line(list, *held, options.grab->target, colours::grab, 2);
         DrawPoint point;
         point.position = glm::vec3(options.grab->target);
         point.colour = colours::grab;
@@ -268,6 +286,14 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
                 continue;
             low = glm::min(low, at - reach(info));
             high = glm::max(high, at + reach(info));
+        }
+        for (std::size_t i = 0; i < frame.particles.size(); ++i) {
+            const ParticleInfo &info = simulation.soft_parts().particles[i];
+            const glm::dvec3 at = frame.particles[i].position;
+            if (!std::isfinite(at.x + at.y + at.z) || (info.pinned && !info.cloth && !fixed_too))
+                continue;
+            low = glm::min(low, at - info.radius);
+            high = glm::max(high, at + info.radius);
         }
         if (low.x <= high.x)
             return {glm::vec3((low + high) * 0.5),

@@ -22,6 +22,8 @@ struct WorldDrawOptions {
     bool grid = true;
     std::optional<std::size_t> selected;
     std::optional<std::size_t> hovered;
+    std::optional<std::size_t> selected_particle;
+    std::optional<std::size_t> hovered_particle;
     std::optional<Grab> grab;
     std::vector<SeenImpact> impacts; // drawn with the contacts
 };
@@ -29,14 +31,16 @@ struct WorldDrawOptions {
 // The camera that the scene asks for.
 [[nodiscard]] Camera camera_of(const CameraDesc &camera);
 
-// `poses` are those to show, one for each body, or empty for the present ones. Contacts and joints
+// `poses` and `particles` are those to show, one for each body and each particle, or empty for the
+// present ones. Contacts and joints
 // are those of the last step, moved along with the bodies that are shown; velocities too are its.
 [[nodiscard]] DrawList draw_world(const Simulation &simulation, const Camera &camera,
                                   const WorldDrawOptions &options = {},
-                                  const std::vector<BodyState> &poses = {});
+                                  const std::vector<BodyState> &poses = {},
+                                  const std::vector<ParticleState> &particles = {});
 
-// A sphere around a body, or around all that can move, else around all but planes; half a metre at
-// the origin if there is nothing.
+// A sphere around a body, or around all that can move (particles and cloth too), else around all
+// but planes; half a metre at the origin if there is nothing.
 struct Around {
     glm::vec3 centre{0};
     float radius = 0.5f;

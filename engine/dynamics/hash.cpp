@@ -168,6 +168,8 @@ std::uint64_t World::hash() const {
         add(hash, state_.particles[i].velocity);
     }
     for (std::size_t i = 0; i < model_->springs.size(); ++i) {
+        if (state_.torn[i] != 0)
+            continue; // pulls no more: a hole, as that of a removed body is
         const Spring &spring = model_->springs[i];
         for (const SpringEnd &end : {spring.a, spring.b}) {
             const bool is_body = end.kind == SpringEnd::Kind::body;
@@ -178,7 +180,6 @@ std::uint64_t World::hash() const {
         for (const Real value :
              {spring.rest_length, spring.stiffness, spring.damping, spring.tear_strain})
             hash.add(value);
-        hash.add(std::uint64_t{state_.torn[i]});
     }
     if (state_.grab.holds_particle()) {
         hash.add(std::uint64_t{state_.grab.particle});

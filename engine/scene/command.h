@@ -79,6 +79,19 @@ struct GrabBody {
     }
 };
 
+// The same of a particle, by its name or as one of a cloth ("sheet[3,4]"). A pinned one ignores it.
+struct GrabParticle {
+    static constexpr std::string_view name = "grab_particle";
+    std::string particle;
+    glm::dvec3 target{0};
+    double max_force = 0; // N
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("particle", self.particle);
+        visit("target", self.target);
+        visit("max_force", self.max_force);
+    }
+};
+
 // Nothing held: does nothing.
 struct MoveGrab {
     static constexpr std::string_view name = "drag";
@@ -111,7 +124,7 @@ struct SetSettings {
     }
 };
 
-using Command = std::variant<AddBody, RemoveBody, SetMotion, ApplyImpulse, GrabBody, MoveGrab,
-                             ReleaseGrab, SetMethod, SetSettings>;
+using Command = std::variant<AddBody, RemoveBody, SetMotion, ApplyImpulse, GrabBody, GrabParticle,
+                             MoveGrab, ReleaseGrab, SetMethod, SetSettings>;
 
 } // namespace plumb

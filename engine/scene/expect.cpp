@@ -31,25 +31,25 @@ glm::dvec3 local_spin(const BodyState &body) {
 constexpr std::array all_quantities{
     QuantityInfo{"position.x", "m",
                  [](const BodyState &now, const BodyState &) { return now.position.x; },
-                 "centre of mass, world"},
+                 "centre of mass, world", false, true},
     QuantityInfo{"position.y", "m",
                  [](const BodyState &now, const BodyState &) { return now.position.y; },
-                 "centre of mass, world"},
+                 "centre of mass, world", false, true},
     QuantityInfo{"position.z", "m",
                  [](const BodyState &now, const BodyState &) { return now.position.z; },
-                 "centre of mass, world"},
+                 "centre of mass, world", false, true},
     QuantityInfo{"velocity.x", "m/s",
                  [](const BodyState &now, const BodyState &) { return now.velocity.x; },
-                 "of the centre of mass, world"},
+                 "of the centre of mass, world", false, true},
     QuantityInfo{"velocity.y", "m/s",
                  [](const BodyState &now, const BodyState &) { return now.velocity.y; },
-                 "of the centre of mass, world"},
+                 "of the centre of mass, world", false, true},
     QuantityInfo{"velocity.z", "m/s",
                  [](const BodyState &now, const BodyState &) { return now.velocity.z; },
-                 "of the centre of mass, world"},
+                 "of the centre of mass, world", false, true},
     QuantityInfo{"speed", "m/s",
                  [](const BodyState &now, const BodyState &) { return glm::length(now.velocity); },
-                 "length of the velocity"},
+                 "length of the velocity", false, true},
     QuantityInfo{"angular_velocity.x", "rad/s",
                  [](const BodyState &now, const BodyState &) { return now.angular_velocity.x; },
                  "world frame"},
@@ -76,18 +76,27 @@ constexpr std::array all_quantities{
                  [](const BodyState &now, const BodyState &start) {
                      return glm::length(now.position - start.position);
                  },
-                 "distance of the centre of mass from where it was at t = 0", true},
+                 "distance of the centre of mass from where it was at t = 0", true, true},
     QuantityInfo{"tilt", "rad",
                  [](const BodyState &now, const BodyState &start) {
                      return angle_between(up(now), up(start));
                  },
                  "angle between the body's y axis and where it pointed at t = 0, 0..pi", true},
-    QuantityInfo{"kinetic_energy", "J",
-                 [](const Measures &now, const SceneStart &) { return now.kinetic_energy; },
-                 "of all dynamic bodies, translation and rotation: sum of m v.v / 2 + w.I w / 2"},
-    QuantityInfo{"potential_energy", "J",
-                 [](const Measures &now, const SceneStart &) { return now.potential_energy; },
-                 "of all dynamic bodies in gravity: sum of -m g.r, r from the world's origin"},
+    QuantityInfo{"length", "m", [](const SpringState &now) { return now.length; },
+                 "distance of the spring's ends"},
+    QuantityInfo{"strain", "1",
+                 [](const SpringState &now) { return now.length / now.rest_length - 1; },
+                 "length / rest_length - 1 of the spring, below 0 when it is shorter"},
+    QuantityInfo{
+        "kinetic_energy", "J",
+        [](const Measures &now, const SceneStart &) { return now.kinetic_energy; },
+        "of all dynamic bodies and particles, translation and rotation: sum of m v.v / 2 + w.I w / "
+        "2"},
+    QuantityInfo{
+        "potential_energy", "J",
+        [](const Measures &now, const SceneStart &) { return now.potential_energy; },
+        "of all dynamic bodies and particles in gravity: sum of -m g.r, r from the world's "
+        "origin; and of springs that are not torn: sum of k (l - l0)^2 / 2"},
     QuantityInfo{"energy", "J",
                  [](const Measures &now, const SceneStart &) { return now.energy(); },
                  "kinetic_energy + potential_energy"},
@@ -127,6 +136,10 @@ constexpr std::array all_quantities{
         [](const Measures &now, const SceneStart &) { return now.max_joint_drift; },
         "largest error of any joint: distance between the anchors (of a slider: across its axis), "
         "or how far it is beyond its least or greatest length (distance)"},
+    QuantityInfo{"max_strain", "1",
+                 [](const Measures &now, const SceneStart &) { return now.max_strain; },
+                 "largest |length / rest_length - 1| of all springs that are not torn, those of "
+                 "cloth among them; 0 without any"},
 };
 
 constexpr std::array all_reductions{

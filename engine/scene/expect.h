@@ -14,6 +14,12 @@ namespace plumb {
 
 struct BodyState;
 
+// A spring as it is now.
+struct SpringState {
+    double length = 0;      // m
+    double rest_length = 1; // m
+};
+
 // A scene at the start, which its relative errors count from.
 struct SceneStart {
     Measures measures;
@@ -23,15 +29,18 @@ struct SceneStart {
 
 struct QuantityInfo {
     using OfBody = double (*)(const BodyState &now, const BodyState &start);
+    using OfSpring = double (*)(const SpringState &now);
     using OfScene = double (*)(const Measures &now, const SceneStart &start);
 
     std::string_view name;
     std::string_view unit;
-    std::variant<OfBody, OfScene> value;
+    std::variant<OfBody, OfSpring, OfScene> value;
     std::string_view description;
-    bool since_start = false; // counted from t = 0
+    bool since_start = false;  // counted from t = 0
+    bool of_particles = false; // a particle has it as well as a body
 
     constexpr bool needs_body() const { return std::holds_alternative<OfBody>(value); }
+    constexpr bool needs_spring() const { return std::holds_alternative<OfSpring>(value); }
 };
 
 // All quantities, in the order in which they are to be listed.
@@ -48,7 +57,8 @@ const QuantityInfo *find_quantity(std::string_view name); // null when there is 
 //   linear_momentum_error    change |p - p0|,    scale sum of m |v| at the start
 //   angular_momentum_error   change |L - L0|,    scale sum of |r x m v| + |I w| at the start
 // with E = K + U; K the kinetic energy and U = sum of -m g.r the potential energy of all dynamic
-// bodies; r from the world's origin; p, L their momenta, L about the world's origin; 0 marks t = 0.
+// bodies and particles, springs' added; r from the world's origin; p, L their momenta, L about the
+// world's origin; 0 marks t = 0.
 double relative_change(double change, double scale_at_start);
 
 enum class Reduction { last, min, max, mean, max_abs, drift, period, crossings };

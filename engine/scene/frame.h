@@ -23,6 +23,11 @@ struct BodyState {
     bool asleep = false;            // at rest, and not stepped
 };
 
+struct ParticleState {
+    glm::dvec3 position{0};
+    glm::dvec3 velocity{0};
+};
+
 struct ContactView {
     std::size_t body_a = 0;
     std::size_t body_b = 0;
@@ -68,7 +73,7 @@ struct ImpactView {
     double impulse = 0;     // N s
 };
 
-// What is read besides the bodies; nothing is computed that is not asked for.
+// What is read besides bodies, particles and springs; nothing is computed that is not asked for.
 struct FrameParts {
     bool joints = false;
     bool contacts = false;
@@ -77,11 +82,13 @@ struct FrameParts {
 
 struct Frame {
     std::uint64_t step_count = 0;
-    double time = 0;                   // s, since the start of the scene
-    std::vector<BodyState> bodies;     // by index, holes included
-    std::vector<JointView> joints;     // those that are there, ascending
-    std::vector<ContactView> contacts; // of the last step, a point each
-    std::vector<ImpactView> impacts;   // of the last step
+    double time = 0;                      // s, since the start of the scene
+    std::vector<BodyState> bodies;        // by index, holes included
+    std::vector<ParticleState> particles; // by index, as in Simulation::soft_parts
+    std::vector<std::uint8_t> torn;       // of each spring: 1 when it pulls no more
+    std::vector<JointView> joints;        // those that are there, ascending
+    std::vector<ContactView> contacts;    // of the last step, a point each
+    std::vector<ImpactView> impacts;      // of the last step
 };
 
 } // namespace plumb

@@ -4,6 +4,7 @@
 #include "engine/dynamics/kinds.h"
 #include "engine/scene/given_settings.h"
 #include "engine/scene/joint_desc.h"
+#include "engine/scene/particle_desc.h"
 #include "engine/scene/probe_desc.h"
 #include "engine/scene/shape_desc.h"
 
@@ -106,7 +107,7 @@ struct ExpectDesc {
     enum class Relation { equals, at_most, at_least };
     std::string name;            // unique in the scene
     std::string quantity;        // see scene/expect.h for the list
-    std::string body;            // for quantities of one body
+    std::string body;            // body, particle or spring, for quantities of one
     std::string reduce = "last"; // see scene/expect.h for the list
     std::optional<double> level; // for period and crossings; by default midway between min and max
     double from = 0;             // s
@@ -161,6 +162,9 @@ struct SceneDesc {
     std::vector<MaterialDesc> materials;
     std::vector<BodyDesc> bodies; // repeats expanded
     std::vector<JointDesc> joints;
+    std::vector<ParticleDesc> particles;
+    std::vector<SpringDesc> springs;
+    std::vector<ClothDesc> cloths;
     std::vector<ProbeDesc> probes;
     CameraDesc camera;
     std::vector<ExpectDesc> expects;
@@ -187,7 +191,12 @@ bool has_plane(const BodyDesc &body);
 
 // Whether there is a world to step: a scene that has only probes has none.
 inline bool has_world(const SceneDesc &scene) {
-    return !scene.bodies.empty() || !scene.joints.empty() || scene.probes.empty();
+    return !scene.bodies.empty() || !scene.joints.empty() || !scene.particles.empty() ||
+           !scene.cloths.empty() || scene.probes.empty();
+}
+
+inline bool has_soft_parts(const SceneDesc &scene) {
+    return !scene.particles.empty() || !scene.springs.empty() || !scene.cloths.empty();
 }
 
 } // namespace plumb

@@ -1,10 +1,23 @@
 #include "engine/scene/expect.h"
 #include "engine/scene/scene_file_number.h"
+#include "engine/scene/scene_file_particle.h"
 #include "engine/scene/scene_file_reading.h"
 
 namespace plumb::scene_file {
 
 namespace {
+
+// Of a spring that the scene has; none, having reported it, when it is none of its springs.
+std::optional<std::string> read_spring_name(Reading &reading, const Table &table) {
+    const std::optional<std::string> name = table.string("spring");
+    if (name && std::ranges::find(reading.scene.springs, *name, &SpringDesc::name) ==
+                    reading.scene.springs.end()) {
+        table.error("spring", "there is no spring " + in_quotes(*name),
+                    reading.springs.suggestion(*name));
+        return std::nullopt;
+    }
+    return name;
+}
 
 void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
     if (!table.require("quantity", "which quantity of the motion?"))
@@ -16,8 +29,25 @@ void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
     if (!chosen)
         return;
     expect.quantity = names[*chosen];
-    if (!quantities()[*chosen].needs_body()) {
+    const QuantityInfo &quantity = quantities()[*chosen];
+    if (quantity.needs_spring()) {
+        table.refuse({"body"}, expect.quantity, "it is of a spring: spring = \"...\"");
+        if (table.require("spring", expect.quantity + " is of one spring: which?"))
+            expect.body = read_spring_name(reading, table).value_or("");
+        return;
+    }
+    table.refuse({"spring"}, expect.quantity,
+                 quantity.needs_body() ? "it is of a body" : "it is of the whole scene");
+    if (!quantity.needs_body()) {
         table.refuse({"body"}, expect.quantity, "it is of the whole scene");
+        return;
+    }
+    const toml::node *name = table.node("body");
+    if (name != nullptr && name->is_string() && is_particle(reading, name->as_string()->get())) {
+        expect.body = name->as_string()->get();
+        if (!quantity.of_particles)
+            table.error("body", "there is no body " + in_quotes(expect.body),
+                        "a particle has no " + expect.quantity);
         return;
     }
     if (table.require("body", expect.quantity + " is of one body: which?"))
@@ -42,8 +72,8 @@ void read_reduction(const Table &table, ExpectDesc &expect) {
 } // namespace
 
 void read_expect(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 12> keys{
-        "name", "quantity", "body",    "reduce",   "level",     "from",
+    static constexpr std::array<std::string_view, 13> keys{
+        "name", "quantity", "body",    "spring",   "reduce",    "level", "from",
         "to",   "equals",   "at_most", "at_least", "tolerance", "source"};
     static constexpr std::array<std::string_view, 3> relations{"equals", "at_most", "at_least"};
     const Table table(reading.report, source, title_of("expect", source), keys);

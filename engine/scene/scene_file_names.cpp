@@ -40,9 +40,9 @@ std::optional<std::string> read_name(Report &report, const Table &table, const s
         table.error("name", "the name is empty", "each " + kind + " needs a name of its own");
         return std::nullopt;
     }
-    if (kind == "body" && *name == "world") {
-        table.error("name", "\"world\" cannot be the name of a body",
-                    "it stands for the world in joints");
+    if ((kind == "body" || kind == "particle" || kind == "cloth") && *name == "world") {
+        table.error("name", "\"world\" cannot be the name of a " + kind,
+                    "it stands for the world in joints and springs");
         return std::nullopt;
     }
     names.add(report, table.position("name"), kind, *name);

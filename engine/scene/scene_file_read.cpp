@@ -62,6 +62,9 @@ void read_scene(Reading &reading, const Table &top) {
     read_each("material", read_material);
     read_each("body", read_body);
     read_each("joint", read_joint);
+    read_each("particle", read_particle);
+    read_each("cloth", read_cloth);
+    read_each("spring", read_spring);
     read_each("expect", read_expect);
     scene.probes = read_probes(reading.report, top, scene.world.precision, reading.files);
     read_one("state", read_state);
@@ -136,9 +139,12 @@ SceneFileResult load_scene(const std::filesystem::path &path,
     if (!text)
         return result;
     result = parse_scene(*text, path.string(), known_methods);
-    if (result.ok() && result.scene.bodies.empty() && result.scene.probes.empty())
-        result.messages = {error(1, 1, "the scene is empty: it has no body and no probe",
-                                 "add a [[body]] or a [[probe]]")};
+    const SceneDesc &scene = result.scene;
+    if (result.ok() && scene.bodies.empty() && scene.probes.empty() && scene.particles.empty() &&
+        scene.cloths.empty())
+        result.messages = {
+            error(1, 1, "the scene is empty: it has no body, no particle, no cloth and no probe",
+                  "add a [[body]], a [[particle]], a [[cloth]] or a [[probe]]")};
     return result;
 }
 

@@ -36,11 +36,18 @@ struct Reading {
     Names materials;
     Names bodies;
     Names joints;
+    Names particles;
+    Names springs;
+    Names cloths;
     Names expects;
     std::map<std::string, double> densities; // of materials
     std::map<std::string, std::size_t> bodies_by_name;
+    std::map<std::string, std::size_t> particles_by_name;
+    std::map<std::string, std::size_t> cloths_by_name;
     std::map<std::string, BodyGroup> groups; // by the name of the repeated body
     std::size_t triangles = 0;               // of all bodies
+    std::size_t particle_count = 0;          // those of cloths among them
+    std::size_t spring_count = 0;            // likewise
     int missing_bodies = 0;
     bool said_too_many = false;
 };
@@ -52,9 +59,9 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string &
                                       std::vector<SceneMessage> &messages);
 
 // The keys of a scene's top level.
-inline constexpr std::array<std::string_view, 11> scene_keys{
-    "title", "description", "world", "methods", "camera", "material",
-    "body",  "joint",       "probe", "expect",  "state"};
+inline constexpr std::array<std::string_view, 14> scene_keys{
+    "title",    "description", "world",  "methods", "camera", "material", "body",
+    "particle", "cloth",       "spring", "joint",   "probe",  "expect",   "state"};
 
 // Reads all tables of a scene, and reports every error.
 void read_scene(Reading &reading, const Table &top);
@@ -66,6 +73,9 @@ void read_camera(Reading &reading, const toml::table &source);
 void read_material(Reading &reading, const toml::table &source);
 void read_body(Reading &reading, const toml::table &source);
 void read_joint(Reading &reading, const toml::table &source);
+void read_particle(Reading &reading, const toml::table &source);
+void read_cloth(Reading &reading, const toml::table &source);
+void read_spring(Reading &reading, const toml::table &source); // after what it may name
 void read_expect(Reading &reading, const toml::table &source);
 void read_state(Reading &reading, const toml::table &source);
 

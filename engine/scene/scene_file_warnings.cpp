@@ -81,11 +81,12 @@ class Checker {
 
     std::vector<SceneMessage> run() {
         check_joints();
+        check_springs();
         check_pairs();
         check_dt();
         std::vector<SceneMessage> all;
-        for (Kind *kind : {&overlaps_, &mass_ratios_, &gaps_, &idle_joints_, &fast_, &spinning_,
-                           &falling_, &pendulums_})
+        for (Kind *kind : {&overlaps_, &mass_ratios_, &gaps_, &idle_joints_, &idle_springs_,
+                           &stiff_springs_, &fast_, &spinning_, &falling_, &pendulums_})
             kind->move_into(all);
         return all;
     }
@@ -169,6 +170,47 @@ class Checker {
         }
         std::sort(exempt_.begin(), exempt_.end());
     }
+
+    // 1/kg; 0 for what never moves.
+    double inv_mass(const SoftParts &parts, const SpringEndInfo &end) const {
+        switch (end.kind) {
+        case SpringEndInfo::Kind::world:
+            break;
+        case SpringEndInfo::Kind::particle:
+            return parts.particles[end.index].pinned ? 0 : 1 / parts.particles[end.index].mass;
+        case SpringEndInfo::Kind::body:
+            return masses_[end.index] > 0 ? 1 / masses_[end.index] : 0;
+        }
+        return 0;
+    }
+
+    void check_springs() {
+        if (scene_.springs.empty())
+            return;
+        const SoftParts parts(scene_);
+        const MethodInfo *method = find_method_info(scene_.world.method);
+        const double step = method ? substep(settings_of(scene_.world, *method)) : 0;
+        for (std::size_t i = 0; i < scene_.springs.size(); ++i) {
+            const SpringInfo &spring = parts.springs[i];
+            const double moved = inv_mass(parts, spring.a) + inv_mass(parts, spring.b);
+            const std::string name = in_quotes(scene_.springs[i].name);
+            if (moved == 0)
+                idle_springs_.add(positions_.springs[i],
+                                  "spring " + name + " moves nothing: neither of its ends moves",
+                                  "");
+            // As of a pendulum, below. RK4 bears 2.83, and methods with contacts are implicit here.
+            const double omega = std::sqrt(spring.stiffness * moved);
+            if (method && !method->contacts && method->name != "backward_euler" && omega * step > 2)
+                stiff_springs_.add(positions_.springs[i],
+                                   "spring " + name +
+                                       " has omega = sqrt(k / m) = " + rounded(omega) +
+                                       " rad/s, and omega h = " + rounded(omega * step) +
+                                       " > 2 is unstable (h = dt / substeps)",
+                                   "a step h up to " + rounded(2 / omega));
+        }
+    }
+
+    static double substep(const StepSettings &settings) { return settings.dt / settings.substeps; }
 
     void check_pair(std::size_t a, std::size_t b) {
         if (a > b)
@@ -299,6 +341,8 @@ class Checker {
     Kind mass_ratios_{"such pairs"};
     Kind gaps_{"such joints"};
     Kind idle_joints_{"such joints"};
+    Kind idle_springs_{"such springs"};
+    Kind stiff_springs_{"such springs"};
     Kind fast_{"such bodies"};
     Kind spinning_{"such bodies"};
     Kind falling_{"such bodies"};

@@ -18,6 +18,9 @@ struct ScenePositions {
     FilePosition dt;
     std::vector<FilePosition> bodies;
     std::vector<FilePosition> joints;
+    std::vector<FilePosition> particles;
+    std::vector<FilePosition> springs;
+    std::vector<FilePosition> cloths;
 };
 
 // Of a scene without errors:
@@ -26,7 +29,8 @@ struct ScenePositions {
 //   (unless a joint keeps them from colliding);
 // - two dynamic bodies that touch or are joined differ more than a hundredfold in mass;
 // - the anchors of a ball joint are apart by more than 10 % of the smaller body's width;
-// - a joint moves nothing, as neither of its bodies is dynamic;
+// - a joint or a spring moves nothing, as neither of its ends is dynamic;
+// - a spring is too stiff for an explicit method's step;
 // - dt is too long: see the messages for the formulas.
 // No more than ten of a kind are listed, the last of them saying how many more there are.
 std::vector<SceneMessage> scene_warnings(const SceneDesc &scene, const ScenePositions &positions);

@@ -1,3 +1,4 @@
+#include "engine/scene/expect.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_file_number.h"
 #include "engine/scene/scene_file_shape_write.h"
@@ -60,6 +61,12 @@ class SceneWriter {
             write_body(body);
         for (const JointDesc &joint : scene.joints)
             header("[[joint]]"), text_ += joint_text(joint);
+        for (const ParticleDesc &particle : scene.particles)
+            header("[[particle]]"), text_ += particle_text(particle);
+        for (const ClothDesc &cloth : scene.cloths)
+            header("[[cloth]]"), text_ += cloth_text(cloth);
+        for (const SpringDesc &spring : scene.springs)
+            header("[[spring]]"), text_ += spring_text(spring);
         for (const ProbeDesc &probe : scene.probes)
             write_probe(probe);
         for (const ExpectDesc &expect : scene.expects)
@@ -296,7 +303,8 @@ class SceneWriter {
         line("name", string(expect.name));
         line("quantity", string(expect.quantity));
         if (!expect.body.empty())
-            line("body", string(expect.body));
+            line(find_quantity(expect.quantity)->needs_spring() ? "spring" : "body",
+                 string(expect.body));
         line("reduce", string(expect.reduce));
         if (expect.level)
             line("level", shortest(*expect.level));

@@ -11,6 +11,10 @@ inline constexpr std::size_t max_scene_planes = 100;
 // some 600 bytes. 15 for each of max_scene_bodies, which is more than a solid block of boxes has.
 inline constexpr std::size_t max_scene_pairs = 3'000'000;
 
+// Those of cloth among them: of each some 200 bytes, and as a saved scene 100 characters.
+inline constexpr std::size_t max_scene_particles = 200'000;
+inline constexpr std::size_t max_scene_springs = 2'000'000;
+
 // Of the surfaces of all bodies, each by itself: some 110 bytes a triangle.
 inline constexpr std::size_t max_scene_triangles = 4'000'000;
 

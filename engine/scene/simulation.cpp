@@ -91,6 +91,11 @@ std::string why_not(const MethodInfo &method, const SceneDesc &scene) {
     const std::string name(method.name);
     if (!method.joints && !scene.joints.empty())
         return name + " knows no joints, and the scene has " + std::to_string(scene.joints.size());
+    if (!method.springs && has_soft_parts(scene))
+        return name + " knows no particles and no springs, and the scene has some";
+    if (!method.contacts && !scene.bodies.empty() &&
+        (!scene.particles.empty() || !scene.cloths.empty()))
+        return name + " knows no contacts, and the scene has particles and bodies that could touch";
     const bool any_dynamic = std::ranges::any_of(
         scene.bodies, [](const BodyDesc &b) { return b.kind == BodyKind::dynamic; });
     if (!method.contacts && any_dynamic && scene.bodies.size() > 1)
@@ -99,9 +104,14 @@ std::string why_not(const MethodInfo &method, const SceneDesc &scene) {
     return {};
 }
 
+const SoftParts &Simulation::soft_parts() const {
+    static const SoftParts none;
+    return none;
+}
+
 std::string Simulation::free_name(const std::string &name) const {
     std::string free = name;
-    for (int number = 2; find_body(free); ++number)
+    for (int number = 2; find_body(free) || soft_parts().has_name(free); ++number)
         free = name + "_" + std::to_string(number);
     return free;
 }

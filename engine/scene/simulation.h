@@ -12,6 +12,7 @@
 #include "engine/scene/command.h"
 #include "engine/scene/frame.h"
 #include "engine/scene/scene_desc.h"
+#include "engine/scene/soft_parts.h"
 
 #include <cstdint>
 #include <memory>
@@ -125,6 +126,9 @@ class Simulation {
     virtual std::optional<std::size_t> find_body(std::string_view name) const = 0;
     // The name, with a number behind it when it is taken already.
     std::string free_name(const std::string &name) const;
+
+    // Particles, springs and cloth, as they were at the start.
+    virtual const SoftParts &soft_parts() const;
 
     virtual const std::string &joint_name(std::size_t joint) const = 0; // a JointView's
 

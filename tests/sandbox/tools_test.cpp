@@ -26,7 +26,7 @@ class ToolsTest : public testing::Test {
         event.ctrl = ctrl;
         event.shift = shift;
         event.over_panel = over_panel;
-        tools.handle(event, {session, camera, selected, viewport});
+        tools.handle(event, {session, camera, selected, selected_particle, viewport});
     }
     FakeSimulation &fake() { return dynamic_cast<FakeSimulation &>(*session.simulation()); }
 
@@ -36,6 +36,7 @@ class ToolsTest : public testing::Test {
     Session session;
     Camera camera;
     std::optional<std::size_t> selected;
+    std::optional<std::size_t> selected_particle;
     Tools tools;
 };
 
@@ -98,10 +99,10 @@ TEST_F(ToolsTest, PressAndWheelOverAPanelAreThePanels) {
     wheel.kind = Kind::wheel;
     wheel.notches = 3;
     wheel.over_panel = true;
-    tools.handle(wheel, {session, camera, selected, viewport});
+    tools.handle(wheel, {session, camera, selected, selected_particle, viewport});
     EXPECT_EQ(camera.distance, before.distance);
     wheel.over_panel = false;
-    tools.handle(wheel, {session, camera, selected, viewport});
+    tools.handle(wheel, {session, camera, selected, selected_particle, viewport});
     EXPECT_LT(camera.distance, before.distance);
 }
 

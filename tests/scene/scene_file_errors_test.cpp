@@ -292,7 +292,7 @@ name = @"world"
 shape = "sphere"
 radius = 1
 )",
-         {R"("world" cannot be the name of a body; it stands for the world in joints)"}},
+         {R"("world" cannot be the name of a body; it stands for the world in joints and springs)"}},
         {"DuplicateBody",
          ball + R"([[body]]
 name = @"ball"

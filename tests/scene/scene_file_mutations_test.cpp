@@ -100,6 +100,41 @@ anchor_a = [-4, 4, 0]
 anchor_b_local = [0, 0.1, 0]
 length = 0.9
 
+[[particle]]
+name = "bob"
+position = [7, 2, 0]
+mass = 0.5
+radius = 0.05
+pinned = false
+material = "steel"
+
+[[cloth]]
+name = "sheet"
+cells = [3, 2]
+size = [1, 0.5]
+position = [9, 2, 0]
+rotation_deg = [90, 0, 0]
+stretch = 500
+shear = 50
+tear_strain = 0.5
+pins = [[0, 0], [3, 0]]
+
+[[spring]]
+name = "string"
+a = "bob"
+anchor_b = [7, 3, 0]
+rest_length = 0.9
+stiffness = 50
+damping_ratio = 0.1
+
+[[spring]]
+name = "line"
+a = "sheet[3,2]"
+b = "ball"
+anchor_b_local = [0, 0.25, 0]
+frequency = 2
+torn = true
+
 [[expect]]
 name = "ball slows down"
 quantity = "velocity.x"

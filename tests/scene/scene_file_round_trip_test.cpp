@@ -2,6 +2,7 @@
 #include "engine/scene/scene_file.h"
 
 #include "engine/core/random.h"
+#include "engine/scene/cloth.h"
 #include "engine/scene/expect.h"
 #include "engine/scene/joint_type.h"
 #include "engine/scene/scene_file_number.h"
@@ -115,6 +116,28 @@ std::vector<std::string> words(const SceneDesc &scene) {
         for (const double impulse : j.impulses)
             w.add(impulse);
     }
+    for (const ParticleDesc &p : scene.particles) {
+        w.add(p.name), w.add(p.position), w.add(p.velocity), w.add(p.mass), w.add(p.radius);
+        w.number(p.pinned), w.add(p.material), w.add(p.colour);
+    }
+    for (const ClothDesc &c : scene.cloths) {
+        w.add(c.name), w.add(c.position), w.add(c.orientation);
+        for (const int cells : c.cells)
+            w.number(static_cast<std::uint64_t>(cells));
+        w.add(c.size.x), w.add(c.size.y), w.add(c.mass), w.add(c.radius), w.add(c.stretch);
+        w.add(c.shear), w.add(c.bend), w.add(c.damping), w.add(c.tear_strain);
+        w.add(c.material), w.add(c.colour), w.number(c.pins.size()), w.number(c.torn.size());
+        for (const std::vector<std::uint32_t> *all : {&c.pins, &c.torn})
+            for (const std::uint32_t each : *all)
+                w.number(each);
+        for (const ParticleState &p : c.particles)
+            w.add(p.position), w.add(p.velocity);
+    }
+    for (const SpringDesc &s : scene.springs) {
+        w.add(s.name), w.add(s.a), w.add(s.b), w.add(s.anchor_a_local), w.add(s.anchor_b_local);
+        w.add(s.rest_length), w.add(s.stiffness), w.add(s.damping), w.add(s.tear_strain);
+        w.number(s.torn);
+    }
     for (const ExpectDesc &e : scene.expects) {
         w.add(e.name), w.add(e.quantity), w.add(e.body), w.add(e.reduce), w.add(e.level);
         w.add(e.from), w.add(e.to), w.number(static_cast<std::uint64_t>(e.relation));
@@ -159,6 +182,12 @@ class Scenes {
             scene.bodies.push_back(body(scene));
         for (int i = 0; i < 4; ++i)
             scene.joints.push_back(joint(scene));
+        for (int i = 0; i < 3; ++i)
+            scene.particles.push_back(particle(scene));
+        for (int i = 0; i < 2; ++i)
+            scene.cloths.push_back(cloth(scene));
+        for (int i = 0; i < 3; ++i)
+            scene.springs.push_back(spring(scene));
         for (int i = 0; i < 3; ++i)
             scene.expects.push_back(expect(scene));
         scene.step_count = one_in(3) ? random_.next_u64() : random_.next_index(1000);
@@ -413,6 +442,78 @@ class Scenes {
         j.*member = {std::min(a, b), std::max(a, b)};
     }
 
+    ParticleDesc particle(const SceneDesc &scene) {
+        ParticleDesc p;
+        p.name = unique();
+        p.position = vector();
+        p.mass = positive();
+        p.radius = positive();
+        p.pinned = one_in(3);
+        if (!p.pinned && one_in(2))
+            p.velocity = vector();
+        if (one_in(2))
+            p.material = scene.materials[random_.next_index(3)].name;
+        p.colour = colour();
+        return p;
+    }
+
+    ClothDesc cloth(const SceneDesc &scene) {
+        ClothDesc c;
+        c.name = unique();
+        c.cells = {1 + static_cast<int>(random_.next_index(4)),
+                   1 + static_cast<int>(random_.next_index(4))};
+        c.size = {positive(), positive()};
+        c.position = vector();
+        if (one_in(2))
+            c.orientation = rotation();
+        c.mass = 1 + positive();
+        c.radius = positive();
+        if (one_in(2)) {
+            c.stretch = positive();
+            c.shear = 0;
+            c.bend = positive();
+            c.damping = 0;
+            c.tear_strain = positive();
+        }
+        const std::size_t count = particle_count(c);
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (one_in(4))
+                c.pins.push_back(i);
+        if (one_in(2))
+            for (std::size_t i = 0; i < count; ++i)
+                c.particles.push_back({vector(), vector()});
+        if (one_in(2))
+            c.torn = {0, 2};
+        if (one_in(2))
+            c.material = scene.materials[random_.next_index(3)].name;
+        c.colour = colour();
+        return c;
+    }
+
+    SpringDesc spring(const SceneDesc &scene) {
+        SpringDesc s;
+        s.name = unique();
+        const ClothDesc &cloth = scene.cloths[random_.next_index(2)];
+        s.a = one_in(2) ? scene.particles[random_.next_index(2)].name
+                        : particle_name(cloth, random_.next_index(4));
+        if (one_in(2)) {
+            s.b = one_in(2) ? "" : scene.bodies[random_.next_index(8)].name;
+            s.anchor_b_local = vector();
+        } else {
+            s.b = scene.particles[2].name;
+        }
+        if (one_in(2)) {
+            std::swap(s.a, s.b);
+            std::swap(s.anchor_a_local, s.anchor_b_local);
+        }
+        s.rest_length = positive();
+        s.stiffness = positive();
+        s.damping = one_in(2) ? 0 : positive();
+        s.tear_strain = one_in(2) ? 0 : positive();
+        s.torn = one_in(3);
+        return s;
+    }
+
     ExpectDesc expect(const SceneDesc &scene) {
         ExpectDesc e;
         e.name = unique();
@@ -420,7 +521,11 @@ class Scenes {
             quantities()[random_.next_index(static_cast<std::uint32_t>(quantities().size()))];
         e.quantity = quantity.name;
         if (quantity.needs_body())
-            e.body = scene.bodies[random_.next_index(8)].name;
+            e.body = quantity.of_particles && one_in(2)
+                         ? scene.particles[random_.next_index(3)].name
+                         : scene.bodies[random_.next_index(8)].name;
+        if (quantity.needs_spring())
+            e.body = scene.springs[random_.next_index(3)].name;
         const ReductionInfo &reduction =
             reductions()[random_.next_index(static_cast<std::uint32_t>(reductions().size()))];
         e.reduce = reduction.name;

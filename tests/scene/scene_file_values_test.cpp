@@ -277,9 +277,10 @@ TEST(SceneFileValues, LoadRefusesAFileWithNothingToRun) {
         const SceneFileResult result = load_scene(path);
         EXPECT_FALSE(result.ok());
         ASSERT_EQ(result.messages.size(), 1U) << text;
-        EXPECT_EQ(format_message("s.toml", result.messages[0]),
-                  "s.toml:1:1: error: the scene is empty: it has no body and no probe; add a "
-                  "[[body]] or a [[probe]]");
+        EXPECT_EQ(
+            format_message("s.toml", result.messages[0]),
+            "s.toml:1:1: error: the scene is empty: it has no body, no particle, no cloth and no "
+            "probe; add a [[body]], a [[particle]], a [[cloth]] or a [[probe]]");
         EXPECT_TRUE(parse_scene(text, "s.toml").ok()); // as a text it is a scene
     }
     std::filesystem::remove(path);

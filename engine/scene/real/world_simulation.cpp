@@ -4,6 +4,7 @@
 #include "engine/core/check.h"
 #include "engine/dynamics/world.h"
 #include "engine/math/basis.h"
+#include "engine/scene/expect.h"
 #include "engine/scene/real/body_def.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ class WorldSimulation final : public Simulation {
   public:
     WorldSimulation(const SceneDesc &scene, const ResolvedRun &run, TaskPool *tasks)
         : tasks_(tasks), precision_(run.precision), world_(run.method->name, run.settings),
-          book_(std::make_shared<Book>()) {
+          book_(std::make_shared<Book>()), soft_(scene) {
         book_->scene = scene;
         book_->scene.bodies.clear();
         book_->scene.joints.clear();
@@ -37,6 +38,10 @@ class WorldSimulation final : public Simulation {
             insert(body);
         for (const JointDesc &joint : scene.joints)
             insert(joint);
+        for (const ParticleInfo &particle : soft_.particles)
+            insert(particle);
+        for (const SpringInfo &spring : soft_.springs)
+            insert(spring);
         for (const ContactStateDesc &contact : scene.contacts)
             remember(contact);
         for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
@@ -99,6 +104,7 @@ class WorldSimulation final : public Simulation {
     const std::string &joint_name(std::size_t joint) const override {
         return book_->scene.joints.at(joint).name;
     }
+    const SoftParts &soft_parts() const override { return soft_; }
     void read(Frame &into, const FrameParts &parts) const override;
 
     std::optional<Pick> pick(const glm::dvec3 &origin, const glm::dvec3 &direction) const override {
@@ -124,6 +130,7 @@ class WorldSimulation final : public Simulation {
     void obey(const SetMotion &command);
     void obey(const ApplyImpulse &command);
     void obey(const GrabBody &command);
+    void obey(const GrabParticle &command);
     void obey(const MoveGrab &command) { world_.move_grab(Vec3{command.target}); }
     void obey(const ReleaseGrab &) { world_.release(); }
     void obey(const SetMethod &command);
@@ -148,12 +155,16 @@ class WorldSimulation final : public Simulation {
     std::size_t index_of(const std::string &name) const;
     void insert(const BodyDesc &desc);
     void insert(const JointDesc &desc);
+    void insert(const ParticleInfo &info);
+    void insert(const SpringInfo &info);
     void remember(const ContactStateDesc &desc);
+    void describe_soft_parts(SceneDesc &out) const;
 
     TaskPool *tasks_;
     Precision precision_;
     World world_;
     std::shared_ptr<Book> book_;
+    const SoftParts soft_; // of the start
 };
 
 void WorldSimulation::obey(const AddBody &command) {
@@ -162,6 +173,9 @@ void WorldSimulation::obey(const AddBody &command) {
                                     " knows no contacts, so no body can be added");
     if (book_->index_of.contains(command.body.name))
         throw std::invalid_argument("there is a body \"" + command.body.name + "\" already");
+    if (soft_.has_name(command.body.name))
+        throw std::invalid_argument("a particle or cloth is called \"" + command.body.name +
+                                    "\" already");
     insert(command.body);
 }
 
@@ -186,6 +200,14 @@ void WorldSimulation::obey(const ApplyImpulse &command) {
 void WorldSimulation::obey(const GrabBody &command) {
     world_.grab(id_of(index_of(command.body)), Vec3{command.point}, Vec3{command.target},
                 static_cast<Real>(command.max_force));
+}
+
+void WorldSimulation::obey(const GrabParticle &command) {
+    const std::optional<std::size_t> particle = soft_.find_particle(command.particle);
+    if (!particle)
+        throw std::invalid_argument("there is no particle \"" + command.particle + '"');
+    world_.grab_particle(static_cast<std::uint32_t>(*particle), Vec3{command.target},
+                         static_cast<Real>(command.max_force));
 }
 
 void WorldSimulation::obey(const SetMethod &command) {
@@ -256,6 +278,47 @@ void WorldSimulation::insert(const JointDesc &desc) {
     edit().scene.joints.push_back(desc);
 }
 
+void WorldSimulation::insert(const ParticleInfo &info) {
+    const MaterialDesc &material = material_of(book_->scene, info.material);
+    ParticleDef def;
+    def.position = Vec3{info.start.position};
+    def.velocity = Vec3{info.start.velocity};
+    def.mass = static_cast<Real>(info.mass);
+    def.radius = static_cast<Real>(info.radius);
+    def.pinned = info.pinned;
+    def.material = {static_cast<Real>(material.friction), static_cast<Real>(material.restitution)};
+    world_.add_particle(def);
+}
+
+void WorldSimulation::insert(const SpringInfo &info) {
+    const auto end_of = [](const SpringEndInfo &end) {
+        SpringEnd made;
+        switch (end.kind) {
+        case SpringEndInfo::Kind::world:
+            made.kind = SpringEnd::Kind::world;
+            break;
+        case SpringEndInfo::Kind::particle:
+            made.kind = SpringEnd::Kind::particle;
+            break;
+        case SpringEndInfo::Kind::body:
+            made.kind = SpringEnd::Kind::body;
+            break;
+        }
+        made.index = static_cast<std::uint32_t>(end.index);
+        made.anchor = Vec3{end.anchor_local};
+        return made;
+    };
+    SpringDef def;
+    def.a = end_of(info.a);
+    def.b = end_of(info.b);
+    def.rest_length = static_cast<Real>(info.rest_length);
+    def.stiffness = static_cast<Real>(info.stiffness);
+    def.damping = static_cast<Real>(info.damping);
+    def.tear_strain = static_cast<Real>(info.tear_strain);
+    def.torn = info.torn;
+    world_.add_spring(def);
+}
+
 void WorldSimulation::remember(const ContactStateDesc &desc) {
     std::vector<PointMemory> points;
     for (const ContactStateDesc::Point &point : desc.points)
@@ -286,7 +349,8 @@ SceneDesc WorldSimulation::describe() const {
     out.step_count = world.step_count();
     set_run(out.world, method(), world.settings());
     std::erase_if(out.expects, [this](const ExpectDesc &expect) {
-        return !expect.body.empty() && !book_->index_of.contains(expect.body);
+        return !expect.body.empty() && !book_->index_of.contains(expect.body) &&
+               !soft_.find_particle(expect.body) && !soft_.find_spring(expect.body);
     });
     out.world.precision = precision_;
     for (std::uint32_t i = 0; i < book_->infos.size(); ++i) {
@@ -335,7 +399,45 @@ SceneDesc WorldSimulation::describe() const {
         }
         out.contacts.push_back(std::move(state));
     }
+    describe_soft_parts(out);
     return out;
+}
+
+void WorldSimulation::describe_soft_parts(SceneDesc &out) const {
+    const State &state = world_.state();
+    const auto state_of = [&](std::size_t particle) {
+        const ParticleMotion &motion = state.particles[particle];
+        return ParticleState{glm::dvec3{motion.position}, glm::dvec3{motion.velocity}};
+    };
+    for (std::size_t i = 0; i < out.particles.size(); ++i) {
+        const ParticleState now = state_of(i);
+        out.particles[i].position = now.position;
+        out.particles[i].velocity = now.velocity;
+    }
+    for (std::size_t c = 0; c < out.cloths.size(); ++c) {
+        ClothDesc &cloth = out.cloths[c];
+        const ClothInfo &info = soft_.cloths[c];
+        cloth.particles.clear();
+        for (std::size_t i = 0; i < info.particle_count; ++i)
+            cloth.particles.push_back(state_of(info.first_particle + i));
+        cloth.torn.clear();
+        for (std::uint32_t i = 0; i < info.spring_count; ++i)
+            if (state.torn[info.first_spring + i] != 0)
+                cloth.torn.push_back(i);
+    }
+    for (std::size_t i = 0; i < out.springs.size(); ++i)
+        out.springs[i].torn = state.torn[i] != 0;
+    // Those of removed bodies are gone.
+    std::erase_if(out.springs, [&](const SpringDesc &spring) {
+        const auto is_there = [&](const std::string &end) {
+            return end.empty() || book_->index_of.contains(end) || soft_.find_particle(end);
+        };
+        return !is_there(spring.a) || !is_there(spring.b);
+    });
+    std::erase_if(out.expects, [&](const ExpectDesc &expect) {
+        return find_quantity(expect.quantity)->needs_spring() &&
+               std::ranges::find(out.springs, expect.body, &SpringDesc::name) == out.springs.end();
+    });
 }
 
 BodyState WorldSimulation::body_state(std::uint32_t body) const {
@@ -351,6 +453,12 @@ void WorldSimulation::read(Frame &into, const FrameParts &parts) const {
     into.bodies.resize(world_.motions().size());
     for (std::uint32_t i = 0; i < into.bodies.size(); ++i)
         into.bodies[i] = body_state(i);
+    const State &state = world_.state();
+    into.particles.resize(state.particles.size());
+    for (std::size_t i = 0; i < into.particles.size(); ++i)
+        into.particles[i] = {glm::dvec3{state.particles[i].position},
+                             glm::dvec3{state.particles[i].velocity}};
+    into.torn.assign(state.torn.begin(), state.torn.end());
     into.joints.clear();
     for (std::uint32_t i = 0; parts.joints && i < world_.joints().size(); ++i)
         if (world_.joints()[i].alive)
