@@ -225,14 +225,14 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
     const Motion &motion_b = state_.motions[candidate.key.b];
     const bool is_predicted = method_->info.looks_ahead && !a.sensor && !b.sensor &&
                               way_of(candidate) > predicted_from(a, b);
+    const bool is_turning = turn_together(candidate.key.a, candidate.key.b);
     if (!a.surface && !b.surface) {
-        const bool is_turning = turn_together(candidate.key.a, candidate.key.b);
         if (!is_turning && keeps_contacts() && keep_contact(candidate, out))
             return;
         FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin),
                             motion_a, motion_b};
         if (is_turning)
-            found = turned_manifold(candidate, margin);
+            found.moment = Moment::turning;
         else if (found.manifold.count > 0 && is_predicted && !touches(found.manifold))
             found = predicted_manifold(candidate);
         else if (found.manifold.count > 0 && is_predicted)
@@ -261,7 +261,9 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                                 motion_a, motion_b};
             if (!solid_first)
                 found.manifold.normal = -found.manifold.normal;
-            if (is_predicted && !touches(found.manifold))
+            if (is_turning)
+                found.moment = Moment::turning;
+            else if (is_predicted && !touches(found.manifold))
                 found = predicted_manifold(candidate, triangle);
             drop_inner_edges(candidate, triangle, found);
             add_contact(candidate, triangle, found, out);

@@ -51,8 +51,9 @@ struct ContactOrigin {
     Quat rotation_b = identity_rotation;
 };
 
-// start: of the step. middle: halfway, for what turns together. touch: where the two will meet.
-enum class Moment { start, middle, touch };
+// start: of the step. turning: of every substep, for what turns together. touch: where the two will
+// meet.
+enum class Moment { start, turning, touch };
 
 // Two colliders that touch, or are about to, as found in this step or kept from an earlier one.
 // Separations are those of the present poses.

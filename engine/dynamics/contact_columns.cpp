@@ -1,5 +1,6 @@
 #include "engine/dynamics/contact_columns.h"
 
+#include "engine/dynamics/approach.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
@@ -162,22 +163,69 @@ void correct_separations(StepContext &context) {
             const SolverBody &b = context.bodies[contact.key.b];
             if (contact.moment == Moment::start && !has_turned_far(a) && !has_turned_far(b))
                 continue;
-            const Vec3 &n = contact.manifold.normal;
+            const Vec3 n = get(block.normal, lane);
             const Real rounding_a = block.rounding_a.lanes[lane];
             const Real rounding_b = block.rounding_b.lanes[lane];
             for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
                 const ContactAnchor &anchor = contact.anchors[k];
                 const Real exact = separation_along(n, anchor.core_a, anchor.core_b,
                                                     rounding_a + rounding_b, a, b);
-                const Real way = glm::dot(n, b.moved - a.moved) +
-                                 way_along(n, b.turned, anchor.arm_b, -rounding_b) -
-                                 way_along(n, a.turned, anchor.arm_a, rounding_a);
+                const Real way =
+                    glm::dot(n, b.moved - a.moved) +
+                    way_along(n, b.turned, get(block.points[k].r_b, lane), -rounding_b) -
+                    way_along(n, a.turned, get(block.points[k].r_a, lane), rounding_a);
                 block.points[k].separation.lanes[lane] = exact - way;
             }
         }
 }
 
+// Normal, tangents and arms of one contact as they are t seconds from now.
+void turn_lane(const StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    const Motion a = ahead(context.bodies[contact.key.a], t);
+    const Motion b = ahead(context.bodies[contact.key.b], t);
+    const bool a_moves = is_dynamic(context, contact.key.a);
+    const bool b_moves = is_dynamic(context, contact.key.b);
+    const Quat turn = a_moves ? b.rotation * glm::conjugate(contact.origin.rotation_b)
+                              : a.rotation * glm::conjugate(contact.origin.rotation_a);
+    const Vec3 n = turn * contact.manifold.normal;
+    set(block.normal, lane, n);
+    set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
+    const Real side = static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        const ContactAnchor &anchor = contact.anchors[k];
+        const Vec3 on_a = a.rotation * anchor.core_a + block.rounding_a.lanes[lane] * n;
+        const Vec3 on_b = b.rotation * anchor.core_b - block.rounding_b.lanes[lane] * n;
+        const Vec3 half = Real(0.5) * glm::dot((b.position - a.position) + (on_b - on_a), n) * n;
+        set(block.points[k].r_a, lane, on_a + (Real(1) + side) * half);
+        set(block.points[k].r_b, lane, on_b - (Real(1) - side) * half);
+    }
+}
+
+// Impulses along a normal and tangents that turned with the contact, as those of the manifold that
+// the next step will find there.
+void express_anew(Contact &contact, const Vec3 &normal, const Vec3 &t1) {
+    const Vec3 t2 = glm::cross(normal, t1);
+    const TangentBasis next = tangent_basis(normal);
+    contact.manifold.normal = normal;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        Vec3 &impulse = contact.impulses[k];
+        const Vec3 friction = impulse.y * t1 + impulse.z * t2;
+        impulse.y = glm::dot(friction, next.t1);
+        impulse.z = glm::dot(friction, next.t2);
+    }
+}
+
 } // namespace
+
+// What rides on a turntable is turned by friction all the time. With the arms of the step's start
+// it would be turned all at once, in the first substep, and friction cannot hold that.
+void turn_contact_columns(StepContext &context, Real t) {
+    for (ContactBlock &block : context.scratch.schedule.blocks)
+        for (std::size_t lane = 0; block.any_ahead && lane < block.used; ++lane)
+            if (context.contacts[block.contacts[lane]].moment == Moment::turning)
+                turn_lane(context, block, lane, t);
+}
 
 void prepare_contact_columns(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
@@ -224,6 +272,8 @@ void store_contact_columns(StepContext &context) {
             Contact &contact = context.contacts[block.contacts[lane]];
             for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
                 contact.impulses[k] = get(block.points[k].impulse, lane);
+            if (contact.moment == Moment::turning)
+                express_anew(contact, get(block.normal, lane), get(block.t1, lane));
         }
 }
 

@@ -88,6 +88,8 @@ struct BodyReals {
 };
 
 void prepare_contact_columns(StepContext &context);
+// Normals and arms of contacts of what turns together, as they are t seconds from now.
+void turn_contact_columns(StepContext &context, Real t);
 // As remember_contacts, recall_contacts, solve_contacts and store_contacts.
 void recall_contact_columns(StepContext &context, Real share, bool remember_first);
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);

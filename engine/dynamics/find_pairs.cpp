@@ -37,6 +37,10 @@ Aabb surface_bounds(const Collider &collider, const Motion &motion) {
                          pose));
 }
 
+// For how many steps the tree's boxes reach along the way that a body goes: what moves fast changes
+// its place in the tree less often then.
+constexpr Real expected_steps = Real(2);
+
 // Far more than a pile has: a world that flies apart reaches for all that there is in one step, and
 // memory would end first. Of pairs that are only near each other little is kept.
 constexpr std::size_t most_near_pairs = 100'000'000;
@@ -102,10 +106,11 @@ bool World::place_colliders() const {
             s.swept[i] = Aabb{};
             continue;
         }
+        const Vec3 way = expected_steps * static_cast<Real>(settings_.dt) * motion.velocity;
         if (s.leaves[i] == DynamicTree::none) {
             s.leaves[i] = s.tree.insert(s.swept[i], i);
             s.moved[i] = 1;
-        } else if (s.tree.update(s.leaves[i], s.swept[i])) {
+        } else if (s.tree.update(s.leaves[i], s.swept[i], way)) {
             s.moved[i] = 1;
         }
         any_moved = any_moved || s.moved[i] != 0;

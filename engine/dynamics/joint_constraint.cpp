@@ -313,12 +313,21 @@ Real answered(StepContext &context, const JointConstraint &joint, const JointGro
     return sum;
 }
 
+bool is_changed(const StepContext &context, std::uint32_t body) {
+    return body != Joint::world && context.scratch.changed[body] != 0;
+}
+bool is_changed(const StepContext &context, const JointConstraint &joint) {
+    return is_changed(context, joint.a) || is_changed(context, joint.b);
+}
+
 // Limits and motors against bodies whose joints are solved together: as heavy as those make them.
-void weigh_with_groups(StepContext &context) {
+void weigh_with_groups(StepContext &context, bool changed_only) {
     JointSystem &system = context.scratch.joint_system;
     if (system.groups().empty())
         return;
     for (JointConstraint &joint : context.scratch.joints) {
+        if (changed_only && !is_changed(context, joint))
+            continue;
         Real &mass = joint.mass[0][0];
         if (joint.is_held || joint.rows.count != 1 || joint.is_spring() || !(mass > Real(0)))
             continue;
@@ -392,10 +401,26 @@ void refresh_joints(StepContext &context) {
         ++next;
     });
     JointSystem &system = context.scratch.joint_system;
-    for (const JointGroup &group : system.groups())
+    for (JointGroup &group : system.groups()) {
+        group.is_factored = group.is_held;
         if (group.is_held)
             system.factor(context, group, held_compliance);
-    weigh_with_groups(context);
+    }
+    weigh_with_groups(context, false);
+}
+
+void refresh_changed_joints(StepContext &context) {
+    JointSystem &system = context.scratch.joint_system;
+    for (JointConstraint &joint : context.scratch.joints)
+        if (!joint.is_held && is_changed(context, joint))
+            joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
+    // A group that has changed has changed all of its bodies.
+    for (JointGroup &group : system.groups()) {
+        group.is_factored = group.is_held;
+        if (group.is_held && is_changed(context, context.scratch.joints[system.block(group.first)]))
+            system.factor(context, group, held_compliance);
+    }
+    weigh_with_groups(context, true);
 }
 
 void remember_joints(StepContext &context) {

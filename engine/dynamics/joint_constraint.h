@@ -65,7 +65,7 @@ bool can_follow(StepContext &context, const JointGroup &group, Real h);
 // Begins a substep, before refresh_joints: where h is too long to follow, a body gets the inertia
 // that h follows (Andrews, Teichmann, Koevecses 2017, "Geometric Stiffness for Real-time
 // Constrained Multibody Dynamics"). Then says which groups are held: those that h follows, and that
-// have not been torn apart.
+// have not been torn apart. Notes the bodies of which either changed (scratch.changed).
 void follow_loads(StepContext &context, Real h);
 
 // Blocks of the joints that are alive and not broken, in order, then of the grab; poses are read by
@@ -74,6 +74,8 @@ void prepare_joints(StepContext &context);
 // Axes, arms, errors and masses at the present poses, once in each substep: a joint that turns far
 // within a step is only as true as its lever arms.
 void refresh_joints(StepContext &context);
+// The same, where nothing moved since then: of those bodies alone that follow_loads changed.
+void refresh_changed_joints(StepContext &context);
 // Warm starting, as for contacts.
 void remember_joints(StepContext &context);
 void recall_joints(StepContext &context, Real share, Springs springs);

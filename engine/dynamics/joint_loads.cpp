@@ -51,16 +51,19 @@ bool is_followed(const Body &body, Real stiffness, Real h) {
            needed_inertia(stiffness, h, followed_together) <= least(body.inertia);
 }
 
-// For the present substep; a body that bears less again is as it was.
-void raise_inertia(SolverBody &motion, const Body &body, Real stiffness, Real h) {
+// For the present substep; a body that bears less again is as it was. Says whether anything
+// changed.
+bool raise_inertia(SolverBody &motion, const Body &body, Real stiffness, Real h) {
     const Real needed = needed_inertia(stiffness, h, followed_alone);
     // The inertia of a body that is not a ball was found anew when it turned.
     if (!(needed > least(body.inertia)) && !is_isotropic(body.inertia))
-        return;
+        return false;
     Body heavier = body;
     for (int axis = 0; axis < 3; ++axis)
         heavier.inv_inertia[axis] = std::min(body.inv_inertia[axis], Real(1) / needed);
+    const Mat3 before = motion.inv_inertia;
     motion.inv_inertia = solver_inverse_inertia(heavier, motion.rotation);
+    return motion.inv_inertia != before;
 }
 
 } // namespace
@@ -94,9 +97,12 @@ void follow_loads(StepContext &context, Real h) {
     if (context.scratch.joints.empty())
         return;
     joint_stiffness(context, h, stiffness);
+    std::vector<std::uint8_t> &changed = context.scratch.changed;
+    changed.assign(context.bodies.size(), 0);
     for (const std::uint32_t i : context.moving())
         if (context.model.bodies[i].kind == BodyKind::dynamic && stiffness[i] > Real(0))
-            raise_inertia(context.bodies[i], context.model.bodies[i], stiffness[i], h);
+            changed[i] =
+                raise_inertia(context.bodies[i], context.model.bodies[i], stiffness[i], h) ? 1 : 0;
 
     JointSystem &system = context.scratch.joint_system;
     for (JointGroup &group : system.groups()) {
@@ -109,6 +115,18 @@ void follow_loads(StepContext &context, Real h) {
             };
             group.is_held = !is_torn(joint.rows) && follows(joint.a) && follows(joint.b);
         }
+        const auto for_all_bodies = [&](auto &&use) {
+            for (std::uint32_t place = group.first; place < group.last; ++place) {
+                const JointConstraint &joint = context.scratch.joints[system.block(place)];
+                for (const std::uint32_t body : {joint.a, joint.b})
+                    if (body != Joint::world)
+                        use(changed[body]);
+            }
+        };
+        bool is_changed = group.is_held != group.is_factored;
+        for_all_bodies([&](std::uint8_t one) { is_changed = is_changed || one != 0; });
+        if (is_changed)
+            for_all_bodies([](std::uint8_t &one) { one = 1; });
         for (std::uint32_t place = group.first; place < group.last; ++place)
             context.scratch.joints[system.block(place)].is_held = group.is_held;
     }

@@ -26,57 +26,6 @@ bool is_rigid(const JointConstraint &joint) {
            !joint.is_spring();
 }
 
-// What the rows do to one of the bodies: columns are their linear and angular parts.
-struct Gradient {
-    Mat3 linear{Real(0)};
-    Mat3 angular{Real(0)};
-};
-
-Gradient gradient_of(const RowBlock &rows, const Vec3 &arm, Real sign) {
-    Gradient out;
-    if (rows.kind == RowKind::point) {
-        out.linear = Mat3{sign};
-        out.angular = sign * cross_matrix(arm);
-        return out;
-    }
-    for (int i = 0; i < rows.count; ++i) {
-        const Vec3 axis = sign * rows.axes[static_cast<std::size_t>(i)];
-        if (rows.kind == RowKind::linear) {
-            out.linear[i] = axis;
-            out.angular[i] = glm::cross(arm, axis);
-        } else {
-            out.angular[i] = axis;
-        }
-    }
-    return out;
-}
-
-// u^T M^-1 v for one body.
-Mat3 coupling(const SolverBody &body, const Gradient &u, const Gradient &v) {
-    Mat3 moved = v.linear;
-    for (int i = 0; i < 3; ++i)
-        moved[i] *= body.inv_mass;
-    return glm::transpose(u.linear) * moved +
-           glm::transpose(u.angular) * (body.inv_inertia * v.angular);
-}
-
-// Of the bodies that two blocks share; `u` gives the rows of the result.
-Mat3 coupling(StepContext &context, const JointConstraint &u, const JointConstraint &v) {
-    Mat3 sum{Real(0)};
-    const auto side = [](const JointConstraint &joint, bool is_b) {
-        return gradient_of(joint.rows, is_b ? joint.rows.r_b : joint.rows.r_a,
-                           is_b ? Real(1) : Real(-1));
-    };
-    for (const bool u_b : {false, true})
-        for (const bool v_b : {false, true}) {
-            const std::uint32_t body = u_b ? u.b : u.a;
-            if (body == Joint::world || body != (v_b ? v.b : v.a))
-                continue;
-            sum += coupling(context.bodies[body], side(u, u_b), side(v, v_b));
-        }
-    return sum;
-}
-
 } // namespace
 
 void JointSystem::arrange(StepContext &context) {
@@ -152,6 +101,7 @@ void JointSystem::arrange(StepContext &context) {
                 if (is_dynamic(body))
                     group_of_body_[body] = static_cast<std::uint32_t>(groups_.size() - 1);
     }
+    effects_.resize(order_.size());
     softening_.resize(order_.size());
     diagonal_.resize(order_.size());
     lower_.resize(rows_.size());
@@ -215,20 +165,81 @@ bool JointSystem::eliminate(const std::vector<std::uint32_t> &members,
     return true;
 }
 
+JointSystem::Effect JointSystem::effect_of(StepContext &context, const JointConstraint &joint,
+                                           bool is_b) {
+    const RowBlock &rows = joint.rows;
+    Effect out;
+    out.body = is_b ? joint.b : joint.a;
+    out.sign = is_b ? Real(1) : Real(-1);
+    out.arm = is_b ? rows.r_b : rows.r_a;
+    if (out.body == Joint::world)
+        return out;
+    const SolverBody &body = context.bodies[out.body];
+    out.inv_mass = body.inv_mass;
+    out.is_linear = rows.kind != RowKind::angular;
+    out.is_point = rows.kind == RowKind::point;
+    if (out.is_point)
+        out.angular = out.sign * cross_matrix(out.arm);
+    for (int i = 0; i < rows.count && !out.is_point; ++i) {
+        const Vec3 axis = out.sign * rows.axes[static_cast<std::size_t>(i)];
+        out.angular[i] = out.is_linear ? glm::cross(out.arm, axis) : axis;
+        if (out.is_linear) {
+            out.linear[i] = axis;
+            out.moved[i] = out.inv_mass * axis;
+        }
+    }
+    out.turned = body.inv_inertia * out.angular;
+    return out;
+}
+
+// u^T M^-1 v for one body; `u` gives the rows of the result.
+void JointSystem::add_coupling(const Effect &u, const Effect &v, Mat3 &sum) {
+    if (u.is_point) // the transpose of a cross product's matrix is its negative
+        for (int i = 0; i < 3; ++i)
+            sum[i] += u.sign * glm::cross(v.turned[i], u.arm);
+    else
+        sum += glm::transpose(u.angular) * v.turned;
+    if (!u.is_linear || !v.is_linear)
+        return;
+    if (u.is_point && v.is_point)
+        for (int i = 0; i < 3; ++i)
+            sum[i][i] += (u.sign * v.sign) * u.inv_mass[i];
+    else if (v.is_point)
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                sum[i][j] += v.sign * u.moved[j][i];
+    else if (u.is_point)
+        sum += u.sign * v.moved;
+    else
+        sum += glm::transpose(u.linear) * v.moved;
+}
+
 void JointSystem::factor(StepContext &context, const JointGroup &group, Real compliance) {
     const std::vector<JointConstraint> &joints = context.scratch.joints;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         const JointConstraint &joint = joints[order_[place]];
-        Mat3 own = coupling(context, joint, joint);
-        const Real size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Real>(joint.rows.count);
+        effects_[place] = {effect_of(context, joint, false), effect_of(context, joint, true)};
+    }
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const int count = joints[order_[place]].rows.count;
+        Mat3 own{Real(0)};
+        for (const Effect &effect : effects_[place])
+            if (effect.body != Joint::world)
+                add_coupling(effect, effect, own);
+        const Real size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Real>(count);
         softening_[place] = compliance * own;
         own += softening_[place];
         // Rows that are not there, and a little along what nothing can move (a locked axis).
         for (int i = 0; i < 3; ++i)
-            own[i][i] += i < joint.rows.count && size > Real(0) ? Real(1e-5) * size : Real(1);
+            own[i][i] += i < count && size > Real(0) ? Real(1e-5) * size : Real(1);
         diagonal_[place] = own;
-        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
-            lower_[i] = coupling(context, joints[order_[rows_[i]]], joint);
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
+            lower_[i] = Mat3{Real(0)};
+            for (const Effect &u : effects_[rows_[i]])
+                for (const Effect &v : effects_[place])
+                    if (u.body == v.body && u.body != Joint::world)
+                        add_coupling(u, v, lower_[i]);
+        }
     }
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         const Mat3 inverse = glm::inverse(diagonal_[place]);
@@ -237,17 +248,17 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Real com
         const std::uint32_t *target = targets_.data() + target_start_[place];
         for (std::uint32_t i = column_start_[place]; i < end; ++i) {
             // Row i of L; the rows after it are still K's.
-            const Mat3 scaled = glm::transpose(lower_[i] * inverse);
+            const Mat3 row = lower_[i] * inverse;
+            const Mat3 across = glm::transpose(row);
             for (std::uint32_t j = i; j < end; ++j, ++target) {
-                const Mat3 product = lower_[j] * scaled;
+                const Mat3 product = lower_[j] * across;
                 if ((*target & on_diagonal) != 0)
                     diagonal_[*target & ~on_diagonal] -= product;
                 else
                     lower_[*target] -= product;
             }
+            lower_[i] = row;
         }
-        for (std::uint32_t i = column_start_[place]; i < end; ++i)
-            lower_[i] = lower_[i] * inverse;
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "engine/dynamics/joint_constraint.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,11 +13,12 @@ namespace plumb::inline PLUMB_PRECISION {
 struct StepContext;
 
 // Blocks first..last - 1 in a system's order of elimination. `is_held`: solved together in this
-// substep, not left to Gauss-Seidel.
+// substep, not left to Gauss-Seidel. `is_factored`: it was when its joints were refreshed last.
 struct JointGroup {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
     bool is_held = false;
+    bool is_factored = false;
 };
 
 // The equations of all rigid rows of joints that share dynamic bodies, factored as L D L^T in
@@ -57,6 +59,22 @@ class JointSystem {
         std::uint32_t row = 0;
         std::uint32_t value = 0;
     };
+    // What the rows of a block do to one of its bodies, and what comes of that: the columns are
+    // their linear and angular parts.
+    struct Effect {
+        std::uint32_t body = 0;
+        bool is_linear = false; // has linear parts
+        bool is_point = false;  // linear: the sign alone; angular: the arm's cross product with it
+        Real sign = Real(1);
+        Vec3 arm{Real(0)};
+        Vec3 inv_mass{Real(0)};
+        Mat3 linear{Real(0)};
+        Mat3 angular{Real(0)};
+        Mat3 moved{Real(0)};  // inverse mass times linear
+        Mat3 turned{Real(0)}; // inverse inertia times angular
+    };
+    static Effect effect_of(StepContext &context, const JointConstraint &joint, bool is_b);
+    static void add_coupling(const Effect &u, const Effect &v, Mat3 &sum);
     bool eliminate(const std::vector<std::uint32_t> &members,
                    std::vector<std::vector<std::uint32_t>> &neighbours);
 
@@ -69,6 +87,7 @@ class JointSystem {
     std::vector<std::uint32_t> rows_;         // of the entries, column by column, ascending
     std::vector<std::uint32_t> targets_;      // which value each product of elimination changes
     std::vector<std::uint32_t> target_start_;
+    std::vector<std::array<Effect, 2>> effects_; // of each place
     std::vector<Mat3> softening_;
     std::vector<Mat3> diagonal_; // of K, then D^-1
     std::vector<Mat3> lower_;    // of K, then L

@@ -31,6 +31,7 @@ struct SolverScratch {
     JointSystem joint_system;
     std::vector<Vec3> sides;                     // of its equations
     std::vector<Real> stiffness;                 // of each body, see joint_stiffness
+    std::vector<std::uint8_t> changed;           // likewise: what follow_loads changed
     std::vector<FreeFlight> flights;             // one for each moving body
     std::vector<std::array<Vec3, 2>> velocities; // likewise, while pseudo velocities are solved
     std::vector<SpringConstraint> springs;

@@ -58,18 +58,47 @@ Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h) {
     return glm::normalize(Quat{std::cos(angle / 2), v.x, v.y, v.z} * rotation);
 }
 
+namespace {
+
+// With the same moment about the axes i and j, in that order about k: the spin about k stays, and
+// the midpoint rule turns the rest by Cayley's map.
+Vec3 symmetric_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int i, int j, int k) {
+    const Real c = Real(0.5) * h * (inertia[i] - inertia[k]) / inertia[i] * spin[k];
+    const Real turn = Real(2) * c / (Real(1) + c * c);
+    Vec3 end = spin;
+    end[i] += turn * (spin[j] - c * spin[i]);
+    end[j] -= turn * (spin[i] + c * spin[j]);
+    return end;
+}
+
+} // namespace
+
 Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iterations) {
-    const Mat3 inertia_matrix{Vec3{inertia.x, 0, 0}, Vec3{0, inertia.y, 0}, Vec3{0, 0, inertia.z}};
+    for (int k = 0; k < 3 && iterations > 0; ++k)
+        if (inertia[(k + 1) % 3] == inertia[(k + 2) % 3])
+            return symmetric_spin(inertia, spin, h, (k + 1) % 3, (k + 2) % 3, k);
+    const Vec3 torque =
+        h * Vec3{inertia.z - inertia.y, inertia.x - inertia.z, inertia.y - inertia.x};
+    const Vec3 half = Real(0.5) * torque;
+    // What is left after a change so small is below rounding: Newton squares it.
+    const Real enough = std::numeric_limits<Real>::epsilon() / Real(8) * glm::dot(spin, spin);
     // The unknown is the small change, so that rounding is small, too.
     Vec3 change{Real(0)};
     for (int i = 0; i < iterations; ++i) {
         const Vec3 mid = spin + Real(0.5) * change;
-        const Vec3 residual = inertia * change + h * glm::cross(mid, inertia * mid);
-        // d(residual)/d(change); mid depends on the change by one half.
-        const Mat3 jacobian =
-            inertia_matrix +
-            (Real(0.5) * h) * (cross_matrix(mid) * inertia_matrix - cross_matrix(inertia * mid));
-        change -= glm::inverse(jacobian) * residual;
+        const Vec3 residual =
+            inertia * change + torque * Vec3{mid.y * mid.z, mid.z * mid.x, mid.x * mid.y};
+        // Rows of d(residual)/d(change); mid depends on the change by one half.
+        const Vec3 x{inertia.x, half.x * mid.z, half.x * mid.y};
+        const Vec3 y{half.y * mid.z, inertia.y, half.y * mid.x};
+        const Vec3 z{half.z * mid.y, half.z * mid.x, inertia.z};
+        const Vec3 yz = glm::cross(y, z);
+        const Vec3 step =
+            (residual.x * yz + residual.y * glm::cross(z, x) + residual.z * glm::cross(x, y)) /
+            glm::dot(x, yz);
+        change -= step;
+        if (glm::dot(step, step) <= enough)
+            break;
     }
     // Turns of more than a radian need more iterations, and from two on Newton's method may run
     // away from its root; the energy is kept all the same.

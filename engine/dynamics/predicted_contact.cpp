@@ -120,19 +120,6 @@ void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const
         add_guard(manifold, solid_b, width_b, solid_a, Real(-1));
 }
 
-// Two that turn together, as what rides on a turntable does: friction takes the rider round, so the
-// contact is that of the middle of the step, where its arms point along the chord.
-FoundManifold World::turned_manifold(const Candidate &candidate, Real margin) const {
-    const Real half = Real(0.5) * static_cast<Real>(settings_.dt);
-    const Motion at_a = ahead(state_.motions[candidate.key.a], half);
-    const Motion at_b = ahead(state_.motions[candidate.key.b], half);
-    const Collider &a = model_->colliders[candidate.collider_a];
-    const Collider &b = model_->colliders[candidate.collider_b];
-    return {
-        plumb::collide(placed(a.shape, placement(at_a)), placed(b.shape, placement(at_b)), margin),
-        at_a, at_b, Moment::middle};
-}
-
 FoundManifold World::predicted_manifold(const Candidate &candidate) const {
     const Collider &a = model_->colliders[candidate.collider_a];
     const Collider &b = model_->colliders[candidate.collider_b];

@@ -44,54 +44,18 @@ bool World::turn_together(std::uint32_t a, std::uint32_t b) const {
                Real(0.5) * std::max(glm::dot(spin_a, spin_a), glm::dot(spin_b, spin_b));
 }
 
-// What rides on a turntable is turned by friction all the time; with contacts of the start of the
-// step it would be turned all at once, in the first substep, and friction cannot hold that. Then
-// contacts are found for each substep.
-bool World::rides_on_turning() const {
-    constexpr double enough = 0.01; // rad in a step
-    return std::ranges::any_of(state_.contacts, [&](const ContactMemory &memory) {
-        return turn_together(memory.key.a, memory.key.b) &&
-               static_cast<double>(glm::length(state_.motions[memory.key.a].angular_velocity)) *
-                       settings_.dt >
-                   enough;
-    });
-}
-
+// All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
+// left half done is thrown away.
 void World::step(TaskPool *tasks, StepTimes *times) {
     report_ = StepReport{};
     scratch_.impacts.clear();
-    const int parts = settings_.substeps > 1 && rides_on_turning() ? settings_.substeps : 1;
-    if (parts == 1) {
-        step_part(tasks, times);
-    } else {
-        const StepSettings whole = settings_;
-        const State before = state_;
-        try {
-            settings_.dt /= parts;
-            settings_.substeps = settings_.max_substeps = 1;
-            scratch_.stays.clear(); // how far boxes are swept depends on dt
-            for (int part = 0; part < parts; ++part)
-                step_part(tasks, times);
-            scratch_.stays.clear();
-            settings_ = whole;
-        } catch (...) {
-            settings_ = whole;
-            state_ = before;
-            throw;
-        }
-    }
-    ++state_.step_count;
-}
-
-// All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
-// left half done is thrown away.
-void World::step_part(TaskPool *tasks, StepTimes *times) {
     scratch_.surprised.clear();
     scratch_.paces = state_.paces;
     note_still(true);
     // All that there is sleeps, or never moves.
     if (scratch_.awake == 0 && !moves_particles()) {
         report_.joints = model_->alive_joints;
+        ++state_.step_count;
         return;
     }
     scratch_.contacts_are_current = false;
@@ -265,6 +229,7 @@ void World::finish() {
         std::swap(state_.particles, s.particles);
         std::swap(state_.torn, s.torn);
     }
+    ++state_.step_count;
     // Those of what slept were not looked for.
     s.contacts_are_current = std::ranges::none_of(state_.paces, &Pace::is_asleep);
 }

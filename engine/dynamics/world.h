@@ -150,7 +150,6 @@ class World {
 
   private:
     // The phases of a step; those that are const work on scratch alone.
-    void step_part(TaskPool *tasks, StepTimes *times);
     void find_contacts(TaskPool *tasks, StepTimes *times = nullptr);
     void find_pairs() const;
     void collide(TaskPool *tasks) const;
@@ -210,7 +209,6 @@ class World {
     double particle_energy() const;
 
     bool turn_together(std::uint32_t a, std::uint32_t b) const;
-    bool rides_on_turning() const;
     bool needs_contacts() const;
     bool place_colliders() const;
     bool may_touch(std::uint32_t i, std::uint32_t j) const;
@@ -240,7 +238,6 @@ class World {
     Real way_of(const Candidate &candidate) const;
     void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                       Manifold &manifold) const;
-    FoundManifold turned_manifold(const Candidate &candidate, Real margin) const;
     FoundManifold predicted_manifold(const Candidate &candidate) const;
     FoundManifold predicted_manifold(const Candidate &candidate, std::uint32_t triangle) const;
 

@@ -94,13 +94,16 @@ void DynamicTree::remove(Leaf leaf) {
     --leaf_count_;
 }
 
-bool DynamicTree::update(Leaf leaf, const Aabb &box) {
+bool DynamicTree::update(Leaf leaf, const Aabb &box, const Vec3 &way) {
     check_leaf(leaf);
     check_box(box);
     if (holds(node(leaf).box, box))
         return false;
     unlink(leaf);
-    node(leaf).box = fattened(box);
+    Aabb fat = fattened(box);
+    fat.min += glm::min(way, Vec3{Real(0)});
+    fat.max += glm::max(way, Vec3{Real(0)});
+    node(leaf).box = fat;
     link(leaf);
     return true;
 }

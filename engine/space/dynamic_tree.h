@@ -36,7 +36,8 @@ class DynamicTree {
     // A leaf that is not in the tree fails a check, here and below. Its number may be used again.
     void remove(Leaf leaf);
     // Returns whether the leaf had to be moved in the tree: its fat box no longer held the new one.
-    bool update(Leaf leaf, const Aabb &box);
+    // The new fat box reaches farther by `way`, along which the box is expected to go on.
+    bool update(Leaf leaf, const Aabb &box, const Vec3 &way = Vec3{Real(0)});
 
     std::uint32_t user(Leaf leaf) const;
     const Aabb &fat_bounds(Leaf leaf) const;

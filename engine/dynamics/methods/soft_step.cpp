@@ -55,7 +55,10 @@ void advance(StepContext &context) {
     const bool is_free = context.is_free();
     for (int substep = 0; substep < settings.substeps; ++substep) {
         follow_loads(context, h);
-        refresh_joints(context);
+        if (substep == 0)
+            refresh_joints(context);
+        else // the poses are those of the substep before
+            refresh_changed_joints(context);
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
         if (is_free) { // nothing of what follows would do anything
@@ -64,6 +67,7 @@ void advance(StepContext &context) {
         }
         remember_joints(context);
         recall_joints(context, Real(0.5), Springs::solve);
+        turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
         recall_contact_columns(context, Real(0.5), true);
         kick_particles(context, gravity, Real(0.5) * h);
         refresh_particles(context, h, SpringRule::midpoint);
@@ -77,6 +81,7 @@ void advance(StepContext &context) {
         drift_particles(context, h);
         refresh_joints(context);
         recall_joints(context, Real(0.5), Springs::skip);
+        turn_contact_columns(context, Real(0));
         recall_contact_columns(context, Real(0.5), false);
         repeat_springs(context);
         repeat_particle_springs(context);
