@@ -2,6 +2,7 @@
 
 #include "engine/dynamics/motion.h"
 #include "engine/geometry/half_space.h"
+#include "engine/geometry/hull_queries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// How far apart two solids are, and along which unit normal from A to B; a distance of 0 has none.
+// How far apart two solids are, and along which unit normal from A to B; a
+// distance of 0 has none.
 struct Gap {
     Real distance = Real(0);
     Vec3 normal{Real(0)};
@@ -38,13 +40,112 @@ Gap gap_between(const Shape &a, const Shape &b) {
         [](const auto &first, const auto &second) { return gap_between(first, second); }, a, b);
 }
 
-// The pair on its way. `gap(t)` gives the gap after t seconds.
-template <typename GapAfter>
-Approach advance(const GapAfter &gap_after, const Motion &a, Real extent_a, const Motion &b,
-                 Real extent_b, Real duration, Real margin) {
+// How far the core of a shape reaches along a vector of any length, from the
+// origin of its frame.
+Real core_reach(const Shape &local, const Vec3 &along) {
+    return std::visit(
+        [&]<typename Solid>(const Solid &solid) -> Real {
+            if constexpr (std::same_as<Solid, Sphere>)
+                return glm::dot(solid.center, along);
+            else if constexpr (std::same_as<Solid, Box>)
+                return glm::dot(solid.center, along) +
+                       glm::dot(solid.half_extents,
+                                glm::abs(glm::conjugate(solid.rotation) * along));
+            else if constexpr (std::same_as<Solid, Capsule>)
+                return std::max(glm::dot(solid.a, along), glm::dot(solid.b, along));
+            else if constexpr (std::same_as<Solid, Cylinder>) {
+                const Vec3 axis = solid.b - solid.a;
+                const Vec3 outward = along - (glm::dot(axis, along) / glm::dot(axis, axis)) * axis;
+                return std::max(glm::dot(solid.a, along), glm::dot(solid.b, along)) +
+                       solid.radius * glm::length(outward);
+            } else if constexpr (std::same_as<Solid, ConvexHull>) {
+                const Vec3 inside = glm::conjugate(solid.rotation) * along;
+                const std::uint32_t farthest = support_vertex(*solid.mesh, inside);
+                return glm::dot(solid.position, along) +
+                       glm::dot(solid.mesh->vertices[farthest], inside);
+            } else {
+                return std::numeric_limits<Real>::infinity();
+            }
+        },
+        local);
+}
+
+Real core_reach(const Triangle &local, const Vec3 &along) {
+    return std::max({glm::dot(local.a, along), glm::dot(local.b, along), glm::dot(local.c, along)});
+}
+
+Real rounding_of(const Shape &shape) {
+    if (const auto *sphere = std::get_if<Sphere>(&shape))
+        return sphere->radius;
+    const auto *capsule = std::get_if<Capsule>(&shape);
+    return capsule != nullptr ? capsule->radius : Real(0);
+}
+
+Real rounding_of(const Triangle & /*triangle*/) {
+    return Real(0);
+}
+
+// How far a turning solid reaches along a unit vector n, to first order in its
+// turn, and what that leaves out at the most: a point p of its core comes to n
+// . (p + t w x p) = (n + t n x w) . p, and at most (w t)^2 / 2 of its distance
+// from the middle farther.
+template <typename Solid> struct TurningReach {
+    const Solid &solid;
+    Vec3 along;   // n, in the solid's frame
+    Vec3 turning; // n x w, likewise
+    Real rounding;
+    Real bend;
+
+    TurningReach(const Solid &what, const Motion &motion, Real extent, const Vec3 &n, Real t)
+        : solid(what), rounding(rounding_of(what)),
+          bend(Real(0.5) * glm::dot(motion.angular_velocity, motion.angular_velocity) * extent) {
+        const Quat back = glm::conjugate(turned(motion.rotation, motion.angular_velocity, t));
+        along = back * n;
+        turning = back * glm::cross(n, motion.angular_velocity);
+    }
+    Real operator()(Real later) const {
+        return core_reach(solid, along + later * turning) + rounding + bend * later * later;
+    }
+};
+
+// For how long two solids stay apart along the normal of their gap at t, at the
+// least: what the bound above leaves of their distance is concave in time, so a
+// chord of it never says too much. `left` when they do not come as near as
+// `least` until then; `stays` is set when they stay out of `margin` as well.
+template <typename B>
+Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real extent_a,
+                const B &b, const Motion &motion_b, Real extent_b, Real t, Real left, Real least,
+                Real margin, bool &stays) {
+    const Vec3 velocity = motion_b.velocity - motion_a.velocity;
+    const Vec3 between = (motion_b.position - motion_a.position) + t * velocity;
+    const TurningReach reach_a(a, motion_a, extent_a, normal, t);
+    const TurningReach reach_b(b, motion_b, extent_b, -normal, t);
+    const auto apart = [&](Real later) {
+        return glm::dot(between + later * velocity, normal) - reach_a(later) - reach_b(later);
+    };
+    const Real at_end = apart(left);
+    stays = at_end >= margin;
+    if (at_end > least)
+        return left;
+    Real time = Real(0);
+    Real now = apart(Real(0));
+    constexpr int most_chords = 5;
+    for (int i = 0; i < most_chords && now > Real(2) * least && std::isfinite(at_end); ++i) {
+        time += (now - least) / (now - at_end) * (left - time);
+        now = apart(time);
+    }
+    return time;
+}
+
+// The pair on its way. `gap_after(t)` gives the gap after t seconds;
+// `apart_for(n, t, left, least, stays)` is time_apart.
+template <typename GapAfter, typename ApartFor>
+Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Motion &a,
+                 Real extent_a, const Motion &b, Real extent_b, Real duration, Real margin) {
     const Vec3 velocity = b.velocity - a.velocity;
     const auto straight = [&](const Gap &gap) { return -glm::dot(velocity, gap.normal); };
-    // A point of a turning body at distance r moves along n with at most |n x w| r.
+    // A point of a turning body at distance r moves along n with at most |n x w|
+    // r.
     const auto turning = [&](const Gap &gap) {
         return glm::length(glm::cross(gap.normal, a.angular_velocity)) * extent_a +
                glm::length(glm::cross(gap.normal, b.angular_velocity)) * extent_b;
@@ -66,7 +167,8 @@ Approach advance(const GapAfter &gap_after, const Motion &a, Real extent_a, cons
             // The closest point lies between: there the distance stops falling.
             Real low = before;
             Real high = t;
-            // So near that what is left of the approach does not count over the whole time.
+            // So near that what is left of the approach does not count over the whole
+            // time.
             constexpr int most_cuts = 30;
             for (int cut = 0; cut < most_cuts; ++cut) {
                 const Real middle = Real(0.5) * (low + high);
@@ -87,7 +189,11 @@ Approach advance(const GapAfter &gap_after, const Motion &a, Real extent_a, cons
             return best;
         was_approaching = closing > Real(0);
         before = t;
-        t = std::min(t + gap.distance / fastest, duration);
+        bool stays = false;
+        const Real apart = apart_for(gap.normal, t, left, Real(0.5) * near * margin, stays);
+        if (stays)
+            return best;
+        t = std::min(t + std::max(apart, gap.distance / fastest), duration);
     }
     return best.distance <= margin ? Approach{best.time, Real(0)} : best;
 }
@@ -105,7 +211,11 @@ Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Rea
         return gap_between(placed(*a.shape, pose_of(ahead(a.motion, t))),
                            placed(*b.shape, pose_of(ahead(b.motion, t))));
     };
-    return advance(gap_after, a.motion, a.extent, b.motion, b.extent, duration, margin);
+    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, bool &stays) {
+        return time_apart(normal, *a.shape, a.motion, a.extent, *b.shape, b.motion, b.extent, t,
+                          left, least, margin, stays);
+    };
+    return advance(gap_after, apart_for, a.motion, a.extent, b.motion, b.extent, duration, margin);
 }
 
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
@@ -115,7 +225,11 @@ Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_
         return std::visit([&](const auto &solid) { return gap_between(solid, triangle); },
                           placed(*a.shape, pose_of(ahead(a.motion, t))));
     };
-    return advance(gap_after, a.motion, a.extent, motion_b, extent_b, duration, margin);
+    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, bool &stays) {
+        return time_apart(normal, *a.shape, a.motion, a.extent, b, motion_b, extent_b, t, left,
+                          least, margin, stays);
+    };
+    return advance(gap_after, apart_for, a.motion, a.extent, motion_b, extent_b, duration, margin);
 }
 
 Real core_extent(const Shape &local) {
