@@ -53,6 +53,7 @@ void advance(StepContext &context) {
     prepare_particles(context);
     context.scratch.joint_system.arrange(context);
     const bool is_free = context.is_free();
+    const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         follow_loads(context, h);
         if (substep == 0)
@@ -69,29 +70,38 @@ void advance(StepContext &context) {
         recall_joints(context, Real(0.5), Springs::solve);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
         recall_contact_columns(context, Real(0.5), true);
-        kick_particles(context, gravity, Real(0.5) * h);
-        refresh_particles(context, h, SpringRule::midpoint);
+        if (has_particles) {
+            kick_particles(context, gravity, Real(0.5) * h);
+            refresh_particles(context, h, SpringRule::midpoint);
+        }
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, holding);
-            solve_springs(context);
-            solve_particle_contacts(context, particle_push, h);
+            if (has_particles) {
+                solve_springs(context);
+                solve_particle_contacts(context, particle_push, h);
+            }
             solve_contact_columns(context, contact_bias, h);
         }
         end_flights(context, h, Kick::around);
-        drift_particles(context, h);
+        if (has_particles)
+            drift_particles(context, h);
         refresh_joints(context);
         recall_joints(context, Real(0.5), Springs::skip);
         turn_contact_columns(context, Real(0));
         recall_contact_columns(context, Real(0.5), false);
         repeat_springs(context);
-        repeat_particle_springs(context);
-        kick_particles(context, gravity, Real(0.5) * h);
+        if (has_particles) {
+            repeat_particle_springs(context);
+            kick_particles(context, gravity, Real(0.5) * h);
+        }
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, relaxing);
-            solve_particle_contacts(context, {.loaded_only = true}, h);
+            if (has_particles)
+                solve_particle_contacts(context, {.loaded_only = true}, h);
             solve_contact_columns(context, relax_bias, h);
         }
-        restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
+        if (has_particles)
+            restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
     }
     store_joints(context);
     store_contact_columns(context);
