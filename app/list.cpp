@@ -2,8 +2,8 @@
 
 #include "app/sandbox/keys.h"
 #include "engine/dynamics/method_info.h"
+#include "engine/scene/file/number.h"
 #include "engine/scene/given_settings.h"
-#include "engine/scene/scene_file_number.h"
 
 #include <cstdio>
 #include <iomanip>

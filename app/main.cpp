@@ -3,7 +3,7 @@
 #include "app/files/output_file.h"
 #include "app/lab/interrupt.h"
 #include "app/render/context.h"
-#include "engine/scene/scene_file_spelling.h"
+#include "engine/scene/file/spelling.h"
 
 #include <algorithm>
 #include <functional>

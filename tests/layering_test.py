@@ -15,7 +15,7 @@ APP_ROOMS = ["files", "render", "lab", "sandbox"]
 
 # A library known to few files: header pattern, the files that may include it, and how many at most.
 LIBRARIES = [
-    (r"toml\+\+/|toml\.hpp", r"engine/scene/scene_file_table\.h", 1),
+    (r"toml\+\+/|toml\.hpp", r"engine/scene/file/table\.h", 1),
     (r"tiny_obj_loader", r"engine/scene/[^/]+\.cpp", 1),
     (r"hwy/", r"engine/(geometry|space)/[^/]+|engine/math/wide_vector-inl\.h"
      r"|engine/dynamics/contact_kernels\.cpp|"
@@ -151,7 +151,7 @@ SOUND = {
     "engine/space/tree.h": '#pragma once\n#include "engine/geometry/shapes.h"\n',
     "engine/dynamics/world.h": '#pragma once\n#include "engine/space/tree.h"\n',
     "engine/scene/simulation.h": '#pragma once\n#include "engine/dynamics/world.h"\n',
-    "engine/scene/scene_file_table.h": "#pragma once\n#include <toml++/toml.h>\n",
+    "engine/scene/file/table.h": "#pragma once\n#include <toml++/toml.h>\n",
     "app/render/renderer.h": '#pragma once\n#include "engine/plumb.h"\n',
     "app/render/window_context.cpp": "#include <GLFW/glfw3.h>\n",
     "app/render/osmesa_context.cpp": "#include <glad/gl.h>\n#include <GL/osmesa.h>\n",

@@ -64,7 +64,7 @@ KINDS = [
          [("engine/scene/shape_desc.h", "using ShapeDesc = std::variant<",
            "struct DummyDesc {};\n\nusing ShapeDesc = std::variant<DummyDesc, ")],
          [("engine/scene/shape_desc.cpp", NO_VISIT), ("engine/scene/start_overlaps.cpp", NO_VISIT),
-          ("engine/scene/scene_file_shape.cpp", "incomplete type .*Kind<plumb::DummyDesc>"),
+          ("engine/scene/file/shape.cpp", "incomplete type .*Kind<plumb::DummyDesc>"),
           ("engine/scene/real/body_def.cpp", NO_VISIT), ("app/sandbox/shape_draw.cpp", NO_VISIT),
           ("app/sandbox/panel_inspector.cpp", NO_VISIT)],
          ["engine/scene/shape_kinds.h"]),

@@ -2,7 +2,7 @@
 
 #include "app/lab/progress.h"
 #include "engine/dynamics/method_info.h"
-#include "engine/scene/scene_file_change.h"
+#include "engine/scene/file/change.h"
 
 #include <utility>
 #include <vector>

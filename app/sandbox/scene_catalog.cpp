@@ -1,7 +1,7 @@
 #include "app/sandbox/scene_catalog.h"
 
+#include "engine/scene/file/spelling.h"
 #include "engine/scene/scene_file.h"
-#include "engine/scene/scene_file_spelling.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 #include "engine/scene/given_settings.h"
 
 #include "engine/dynamics/method_info.h"
-#include "engine/scene/scene_file_number.h"
-#include "engine/scene/scene_file_spelling.h"
+#include "engine/scene/file/number.h"
+#include "engine/scene/file/spelling.h"
 
 #include <algorithm>
 #include <bit>

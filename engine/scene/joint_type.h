@@ -2,8 +2,8 @@
 // the writer, their errors and the reference in scenes/README.md come from this table.
 #pragma once
 
+#include "engine/scene/file/bounds.h"
 #include "engine/scene/joint_desc.h"
-#include "engine/scene/scene_file_bounds.h"
 
 #include <array>
 #include <optional>

@@ -2,8 +2,8 @@
 // reference in scenes/README.md come from these tables.
 #pragma once
 
+#include "engine/scene/file/bounds.h"
 #include "engine/scene/particle_desc.h"
-#include "engine/scene/scene_file_bounds.h"
 
 #include <span>
 #include <string>

@@ -2,7 +2,7 @@
 // Not for users of the engine.
 #pragma once
 
-#include "engine/scene/scene_file_number.h"
+#include "engine/scene/file/number.h"
 #include "engine/scene/shape_kinds.h"
 
 #include <string>

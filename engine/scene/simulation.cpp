@@ -2,9 +2,9 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/method.h"
+#include "engine/scene/file/spelling.h"
 #include "engine/scene/probe_simulation.h"
 #include "engine/scene/real/world_simulation.h"
-#include "engine/scene/scene_file_spelling.h"
 
 #include <algorithm>
 #include <cmath>

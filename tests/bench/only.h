@@ -1,7 +1,7 @@
 // Of things with names, those that were asked for.
 #pragma once
 
-#include "engine/scene/scene_file_spelling.h"
+#include "engine/scene/file/spelling.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "engine/scene/scene_file_change.h"
+#include "engine/scene/file/change.h"
 
 #include <stdexcept>
 

@@ -4,8 +4,8 @@
 #include "engine/core/random.h"
 #include "engine/scene/cloth.h"
 #include "engine/scene/expect.h"
+#include "engine/scene/file/number.h"
 #include "engine/scene/joint_type.h"
-#include "engine/scene/scene_file_number.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // Scene files with other settings written into them.
-#include "engine/scene/scene_file_settings.h"
+#include "engine/scene/file/settings.h"
 
+#include "engine/scene/file/change.h"
 #include "engine/scene/scene_file.h"
-#include "engine/scene/scene_file_change.h"
 
 #include <filesystem>
 #include <sstream>

@@ -2,7 +2,7 @@
 
 #include "app/lab/map/passage.h"
 #include "app/lab/method_choice.h"
-#include "engine/scene/scene_file_change.h"
+#include "engine/scene/file/change.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,7 +1,7 @@
 #include "app/lab/tune/starts.h"
 
 #include "engine/core/random.h"
-#include "engine/scene/scene_file_change.h"
+#include "engine/scene/file/change.h"
 
 #include <algorithm>
 #include <cmath>

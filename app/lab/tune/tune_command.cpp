@@ -2,10 +2,10 @@
 
 #include "app/files/output_file.h"
 #include "app/lab/interrupt.h"
+#include "engine/scene/file/change.h"
+#include "engine/scene/file/settings.h"
 #include "engine/scene/given_settings.h"
 #include "engine/scene/scene_file.h"
-#include "engine/scene/scene_file_change.h"
-#include "engine/scene/scene_file_settings.h"
 
 #include <stdexcept>
 #include <utility>

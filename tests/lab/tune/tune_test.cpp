@@ -2,8 +2,8 @@
 #include "app/lab/tune/tune.h"
 
 #include "app/lab/tune/starts.h"
+#include "engine/scene/file/change.h"
 #include "engine/scene/scene_file.h"
-#include "engine/scene/scene_file_change.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 // and what is cheaper by one substep does not.
 #include "app/lab/tune/tune.h"
 
+#include "engine/scene/file/change.h"
 #include "engine/scene/scene_file.h"
-#include "engine/scene/scene_file_change.h"
 
 #include <sstream>
 

@@ -1,0 +1,194 @@
+#include "engine/scene/file/change.h"
+
+#include "engine/scene/file/reading.h"
+#include "engine/scene/file/spelling.h"
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace plumb {
+
+namespace {
+
+using namespace scene_file;
+
+// Follows a path through the tables of a file, a key at a time.
+class Path {
+  public:
+    explicit Path(std::string_view whole) : whole_(whole), rest_(whole) {}
+
+    bool at_end() const { return rest_.empty(); }
+
+    std::string_view take_key() {
+        const std::size_t dot = std::min(rest_.find('.'), rest_.size());
+        return take(dot);
+    }
+
+    // A name may have dots of its own: the longest of these that stands here, or empty.
+    std::string_view take_name(std::span<const std::string_view> names) {
+        std::string_view longest;
+        for (const std::string_view name : names)
+            if (name.size() > longest.size() && rest_.starts_with(name) &&
+                (rest_.size() == name.size() || rest_[name.size()] == '.'))
+                longest = name;
+        if (!longest.empty())
+            take(longest.size());
+        return longest;
+    }
+
+    std::string_view taken() const { return whole_.substr(0, taken_); }
+
+    [[noreturn]] void refuse(const std::string &why) const {
+        throw std::invalid_argument(in_quotes(whole_) + ": " + why);
+    }
+    [[noreturn]] void refuse(std::string_view word, const std::string &in,
+                             std::span<const std::string_view> candidates) const {
+        refuse(in + " has no " + in_quotes(word) + "; " + did_you_mean(word, candidates));
+    }
+
+  private:
+    std::string_view take(std::size_t length) {
+        const std::string_view key = rest_.substr(0, length);
+        taken_ = static_cast<std::size_t>(rest_.data() - whole_.data()) + length;
+        rest_.remove_prefix(std::min(rest_.size(), length + 1));
+        return key;
+    }
+
+    std::string_view whole_, rest_;
+    std::size_t taken_ = 0;
+};
+
+toml::node *element(toml::array &array, Path &path) {
+    const std::string in(path.taken());
+    std::vector<std::string_view> names;
+    for (const toml::node &each : array)
+        if (const toml::table *table = each.as_table())
+            if (const auto *name = table->get_as<std::string>("name"))
+                names.push_back(name->get());
+    if (!names.empty()) {
+        const std::string_view name = path.take_name(names);
+        if (name.empty())
+            path.refuse(path.take_key(), "the scene's " + in, names);
+        for (toml::node &each : array)
+            if (toml::table *table = each.as_table())
+                if (const auto *own = table->get_as<std::string>("name"); own && own->get() == name)
+                    return table;
+    }
+    static constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+    const std::string_view key = path.take_key();
+    std::size_t index = array.size();
+    if (const auto *const axis = std::ranges::find(axes, key);
+        axis != axes.end() && array.size() == axes.size() && !array[0].is_table())
+        index = static_cast<std::size_t>(axis - axes.begin());
+    else if (const auto read = std::from_chars(key.data(), key.data() + key.size(), index);
+             read.ec != std::errc() || read.ptr != key.data() + key.size())
+        index = array.size();
+    if (index >= array.size())
+        path.refuse(
+            in + " has " + std::to_string(array.size()) + " elements; " +
+            (array.size() == axes.size() ? "write x, y or z" : "write a whole number below that"));
+    return array.get(index);
+}
+
+bool is_number(const toml::node &node) {
+    return node.is_number() || (node.is_string() && [&] {
+               try {
+                   (void)parse_number(node.as_string()->get());
+                   return true;
+               } catch (const std::invalid_argument &) {
+                   return false;
+               }
+           }());
+}
+
+std::vector<std::string_view> keys_of(const toml::table &table) {
+    std::vector<std::string_view> keys;
+    for (const auto &[key, value] : table)
+        if (is_number(value) || value.is_table() || value.is_array())
+            keys.push_back(key.str());
+    return keys;
+}
+
+// Whole numbers as such, for what counts.
+template <typename Put> void put(double value, const Put &put_in) {
+    constexpr double exact = 9007199254740992; // 2^53
+    if (value == std::round(value) && std::abs(value) <= exact)
+        put_in(static_cast<std::int64_t>(value));
+    else
+        put_in(value);
+}
+
+void put(toml::array &array, const toml::node *element, double value) {
+    for (auto at = array.cbegin(); at != array.cend(); ++at)
+        if (&*at == element) {
+            put(value, [&](auto number) { array.replace(at, number); });
+            return;
+        }
+}
+
+void put(toml::table &table, std::string_view key, double value) {
+    put(value, [&](auto number) { table.insert_or_assign(key, number); });
+}
+
+void change(toml::table &root, const ChangedNumber &number) {
+    Path path(number.path);
+    toml::table *table = &root;
+    while (true) {
+        const std::string in(path.taken().empty() ? "a scene" : path.taken());
+        const std::string_view key = path.take_key();
+        toml::node *node = table->get(key);
+        if (node == nullptr) {
+            if (table == &root)
+                path.refuse(key, in, scene_keys);
+            if (!path.at_end())
+                path.refuse("the file gives no " + std::string(path.taken()) +
+                            ", so it has no number to change there; write it into the file");
+            put(*table, key, number.value); // whoever reads the table knows its keys
+            return;
+        }
+        toml::array *array = nullptr;
+        while (!path.at_end() && node->is_array()) {
+            array = node->as_array();
+            node = element(*array, path);
+        }
+        if (path.at_end() && is_number(*node)) {
+            if (array != nullptr)
+                put(*array, node, number.value);
+            else
+                put(*table, key, number.value);
+            return;
+        }
+        if (path.at_end() || !node->is_table())
+            path.refuse(std::string(path.taken()) + " is " + std::string(type_name(*node)) +
+                        ", not a number" +
+                        (node->is_table() ? "; go on with one of its keys: " +
+                                                did_you_mean("", keys_of(*node->as_table()))
+                         : node->is_array() ? "; go on with x, y, z, a name or an index"
+                                            : ""));
+        table = node->as_table();
+    }
+}
+
+} // namespace
+
+SceneFileResult parse_scene(std::string_view text, const std::string &path,
+                            const std::vector<std::string> &known_methods,
+                            std::span<const ChangedNumber> changed) {
+    SceneFileResult result;
+    std::optional<toml::table> root = parse_toml(text, path, result.messages);
+    if (!root)
+        return result;
+    for (const ChangedNumber &number : changed)
+        change(*root, number);
+    Reading reading(path, known_methods);
+    read_scene(reading, Table(reading.report, *root, "the top level of a scene", scene_keys));
+    return {std::move(reading.scene), reading.report.in_file_order()};
+}
+
+std::optional<std::string> read_scene_text(const std::filesystem::path &path,
+                                           std::vector<SceneMessage> &messages) {
+    return read_file(path, messages);
+}
+
+} // namespace plumb

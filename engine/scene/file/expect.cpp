@@ -1,0 +1,121 @@
+#include "engine/scene/expect.h"
+#include "engine/scene/file/number.h"
+#include "engine/scene/file/particle.h"
+#include "engine/scene/file/reading.h"
+
+namespace plumb::scene_file {
+
+namespace {
+
+// Of a spring that the scene has; none, having reported it, when it is none of its springs.
+std::optional<std::string> read_spring_name(Reading &reading, const Table &table) {
+    const std::optional<std::string> name = table.string("spring");
+    if (name && std::ranges::find(reading.scene.springs, *name, &SpringDesc::name) ==
+                    reading.scene.springs.end()) {
+        table.error("spring", "there is no spring " + in_quotes(*name),
+                    reading.springs.suggestion(*name));
+        return std::nullopt;
+    }
+    return name;
+}
+
+void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
+    if (!table.require("quantity", "which quantity of the motion?"))
+        return;
+    std::vector<std::string_view> names;
+    for (const QuantityInfo &quantity : quantities())
+        names.push_back(quantity.name);
+    const std::optional<std::size_t> chosen = table.choice("quantity", names);
+    if (!chosen)
+        return;
+    expect.quantity = names[*chosen];
+    const QuantityInfo &quantity = quantities()[*chosen];
+    if (quantity.needs_spring()) {
+        table.refuse({"body"}, expect.quantity, "it is of a spring: spring = \"...\"");
+        if (table.require("spring", expect.quantity + " is of one spring: which?"))
+            expect.body = read_spring_name(reading, table).value_or("");
+        return;
+    }
+    table.refuse({"spring"}, expect.quantity,
+                 quantity.needs_body() ? "it is of a body" : "it is of the whole scene");
+    if (!quantity.needs_body()) {
+        table.refuse({"body"}, expect.quantity, "it is of the whole scene");
+        return;
+    }
+    const toml::node *name = table.node("body");
+    if (name != nullptr && name->is_string() && is_particle(reading, name->as_string()->get())) {
+        expect.body = name->as_string()->get();
+        if (!quantity.of_particles)
+            table.error("body", "there is no body " + in_quotes(expect.body),
+                        "a particle has no " + expect.quantity);
+        return;
+    }
+    if (table.require("body", expect.quantity + " is of one body: which?"))
+        if (const std::optional<std::size_t> body = find_body(reading, table, "body"))
+            expect.body = reading.scene.bodies[*body].name;
+}
+
+void read_reduction(const Table &table, ExpectDesc &expect) {
+    std::vector<std::string_view> names;
+    for (const ReductionInfo &reduction : reductions())
+        names.push_back(reduction.name);
+    if (const std::optional<std::size_t> chosen = table.choice("reduce", names))
+        expect.reduce = names[*chosen];
+    else if (table.has("reduce"))
+        return;
+    expect.level = table.number("level", finite);
+    if (!find_reduction(expect.reduce)->uses_level)
+        table.refuse({"level"}, "reduce = " + in_quotes(expect.reduce),
+                     "period and crossings have one");
+}
+
+} // namespace
+
+void read_expect(Reading &reading, const toml::table &source) {
+    static constexpr std::array<std::string_view, 13> keys{
+        "name", "quantity", "body",    "spring",   "reduce",    "level", "from",
+        "to",   "equals",   "at_most", "at_least", "tolerance", "source"};
+    static constexpr std::array<std::string_view, 3> relations{"equals", "at_most", "at_least"};
+    const Table table(reading.report, source, title_of("expect", source), keys);
+    ExpectDesc expect;
+    expect.line = table.position().line;
+    expect.name = read_name(reading.report, table, "expect", reading.expects).value_or("");
+    read_quantity(reading, table, expect);
+    read_reduction(table, expect);
+
+    expect.from = table.number("from", not_negative).value_or(0);
+    if (table.require("to", "to = seconds, the end of the window and of the run")) {
+        const std::optional<double> to = table.number("to", not_negative);
+        expect.to = to.value_or(expect.from);
+        if (to && *to == 0)
+            table.error("to", "the window ends at 0 s", "to must be later than the start");
+        else if (to && expect.from > *to)
+            table.error(table.has("from") ? "from" : "to",
+                        "the window from " + shortest(expect.from) + " to " + shortest(*to) +
+                            " s is empty",
+                        "from must not be after to");
+    }
+
+    const std::string_view relation =
+        table.one_of({"equals", "at_most", "at_least"}, true, "what must the number be?");
+    if (!relation.empty()) {
+        expect.relation = static_cast<ExpectDesc::Relation>(
+            std::find(relations.begin(), relations.end(), relation) - relations.begin());
+        expect.value = table.number(relation, finite).value_or(0);
+        if (relation == "equals") {
+            if (table.require("tolerance", "how far the truth may be missed, in the "
+                                           "quantity's unit"))
+                expect.tolerance = table.number("tolerance", above_zero).value_or(1);
+        } else {
+            table.refuse({"tolerance"}, "a bound", "put it into the bound itself");
+        }
+    }
+    if (table.require("source", "where does the number come from?")) {
+        expect.source = table.string("source").value_or("?");
+        if (expect.source.find_first_not_of(" \t\r\n") == std::string::npos)
+            table.error("source", "the source is empty", "where does the number come from?");
+    }
+    reading.scene.expects.push_back(std::move(expect));
+}
+
+} // namespace plumb::scene_file

@@ -1,0 +1,245 @@
+// Recordings as files: a scene, [recording] with the hashes, and [[command]]s.
+#include "engine/scene/recording.h"
+#include "engine/scene/file/reading.h"
+#include "engine/scene/file/spelling.h"
+#include "engine/scene/file/text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace plumb {
+
+namespace {
+
+using namespace scene_file;
+
+template <std::size_t... index> constexpr auto names_of(std::index_sequence<index...>) {
+    return std::array{std::variant_alternative_t<index, Command>::name...};
+}
+constexpr auto command_names = names_of(std::make_index_sequence<std::variant_size_v<Command>>());
+
+// ---- reading
+
+// Of one [[command]].
+struct Fields {
+    Reading &reading;
+    const Table &table;
+    std::vector<std::string_view> used{"step", "do"};
+    bool complete = true;
+
+    template <typename Field> void operator()(std::string_view key, Field &field) {
+        used.push_back(key);
+        const std::size_t errors = reading.report.error_count();
+        if (table.require(key, "every \"" + table.string("do").value_or("") + "\" has one"))
+            read(key, field);
+        complete = complete && reading.report.error_count() == errors;
+    }
+
+    void read(std::string_view key, std::string &field) { field = table.string(key).value_or(""); }
+    void read(std::string_view key, double &field) {
+        field = table.number(key, finite).value_or(0);
+    }
+    void read(std::string_view key, glm::dvec3 &field) {
+        field = table.vector(key, finite).value_or(field);
+    }
+    void read(std::string_view key, glm::dquat &field) {
+        field = table.unit_quaternion(key).value_or(field);
+    }
+    void read(std::string_view key, GivenSettings &field) {
+        if (const toml::table *source = table_at(reading.report, table, key))
+            field = read_settings(reading.report, *source, "[command.settings]");
+    }
+    // As [[body]] has it. By then bodies of the scene may be gone, and their names free.
+    void read(std::string_view key, BodyDesc &field) {
+        const toml::table *source = table_at(reading.report, table, key);
+        if (!source)
+            return;
+        Reading own;
+        own.scene.materials = reading.scene.materials;
+        own.materials = reading.materials;
+        own.densities = reading.densities;
+        std::swap(own.report, reading.report);
+        std::swap(own.files, reading.files);
+        read_body(own, *source);
+        std::swap(own.report, reading.report);
+        std::swap(own.files, reading.files);
+        if (own.scene.bodies.size() == 1)
+            field = own.scene.bodies.front();
+        else if (reading.report.error_count() == 0)
+            table.error(key, "a command adds one body", "one [[command]] for each");
+    }
+};
+
+template <std::size_t index = 0>
+std::optional<Command> read_fields(Fields &fields, std::size_t which) {
+    if constexpr (index < std::variant_size_v<Command>) {
+        if (which != index)
+            return read_fields<index + 1>(fields, which);
+        std::variant_alternative_t<index, Command> command;
+        command.each_field(command, fields);
+        return command;
+    } else {
+        return std::nullopt;
+    }
+}
+
+// All keys that any command has.
+std::vector<std::string_view> command_keys() {
+    std::vector<std::string_view> keys{"step", "do"};
+    const auto collect = [&](auto... commands) {
+        (commands.each_field(commands,
+                             [&](std::string_view key, const auto &) { keys.push_back(key); }),
+         ...);
+    };
+    [&]<std::size_t... index>(std::index_sequence<index...>) {
+        collect(std::variant_alternative_t<index, Command>{}...);
+    }
+    (std::make_index_sequence<std::variant_size_v<Command>>());
+    return keys;
+}
+
+void read_command(Reading &reading, const toml::table &source, Recording &recording) {
+    static const std::vector<std::string_view> keys = command_keys();
+    const Table table(reading.report, source, "[[command]]", keys);
+    const std::size_t errors = reading.report.error_count();
+    RecordedCommand command;
+    command.line = table.position().line;
+    if (table.require("step", "how many steps had been taken"))
+        command.step = table.natural("step").value_or(0);
+    const std::uint64_t earliest =
+        recording.commands.empty() ? recording.first_step() : recording.commands.back().step;
+    if (reading.report.error_count() == errors &&
+        (command.step < earliest || command.step > recording.last_step()))
+        table.error("step", "there is no step " + std::to_string(command.step) + " here",
+                    "commands are in order, here from " + std::to_string(earliest) + " to " +
+                        std::to_string(recording.last_step()));
+    if (!table.require("do", "what is done: \"" + std::string(command_names.front()) + "\", say"))
+        return;
+    const std::optional<std::size_t> which = table.choice("do", command_names);
+    if (!which)
+        return;
+    Fields fields{reading, table};
+    std::optional<Command> read = read_fields(fields, *which);
+    for (const auto &[key, value] : source)
+        if (std::ranges::find(fields.used, key.str()) == fields.used.end() &&
+            std::ranges::find(keys, key.str()) != keys.end())
+            table.refuse({key.str()}, "\"" + std::string(command_names[*which]) + "\"",
+                         "it has nothing to say here");
+    if (reading.report.error_count() != errors)
+        return;
+    command.command = std::move(*read);
+    recording.commands.push_back(std::move(command));
+}
+
+void read_hashes(Reading &reading, const toml::table &source, Recording &recording) {
+    static constexpr std::array<std::string_view, 1> keys{"hashes"};
+    const Table table(reading.report, source, "[recording]", keys);
+    const std::string wanted = "the hash of the state at the start and after each step";
+    if (!table.require("hashes", wanted))
+        return;
+    const toml::array *hashes = table.node("hashes")->as_array();
+    if (!hashes || hashes->empty()) {
+        table.error("hashes", hashes ? "hashes is empty" : "hashes is no array", wanted);
+        return;
+    }
+    for (const toml::node &node : *hashes) {
+        const auto *text = node.as_string();
+        std::uint64_t hash = 0;
+        const char *begin = text ? text->get().data() : nullptr;
+        const char *end = text ? begin + text->get().size() : nullptr;
+        const bool is_hash =
+            text && text->get().size() == 16 && std::from_chars(begin, end, hash, 16).ptr == end;
+        if (!is_hash)
+            reading.report.error(position_of(node),
+                                 "hashes holds " +
+                                     (text ? in_quotes(text->get()) : std::string(type_name(node))),
+                                 "a hash is 16 hexadecimal digits in quotes");
+        recording.hashes.push_back(hash);
+    }
+}
+
+// ---- writing
+
+struct Lines {
+    std::string text;
+    std::string tables; // they come after all values
+
+    void operator()(std::string_view key, const std::string &field) { line(key, string(field)); }
+    void operator()(std::string_view key, double field) { line(key, shortest(field)); }
+    void operator()(std::string_view key, const glm::dvec3 &field) { line(key, array3(field)); }
+    void operator()(std::string_view key, const glm::dquat &field) { line(key, rotation(field)); }
+    void operator()(std::string_view key, const GivenSettings &field) {
+        table(key, settings_text(field));
+    }
+    void operator()(std::string_view key, const BodyDesc &field) { table(key, body_text(field)); }
+
+    void line(std::string_view key, const std::string &value) {
+        text += std::string(key) + " = " + value + "\n";
+    }
+    void table(std::string_view key, const std::string &lines) {
+        tables += "[command." + std::string(key) + "]\n" + lines;
+    }
+};
+
+} // namespace
+
+RecordingResult parse_recording(std::string_view text, const std::string &path) {
+    RecordingResult result;
+    const std::optional<toml::table> root = parse_toml(text, path, result.messages);
+    if (!root)
+        return result;
+    static const std::vector<std::string_view> keys = [] {
+        std::vector<std::string_view> all(scene_keys.begin(), scene_keys.end());
+        all.insert(all.end(), {"recording", "command"});
+        return all;
+    }();
+    Reading reading(path, {});
+    const Table top(reading.report, *root, "the top level of a recording", keys);
+    read_scene(reading, top);
+    Recording &recording = result.recording;
+    recording.scene.step_count = reading.scene.step_count;
+    if (const toml::table *table = table_at(reading.report, top, "recording"))
+        read_hashes(reading, *table, recording);
+    else if (!top.has("recording"))
+        reading.report.error({1, 1}, "this is no recording: it has no [recording]",
+                             "`plumb run --record FILE` makes one");
+    if (!recording.hashes.empty())
+        for_each(reading.report, top, "command",
+                 [&](const toml::table &table) { read_command(reading, table, recording); });
+    recording.scene = std::move(reading.scene);
+    result.messages = reading.report.in_file_order();
+    return result;
+}
+
+RecordingResult load_recording(const std::filesystem::path &path) {
+    RecordingResult result;
+    const std::optional<std::string> text = read_file(path, result.messages);
+    return text ? parse_recording(*text, path.string()) : result;
+}
+
+std::string write_recording(const Recording &recording) {
+    std::string text =
+        "# A recording. To see whether it still comes out the same: plumb replay FILE\n" +
+        write_scene(recording.scene) + "\n[recording]\nhashes = [\n";
+    for (const std::uint64_t hash : recording.hashes)
+        text += "    \"" + hash_text(hash) + "\",\n";
+    text += "]\n";
+    for (const RecordedCommand &command : recording.commands) {
+        text += "\n[[command]]\nstep = " + std::to_string(command.step) + "\n";
+        std::visit(
+            [&](const auto &what) {
+                text += "do = \"" + std::string(what.name) + "\"\n";
+                Lines lines;
+                what.each_field(what, lines);
+                text += lines.text + lines.tables;
+            },
+            command.command);
+    }
+    return text;
+}
+
+} // namespace plumb

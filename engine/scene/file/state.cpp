@@ -1,0 +1,100 @@
+#include "engine/scene/file/reading.h"
+
+#include <limits>
+
+namespace plumb::scene_file {
+
+namespace {
+
+const toml::array *array_at(const Table &table, std::string_view key) {
+    if (!table.require(key, "an array, one element for each contact point"))
+        return nullptr;
+    const toml::node *node = table.node(key);
+    if (!node->as_array())
+        table.wrong_type(*node, std::string(key), "an array");
+    return node->as_array();
+}
+
+void read_contact(Reading &reading, const toml::table &source) {
+    static constexpr std::array<std::string_view, 13> keys{
+        "body_a",  "body_b",  "child_a", "child_b", "triangle",   "features",  "impulses",
+        "cores_a", "cores_b", "normal",  "offset",  "rotation_a", "rotation_b"};
+    const Table table(reading.report, source, "[[state.contact]]", keys);
+    ContactStateDesc contact;
+    for (const auto &[key, name] :
+         {std::pair("body_a", &contact.body_a), std::pair("body_b", &contact.body_b)})
+        if (table.require(key, "the name of a body"))
+            if (const std::optional<std::size_t> body = find_body(reading, table, key))
+                *name = reading.scene.bodies[*body].name;
+    if (!contact.body_a.empty() && contact.body_a == contact.body_b)
+        table.error("body_b", "a body is in contact with itself", "body_a and body_b must differ");
+    constexpr std::uint64_t most_children = std::numeric_limits<std::uint16_t>::max();
+    for (const auto &[key, child] :
+         {std::pair("child_a", &contact.child_a), std::pair("child_b", &contact.child_b)}) {
+        const std::uint64_t given = table.natural(key).value_or(0);
+        if (given > most_children)
+            table.error(key, "no body has a shape " + std::to_string(given),
+                        "a shape is counted from 0 to " + std::to_string(most_children));
+        *child = static_cast<std::uint32_t>(given);
+    }
+    if (const std::optional<std::uint64_t> triangle = table.natural("triangle"))
+        contact.triangle = static_cast<std::uint32_t>(*triangle);
+    const toml::array *features = array_at(table, "features");
+    static constexpr std::array<std::string_view, 3> vectors{"impulses", "cores_a", "cores_b"};
+    std::array<const toml::array *, 3> arrays{};
+    // Without the places on the bodies a contact is found anew.
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        if (i == 0 || table.has(vectors[i])) {
+            arrays[i] = array_at(table, vectors[i]);
+            if (!arrays[i])
+                return;
+        }
+    if (!features)
+        return;
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        if (arrays[i] && arrays[i]->size() != features->size()) {
+            table.error(vectors[i],
+                        "there are " + std::to_string(features->size()) + " features and " +
+                            std::to_string(arrays[i]->size()) + " " + std::string(vectors[i]),
+                        "there must be as many of one as of the other");
+            return;
+        }
+    for (std::size_t i = 0; i < features->size(); ++i) {
+        const std::string index = "[" + std::to_string(i) + "]";
+        const std::optional<std::int64_t> feature = table.integer(
+            *features->get(i), "features" + index, 0, std::numeric_limits<std::uint32_t>::max());
+        ContactStateDesc::Point point;
+        point.feature = static_cast<std::uint32_t>(feature.value_or(0));
+        const std::array<glm::dvec3 *, 3> members{&point.impulse, &point.core_a, &point.core_b};
+        bool is_read = feature.has_value();
+        for (std::size_t k = 0; k < vectors.size(); ++k) {
+            if (!arrays[k])
+                continue;
+            if (const auto read =
+                    table.numbers<3>(*arrays[k]->get(i), std::string(vectors[k]) + index, finite))
+                *members[k] = {(*read)[0], (*read)[1], (*read)[2]};
+            else
+                is_read = false;
+        }
+        if (is_read)
+            contact.points.push_back(point);
+    }
+    contact.normal = table.vector("normal", finite).value_or(contact.normal);
+    contact.offset = table.vector("offset", finite).value_or(contact.offset);
+    contact.rotation_a = table.unit_quaternion("rotation_a").value_or(contact.rotation_a);
+    contact.rotation_b = table.unit_quaternion("rotation_b").value_or(contact.rotation_b);
+    reading.scene.contacts.push_back(std::move(contact));
+}
+
+} // namespace
+
+void read_state(Reading &reading, const toml::table &source) {
+    static constexpr std::array<std::string_view, 2> keys{"step", "contact"};
+    const Table table(reading.report, source, "[state]", keys);
+    reading.scene.step_count = table.natural("step").value_or(0);
+    for_each(
+        reading.report, table, "contact",
+        [&](const toml::table &contact) { read_contact(reading, contact); }, "state.contact");
+}
+
+} // namespace plumb::scene_file
