@@ -240,9 +240,9 @@ TEST_P(Springs, PinnedParticlesStay) {
     EXPECT_NEAR(world.measure().energy(), energy, 1e-12);
 }
 
-// A hand lifts a rope of 1 kg by one of its particles, of 50 g. The hand's spring alone would sag by
-// g / omega^2 = 1 cm; a known failing, it sags by 5, as the substep's implicit pull is that on so
-// light a particle.
+// A hand lifts a rope of 1 kg by one of its particles, of 50 g. The hand's spring alone would sag
+// by g / omega^2 = 1 cm; a known failing, it sags by 5, as the substep's implicit pull is that on
+// so light a particle.
 TEST(ParticleGrab, LiftsWhatHangsOnIt) {
     World world("soft_step", settings_for("soft_step"));
     world.add_body(ground(0.5, 0));
