@@ -290,7 +290,7 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
         for (std::size_t i = 0; i < frame.particles.size(); ++i) {
             const ParticleInfo &info = simulation.soft_parts().particles[i];
             const glm::dvec3 at = frame.particles[i].position;
-            if (!std::isfinite(at.x + at.y + at.z) || (info.pinned && !info.cloth && !fixed_too))
+            if (!std::isfinite(at.x + at.y + at.z))
                 continue;
             low = glm::min(low, at - info.radius);
             high = glm::max(high, at + info.radius);

@@ -39,6 +39,9 @@ name = "bob"
 shape = "sphere"
 radius = 0.2
 position = [3, 3, 0]
+[[particle]]
+name = "mote"
+position = [6, 2, 0]
 [[joint]]
 name = "string"
 type = "ball"
@@ -83,6 +86,7 @@ std::vector<std::pair<std::uint64_t, Command>> commands() {
         {25, SetMethod{"sequential_impulses"}},
         {25, SetSettings{settings}},
         {30, RemoveBody{"bob"}}, // and its joint
+        {32, GrabParticle{"mote", {6, 3, 1.0 / 3}, 50}},
         {40, ApplyImpulse{"ball", {0, 0.5, 0}, {0, 0, 0}}},
     };
 }
