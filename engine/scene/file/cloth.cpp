@@ -139,8 +139,7 @@ void read_pins(const Table &table, ClothDesc &cloth) {
                 read_pin(table, cloth, *array->get(i), "pins[" + std::to_string(i) + "]"))
             cloth.pins.push_back(*pin);
     std::ranges::sort(cloth.pins);
-    const auto twice = std::ranges::unique(cloth.pins);
-    cloth.pins.erase(twice.begin(), twice.end());
+    cloth.pins.erase(std::unique(cloth.pins.begin(), cloth.pins.end()), cloth.pins.end());
 }
 
 // An array of `count` vectors; null, having reported it, when it is not.
