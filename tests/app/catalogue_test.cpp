@@ -39,13 +39,15 @@ class Scene : public testing::TestWithParam<fs::path> {};
 
 // Known failings: what a method cannot do by its nature, whatever its settings. TGS Soft falls by
 // semi-implicit Euler, and bounces once a step, one contact by itself. What does not look ahead
-// takes the planes of the start of the step for those of all of it.
+// takes the planes of the start of the step for those of all of it. Explicit Euler speeds spins up,
+// and steps so short that it would not are lost in float.
 bool is_known_failing(const MethodInfo &method, const std::string &scene) {
     static const std::set<std::string> too_much_for_tgs_soft{"free_fall", "bounce_elastic",
                                                              "bounce_half", "newtons_cradle"};
     static const std::set<std::string> too_fast_without_looking{"passing", "struck_before_wall"};
     return (method.name == "tgs_soft" && too_much_for_tgs_soft.contains(scene)) ||
-           (!method.looks_ahead && too_fast_without_looking.contains(scene));
+           (!method.looks_ahead && too_fast_without_looking.contains(scene)) ||
+           (method.name == "explicit_euler" && scene == "spinning_book");
 }
 
 TEST_P(Scene, IsWithinItsTolerancesWithEveryMethodThatCanRunIt) {
