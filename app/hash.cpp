@@ -1,8 +1,8 @@
 #include "app/hash.h"
 
 #include "app/lab/interrupt.h"
-#include "app/lab/load_scenes.h"
 #include "app/lab/progress.h"
+#include "app/lab/run/load_scenes.h"
 #include "engine/core/check.h"
 #include "engine/scene/recording.h"
 

@@ -1,14 +1,14 @@
 // Commands that judge, measure, chart, map, tune and time.
 #include "app/commands.h"
 
-#include "app/lab/chart.h"
-#include "app/lab/check.h"
+#include "app/lab/chart/chart.h"
 #include "app/lab/csv.h"
 #include "app/lab/map/stability_map.h"
-#include "app/lab/measure.h"
-#include "app/lab/query_chart.h"
-#include "app/lab/run_text.h"
-#include "app/lab/sweep.h"
+#include "app/lab/queries/query_chart.h"
+#include "app/lab/run/check.h"
+#include "app/lab/run/measure.h"
+#include "app/lab/run/run_text.h"
+#include "app/lab/run/sweep.h"
 #include "app/lab/tune/tune.h"
 
 #include <cerrno>

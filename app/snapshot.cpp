@@ -2,8 +2,8 @@
 
 #include "app/files/output_file.h"
 #include "app/lab/interrupt.h"
-#include "app/lab/load_scenes.h"
 #include "app/lab/progress.h"
+#include "app/lab/run/load_scenes.h"
 #include "app/render/framebuffer.h"
 #include "app/render/png.h"
 #include "app/render/renderer.h"

@@ -21,13 +21,13 @@ LIBRARIES = [
      r"|engine/dynamics/contact_kernels\.cpp|"
      r"tests/(geometry|space|dynamics)/[^/]+", None),
     (r"Eigen/", r"engine/dynamics/methods/backward_euler\.cpp", 1),
-    (r"benchmark/", r"app/lab/[^/]+\.cpp", 1),
+    (r"benchmark/", r"app/lab/timing\.cpp", 1),
     (r"Bullet|LinearMath/|fcl/|embree|\bode/", r"tests/bench/[^/]+", None),
     (r"GLFW/", r"app/render/window_context\.cpp|app/sandbox/[^/]+\.cpp", 3),
     (r"GL/osmesa\.h", r"app/render/[^/]+\.cpp", 1),
     (r"glad/|GL/", r"app/render/[^/]+", None),
     (r"imgui|backends/imgui", r"app/render/(imgui_renderer|fonts)[^/]*|app/sandbox/[^/]+"
-                              r"|app/lab/[^/]+|tests/(render|sandbox|app)/[^/]+", None),
+                              r"|app/lab/chart/[^/]+|tests/(render|sandbox|app)/[^/]+", None),
     (r"stb_|stb/", r"app/render/[^/]+\.cpp", None),
     (r"CLI/", r"app/main\.cpp|app/[^/]+\.(cpp|h)", None),
 ]

@@ -3,7 +3,7 @@
 
 #include "app/files/output_file.h"
 #include "app/lab/exit_code.h"
-#include "app/lab/expectation_watch.h"
+#include "app/lab/run/expectation_watch.h"
 #include "app/sandbox/graphs.h"
 #include "app/sandbox/history.h"
 #include "app/sandbox/messages.h"

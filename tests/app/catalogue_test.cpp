@@ -1,7 +1,7 @@
 // Every scene of the catalogue with every method that can run it.
 #include "tests/app/program.h"
 
-#include "app/lab/check.h"
+#include "app/lab/run/check.h"
 #include "engine/core/task_pool.h"
 #include "engine/dynamics/method_info.h"
 #include "engine/scene/scene_file.h"

@@ -2,7 +2,7 @@
 #include "tests/bench/benches.h"
 
 #include "app/files/output_file.h"
-#include "app/lab/chart_image.h"
+#include "app/lab/chart/chart_image.h"
 #include "app/lab/csv.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/progress.h"

@@ -9,7 +9,7 @@
 #include "tests/bench/peer_bullet.h"
 #include "tests/bench/peer_fcl.h"
 
-#include "app/lab/book_queries.h"
+#include "app/lab/queries/book_queries.h"
 
 namespace plumb {
 

@@ -1,4 +1,4 @@
-#include "app/lab/book_queries.h"
+#include "app/lab/queries/book_queries.h"
 #include "engine/geometry/hull_queries.h"
 #include "engine/geometry/raycast.h"
 #include "tests/bench/contest.h"

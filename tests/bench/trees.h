@@ -1,7 +1,7 @@
 // What it costs to build and to refit trees, from a thousand leaves to a million.
 #pragma once
 
-#include "app/lab/chart_layout.h"
+#include "app/lab/chart/chart_layout.h"
 #include "app/lab/timing.h"
 
 #include <ostream>

@@ -1,7 +1,7 @@
 // Why a run failed: the colours of a stability map.
 #pragma once
 
-#include "app/lab/judged_run.h"
+#include "app/lab/run/judged_run.h"
 
 #include <optional>
 #include <span>

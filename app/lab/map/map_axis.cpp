@@ -1,6 +1,6 @@
 #include "app/lab/map/map_axis.h"
 
-#include "app/lab/sweep.h"
+#include "app/lab/run/sweep.h"
 #include "engine/scene/given_settings.h"
 
 #include <algorithm>

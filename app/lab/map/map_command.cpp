@@ -1,7 +1,7 @@
 #include "app/lab/map/stability_map.h"
 
 #include "app/files/output_file.h"
-#include "app/lab/chart_image.h"
+#include "app/lab/chart/chart_image.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/map/map_picture.h"
 #include "app/lab/map/map_resume.h"

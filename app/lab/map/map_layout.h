@@ -1,7 +1,7 @@
 // Where everything on a stability map goes: values in, pixels out, nothing drawn.
 #pragma once
 
-#include "app/lab/chart_layout.h"
+#include "app/lab/chart/chart_layout.h"
 #include "app/lab/map/stability_map.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #include "app/lab/map/map_picture.h"
 
-#include "app/lab/chart_pen.h"
+#include "app/lab/chart/chart_pen.h"
 
 namespace plumb {
 

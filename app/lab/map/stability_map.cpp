@@ -1,7 +1,7 @@
 #include "app/lab/map/stability_map.h"
 
 #include "app/lab/map/passage.h"
-#include "app/lab/method_choice.h"
+#include "app/lab/run/method_choice.h"
 #include "engine/scene/file/change.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "app/lab/map/failing.h"
 #include "app/lab/map/map_axis.h"
 #include "app/lab/progress.h"
-#include "app/lab/scene_text.h"
+#include "app/lab/run/scene_text.h"
 #include "engine/core/task_pool.h"
 #include "engine/scene/simulation.h"
 

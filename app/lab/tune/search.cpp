@@ -1,6 +1,6 @@
 #include "app/lab/tune/search.h"
 
-#include "app/lab/sweep.h"
+#include "app/lab/run/sweep.h"
 
 #include <algorithm>
 #include <cmath>

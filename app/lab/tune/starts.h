@@ -1,7 +1,7 @@
 // The same scene begun several times, a hair apart: what holds for one start only is luck.
 #pragma once
 
-#include "app/lab/scene_text.h"
+#include "app/lab/run/scene_text.h"
 #include "engine/scene/scene_desc.h"
 
 #include <vector>

@@ -1,7 +1,7 @@
 #include "app/lab/tune/trial.h"
 
-#include "app/lab/end_timer.h"
-#include "app/lab/run_text.h"
+#include "app/lab/run/end_timer.h"
+#include "app/lab/run/run_text.h"
 #include "app/lab/timing.h"
 
 #include <algorithm>

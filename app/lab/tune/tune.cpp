@@ -1,6 +1,6 @@
 #include "app/lab/tune/tune.h"
 
-#include "app/lab/method_choice.h"
+#include "app/lab/run/method_choice.h"
 #include "app/lab/timing.h"
 #include "app/lab/tune/search.h"
 #include "app/lab/tune/starts.h"

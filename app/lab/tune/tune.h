@@ -1,11 +1,11 @@
 // The cheapest settings with which a scene meets all that it expects of itself.
 #pragma once
 
-#include "app/lab/chart.h"
+#include "app/lab/chart/chart.h"
 #include "app/lab/exit_code.h"
-#include "app/lab/judged_run.h"
 #include "app/lab/progress.h"
-#include "app/lab/scene_text.h"
+#include "app/lab/run/judged_run.h"
+#include "app/lab/run/scene_text.h"
 #include "engine/scene/simulation.h"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // What tuning came to, for people.
-#include "app/lab/run_text.h"
-#include "app/lab/sweep.h"
+#include "app/lab/run/run_text.h"
+#include "app/lab/run/sweep.h"
 #include "app/lab/timing.h"
 #include "app/lab/tune/tune.h"
 

@@ -1,7 +1,7 @@
 #include "app/lab/map/failing.h"
 #include "app/lab/map/passage.h"
 
-#include "tests/lab/fake_simulation.h"
+#include "tests/lab/run/fake_simulation.h"
 
 #include <set>
 

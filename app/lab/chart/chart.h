@@ -1,0 +1,110 @@
+// What each method costs on a scene, against how wrong it is.
+#pragma once
+
+#include "app/lab/chart/chart_layout.h"
+#include "app/lab/chart/error_measure.h"
+#include "app/lab/exit_code.h"
+#include "app/lab/progress.h"
+#include "app/lab/run/judged_run.h"
+#include "app/lab/run/sweep.h"
+#include "engine/scene/simulation.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+using MakeSimulation =
+    std::function<std::unique_ptr<Simulation>(const SceneDesc &, const RunOptions &)>;
+
+struct ChartOptions {
+    std::vector<std::string> methods; // empty: all that can run the scene
+    std::vector<SweepAxis> sweep;     // empty: default_sweep()
+    RunOptions base;                  // what is not swept; its method is not read
+    std::string expect;               // to chart this one alone, in its own unit; empty: all
+    double duration = 5;              // s, of scenes that expect nothing
+    int repeats = 5;                  // timings of each run; their median counts
+    double timed = 2;                 // s, simulated: the end of the run, which is timed
+    std::function<bool()> stop;       // asked often; true ends early with what there is
+    Progress progress;
+    MakeSimulation make; // empty: Simulation::create, on one thread
+};
+
+enum class ChartStatus {
+    fine,    // all that the scene expects is met, as `check` says; or it expects nothing
+    outside, // something is missed, whether or not the chart shows it
+    diverged,
+    no_result, // it ran, but the quantity could not be measured: a period that never came, say
+    unfinished // interrupted
+};
+
+[[nodiscard]] std::string_view status_name(ChartStatus status);
+
+struct ChartRun {
+    ResolvedRun resolved;
+    SweepPoint point;
+    JudgedRun run; // a full one from the start: chaos keeps errors of any other from comparing
+    ChartStatus status = ChartStatus::unfinished;
+    double error = 0; // in the measure's unit; infinite without a result
+    // The expectation with the largest error in units of its tolerance, as an index into
+    // run.outcomes; none when all errors are 0.
+    std::optional<std::size_t> worst;
+    // CPU seconds of one thread per simulated second: of each repeat, and their median, least and
+    // greatest. A run that could not be timed over its end (diverged, interrupted) has no repeats:
+    // its cost is what its full run took.
+    std::vector<double> timings;
+    double cost = 0, cost_low = 0, cost_high = 0;
+    // Work per simulated second, as it was counted in the full run: see StepReport.
+    double body_passes = 0, constraint_passes = 0;
+    bool pareto = false; // fine, and nothing cheaper that is fine is truer
+};
+
+struct SceneChart {
+    SceneDesc scene;
+    std::vector<SweepAxis> sweep;
+    ErrorMeasure measure;
+    std::vector<ChartRun> runs; // method by method, the first axis fastest; those that were begun
+    std::vector<std::string> left_out; // why, of each method that cannot run the scene
+    std::size_t planned = 0;
+    int repeats = 0;
+    double timed = 0; // s, simulated, in each timing
+    bool interrupted = false;
+    [[nodiscard]] double median_spread() const; // of (greatest - least) / median over the runs
+};
+
+// First each run in full, for its error; then the timings, round after round over all runs, so that
+// a machine that slows down does so for all. `changed` is called whenever a run was added or a
+// round of timings finished; it may be empty. Throws std::invalid_argument for options that make no
+// sense.
+[[nodiscard]] SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
+                                     const std::function<void(const SceneChart &)> &changed = {});
+
+// One row a run: all settings, costs, work, every error and every expectation.
+void write_chart_csv(std::ostream &out, const SceneChart &chart);
+
+// A table for people.
+void print(std::ostream &out, const SceneChart &chart);
+
+// The picture, less its pixels. `command` is what made it, for the footer.
+[[nodiscard]] ChartContent chart_content(const SceneChart &chart, const std::string &command);
+
+struct ChartCommand {
+    std::vector<std::filesystem::path> scenes;
+    ChartOptions options; // its stop and progress are set here
+    std::filesystem::path out_dir;
+    std::filesystem::path shader_dir;
+    std::string command; // for the footer
+};
+
+// Writes out_dir/SCENE.csv and SCENE.png for each scene, prints tables to `out` and everything else
+// to `err`. On Ctrl-C the rows so far stay in SCENE.csv.partial, and are charted as
+// SCENE.partial.png.
+[[nodiscard]] ExitCode chart_scenes(const ChartCommand &command, std::ostream &out,
+                                    std::ostream &err);
+
+} // namespace plumb

@@ -1,0 +1,39 @@
+// Draws a chart off screen.
+#pragma once
+
+#include "app/lab/chart/chart_layout.h"
+#include "app/render/image.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+namespace plumb {
+
+class ChartPen;
+struct MapPicture;
+struct PanelChart;
+
+// Holds a GL context and a typeface for as many charts as one likes. Leaves ImGui's current context
+// as it was, but not the thread's GL context: whoever has one makes it current again afterwards.
+class ChartPainter {
+  public:
+    // Throws ContextError when there is no GL context, std::runtime_error when a shader is missing.
+    explicit ChartPainter(const std::filesystem::path &shader_dir);
+    ~ChartPainter();
+    ChartPainter(const ChartPainter &) = delete;
+    ChartPainter &operator=(const ChartPainter &) = delete;
+
+    // 1200 x 800 pixels.
+    [[nodiscard]] Image paint(const ChartContent &content);
+    [[nodiscard]] Image paint(const PanelChart &chart);
+    [[nodiscard]] Image paint(const MapPicture &picture);
+
+  private:
+    [[nodiscard]] Image paint(const std::function<void(ChartPen &)> &draw);
+
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+} // namespace plumb

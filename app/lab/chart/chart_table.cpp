@@ -1,0 +1,147 @@
+// A chart's numbers: as CSV, and as a table for people.
+#include "app/lab/chart/chart.h"
+#include "app/lab/chart/log_axis.h"
+#include "app/lab/csv.h"
+#include "app/lab/run/run_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace plumb {
+
+namespace {
+
+std::string error_unit(const ErrorMeasure &measure) {
+    return measure.kind == ErrorMeasure::Kind::worst ? "tolerance" : measure.unit;
+}
+
+// "dt_s", "gravity_y_m_s2"
+std::string setting_column(SettingNumber number) {
+    std::string column = setting_name(number);
+    if (const std::string_view unit = number.setting().unit; !unit.empty())
+        column += "_" + std::string(unit);
+    std::erase(column, '^');
+    for (char &c : column)
+        if (c == '.' || c == '/')
+            c = '_';
+    return column;
+}
+
+} // namespace
+
+void write_chart_csv(std::ostream &out, const SceneChart &chart) {
+    CsvWriter csv(out);
+    for (const char *name : {"scene", "method", "precision"})
+        csv.cell(name);
+    for (const SettingNumber number : setting_numbers())
+        csv.cell(setting_column(number));
+    for (const char *name : {"status",
+                             "pareto",
+                             "cpu_s_per_s",
+                             "cpu_s_per_s_least",
+                             "cpu_s_per_s_greatest",
+                             "timings",
+                             "body_passes_per_s",
+                             "constraint_passes_per_s",
+                             "charted_error",
+                             "error",
+                             "error_unit",
+                             "worst",
+                             "end_s",
+                             "steps",
+                             "max_penetration_m",
+                             "max_joint_drift_m",
+                             "max_energy_change_J",
+                             "max_energy_error",
+                             "unresolved_impacts",
+                             "diverged_at_s",
+                             "diverged"})
+        csv.cell(name);
+    for (const ExpectDesc &expect : everything_expected(chart.scene))
+        for (const char *column : {".measured", ".error", ".limit", ".scaled_error", ".passed"})
+            csv.cell(expect.name + column);
+    csv.end_row();
+    for (const ChartRun &run : chart.runs) {
+        csv.cell(chart.scene.name)
+            .cell(run.resolved.method->name)
+            .cell(precision_name(run.resolved.precision));
+        for (const SettingNumber number : setting_numbers())
+            csv.cell(setting_value(run.resolved.settings, number));
+        csv.cell(status_name(run.status))
+            .cell(run.pareto)
+            .cell(run.cost)
+            .cell(run.cost_low)
+            .cell(run.cost_high)
+            .cell(static_cast<std::uint64_t>(run.timings.size()))
+            .cell(run.body_passes)
+            .cell(run.constraint_passes)
+            .cell(chart.measure.name)
+            .cell(run.error)
+            .cell(error_unit(chart.measure))
+            .cell(run.worst ? run.run.outcomes[*run.worst].desc.name : "")
+            .cell(run.run.time)
+            .cell(run.run.steps)
+            .cell(run.run.max_penetration)
+            .cell(run.run.max_joint_drift)
+            .cell(run.run.max_energy_change)
+            .cell(run.run.max_energy_error)
+            .cell(run.run.unresolved_impacts);
+        if (run.run.divergence)
+            csv.cell(run.run.divergence->time).cell(describe(*run.run.divergence));
+        else
+            csv.cell("").cell("");
+        for (const ExpectOutcome &outcome : run.run.outcomes)
+            if (outcome.judged())
+                csv.cell(outcome.measured)
+                    .cell(outcome.error)
+                    .cell(outcome.limit)
+                    .cell(outcome.scaled_error)
+                    .cell(outcome.verdict == Verdict::met);
+            else
+                csv.cell("").cell("").cell(outcome.limit).cell("").cell("");
+        csv.end_row();
+    }
+}
+
+void print(std::ostream &out, const SceneChart &chart) {
+    out << chart.scene.name << ": " << chart.measure.explanation;
+    // In units of tolerances it is 1, and needs no words.
+    if (chart.measure.limit && chart.measure.kind != ErrorMeasure::Kind::worst) {
+        std::string label = chart.measure.limit_label;
+        std::replace(label.begin(), label.end(), raised_from, '^');
+        out << "; " << label;
+    }
+    out << '\n';
+    char line[256];
+    std::snprintf(line, sizeof line, "  %-22s %9s %9s %10s %14s %8s %14s  %s\n", "method",
+                  "substeps", "iteration", "dt", "CPU ms/s", "spread", "error", "");
+    out << line;
+    for (const ChartRun &run : chart.runs) {
+        char spread[24] = "-";
+        if (run.timings.size() > 1)
+            std::snprintf(spread, sizeof spread, "%.1f %%",
+                          100 * (run.cost_high - run.cost_low) / run.cost);
+        const std::string error =
+            std::isfinite(run.error) ? with_unit(run.error, chart.measure.unit) : "-";
+        std::snprintf(line, sizeof line, "  %-22.22s %9s %9d %10s %14.5g %8s %14s  %s%s",
+                      std::string(run.resolved.method->name).c_str(),
+                      substeps_text(run.resolved).c_str(), run.resolved.settings.iterations,
+                      format_dt(run.resolved.settings.dt).c_str(), 1e3 * run.cost, spread,
+                      error.c_str(), std::string(status_name(run.status)).c_str(),
+                      run.pareto ? ", Pareto front" : "");
+        out << line;
+        if (run.worst && !run.run.divergence && everything_expected(chart.scene).size() > 1)
+            out << "; worst: " << run.run.outcomes[*run.worst].desc.name;
+        out << '\n';
+        if (run.run.divergence)
+            out << "    " << describe(*run.run.divergence) << '\n';
+    }
+    for (const std::string &why : chart.left_out)
+        out << "  left out: " << why << '\n';
+    if (chart.interrupted)
+        out << "  interrupted: " << chart.runs.size() << " of " << chart.planned
+            << " runs were begun\n";
+}
+
+} // namespace plumb

@@ -1,0 +1,218 @@
+#include "app/lab/run/judged_run.h"
+
+#include "app/lab/cpu_clock.h"
+#include "app/lab/run/expectation_watch.h"
+#include "engine/core/check.h"
+#include "engine/scene/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <span>
+
+namespace plumb {
+
+namespace {
+
+bool finite(const glm::dvec3 &v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool finite(const BodyState &state) {
+    const glm::dquat &q = state.orientation;
+    return finite(state.position) && finite(state.velocity) && finite(state.angular_velocity) &&
+           std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
+}
+
+// Remembers where all bodies were, to say where things went wrong.
+class LastPositions {
+  public:
+    void note(const Simulation &simulation) { simulation.read(frame_, {}); }
+
+    [[nodiscard]] Divergence diverged(const Simulation &simulation, std::uint64_t step,
+                                      std::string message) const {
+        Divergence divergence = find_divergence(simulation, step);
+        divergence.message = std::move(message);
+        const auto body = simulation.find_body(divergence.body);
+        if (!divergence.body.empty() && body && *body < frame_.bodies.size())
+            divergence.last_position = frame_.bodies[*body].position;
+        return divergence;
+    }
+
+  private:
+    Frame frame_;
+};
+
+ExpectDesc expect_of(const ProbeDesc &probe, const ProbeExpectDesc &expect) {
+    ExpectDesc desc;
+    desc.name = probe.name + ", " + expect.value;
+    desc.value = expect.is;
+    desc.tolerance = probe.tolerance;
+    desc.source = probe.source;
+    return desc;
+}
+
+} // namespace
+
+Divergence find_divergence(const Simulation &simulation, std::uint64_t step) {
+    Divergence divergence;
+    divergence.step = step;
+    divergence.time = simulation.time();
+    const Frame frame = simulation.read();
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i)
+        if (simulation.body_info(i).alive && !finite(frame.bodies[i])) {
+            divergence.body = simulation.body_info(i).name;
+            break;
+        }
+    for (std::size_t i = 0; i < frame.particles.size() && divergence.body.empty(); ++i)
+        if (!finite(frame.particles[i].position) || !finite(frame.particles[i].velocity)) {
+            divergence.body = simulation.soft_parts().particle_name(i);
+            divergence.is_particle = true;
+        }
+    return divergence;
+}
+
+std::string describe(const Divergence &divergence) {
+    char text[256];
+    std::snprintf(text, sizeof text, "not finite after step %llu (%.4g s)",
+                  static_cast<unsigned long long>(divergence.step), divergence.time);
+    std::string all = text;
+    if (!divergence.message.empty()) {
+        std::snprintf(text, sizeof text, "failed in step %llu (%.4g s)",
+                      static_cast<unsigned long long>(divergence.step), divergence.time);
+        all = text;
+    }
+    if (!divergence.body.empty())
+        all += (divergence.is_particle ? ": particle \"" : ": body \"") + divergence.body + "\"";
+    if (divergence.last_position) {
+        const glm::dvec3 &p = *divergence.last_position;
+        std::snprintf(text, sizeof text, ", last at (%.4g, %.4g, %.4g)", p.x, p.y, p.z);
+        all += text;
+    }
+    if (!divergence.message.empty())
+        all += ": " + divergence.message;
+    return all;
+}
+
+bool JudgedRun::all_met() const {
+    return !divergence && !stopped &&
+           std::all_of(outcomes.begin(), outcomes.end(), [](const ExpectOutcome &outcome) {
+               return outcome.verdict == Verdict::met || outcome.verdict == Verdict::unseen;
+           });
+}
+
+bool JudgedRun::any_judged() const {
+    return std::any_of(outcomes.begin(), outcomes.end(),
+                       [](const ExpectOutcome &outcome) { return outcome.judged(); });
+}
+
+double run_end(const SceneDesc &scene, double duration) {
+    double end = 0;
+    for (const ExpectDesc &expect : scene.expects)
+        end = std::max(end, expect.to);
+    return scene.expects.empty() ? duration : end;
+}
+
+JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeOptions &options) {
+    JudgedRun run;
+    std::vector<QuantityName> followed;
+    if (options.follow_errors)
+        for (const char *quantity : {"penetration", "joint_drift", "energy", "energy_error"})
+            followed.push_back({quantity, ""});
+    ExpectationWatch watch(simulation, scene.expects, followed);
+    double start_energy = 0;
+    const auto follow = [&](bool first) {
+        if (!options.follow_errors)
+            return;
+        const std::span<const double> now = watch.also_now();
+        if (first)
+            start_energy = now[2];
+        run.max_penetration = std::max(run.max_penetration, now[0]);
+        run.max_joint_drift = std::max(run.max_joint_drift, now[1]);
+        run.max_energy_change = std::max(run.max_energy_change, std::abs(now[2] - start_energy));
+        run.max_energy_error = std::max(run.max_energy_error, std::abs(now[3]));
+        run.max_energy_gain = std::max(run.max_energy_gain, now[3]);
+        run.end_penetration = now[0];
+        run.end_joint_drift = now[1];
+    };
+
+    const double end = run_end(scene, options.duration);
+    const double start = simulation.time();
+    constexpr int looks = 32; // in a run, at whether to give up
+    double next_look = options.give_up ? start + (end - start) / looks : end;
+    const auto any_missed = [&] {
+        for (std::size_t i = 0; i < watch.size(); ++i)
+            if (watch.outcome(i).verdict == Verdict::missed)
+                return true;
+        return false;
+    };
+    LastPositions last_positions;
+    bool at_time_due = static_cast<bool>(options.at_time);
+    follow(true);
+    while (true) {
+        // A millionth of a step: more than time can be off by rounding, less than anything shows.
+        const double slack = 1e-6 * simulation.settings().dt;
+        if (simulation.time() >= end - slack)
+            break;
+        if (options.stop && options.stop()) {
+            run.stopped = true;
+            break;
+        }
+        if (at_time_due && simulation.time() >= options.at_time_seconds - slack) {
+            options.at_time();
+            at_time_due = false;
+        }
+        last_positions.note(simulation);
+        const std::uint64_t step = simulation.step_count();
+        try {
+            const double before = thread_cpu_time();
+            simulation.step();
+            run.step_cpu_time += thread_cpu_time() - before;
+        } catch (const CheckFailure &failure) {
+            run.divergence = last_positions.diverged(simulation, step + 1, failure.what());
+            break;
+        }
+        ++run.steps;
+        run.body_passes += simulation.report().body_passes;
+        run.constraint_passes += simulation.report().constraint_passes;
+        run.unresolved_impacts += simulation.report().unresolved_impacts;
+        run.had_contacts = run.had_contacts || simulation.report().contacts > 0;
+        if (!simulation.report().finite) {
+            run.divergence = last_positions.diverged(simulation, step + 1, "");
+            break;
+        }
+        watch.sample(simulation);
+        follow(false);
+        if (options.progress)
+            options.progress((simulation.time() - start) / std::max(end - start, 1e-300));
+        if (simulation.time() >= next_look && next_look < end) {
+            if (any_missed())
+                break;
+            next_look = simulation.time() + (end - start) / looks;
+        }
+    }
+    run.time = simulation.time();
+
+    for (std::size_t i = 0; i < watch.size(); ++i)
+        run.outcomes.push_back(watch.outcome(i));
+    return run;
+}
+
+std::vector<ExpectDesc> everything_expected(const SceneDesc &scene) {
+    std::vector<ExpectDesc> expects = scene.expects;
+    for (const ProbeDesc &probe : scene.probes)
+        for (const ProbeExpectDesc &expect : probe.expects)
+            expects.push_back(expect_of(probe, expect));
+    return expects;
+}
+
+void judge_probes(const SceneDesc &scene, Precision precision,
+                  std::vector<ExpectOutcome> &outcomes) {
+    for (const ProbeDesc &probe : scene.probes) {
+        const ProbeAnswer found = answer(probe, precision);
+        for (const ProbeExpectDesc &expect : probe.expects)
+            outcomes.push_back(judge(expect_of(probe, expect), found.value(expect.value)));
+    }
+}
+
+} // namespace plumb

@@ -1,0 +1,110 @@
+#include "app/lab/run/quantity_probe.h"
+
+#include <stdexcept>
+#include <variant>
+
+#include <glm/geometric.hpp>
+
+namespace plumb {
+
+namespace {
+
+// What a particle has in common with a body.
+BodyState as_body(const ParticleState &particle) {
+    BodyState body;
+    body.position = particle.position;
+    body.velocity = particle.velocity;
+    return body;
+}
+
+} // namespace
+
+QuantityProbe::Item QuantityProbe::item_of(const Simulation &simulation,
+                                           const QuantityInfo &quantity,
+                                           const std::string &name) const {
+    using Of = Item::Of;
+    if (quantity.needs_spring()) {
+        if (const auto spring = simulation.soft_parts().find_spring(name))
+            return {&quantity, Of::spring, *spring, {}};
+        throw std::invalid_argument("there is no spring \"" + name + "\"");
+    }
+    if (!quantity.needs_body())
+        return {&quantity, Of::scene, 0, {}};
+    if (const auto body = simulation.find_body(name))
+        return {&quantity, Of::body, *body, frame_.bodies[*body]};
+    const auto particle = simulation.soft_parts().find_particle(name);
+    if (particle && quantity.of_particles)
+        return {&quantity, Of::particle, *particle, as_body(frame_.particles[*particle])};
+    throw std::invalid_argument("there is no body \"" + name + "\"");
+}
+
+QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names) {
+    simulation.read(frame_, {});
+    for (const QuantityName &name : names) {
+        const QuantityInfo *info = find_quantity(name.quantity);
+        if (info == nullptr)
+            throw std::invalid_argument("there is no quantity \"" + name.quantity + "\"");
+        items_.push_back(item_of(simulation, *info, name.body));
+        const bool of_scene = items_.back().of == Item::Of::scene;
+        reads_ = reads_ || !of_scene;
+        measures_ = measures_ || of_scene;
+    }
+    if (!measures_)
+        return;
+    start_.measures = simulation.measure();
+    for (std::size_t i = 0; i < simulation.body_count(); ++i) {
+        const BodyInfo &info = simulation.body_info(i);
+        if (!info.alive || info.kind != BodyKind::dynamic)
+            continue;
+        const BodyState &state = frame_.bodies[i];
+        const glm::dvec3 local_spin = glm::conjugate(state.orientation) * state.angular_velocity;
+        start_.momentum_scale += info.mass * glm::length(state.velocity);
+        start_.angular_momentum_scale +=
+            info.mass * glm::length(glm::cross(state.position, state.velocity)) +
+            glm::length(info.inertia * local_spin);
+    }
+    for (std::size_t i = 0; i < frame_.particles.size(); ++i) {
+        const ParticleInfo &info = simulation.soft_parts().particles[i];
+        const ParticleState &state = frame_.particles[i];
+        if (info.pinned)
+            continue;
+        start_.momentum_scale += info.mass * glm::length(state.velocity);
+        start_.angular_momentum_scale +=
+            info.mass * glm::length(glm::cross(state.position, state.velocity));
+    }
+}
+
+double QuantityProbe::value_of(const Item &item, const Simulation &simulation,
+                               const Measures &now) const {
+    switch (item.of) {
+    case Item::Of::scene:
+        break;
+    case Item::Of::body:
+        return std::get<QuantityInfo::OfBody>(item.quantity->value)(frame_.bodies[item.index],
+                                                                    item.start);
+    case Item::Of::particle:
+        return std::get<QuantityInfo::OfBody>(item.quantity->value)(
+            as_body(frame_.particles[item.index]), item.start);
+    case Item::Of::spring: {
+        const SpringInfo &spring = simulation.soft_parts().springs[item.index];
+        return std::get<QuantityInfo::OfSpring>(item.quantity->value)(
+            {glm::distance(place_of(spring.a, frame_.bodies, frame_.particles),
+                           place_of(spring.b, frame_.bodies, frame_.particles)),
+             spring.rest_length});
+    }
+    }
+    return std::get<QuantityInfo::OfScene>(item.quantity->value)(now, start_);
+}
+
+std::vector<double> QuantityProbe::sample(const Simulation &simulation) {
+    if (reads_)
+        simulation.read(frame_, {});
+    const Measures now = measures_ ? simulation.measure() : Measures{};
+    std::vector<double> values;
+    values.reserve(items_.size());
+    for (const Item &item : items_)
+        values.push_back(value_of(item, simulation, now));
+    return values;
+}
+
+} // namespace plumb
