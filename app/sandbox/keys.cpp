@@ -126,6 +126,10 @@ std::optional<ActionInfo> row(Action action) {
         return ActionInfo{action, "Diagnostics",
                           "Times, energy and measures.",
                           Place::general, false, {plain('m')}};
+    case Action::toggle_lab:
+        return ActionInfo{action, "Lab",
+                          "Plots of the running scene over time.",
+                          Place::general, false, {plain('l')}};
     case Action::larger_panels:
         return ActionInfo{action, "Larger panels",
                           "Text and panels, by a tenth.",

@@ -36,6 +36,7 @@ enum class Action {
     toggle_help,
     toggle_panels,
     toggle_diagnostics,
+    toggle_lab,
     larger_panels,
     smaller_panels,
     screenshot,

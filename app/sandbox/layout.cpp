@@ -14,6 +14,7 @@ constexpr float margin = 8;
 constexpr float transport_width = 520;
 constexpr float least_transport_width = 380;
 constexpr glm::vec2 roomy{860, 600};
+constexpr float lab_share = 0.5f; // of the middle's height, at most
 
 // A picture less high than this share of the window is no picture.
 constexpr float least_picture = 0.2f;
@@ -86,17 +87,26 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
     stack(rects, wished, PanelSpot::left, {{gap, gap}, {left, column}}, gap);
     stack(rects, wished, PanelSpot::right, {{right_x, gap}, {right, column}}, gap);
 
-    const bool alone = !is_roomy(window, scale) && wished[PanelId::help] > 0;
+    const bool is_small = !is_roomy(window, scale);
+    const bool alone = is_small && wished[PanelId::help] > 0;
     const float over_x = alone ? gap : middle_x;
     const float over = alone ? std::max(window.x - 2 * gap, 1.0f) : middle;
     const float said = std::min(std::ceil(wished[PanelId::messages]), 0.35f * above);
     if (said > 0)
         rects[PanelId::messages] = {{over_x, gap}, {over, said}};
+    const float below_said = said > 0 ? 2 * gap + said : gap;
+    // The lab has the lower part of the middle; in a small window it stands alone above the bar.
+    const float lab_room = is_small ? above - (below_said - gap) : lab_share * above;
+    const float lab = std::min(std::ceil(wished[PanelId::lab]), std::max(lab_room, 1.0f));
+    if (lab > 0)
+        rects[PanelId::lab] = {{is_small ? gap : middle_x, gap + above - lab},
+                               {is_small ? std::max(window.x - 2 * gap, 1.0f) : middle, lab}};
     if (wished[PanelId::help] > 0) {
-        const float y = said > 0 ? 2 * gap + said : gap;
-        const float room = (alone ? height : above) - (y - gap);
+        const float taken = below_said - gap + (lab > 0 ? lab + gap : 0);
+        const float room = (alone ? height : above) - taken;
         rects[PanelId::help] = {
-            {over_x, y}, {over, std::min(std::ceil(wished[PanelId::help]), std::max(room, 1.0f))}};
+            {over_x, below_said},
+            {over, std::min(std::ceil(wished[PanelId::help]), std::max(room, 1.0f))}};
     }
     return rects;
 }

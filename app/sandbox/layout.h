@@ -17,7 +17,8 @@ struct Rect {
 
 // Pixels. `wished` is how high each panel's contents are, 0 where there is none; a panel that does
 // not fit is lower, and scrolls. `scale` is 1 on an ordinary monitor. Nothing overlaps in windows
-// of smallest_window and above, but for help in one that is not roomy: there it stands alone.
+// of smallest_window and above, but for help and the lab in one that is not roomy: there help
+// stands alone, and the lab with the transport bar.
 inline constexpr glm::vec2 smallest_window{640, 400};
 [[nodiscard]] PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wished);
 

@@ -33,6 +33,7 @@ struct PanelContext {
     std::optional<std::filesystem::path> open_scene;
     std::optional<double> speed;
     bool restart_as_written = false;
+    bool save_plots = false;
 };
 
 // A panel's title, with a sign that opens and closes the panel, and some text at the right end.
@@ -48,6 +49,7 @@ void expectations_panel(PanelContext &context); // of the scene, with its title 
 void probes_panel(PanelContext &context);
 void probe_labels(const PanelContext &context); // over the scene, under the panels
 void measures_panel(PanelContext &context);     // the lower part of the diagnostics
+void plots_tab(PanelContext &context);          // of the lab
 
 // The scenes whose path or title contains every word of `search`, in any case; indices. Those whose
 // name has them all come first, then those whose name and title have.

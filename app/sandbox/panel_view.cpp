@@ -32,8 +32,11 @@ void view_panel(PanelContext &context) {
         box(Action::toggle_bounds, view.bounds, 1 - left);
     }
     box(Action::toggle_wireframe, view.wireframe, 1);
-    if (has_world)
-        box(Action::toggle_diagnostics, view.diagnostics, 1);
+    if (has_world) {
+        box(Action::toggle_diagnostics, view.diagnostics, 0.6f);
+        ImGui::SameLine(0, spacing);
+        box(Action::toggle_lab, view.lab, 0.4f);
+    }
     if (action_button(context.fonts, Action::frame, half))
         context.actions.push_back(Action::frame);
     ImGui::SameLine(0, spacing);

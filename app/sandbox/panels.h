@@ -9,12 +9,12 @@
 namespace plumb {
 
 // Left: scenes, settings, view. Right: details of body or scene, diagnostics. In the middle the
-// scene, with the transport bar under it, messages above it, and help over it: those have their own
-// rules in lay_out.
+// scene, with the transport bar under it, the lab above that, messages above it, and help over it:
+// those have their own rules in lay_out.
 enum class PanelSpot { left, right, by_itself };
 
 // What there must be for a panel to be seen.
-enum class PanelNeeds { nothing, scene, world, diagnostics, messages, help };
+enum class PanelNeeds { nothing, scene, world, diagnostics, lab, messages, help };
 
 // A row's name, spot, needs, and whether it is clicked: rows that are only read may stand closer
 // than those that are clicked. Panels of one side stand in this order, from the top.
@@ -24,6 +24,7 @@ enum class PanelNeeds { nothing, scene, world, diagnostics, messages, help };
     PANEL(view, left, scene, true)                                                                 \
     PANEL(details, right, nothing, false)                                                          \
     PANEL(diagnostics, right, diagnostics, false)                                                  \
+    PANEL(lab, by_itself, lab, true)                                                               \
     PANEL(transport, by_itself, world, true)                                                       \
     PANEL(messages, by_itself, messages, false)                                                    \
     PANEL(help, by_itself, help, false)

@@ -174,6 +174,9 @@ void Sandbox::perform(Action action) {
     case Action::toggle_diagnostics:
         view_.diagnostics = !view_.diagnostics;
         break;
+    case Action::toggle_lab:
+        view_.lab = !view_.lab;
+        break;
     case Action::toggle_help:
         view_.help = !view_.help;
         break;
@@ -409,8 +412,8 @@ void Sandbox::dismiss() {
 
 PanelContext Sandbox::panel_context(const Fonts &fonts, bool frozen) {
     follow_simulation();
-    return PanelContext{session_, view_, clock_, pace_, scenes_, fonts,
-                        frozen,   0,     {},     {},    {},      false};
+    return PanelContext{session_, view_, clock_, pace_, scenes_, fonts, frozen,
+                        0,        {},    {},     {},    false,   false};
 }
 
 void Sandbox::take(const PanelContext &context) {
@@ -420,6 +423,8 @@ void Sandbox::take(const PanelContext &context) {
         clock_.set_speed(*context.speed);
     if (context.restart_as_written && session_.restart_as_written())
         started(false);
+    if (context.save_plots)
+        session_.save_plots(new_file(".csv"));
     if (context.open_scene)
         open(*context.open_scene);
     follow_simulation();

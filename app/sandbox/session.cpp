@@ -105,6 +105,8 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     grab_.reset();
     pulled_to_.reset();
     graphs_ = {};
+    if (simulation_->has_world())
+        plots_.start(*simulation_);
     settle_poses();
     return true;
 }
@@ -147,6 +149,7 @@ bool Session::step() {
         return false;
     }
     watch_->sample(*simulation_);
+    plots_.sample(*simulation_);
     return true;
 }
 
@@ -198,6 +201,7 @@ bool Session::step_back() {
         if (recorder_)
             recorder_->went_back(*simulation_);
         watch_->go_back(*simulation_);
+        plots_.go_back(*simulation_);
         if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
             disturbed_from_.reset();
         if (replay_) // it knows what was chosen then
@@ -313,6 +317,22 @@ std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dve
         messages_.error("Cannot add a ball: " + reason(failure));
         return {};
     }
+}
+
+bool Session::plot(const QuantityName &name) {
+    if (!simulation_)
+        return false;
+    try {
+        plots_.add(*simulation_, name);
+        return true;
+    } catch (const std::exception &failure) {
+        messages_.error("Cannot plot " + title_of(name) + ": " + reason(failure));
+        return false;
+    }
+}
+
+void Session::unplot(std::size_t curve) {
+    plots_.remove(*simulation_, curve);
 }
 
 void Session::move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place) {

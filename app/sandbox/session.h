@@ -7,6 +7,7 @@
 #include "app/sandbox/graphs.h"
 #include "app/sandbox/history.h"
 #include "app/sandbox/messages.h"
+#include "app/sandbox/plots.h"
 #include "app/sandbox/pose_blend.h"
 #include "engine/core/task_pool.h"
 #include "engine/scene/probe.h"
@@ -140,6 +141,13 @@ class Session {
     static constexpr double impact_shown = 0.25;
     [[nodiscard]] const std::vector<SeenImpact> &impacts() const { return impacts_; }
     [[nodiscard]] const SessionGraphs &graphs() const { return graphs_; }
+    // Quantities over time, from when they were chosen or the run began, to the present step.
+    // False, with a message, for what there is not.
+    bool plot(const QuantityName &name);
+    void unplot(std::size_t curve);
+    [[nodiscard]] const Plots &plots() const { return plots_; }
+    // As a table, as an OutputFile. Makes the folder.
+    bool save_plots(const std::filesystem::path &path);
     [[nodiscard]] const StepTimes &times() const { return times_; } // of the last step's phases
     // Whether that is why something in messages() failed, once at least.
     [[nodiscard]] bool memory_ran_out() const { return memory_ran_out_; }
@@ -186,6 +194,7 @@ class Session {
     Frame present_; // bodies and impacts
     std::vector<SeenImpact> impacts_;
     SessionGraphs graphs_;
+    Plots plots_;
     StepTimes times_;
     Messages messages_;
     std::unique_ptr<const Recording> recording_; // that was opened

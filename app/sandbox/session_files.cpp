@@ -108,6 +108,21 @@ void Session::write_recording(OutputFile &file) const {
     file.finish();
 }
 
+bool Session::save_plots(const std::filesystem::path &path) {
+    try {
+        if (path.has_parent_path())
+            create_folder(path.parent_path());
+        OutputFile file(path);
+        plots_.write_csv(file.stream());
+        file.finish();
+        messages_.note("Saved " + path.string());
+        return true;
+    } catch (const std::exception &failure) {
+        messages_.error("Cannot save the plots: " + reason(failure));
+        return false;
+    }
+}
+
 bool Session::save_scene(const std::filesystem::path &path) {
     if (!simulation_)
         return false;

@@ -19,17 +19,21 @@ bool has_world(const PanelContext &context) {
 
 bool is_shown(const PanelRow &row, const PanelContext &context) {
     const ViewState &view = context.view;
-    // In a small window the help stands alone.
+    // In a small window the help stands alone, and the lab with the transport bar.
     const bool beside_help = view.panels && (view.is_roomy || !view.help);
+    const bool is_lab = view.lab && !view.help && has_world(context);
+    const bool beside_lab = view.is_roomy || !is_lab || row.id == PanelId::transport;
     switch (row.needs) {
     case PanelNeeds::nothing:
-        return beside_help;
+        return beside_help && beside_lab;
     case PanelNeeds::scene:
-        return beside_help && context.session.running();
+        return beside_help && beside_lab && context.session.running();
     case PanelNeeds::world:
-        return beside_help && has_world(context);
+        return beside_help && beside_lab && has_world(context);
     case PanelNeeds::diagnostics:
-        return beside_help && has_world(context) && view.diagnostics;
+        return beside_help && beside_lab && has_world(context) && view.diagnostics;
+    case PanelNeeds::lab:
+        return view.panels && is_lab;
     // Errors and help are seen even when the panels are hidden.
     case PanelNeeds::messages:
         return !context.session.messages().empty();

@@ -40,6 +40,7 @@ struct ViewState {
     bool velocities = false;
     bool panels = true;
     bool diagnostics = true;
+    bool lab = false;
     bool help = false;
     PerPanel<std::optional<bool>> opened; // or closed to its title; as it likes until a person says
     bool is_roomy = true;                 // the window, in which a panel likes to be open
@@ -47,6 +48,9 @@ struct ViewState {
     float ui_scale = 1;                       // on top of the monitor's
     std::optional<std::size_t> detailed_body; // that the details were last about
     std::string search;                       // in the list of scenes
+    std::string plot_of;                      // whose quantities are offered; empty: the scene's
+    std::optional<std::size_t> offered_body;  // that was last selected for that
+    std::optional<double> plot_seconds;       // shown, up to now; all without
     bool focus_search = false;                // the search box takes the keyboard in the next frame
     std::filesystem::path scene_in_sight;     // to which the list of scenes was last scrolled
 };

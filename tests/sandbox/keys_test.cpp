@@ -58,6 +58,7 @@ TEST(Keys, AreTheKnownOnes) {
                                                             {']', Action::next_scene},
                                                             {tab, Action::toggle_panels},
                                                             {'m', Action::toggle_diagnostics},
+                                                            {'l', Action::toggle_lab},
                                                             {f1, Action::toggle_help},
                                                             {'?', Action::toggle_help},
                                                             {escape, Action::dismiss},

@@ -42,7 +42,7 @@ TEST(Layout, NothingOverlapsAndAllIsInside) {
                          : random.next_in(0, 4) < 1 ? 0
                                                     : static_cast<float>(random.next_in(20, 900));
             if (!is_roomy(window, 1))
-                wished[PanelId::help] = 0; // which stands alone there
+                wished[PanelId::help] = wished[PanelId::lab] = 0; // which stand alone there
             expect_apart_and_inside(lay_out(window, 1, wished), window);
             if (HasFailure())
                 return;
@@ -64,7 +64,7 @@ TEST(Layout, NoScaleThatIsAskedForPutsPanelsOutOfReach) {
         for (float &height : wished)
             height = scale * static_cast<float>(random.next_in(40, 900));
         if (!is_roomy(window, scale))
-            wished[PanelId::help] = 0;
+            wished[PanelId::help] = wished[PanelId::lab] = 0;
         expect_apart_and_inside(lay_out(window, scale, wished), window);
         ASSERT_FALSE(HasFailure()) << "at a scale of " << scale;
     }
@@ -92,6 +92,27 @@ TEST(Layout, InASmallWindowTheHelpStandsAlone) {
     const Rect help = lay_out(smallest_window, 1, wished)[PanelId::help];
     EXPECT_GT(help.size.x, 600);
     EXPECT_LE(help.max().y, smallest_window.y);
+}
+
+TEST(Layout, InASmallWindowTheLabStandsAboveTheBar) {
+    PerPanel<float> wished{};
+    wished[PanelId::lab] = 500;
+    wished[PanelId::transport] = 90;
+    wished[PanelId::messages] = 60;
+    const PerPanel<Rect> rects = lay_out(smallest_window, 1, wished);
+    expect_apart_and_inside(rects, smallest_window);
+    EXPECT_GT(rects[PanelId::lab].size.x, 600);
+    EXPECT_GT(rects[PanelId::lab].size.y, 180);
+}
+
+TEST(Layout, TheLabLeavesTheSceneHalfOfTheMiddle) {
+    PerPanel<float> wished{};
+    wished[PanelId::scenes] = wished[PanelId::details] = wished[PanelId::lab] = 2000;
+    wished[PanelId::transport] = 90;
+    const PerPanel<Rect> rects = lay_out({1280, 800}, 1, wished);
+    EXPECT_GT(rects[PanelId::lab].min.y, 330);
+    EXPECT_GT(rects[PanelId::lab].size.y, 330);
+    EXPECT_LT(rects[PanelId::lab].max().y, rects[PanelId::transport].min.y);
 }
 
 TEST(FreePart, IsTheLargestThatNothingCovers) {

@@ -8,6 +8,7 @@
 #include "tests/sandbox/fake_simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -362,6 +363,47 @@ TEST_F(UiTest, NoNumberOfTheSettingsIsCutInANarrowWindow) {
     EXPECT_GT(whole, 500);
     EXPECT_NEAR(text_in({1000, 900}), whole, 1e-3 * whole);
     EXPECT_NEAR(text_in({640, 900}), whole, 1e-3 * whole);
+}
+
+// Each curve is drawn in a colour of its own, as long as it is; what is stepped back over is gone.
+TEST_F(UiTest, TheLabPlotsWhatWasChosen) {
+    const auto plotted = [&](int steps, int back, glm::vec2 size) {
+        Sandbox sandbox(Session(), scenes);
+        EXPECT_TRUE(sandbox.open(scenes[1].path)); // a pendulum
+        sandbox.perform(Action::toggle_lab);
+        EXPECT_TRUE(sandbox.session().plot({"position.y", "bob"}));
+        EXPECT_TRUE(sandbox.session().plot({"energy", ""}));
+        sandbox.view().plot_seconds = 10;
+        for (int i = 0; i < steps; ++i)
+            EXPECT_TRUE(sandbox.session().step());
+        for (int i = 0; i < back; ++i)
+            EXPECT_TRUE(sandbox.session().step_back());
+        Ui ui;
+        ImGui::GetIO().Fonts->Build();
+        const ImDrawData *data = nullptr;
+        for (int settled = 0; settled < 4; ++settled) {
+            ui.fill_input(size, 1.0f / 60);
+            ui.begin_frame();
+            PanelContext panels = sandbox.panel_context(ui.fonts());
+            data = &ui.draw(panels);
+        }
+        const auto lab = std::ranges::find(ui.panels(), PanelId::lab, &Ui::Panel::id);
+        EXPECT_NE(lab, ui.panels().end());
+        for (const Ui::Panel &panel : ui.panels())
+            EXPECT_TRUE(panel.id == PanelId::lab || !overlap(lab->rect, panel.rect)) << panel.name;
+        // Less its sign in the legend.
+        return std::array{area_of(*data, {0.42f, 0.68f, 0.90f, 1}, "lab") - 90,
+                          area_of(*data, {0.90f, 0.64f, 0.42f, 1}, "lab") - 90};
+    };
+    for (const glm::vec2 size : {glm::vec2(1280, 800), smallest_window}) {
+        const auto begun = plotted(0, 0, size), run = plotted(400, 0, size),
+                   back = plotted(400, 400, size);
+        for (const std::size_t curve : {0u, 1u}) {
+            EXPECT_LT(begun[curve], 100);
+            EXPECT_GT(run[curve], begun[curve] + 500);
+            EXPECT_EQ(back[curve], begun[curve]);
+        }
+    }
 }
 
 // A phase that takes no time is not seen in the graph of a step's time: only its sign is, below.

@@ -19,9 +19,64 @@ BodyState as_body(const ParticleState &particle) {
 
 } // namespace
 
+RunStart run_start(const Simulation &simulation) {
+    RunStart start;
+    simulation.read(start.frame, {});
+    SceneStart &scene = start.scene;
+    scene.measures = simulation.measure();
+    for (std::size_t i = 0; i < simulation.body_count(); ++i) {
+        const BodyInfo &info = simulation.body_info(i);
+        if (!info.alive || info.kind != BodyKind::dynamic)
+            continue;
+        const BodyState &state = start.frame.bodies[i];
+        const glm::dvec3 local_spin = glm::conjugate(state.orientation) * state.angular_velocity;
+        scene.momentum_scale += info.mass * glm::length(state.velocity);
+        scene.angular_momentum_scale +=
+            info.mass * glm::length(glm::cross(state.position, state.velocity)) +
+            glm::length(info.inertia * local_spin);
+    }
+    for (std::size_t i = 0; i < start.frame.particles.size(); ++i) {
+        const ParticleInfo &info = simulation.soft_parts().particles[i];
+        const ParticleState &state = start.frame.particles[i];
+        if (info.pinned)
+            continue;
+        scene.momentum_scale += info.mass * glm::length(state.velocity);
+        scene.angular_momentum_scale +=
+            info.mass * glm::length(glm::cross(state.position, state.velocity));
+    }
+    return start;
+}
+
+QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names) {
+    if (add(simulation, names, nullptr))
+        start_ = run_start(simulation).scene;
+}
+
+QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names,
+                             const RunStart &start)
+    : start_(start.scene) {
+    add(simulation, names, &start);
+}
+
+// Whether any is of the whole scene.
+bool QuantityProbe::add(const Simulation &simulation, const std::vector<QuantityName> &names,
+                        const RunStart *start) {
+    simulation.read(frame_, {});
+    for (const QuantityName &name : names) {
+        const QuantityInfo *info = find_quantity(name.quantity);
+        if (info == nullptr)
+            throw std::invalid_argument("there is no quantity \"" + name.quantity + "\"");
+        items_.push_back(item_of(simulation, *info, name.body, start));
+        const bool of_scene = items_.back().of == Item::Of::scene;
+        reads_ = reads_ || !of_scene;
+        measures_ = measures_ || of_scene;
+    }
+    return measures_;
+}
+
 QuantityProbe::Item QuantityProbe::item_of(const Simulation &simulation,
-                                           const QuantityInfo &quantity,
-                                           const std::string &name) const {
+                                           const QuantityInfo &quantity, const std::string &name,
+                                           const RunStart *start) const {
     using Of = Item::Of;
     if (quantity.needs_spring()) {
         if (const auto spring = simulation.soft_parts().find_spring(name))
@@ -30,48 +85,15 @@ QuantityProbe::Item QuantityProbe::item_of(const Simulation &simulation,
     }
     if (!quantity.needs_body())
         return {&quantity, Of::scene, 0, {}};
-    if (const auto body = simulation.find_body(name))
-        return {&quantity, Of::body, *body, frame_.bodies[*body]};
+    if (const auto body = simulation.find_body(name)) {
+        const bool is_old = start != nullptr && *body < start->frame.bodies.size();
+        return {&quantity, Of::body, *body, (is_old ? start->frame : frame_).bodies[*body]};
+    }
     const auto particle = simulation.soft_parts().find_particle(name);
     if (particle && quantity.of_particles)
-        return {&quantity, Of::particle, *particle, as_body(frame_.particles[*particle])};
+        return {&quantity, Of::particle, *particle,
+                as_body((start != nullptr ? start->frame : frame_).particles[*particle])};
     throw std::invalid_argument("there is no body \"" + name + "\"");
-}
-
-QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names) {
-    simulation.read(frame_, {});
-    for (const QuantityName &name : names) {
-        const QuantityInfo *info = find_quantity(name.quantity);
-        if (info == nullptr)
-            throw std::invalid_argument("there is no quantity \"" + name.quantity + "\"");
-        items_.push_back(item_of(simulation, *info, name.body));
-        const bool of_scene = items_.back().of == Item::Of::scene;
-        reads_ = reads_ || !of_scene;
-        measures_ = measures_ || of_scene;
-    }
-    if (!measures_)
-        return;
-    start_.measures = simulation.measure();
-    for (std::size_t i = 0; i < simulation.body_count(); ++i) {
-        const BodyInfo &info = simulation.body_info(i);
-        if (!info.alive || info.kind != BodyKind::dynamic)
-            continue;
-        const BodyState &state = frame_.bodies[i];
-        const glm::dvec3 local_spin = glm::conjugate(state.orientation) * state.angular_velocity;
-        start_.momentum_scale += info.mass * glm::length(state.velocity);
-        start_.angular_momentum_scale +=
-            info.mass * glm::length(glm::cross(state.position, state.velocity)) +
-            glm::length(info.inertia * local_spin);
-    }
-    for (std::size_t i = 0; i < frame_.particles.size(); ++i) {
-        const ParticleInfo &info = simulation.soft_parts().particles[i];
-        const ParticleState &state = frame_.particles[i];
-        if (info.pinned)
-            continue;
-        start_.momentum_scale += info.mass * glm::length(state.velocity);
-        start_.angular_momentum_scale +=
-            info.mass * glm::length(glm::cross(state.position, state.velocity));
-    }
 }
 
 double QuantityProbe::value_of(const Item &item, const Simulation &simulation,

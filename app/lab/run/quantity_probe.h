@@ -17,11 +17,20 @@ struct QuantityName {
     friend bool operator==(const QuantityName &, const QuantityName &) = default;
 };
 
+// A run's start: what displacement, tilt and the relative errors count from.
+struct RunStart {
+    Frame frame; // bodies and particles
+    SceneStart scene;
+};
+[[nodiscard]] RunStart run_start(const Simulation &simulation);
+
 class QuantityProbe {
   public:
-    // Made at t = 0: displacement, tilt and the relative errors count from then. Throws
-    // std::invalid_argument for a quantity or body that there is not.
+    // The run starts now. Throws std::invalid_argument for a quantity or body that there is not.
     QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names);
+    // It started earlier. What is new since then counts from now.
+    QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names,
+                  const RunStart &start);
 
     // One value a name, in the same order. Calls measure() once, and only when a quantity needs it.
     [[nodiscard]] std::vector<double> sample(const Simulation &simulation);
@@ -37,7 +46,9 @@ class QuantityProbe {
         BodyState start;       // of a body, or of a particle as if it were one
     };
     Item item_of(const Simulation &simulation, const QuantityInfo &quantity,
-                 const std::string &name) const;
+                 const std::string &name, const RunStart *start) const;
+    bool add(const Simulation &simulation, const std::vector<QuantityName> &names,
+             const RunStart *start);
     double value_of(const Item &item, const Simulation &simulation, const Measures &now) const;
 
     std::vector<Item> items_;
