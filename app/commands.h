@@ -31,6 +31,7 @@ void add_hash(CommandLine &line);
 void add_list(CommandLine &line);
 void add_measure(CommandLine &line);
 void add_chart(CommandLine &line);
+void add_merge(CommandLine &line);
 void add_map(CommandLine &line);
 void add_tune(CommandLine &line);
 void add_bench(CommandLine &line);

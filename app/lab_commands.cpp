@@ -15,6 +15,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <system_error>
 
 #include <unistd.h>
@@ -95,8 +96,20 @@ struct MeasureArguments {
 struct ChartArguments {
     ChartCommand command;
     std::vector<std::string> sweeps;
-    std::string methods;
+    std::string methods, budget, shard;
 };
+
+// "2/4"
+Shard parse_shard(const std::string &text) {
+    Shard shard;
+    char slash = 0;
+    std::istringstream in(text);
+    if (!(in >> shard.n >> slash >> shard.of) || slash != '/' || !in.eof() || shard.n < 1 ||
+        shard.n > shard.of)
+        throw std::invalid_argument("--shard: '" + text +
+                                    "' is no shard; write 2/4 for the second of four");
+    return shard;
+}
 
 struct MapArguments {
     MapCommand command;
@@ -159,15 +172,17 @@ void add_measure(CommandLine &line) {
 void add_chart(CommandLine &line) {
     const auto arguments = std::make_shared<ChartArguments>();
     CLI::App *chart_command = line.app.add_subcommand(
-        "chart", "Charts each method's cost against its error, as CSV and PNG: of scenes, or of "
-                 "geometric queries (`plumb chart geometry`, with --repeats and --out alone)");
+        "chart",
+        "Charts each method's cost against its error, as CSV, PNG and SVG: of scenes, or of "
+        "geometric queries (`plumb chart geometry`, with --repeats and --out alone)");
     add_scenes(*chart_command, line.common);
     chart_command->add_option("--methods", arguments->methods, "Of " + method_names() + " (all)")
         ->type_name("METHOD,...");
     chart_command
         ->add_option("--sweep", arguments->sweeps,
                      "What to go through, any setting from `plumb list --settings`: substeps=1..16 "
-                     "(the default), iterations=1,2,8, dt=1/240..1/30; may be given several times")
+                     "(the default), iterations=1,2,8, dt=1/240..1/30; also precision=float,double "
+                     "and threads=1,2 (then by the clock on the wall); may be given several times")
         ->allow_extra_args(false);
     chart_command->add_option(
         "--expect", arguments->command.options.expect,
@@ -177,6 +192,21 @@ void add_chart(CommandLine &line) {
         ->add_option("--repeats", arguments->command.options.repeats, "Timings of each run")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    chart_command
+        ->add_option("--budget", arguments->budget,
+                     "What a frame of 1/60 s may cost, drawn as a line (all of it, 60 Hz)")
+        ->type_name("1ms");
+    chart_command->add_flag("--convergence", arguments->command.options.convergence,
+                            "Error against dt with fitted orders, nothing timed: dt=1/960..1/30 "
+                            "unless --sweep has another, one substep, and double");
+    chart_command
+        ->add_option("--seed", arguments->command.options.seed,
+                     "Of the order in which each round of timings goes")
+        ->capture_default_str();
+    chart_command
+        ->add_option("--shard", arguments->shard,
+                     "Runs the I-th of N parts of a chart, for `plumb merge`: no pictures")
+        ->type_name("I/N");
     add_out(*chart_command, line.common, "out");
     add_run_options(*chart_command, line.common, true);
     chart_command->callback([=, &line] {
@@ -191,7 +221,11 @@ void add_chart(CommandLine &line) {
             return;
         }
         for (const std::string &sweep : arguments->sweeps)
-            arguments->command.options.sweep.push_back(parse_sweep(sweep));
+            add_sweep(arguments->command.options, sweep);
+        if (!arguments->budget.empty())
+            arguments->command.options.budget = parse_budget(arguments->budget);
+        if (!arguments->shard.empty())
+            arguments->command.options.shard = parse_shard(arguments->shard);
         if (!arguments->methods.empty())
             arguments->command.options.methods = parse_list(arguments->methods);
         arguments->command.scenes = line.common.scene_paths();
@@ -200,6 +234,25 @@ void add_chart(CommandLine &line) {
         arguments->command.shader_dir = line.common.shader_dir();
         arguments->command.command = line.text;
         line.result = code_of(chart_scenes(arguments->command, std::cout, std::cerr));
+    });
+}
+
+void add_merge(CommandLine &line) {
+    const auto command = std::make_shared<MergeCommand>();
+    CLI::App *merge_command = line.app.add_subcommand(
+        "merge", "Makes one chart of the tables that `plumb chart --shard` wrote");
+    merge_command->add_option("CSV", command->tables, "All of them, in any order")->required();
+    merge_command->add_option("--scene", command->scene,
+                              "The scene's file, where it is not one of `plumb list`");
+    add_out(*merge_command, line.common, "out");
+    merge_command->callback([=, &line] {
+        command->find_scene = [&line](const std::string &name) {
+            return resolve_scene(name, line.common.catalogue);
+        };
+        command->out_dir = line.common.out;
+        command->shader_dir = line.common.shader_dir();
+        command->command = line.text;
+        line.result = code_of(merge_charts(*command, std::cout, std::cerr));
     });
 }
 
@@ -225,7 +278,8 @@ void add_map(CommandLine &line) {
         ->type_name("NAME=FROM..TO[:N][log]");
     map_command->add_option("--methods", arguments->methods, "Of " + method_names() + " (all)")
         ->type_name("METHOD,...");
-    map_command->add_option("--image", arguments->command.image, "Where to draw the map, a PNG");
+    map_command->add_option("--image", arguments->command.image,
+                            "Where to draw the map: a PNG, or an SVG if its name ends so");
     map_command->add_option("--csv", arguments->command.csv,
                             "Where to write every cell and limit, as a table");
     map_command

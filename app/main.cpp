@@ -57,6 +57,7 @@ int main_with_errors(int argc, char **argv) {
     add_list(line);
     add_measure(line);
     add_chart(line);
+    add_merge(line);
     add_map(line);
     add_tune(line);
     add_bench(line);

@@ -65,4 +65,53 @@ void CsvWriter::end_row() {
     row_begun_ = false;
 }
 
+std::vector<std::string> read_csv_row(std::istream &in) {
+    std::vector<std::string> row{""};
+    bool quoted = false;
+    for (int next = in.get(); next != std::istream::traits_type::eof(); next = in.get()) {
+        const char c = static_cast<char>(next);
+        if (c == '"') {
+            if (quoted && in.peek() == '"')
+                row.back() += static_cast<char>(in.get());
+            else
+                quoted = !quoted;
+        } else if (c == ',' && !quoted) {
+            row.emplace_back();
+        } else if (c == '\n' && !quoted) {
+            return row;
+        } else {
+            row.back() += c;
+        }
+    }
+    return {};
+}
+
+std::optional<double> csv_number(std::string_view text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() ? std::optional(value)
+                                                                    : std::nullopt;
+}
+
+CsvReader::CsvReader(std::istream &in) : in_(in), names_(read_csv_row(in)) {
+    for (std::size_t i = 0; i < names_.size(); ++i)
+        columns_.emplace(names_[i], i);
+}
+
+bool CsvReader::next() {
+    do
+        row_ = read_csv_row(in_);
+    while (!row_.empty() && row_.size() != names_.size());
+    return !row_.empty();
+}
+
+std::string_view CsvReader::cell(std::string_view column) const {
+    const auto found = columns_.find(column);
+    return found == columns_.end() ? std::string_view() : row_[found->second];
+}
+
+bool CsvReader::has(std::string_view column) const {
+    return columns_.contains(column);
+}
+
 } // namespace plumb

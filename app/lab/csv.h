@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <istream>
+#include <map>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace plumb {
 
@@ -33,6 +37,35 @@ class CsvWriter {
 
     std::ostream &out_;
     bool row_begun_ = false;
+};
+
+// One row, quoted cells of several lines included; empty at the end. A row that the end cuts off is
+// dropped.
+[[nodiscard]] std::vector<std::string> read_csv_row(std::istream &in);
+
+// What exact_number wrote; nothing when it is no number.
+[[nodiscard]] std::optional<double> csv_number(std::string_view text);
+
+// Reads one table, row by row, by the names of its columns.
+class CsvReader {
+  public:
+    // Reads the row of names. `in` must outlive the reader.
+    explicit CsvReader(std::istream &in);
+
+    // False at the end. Rows with another number of cells than there are names are passed over.
+    bool next();
+    // Of the present row; empty where there is no such column.
+    [[nodiscard]] std::string_view cell(std::string_view column) const;
+    [[nodiscard]] std::optional<double> number(std::string_view column) const {
+        return csv_number(cell(column));
+    }
+    [[nodiscard]] bool has(std::string_view column) const;
+    [[nodiscard]] const std::vector<std::string> &names() const { return names_; }
+
+  private:
+    std::istream &in_;
+    std::vector<std::string> names_, row_;
+    std::map<std::string, std::size_t, std::less<>> columns_;
 };
 
 } // namespace plumb

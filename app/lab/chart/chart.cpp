@@ -1,14 +1,19 @@
 #include "app/lab/chart/chart.h"
 
+#include "app/lab/chart/chart_plan.h"
 #include "app/lab/chart/pareto.h"
+#include "app/lab/csv.h"
 #include "app/lab/run/end_timer.h"
-#include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/timing.h"
+#include "engine/core/check.h"
+#include "engine/core/random.h"
+#include "engine/core/task_pool.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace plumb {
@@ -16,6 +21,14 @@ namespace plumb {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The first expectation that there is nothing to say of.
+std::string unmeasured(const JudgedRun &run) {
+    for (const ExpectOutcome &outcome : run.outcomes)
+        if (!std::isfinite(outcome.error))
+            return outcome.desc.name;
+    return "nothing was judged";
+}
 
 void judge_error(const ErrorMeasure &measure, ChartRun &run) {
     run.worst = worst_of(run.run.outcomes);
@@ -27,12 +40,15 @@ void judge_error(const ErrorMeasure &measure, ChartRun &run) {
     // A window that ended before a divergence has a result, but the method has failed.
     if (run.run.divergence) {
         run.status = ChartStatus::diverged;
+        if (run.failure.empty()) // it is kept of what was read from a table
+            run.failure = describe(*run.run.divergence);
         return;
     }
     run.error = error_of(measure, run.run);
     run.status = !std::isfinite(run.error) ? ChartStatus::no_result
                  : run.run.all_met()       ? ChartStatus::fine
                                            : ChartStatus::outside;
+    run.failure = run.status == ChartStatus::no_result ? "no result: " + unmeasured(run.run) : "";
 }
 
 void set_cost(ChartRun &run) {
@@ -52,62 +68,12 @@ void mark_front(SceneChart &chart) {
     std::vector<CostAndError> choices;
     // What fails the scene is no choice, however cheap.
     for (const ChartRun &run : chart.runs)
-        choices.push_back(run.status == ChartStatus::fine ? CostAndError{run.cost, run.error}
-                                                          : CostAndError{infinity, infinity});
+        choices.push_back(run.status == ChartStatus::fine && !chart.convergence
+                              ? CostAndError{run.cost, run.error}
+                              : CostAndError{infinity, infinity});
     const std::vector<bool> front = pareto_front(choices);
     for (std::size_t i = 0; i < front.size(); ++i)
         chart.runs[i].pareto = front[i];
-}
-
-struct PlannedRun {
-    RunOptions options;
-    ResolvedRun resolved;
-    SweepPoint point;
-};
-
-std::vector<PlannedRun> plan(const SceneDesc &scene, const ChartOptions &options,
-                             SceneChart &chart) {
-    const std::vector<const MethodInfo *> methods =
-        methods_for(scene, options.methods, chart.left_out);
-    const std::vector<SweepPoint> points = sweep_points(chart.sweep);
-    // The least that islands take says little of what they take: where substeps are swept, and
-    // nothing is said of the most, just so many are charted, too.
-    const auto is_swept = [&](SettingMember member) {
-        return std::ranges::any_of(chart.sweep, [&](const SweepAxis &axis) {
-            return axis.setting.setting().member == member;
-        });
-    };
-    const bool both = is_swept(&StepSettings::substeps) && !is_swept(&StepSettings::max_substeps) &&
-                      !options.base.settings.has(*find_setting("max_substeps"));
-    std::vector<PlannedRun> planned;
-    for (const MethodInfo *method : methods) {
-        const std::size_t first = planned.size();
-        std::vector<RunOptions> variants{options.base};
-        variants.front().method = std::string(method->name);
-        if (both && method->chooses_substeps()) {
-            const int most = resolve_run(scene, variants.front()).settings.max_substeps;
-            variants.push_back(variants.front());
-            variants[0].settings.give(&StepSettings::max_substeps, 1);
-            variants[1].settings.give(&StepSettings::max_substeps,
-                                      std::max(most, method->defaults.max_substeps));
-        }
-        for (const RunOptions &variant : variants)
-            for (const SweepPoint &point : points) {
-                PlannedRun run;
-                run.options = variant;
-                run.point = point;
-                run.options.settings.give(given_by(chart.sweep, point));
-                run.resolved = resolve_run(scene, run.options);
-                const bool repeated = std::any_of(
-                    planned.begin() + static_cast<std::ptrdiff_t>(first), planned.end(),
-                    [&](const PlannedRun &other) {
-                        return same_work(*method, run.resolved.settings, other.resolved.settings);
-                    });
-                if (!repeated)
-                    planned.push_back(std::move(run));
-            }
-    }
-    return planned;
 }
 
 } // namespace
@@ -136,103 +102,217 @@ double SceneChart::median_spread() const {
     return spreads.empty() ? 0 : median(spreads);
 }
 
-SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
-                       const std::function<void(const SceneChart &)> &changed) {
-    SceneChart chart;
-    chart.scene = scene;
-    chart.sweep = options.sweep.empty() ? std::vector{default_sweep()} : options.sweep;
-    if (options.repeats < 1)
-        throw std::invalid_argument("repeats must be at least 1");
-    if (!(options.timed > 0) || !(options.duration > 0))
-        throw std::invalid_argument("durations must be above 0 s");
-    chart.measure = choose_measure(scene, options.expect);
-    const std::vector<PlannedRun> planned = plan(scene, options, chart);
-    chart.planned = planned.size();
-    chart.repeats = options.repeats;
-    const double end = run_end(scene, options.duration);
-    chart.timed = std::min(options.timed, end);
-    const auto stopped = [&] { return options.stop && options.stop(); };
-    const auto progress = [&](double fraction, const ChartRun &run) {
-        if (options.progress)
-            options.progress(fraction, scene.name + ": " + run_text(run.resolved));
-    };
-    const MakeSimulation make =
-        options.make ? options.make : [](const SceneDesc &s, const RunOptions &o) {
-            return Simulation::create(s, o, nullptr);
-        };
+std::string run_key(const ResolvedRun &run, int threads) {
+    std::string key(run.method->name);
+    key.append(" ")
+        .append(precision_name(run.precision))
+        .append(" ")
+        .append(std::to_string(threads));
+    for (const SettingNumber number : setting_numbers())
+        key.append(" ").append(exact_number(setting_value(run.settings, number)));
+    return key;
+}
 
-    std::vector<std::optional<EndTimer>> timers;
-    bool had_contacts = false;
-    for (const PlannedRun &next : planned) {
-        if (stopped())
-            break;
+SweepAxis default_convergence_sweep() {
+    return parse_sweep("dt=1/960..1/30");
+}
+
+void finish_chart(SceneChart &chart) {
+    if (everything_expected(chart.scene).empty())
+        chart.measure =
+            followed_measure(chart.scene, std::ranges::any_of(chart.runs, [](const ChartRun &run) {
+                                 return run.run.had_contacts;
+                             }));
+    for (ChartRun &run : chart.runs)
+        judge_error(chart.measure, run);
+    mark_front(chart);
+}
+
+namespace {
+
+// The chart in the making.
+class Charting {
+  public:
+    Charting(const SceneDesc &scene, const ChartOptions &options,
+             const std::function<void(const SceneChart &)> &changed)
+        : scene_(scene), options_(options), changed_(changed),
+          end_(run_end(scene, options.duration)) {
+        if (options_.repeats < 1)
+            throw std::invalid_argument("repeats must be at least 1");
+        if (!(options_.timed > 0) || !(options_.duration > 0) || !(options_.budget > 0))
+            throw std::invalid_argument("durations must be above 0 s");
+        if (options_.shard.n < 1 || options_.shard.n > options_.shard.of)
+            throw std::invalid_argument("there is no such shard");
+        if (options_.convergence && options_.precisions.empty() && !options_.base.precision)
+            options_.precisions = {Precision::dual};
+        chart_.scene = scene;
+        chart_.convergence = options_.convergence;
+        chart_.sweep = !options_.sweep.empty() ? options_.sweep
+                       : options_.convergence  ? std::vector{default_convergence_sweep()}
+                                               : std::vector{default_sweep()};
+        if (options_.convergence &&
+            (chart_.sweep.size() != 1 || chart_.sweep.front().setting.setting().name != "dt"))
+            throw std::invalid_argument(
+                "a convergence chart goes through dt alone: --sweep dt=1/960..1/30");
+        chart_.measure = choose_measure(scene, options_.expect);
+        chart_.repeats = options_.convergence ? 0 : options_.repeats;
+        chart_.timed = std::min(options_.timed, end_);
+        chart_.wall_clock = std::ranges::any_of(options_.threads, [](int n) { return n > 1; });
+        chart_.budget = options_.budget;
+        chart_.seed = options_.seed;
+        planned_ = plan_chart(scene, options_, chart_.sweep, chart_.left_out);
+        chart_.planned = planned_.size();
+    }
+
+    SceneChart make() {
+        std::vector<std::size_t> mine;
+        for (std::size_t i = options_.shard.n - 1; i < planned_.size(); i += options_.shard.of)
+            mine.push_back(i);
+        for (const std::size_t index : mine) {
+            if (stopped())
+                break;
+            const auto known =
+                options_.known.find(run_key(planned_[index].resolved, planned_[index].threads));
+            // Both halves of the work count as half.
+            const double share = (chart_.repeats > 0 ? 0.5 : 1) / static_cast<double>(mine.size());
+            const double begin = share * static_cast<double>(chart_.runs.size());
+            if (known == options_.known.end())
+                run(index, begin, share);
+            else
+                go_on(index, known->second, begin);
+            report_change();
+        }
+        for (int round = 0; round < chart_.repeats && !stopped(); ++round)
+            time_all(round);
+        chart_.interrupted = stopped();
+        return std::move(chart_);
+    }
+
+  private:
+    [[nodiscard]] bool stopped() const { return options_.stop && options_.stop(); }
+    void progress(double fraction, const ChartRun &run) const {
+        if (options_.progress)
+            options_.progress(fraction, scene_.name + ": " + run_text(run.resolved));
+    }
+    void report_change() {
+        finish_chart(chart_);
+        if (changed_)
+            changed_(chart_);
+    }
+
+    std::unique_ptr<Simulation> simulation(const PlannedRun &run) {
+        if (options_.make)
+            return options_.make(scene_, run.options);
+        std::unique_ptr<TaskPool> &pool = pools_[run.threads];
+        if (!pool && run.threads > 1)
+            pool = std::make_unique<TaskPool>(run.threads);
+        return Simulation::create(scene_, run.options, pool.get());
+    }
+
+    void run(std::size_t index, double begin, double share) {
+        const PlannedRun &next = planned_[index];
         ChartRun run;
+        run.index = index;
         run.resolved = next.resolved;
+        run.threads = next.threads;
         run.point = next.point;
-        std::unique_ptr<Simulation> simulation = make(scene, next.options);
+        std::unique_ptr<Simulation> simulated = simulation(next);
         std::unique_ptr<Simulation::Saved> saved;
         JudgeOptions judging;
         judging.follow_errors = true;
-        judging.duration = options.duration;
-        judging.stop = options.stop;
-        judging.at_time_seconds = end - chart.timed;
-        judging.at_time = [&] { saved = simulation->save(); };
-        judging.progress = [&](double fraction) {
-            progress(0.5 * (static_cast<double>(timers.size()) + fraction) /
-                         static_cast<double>(planned.size()),
-                     run);
-        };
-        run.run = judge_run(*simulation, scene, judging);
-        judge_probes(scene, run.resolved.precision, run.run.outcomes);
+        judging.duration = options_.duration;
+        judging.stop = options_.stop;
+        judging.at_time_seconds = end_ - chart_.timed;
+        judging.at_time = [&] { saved = simulated->save(); };
+        judging.progress = [&](double fraction) { progress(begin + share * fraction, run); };
+        run.run = judge_run(*simulated, scene_, judging);
+        judge_probes(scene_, run.resolved.precision, run.run.outcomes);
         set_cost(run);
-        timers.emplace_back();
-        if (saved && !run.run.divergence && !run.run.stopped)
-            timers.back().emplace(std::move(simulation), std::move(saved), chart.timed, run.cost);
-        const double simulated = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
-        if (simulated > 0) {
-            run.body_passes = static_cast<double>(run.run.body_passes) / simulated;
-            run.constraint_passes = static_cast<double>(run.run.constraint_passes) / simulated;
+        timers_.emplace_back();
+        if (saved && !run.run.divergence && !run.run.stopped && chart_.repeats > 0)
+            timers_.back().emplace(std::move(simulated), std::move(saved), chart_.timed, run.cost,
+                                   chart_.wall_clock);
+        const double seconds = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
+        if (seconds > 0) {
+            run.body_passes = static_cast<double>(run.run.body_passes) / seconds;
+            run.constraint_passes = static_cast<double>(run.run.constraint_passes) / seconds;
         }
-        had_contacts = had_contacts || run.run.had_contacts;
-        if (everything_expected(scene).empty())
-            chart.measure = followed_measure(scene, had_contacts);
-        chart.runs.push_back(std::move(run));
-        for (ChartRun &done : chart.runs)
-            judge_error(chart.measure, done);
-        mark_front(chart);
-        if (changed)
-            changed(chart);
+        chart_.runs.push_back(std::move(run));
     }
 
-    for (int repeat = 0; repeat < options.repeats && !stopped(); ++repeat) {
-        std::vector<std::optional<double>> round(timers.size());
-        for (std::size_t i = 0; i < timers.size() && !stopped(); ++i) {
-            if (!timers[i])
+    // With what is known of it; where timings are missing it is stepped, unjudged, to where they
+    // begin.
+    void go_on(std::size_t index, ChartRun known, double begin) {
+        known.index = index;
+        known.resolved = planned_[index].resolved;
+        known.point = planned_[index].point;
+        timers_.emplace_back();
+        if (!known.run.divergence &&
+            known.timings.size() < static_cast<std::size_t>(chart_.repeats))
+            try {
+                std::unique_ptr<Simulation> simulated = simulation(planned_[index]);
+                const double slack = 1e-6 * simulated->settings().dt;
+                while (simulated->time() < end_ - chart_.timed - slack && !stopped()) {
+                    simulated->step();
+                    progress(begin, known);
+                }
+                std::unique_ptr<Simulation::Saved> saved = simulated->save();
+                timers_.back().emplace(std::move(simulated), std::move(saved), chart_.timed,
+                                       known.cost, chart_.wall_clock);
+            } catch (const CheckFailure &) {
+                timers_.back().reset();
+            }
+        chart_.runs.push_back(std::move(known));
+    }
+
+    // One timing of each run, in an order drawn anew: a machine that slows down does so for all.
+    void time_all(int round) {
+        std::vector<std::size_t> order(timers_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        Random random(chart_.seed + static_cast<std::uint64_t>(round));
+        for (std::size_t i = order.size(); i > 1; --i)
+            std::swap(order[i - 1], order[random.next_index(static_cast<std::uint32_t>(i))]);
+        std::vector<std::optional<double>> timings(timers_.size());
+        for (std::size_t k = 0; k < order.size() && !stopped(); ++k) {
+            const std::size_t i = order[k];
+            if (!timers_[i] ||
+                chart_.runs[i].timings.size() >= static_cast<std::size_t>(chart_.repeats))
                 continue;
-            round[i] = timers[i]->time();
-            if (!round[i])
-                timers[i].reset();
-            progress(0.5 + 0.5 *
-                               (repeat +
-                                static_cast<double>(i + 1) / static_cast<double>(timers.size())) /
-                               options.repeats,
-                     chart.runs[i]);
+            timings[i] = timers_[i]->time(options_.stop);
+            if (!timings[i] && !stopped())
+                timers_[i].reset();
+            progress(
+                0.5 + 0.5 *
+                          (round + static_cast<double>(k + 1) / static_cast<double>(order.size())) /
+                          chart_.repeats,
+                chart_.runs[i]);
         }
         // A round that was not finished would favour those that it reached.
         if (stopped())
-            break;
-        for (std::size_t i = 0; i < timers.size(); ++i) {
-            if (!round[i])
-                continue;
-            chart.runs[i].timings.push_back(*round[i]);
-            set_cost(chart.runs[i]);
-        }
-        mark_front(chart);
-        if (changed)
-            changed(chart);
+            return;
+        for (std::size_t i = 0; i < timings.size(); ++i)
+            if (timings[i]) {
+                chart_.runs[i].timings.push_back(*timings[i]);
+                set_cost(chart_.runs[i]);
+            }
+        report_change();
     }
-    chart.interrupted = stopped();
-    return chart;
+
+    const SceneDesc &scene_;
+    ChartOptions options_;
+    const std::function<void(const SceneChart &)> &changed_;
+    double end_; // s, of each run
+    SceneChart chart_;
+    std::vector<PlannedRun> planned_;
+    std::map<int, std::unique_ptr<TaskPool>> pools_; // by threads; outlive the timers
+    std::vector<std::optional<EndTimer>> timers_;    // as many as runs
+};
+
+} // namespace
+
+SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
+                       const std::function<void(const SceneChart &)> &changed) {
+    return Charting(scene, options, changed).make();
 }
 
 } // namespace plumb

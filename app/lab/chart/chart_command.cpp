@@ -2,12 +2,17 @@
 
 #include "app/files/output_file.h"
 #include "app/lab/chart/chart_image.h"
+#include "app/lab/chart/chart_rows.h"
+#include "app/lab/chart/chart_svg.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/run/load_scenes.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
@@ -39,10 +44,82 @@ class LazyPainter {
     bool failed_ = false;
 };
 
+// SCENE.png and SCENE.svg, or SCENE.partial.png.
+ExitCode write_pictures(const SceneChart &chart, const std::filesystem::path &stem,
+                        const std::string &command, LazyPainter &painter, std::ostream &err) {
+    const ChartContent content = chart_content(chart, command);
+    if (!chart.interrupted) {
+        OutputFile svg(stem.string() + ".svg");
+        write_chart_svg(svg.stream(), content);
+        svg.finish();
+        err << "wrote " << svg.path().string() << '\n';
+    }
+    ChartPainter *pen = painter.get(err);
+    if (pen == nullptr)
+        return ExitCode::no_gl_context;
+    const std::string picture = stem.string() + (chart.interrupted ? ".partial.png" : ".png");
+    write_png(picture, pen->paint(content));
+    err << "wrote " << picture << '\n';
+    return ExitCode::fine;
+}
+
+std::filesystem::path partial_of(const std::filesystem::path &csv) {
+    return csv.string() + ".partial";
+}
+
+// Whether any run has come to something, and what is to be said if not.
+ExitCode code_of(const SceneChart &chart, std::ostream &err) {
+    if (chart.runs.empty() && chart.planned == 0) {
+        err << chart.scene.name << ": no method can run this scene\n";
+        return ExitCode::bad_input;
+    }
+    const bool any = std::ranges::any_of(
+        chart.runs, [](const ChartRun &run) { return std::isfinite(run.error); });
+    return any || chart.runs.empty() || chart.interrupted ? ExitCode::fine : ExitCode::diverged;
+}
+
+ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPainter &painter,
+                   ProgressLine &line, std::ostream &out, std::ostream &err) {
+    ChartOptions options = command.options;
+    options.stop = InterruptGuard::requested;
+    options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
+    const Shard &shard = options.shard;
+    const std::filesystem::path stem =
+        command.out_dir / (scene.name + (options.convergence ? ".convergence" : ""));
+    std::string table = stem.string();
+    if (shard.of > 1)
+        table += "." + std::to_string(shard.n) + "-of-" + std::to_string(shard.of);
+    OutputFile csv(table + ".csv");
+    const std::string fingerprint = chart_fingerprint(scene, options);
+    if (std::ifstream partial(partial_of(csv.path())); partial)
+        options.known = read_known_runs(partial, scene, fingerprint);
+    const bool goes_on = !options.known.empty();
+    if (goes_on)
+        err << "going on from " << partial_of(csv.path()).string() << '\n';
+    const SceneChart chart = chart_scene(scene, options);
+    line.clear();
+    write_chart_csv(csv.stream(), chart, fingerprint);
+    print(out, chart);
+    out << std::flush;
+    ExitCode code = code_of(chart, err);
+    if (chart.interrupted) {
+        err << "interrupted; rows so far: " << csv.keep_partial().string() << '\n';
+    } else {
+        csv.finish();
+        err << "wrote " << csv.path().string() << '\n';
+        if (goes_on) {
+            std::filesystem::remove(partial_of(csv.path()));
+            std::filesystem::remove(stem.string() + ".partial.png");
+        }
+    }
+    if (!chart.runs.empty() && shard.of == 1)
+        code = worse(code, write_pictures(chart, stem, command.command, painter, err));
+    return code;
+}
+
 } // namespace
 
 ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostream &err) {
-    namespace fs = std::filesystem;
     const LoadedScenes loaded = load_scenes(command.scenes, err);
     ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
     std::set<std::string> names;
@@ -64,44 +141,7 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
             continue;
         }
         try {
-            ChartOptions options = command.options;
-            options.stop = InterruptGuard::requested;
-            options.progress = [&](double fraction, const std::string &what) {
-                line.show(fraction, what);
-            };
-            OutputFile csv(command.out_dir / (scene.name + ".csv"));
-            const SceneChart chart = chart_scene(scene, options);
-            line.clear();
-            write_chart_csv(csv.stream(), chart);
-            print(out, chart);
-            out << std::flush;
-            bool any_result = false;
-            for (const ChartRun &run : chart.runs)
-                any_result = any_result || std::isfinite(run.error);
-            if (!any_result && !chart.interrupted) {
-                if (chart.runs.empty()) {
-                    err << scene.name << ": no method can run this scene\n";
-                    code = worse(code, ExitCode::bad_input);
-                } else {
-                    code = worse(code, ExitCode::diverged);
-                }
-            }
-            if (chart.interrupted) {
-                err << "interrupted; rows so far: " << csv.keep_partial().string() << '\n';
-            } else {
-                csv.finish();
-                err << "wrote " << csv.path().string() << '\n';
-            }
-            if (chart.runs.empty())
-                continue;
-            if (ChartPainter *pen = painter.get(err)) {
-                const fs::path picture =
-                    command.out_dir / (scene.name + (chart.interrupted ? ".partial.png" : ".png"));
-                write_png(picture, pen->paint(chart_content(chart, command.command)));
-                err << "wrote " << picture.string() << '\n';
-            } else {
-                code = worse(code, ExitCode::no_gl_context);
-            }
+            code = worse(code, chart_one(scene, command, painter, line, out, err));
         } catch (const std::invalid_argument &failure) {
             line.clear();
             err << scene.name << ": " << failure.what() << '\n';
@@ -109,6 +149,40 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
         }
     }
     return code;
+}
+
+ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostream &err) {
+    std::vector<NamedTable> tables;
+    for (const std::filesystem::path &path : command.tables) {
+        std::ifstream in(path, std::ios::binary);
+        if (!in)
+            throw std::invalid_argument("cannot read " + path.string());
+        tables.push_back({path.string(), {std::istreambuf_iterator<char>(in), {}}});
+        if (scene_of_chart(tables.back().text).empty())
+            throw std::invalid_argument(path.string() + " is no table of `plumb chart` with rows");
+    }
+    const std::filesystem::path scene =
+        command.scene.empty() ? command.find_scene(scene_of_chart(tables[0].text)) : command.scene;
+    const LoadedScenes loaded = load_scenes({scene}, err);
+    if (!loaded.all_fine || loaded.scenes.size() != 1)
+        return ExitCode::bad_input;
+    const SceneChart chart = merged_chart(loaded.scenes.front(), tables);
+    if (chart.runs.size() < chart.planned) {
+        err << "merge: only " << chart.runs.size() << " of " << chart.planned
+            << " runs are in these tables; nothing is written\n";
+        return ExitCode::bad_input;
+    }
+    create_folder(command.out_dir);
+    const std::filesystem::path stem =
+        command.out_dir / (chart.scene.name + (chart.convergence ? ".convergence" : ""));
+    OutputFile csv(stem.string() + ".csv");
+    write_chart_csv(csv.stream(), chart);
+    csv.finish();
+    print(out, chart);
+    out << std::flush;
+    err << "wrote " << csv.path().string() << '\n';
+    LazyPainter painter(command.shader_dir);
+    return worse(code_of(chart, err), write_pictures(chart, stem, command.command, painter, err));
 }
 
 } // namespace plumb

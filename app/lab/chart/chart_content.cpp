@@ -1,6 +1,8 @@
 // What a chart's picture shows.
 #include "app/lab/chart/chart.h"
+#include "app/lab/chart/convergence.h"
 #include "app/lab/chart/log_axis.h"
+#include "app/lab/provenance.h"
 #include "app/lab/run/run_text.h"
 
 #include <algorithm>
@@ -62,17 +64,37 @@ bool is_worth_saying(const SceneChart &chart, SettingNumber number) {
     });
 }
 
-// Whether islands may take substeps of their own in it.
-bool chooses(const ChartRun &run) {
-    return run.resolved.method->chooses_substeps() && run.resolved.settings.max_substeps > 1;
-}
-
 // Whether the same method is there with just so many substeps and with at least so many.
 bool has_both_modes(const SceneChart &chart) {
-    return std::ranges::any_of(chart.runs, chooses) &&
-           std::ranges::any_of(chart.runs, [](const ChartRun &run) {
-               return run.resolved.method->chooses_substeps() && !chooses(run);
-           });
+    return std::ranges::any_of(chart.runs, [&](const ChartRun &run) {
+        return curve_name(chart, run).find("so many") != std::string::npos;
+    });
+}
+
+// Colour and shape: of a method's further curves the same colour, and another shape.
+std::size_t style_of(const MethodInfo &method, const std::vector<ChartSeries> &earlier) {
+    const auto own = std::ranges::find_if(method_infos(),
+                                          [&](const MethodInfo &each) { return &each == &method; });
+    std::size_t style = static_cast<std::size_t>(own - method_infos().begin());
+    while (std::ranges::find(earlier, style, &ChartSeries::style) != earlier.end())
+        style += series_colour_count;
+    return style;
+}
+
+// The first run's, and that there are others.
+std::string first_of(const SceneChart &chart, std::string ChartRun::*text,
+                     const std::string &here) {
+    const std::string &first = chart.runs.front().*text;
+    const bool same =
+        std::ranges::all_of(chart.runs, [&](const ChartRun &run) { return run.*text == first; });
+    return (first.empty() ? here : first) + (same ? "" : " and others");
+}
+
+// "not finite", "check failed", "no result"
+std::string short_reason(const ChartRun &run) {
+    if (!run.run.divergence)
+        return "no result";
+    return run.failure.starts_with("not finite") ? "not finite" : "check failed";
 }
 
 // "4", or "4 (Soft step), 1 (Runge-Kutta 4)" where methods differ: each value once.
@@ -104,8 +126,8 @@ std::string values_by_method(const SceneChart &chart, SettingNumber number) {
 
 ChartContent chart_content(const SceneChart &chart, const std::string &command) {
     ChartContent content;
-    content.title =
-        (chart.scene.title.empty() ? chart.scene.name : chart.scene.title) + ": what truth costs";
+    content.title = (chart.scene.title.empty() ? chart.scene.name : chart.scene.title) +
+                    (chart.convergence ? ": how the error falls with dt" : ": what truth costs");
     content.subtitle = chart.measure.explanation;
     if (chart.interrupted) {
         const auto finished =
@@ -115,7 +137,8 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         content.subtitle = "INTERRUPTED: " + std::to_string(finished) + " of " +
                            std::to_string(chart.planned) + " runs. " + content.subtitle;
     }
-    content.cost_title = "CPU time per simulated second";
+    content.cost_title =
+        chart.wall_clock ? "Time per simulated second" : "CPU time per simulated second";
     content.error_title = chart.measure.title;
     // Where the numbers at the ticks have no unit of their own.
     if (chart.measure.unit != "1" && !takes_prefix(chart.measure.unit))
@@ -129,28 +152,28 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.limit_label = chart.measure.limit_label;
     content.left_out = chart.left_out;
 
-    const bool both = has_both_modes(chart);
-    const MethodInfo *method = nullptr;
-    bool chosen = false;
+    if (chart.convergence) {
+        content.cost_title = "dt";
+        content.label_meaning.clear();
+        content.worst.clear();
+    } else {
+        content.budget = chart.budget;
+        content.budget_label = chart.budget == 1 ? "60 Hz" : "budget";
+    }
+    const std::vector<FittedOrder> orders = fitted_orders(chart);
+    std::string curve;
     SweepPoint others; // the point less its first axis: each has its own line
     for (const ChartRun &run : chart.runs) {
         if (run.status == ChartStatus::unfinished || !(run.cost > 0))
             continue;
         const SweepPoint rest(run.point.begin() + 1, run.point.end());
-        if (run.resolved.method != method || (both && chooses(run) != chosen)) {
-            method = run.resolved.method;
-            chosen = chooses(run);
-            ChartSeries series;
-            series.name = std::string(method->title);
-            for (std::size_t i = 0; i < method_infos().size(); ++i)
-                if (&method_infos()[i] == method)
-                    series.style = i;
-            if (both && method->chooses_substeps()) {
-                series.name += chosen ? ", at least so many" : ", just so many";
-                series.style += chosen ? 0 : method_infos().size();
-            }
+        if (const std::string name = curve_name(chart, run); name != curve) {
+            curve = name;
+            ChartSeries series{name, style_of(*run.resolved.method, content.series), {{}}};
+            for (const FittedOrder &order : orders)
+                if (order.name == name)
+                    series.name += ": order " + order_text(order);
             content.series.push_back(std::move(series));
-            content.series.back().lines.emplace_back();
             others = rest;
         } else if (rest != others) {
             content.series.back().lines.emplace_back();
@@ -158,14 +181,21 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         }
         content.series.back().lines.back().push_back(content.marks.size());
         ChartMark mark;
-        mark.cost = run.cost;
-        mark.cost_low = run.cost_low;
-        mark.cost_high = run.cost_high;
+        mark.cost = chart.convergence ? run.resolved.settings.dt : run.cost;
+        mark.cost_low = chart.convergence ? mark.cost : run.cost_low;
+        mark.cost_high = chart.convergence ? mark.cost : run.cost_high;
         mark.failed = !std::isfinite(run.error);
         mark.error = mark.failed ? 0 : run.error;
         mark.outside = run.status == ChartStatus::outside;
         mark.pareto = run.pareto;
-        mark.label = sweep_label(chart.sweep, run.point) + worst.suffix(run);
+        const std::string point = sweep_label(chart.sweep, run.point);
+        if (mark.failed) {
+            mark.label = (chart.convergence ? "" : point + " ") + short_reason(run);
+            content.failures.push_back(content.series.back().name + ", " + point + ": " +
+                                       run.failure);
+        } else if (!chart.convergence) {
+            mark.label = point + worst.suffix(run);
+        }
         mark.series = content.series.size() - 1;
         content.marks.push_back(std::move(mark));
     }
@@ -178,25 +208,32 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     const auto add = [&](const std::string &text) {
         settings += (settings.empty() ? "" : "  ·  ") + text;
     };
+    const bool both = has_both_modes(chart);
     if (!chart.runs.empty()) {
         const ResolvedRun &first = chart.runs.front().resolved;
         for (const SettingNumber number : setting_numbers())
             if (!swept(number) && is_worth_saying(chart, number) &&
                 !(both && number.setting().name == "max_substeps"))
                 add(setting_name(number) + " " + values_by_method(chart, number));
-        add(std::string(precision_name(first.precision)) + " precision");
+        if (std::ranges::all_of(chart.runs, [&](const ChartRun &run) {
+                return run.resolved.precision == first.precision;
+            }))
+            add(std::string(precision_name(first.precision)) + " precision");
         const bool timed = std::any_of(chart.runs.begin(), chart.runs.end(),
                                        [](const ChartRun &run) { return !run.timings.empty(); });
+        const std::string on = chart.wall_clock ? "by the clock on the wall" : "one thread";
         if (timed) {
             char text[160];
-            std::snprintf(text, sizeof text,
-                          "one thread, median of %d interleaved timings of the last %.4g s "
-                          "(spread %.0f %%)",
-                          chart.repeats, chart.timed, 100 * chart.median_spread());
+            std::snprintf(
+                text, sizeof text,
+                "%s, median of %d interleaved timings of the last %.4g s (spread %.0f %%)",
+                on.c_str(), chart.repeats, chart.timed, 100 * chart.median_spread());
             add(text);
-        } else {
-            add("one thread, timed once");
+        } else if (!chart.convergence) {
+            add(on + ", timed once");
         }
+        add(first_of(chart, &ChartRun::machine, machine()));
+        add("commit " + first_of(chart, &ChartRun::commit, build_commit()));
     }
     content.footer.push_back(settings);
     if (!command.empty())

@@ -1,220 +1,52 @@
 #include "app/lab/chart/chart_image.h"
 
+#include "app/lab/chart/chart_drawing.h"
 #include "app/lab/chart/chart_pen.h"
 #include "app/lab/chart/panel_chart.h"
 #include "app/lab/map/map_picture.h"
 #include "app/render/context.h"
-#include "app/render/fonts.h"
 #include "app/render/imgui_renderer.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
+#include <vector>
 
 #include <imgui/imgui.h>
 
 namespace plumb {
 
-using namespace chart_colour;
-
 namespace {
 
-constexpr float hollow_radius = chart_style::mark_radius - 2.4f;
+// ImGui's draw list.
+class PixelCanvas final : public ChartCanvas {
+  public:
+    PixelCanvas(ImDrawList &list, const ChartFonts &fonts) : list_(list), fonts_(fonts) {}
 
-ImU32 series_colour(const ChartSeries &series) {
-    return colour(series_colours[series.style % series_colours.size()]);
-}
+    [[nodiscard]] const ChartFonts &fonts() const override { return fonts_; }
+    void box(const PixelBox &box, ImU32 c) override {
+        list_.AddRectFilled(at(box.min), at(box.max), c);
+    }
+    void polygon(std::span<const glm::vec2> convex, ImU32 c) override {
+        for (const glm::vec2 &p : convex)
+            list_.PathLineTo(at(p));
+        list_.PathFillConvex(c);
+    }
+    void stroke(std::span<const glm::vec2> points, ImU32 c, float width) override {
+        for (const glm::vec2 &p : points)
+            list_.PathLineTo(at(p));
+        list_.PathStroke(c, 0, width * supersampling);
+    }
+    void text(glm::vec2 p, std::string_view text, Face face, float scale, ImU32 c) override {
+        list_.AddText(fonts_[static_cast<std::size_t>(face)],
+                      scale * font_size(face) * supersampling, at(p), c, text.data(),
+                      text.data() + text.size());
+    }
 
-void draw_grid(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
-    const PixelBox &plot = layout.plot;
-    const PixelBox &field = layout.field;
-    pen.fill(plot, paper);
-    if (layout.limit_line && *layout.limit_line < plot.max.y)
-        pen.fill({{plot.min.x, *layout.limit_line}, plot.max}, fine_tint);
-    for (const bool decade : {false, true}) {
-        for (const PlacedTick &tick : layout.cost_ticks)
-            if (tick.decade == decade)
-                pen.line({tick.pixel, plot.min.y}, {tick.pixel, plot.max.y},
-                         decade ? strong_grid : weak_grid, 1);
-        for (const PlacedTick &tick : layout.error_ticks)
-            if (tick.decade == decade)
-                pen.line({plot.min.x, tick.pixel}, {plot.max.x, tick.pixel},
-                         decade ? strong_grid : weak_grid, 1);
-    }
-    for (const PlacedTick &tick : layout.cost_ticks)
-        pen.text({tick.pixel, plot.max.y + 8}, tick.label, Face::axis, soft_ink, {0.5f, 0});
-    for (const PlacedTick &tick : layout.error_ticks)
-        pen.text({plot.min.x - 10, tick.pixel}, tick.label, Face::axis, soft_ink, {1, 0.5f});
-    if (layout.failed_line) {
-        pen.line({plot.min.x, field.min.y}, {plot.max.x, field.min.y}, frame, 1);
-        pen.text({plot.min.x - 10, *layout.failed_line}, "failed", Face::axis, soft_ink, {1, 0.5f});
-    }
-    if (layout.zero_line) {
-        pen.line({plot.min.x, field.max.y}, {plot.max.x, field.max.y}, frame, 1);
-        pen.text({plot.min.x - 10, *layout.zero_line}, "exactly 0", Face::axis, soft_ink,
-                 {1, 0.5f});
-    }
-    pen.outline(plot, frame, 1);
-    pen.text({plot.min.x, plot.min.y - 10}, content.error_title, Face::axis, ink, {0, 1});
-    pen.text({plot.max.x, plot.max.y + 30}, content.cost_title, Face::axis, ink, {1, 0});
-}
+  private:
+    static ImVec2 at(glm::vec2 p) { return {p.x * supersampling, p.y * supersampling}; }
 
-void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
-    using chart_style::mark_radius;
-    const PixelBox &field = layout.field;
-    if (layout.pareto_steps.size() > 1)
-        pen.path(layout.pareto_steps, front, 7);
-    if (layout.limit_line) {
-        pen.dashed({field.min.x, *layout.limit_line}, {field.max.x, *layout.limit_line}, limit_ink,
-                   1.5f, 8, 5);
-        pen.text(layout.limit_text.min, content.limit_label, Face::label, limit_ink);
-    }
-    for (const ChartSeries &series : content.series)
-        for (const auto &line : series.lines)
-            for (std::size_t k = 1; k < line.size(); ++k) {
-                // A line to a failed run would say that there is an error to read off.
-                if (content.marks[line[k - 1]].failed || content.marks[line[k]].failed)
-                    continue;
-                pen.line(layout.marks[line[k - 1]], layout.marks[line[k]], series_colour(series),
-                         1.8f);
-            }
-    const auto x_of = [&](double cost) {
-        return static_cast<float>(field.min.x + log_position(layout.cost_range, cost) *
-                                                    (field.max.x - field.min.x));
-    };
-    for (std::size_t i = 0; i < content.marks.size(); ++i) {
-        const ChartMark &mark = content.marks[i];
-        const ImU32 c = series_colour(content.series[mark.series]);
-        if (mark.cost_low > 0 && mark.cost_high > mark.cost_low) {
-            const float y = layout.marks[i].y;
-            const float left = std::max(x_of(mark.cost_low), field.min.x);
-            const float right = std::min(x_of(mark.cost_high), field.max.x);
-            pen.line({left, y}, {right, y}, c, 1);
-        }
-    }
-    for (std::size_t i = 0; i < content.marks.size(); ++i) {
-        const ChartMark &mark = content.marks[i];
-        const ChartSeries &series = content.series[mark.series];
-        const glm::vec2 p = layout.marks[i];
-        if (mark.failed) {
-            pen.cross(p, mark_radius, paper, 5);
-            pen.cross(p, mark_radius, series_colour(series), 2.5f);
-            continue;
-        }
-        if (mark.pareto) {
-            pen.mark(p, series.style, mark_radius + 4.5f, ink);
-            pen.mark(p, series.style, mark_radius + 2.6f, paper);
-        } else {
-            pen.mark(p, series.style, mark_radius + 1.3f, paper);
-        }
-        pen.mark(p, series.style, mark_radius, series_colour(series));
-        if (mark.outside)
-            pen.mark(p, series.style, hollow_radius, paper);
-    }
-    for (const PlacedLabel &label : layout.labels)
-        pen.text(label.box.min + glm::vec2(chart_style::label_margin, 0),
-                 content.marks[label.mark].label, Face::label, ink);
-}
-
-void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
-    using chart_style::mark_radius;
-    const float left = layout.plot.max.x + 28;
-    const float text_left = left + 34;
-    const float width = layout.size.x - 20 - text_left;
-    float y = layout.plot.min.y + 10;
-    constexpr float row = 26;
-    for (const ChartSeries &series : content.series) {
-        pen.line({left, y}, {left + 24, y}, series_colour(series), 1.8f);
-        pen.mark({left + 12, y}, series.style, mark_radius + 1.3f, paper);
-        pen.mark({left + 12, y}, series.style, mark_radius, series_colour(series));
-        pen.text({text_left, y}, pen.fitted(series.name, Face::axis, width), Face::axis, ink,
-                 {0, 0.5f});
-        y += row;
-    }
-    y += 12;
-    const auto any = [&](auto is_such) {
-        return std::any_of(content.marks.begin(), content.marks.end(), is_such);
-    };
-    const auto entry = [&](const std::string &text) {
-        pen.text({text_left, y}, text, Face::label, soft_ink, {0, 0.5f});
-        y += 23;
-    };
-    if (!layout.pareto_steps.empty()) {
-        pen.line({left, y}, {left + 24, y}, front, 7);
-        pen.mark({left + 12, y}, 0, mark_radius + 2.5f, ink);
-        pen.mark({left + 12, y}, 0, mark_radius + 0.6f, paper);
-        pen.mark({left + 12, y}, 0, mark_radius - 2, faint_ink);
-        entry("nothing cheaper is truer");
-    }
-    if (layout.failed_line) {
-        pen.cross({left + 12, y}, mark_radius - 1, soft_ink, 2.2f);
-        entry("diverged, or no result");
-    }
-    if (any([](const ChartMark &mark) { return mark.outside && !mark.failed; })) {
-        pen.mark({left + 12, y}, 0, mark_radius, soft_ink);
-        pen.mark({left + 12, y}, 0, hollow_radius, paper);
-        entry("misses what the scene expects");
-    }
-    if (layout.limit_line) {
-        pen.fill({{left, y - 7}, {left + 24, y + 7}}, fine_tint);
-        pen.dashed({left, y - 7}, {left + 24, y - 7}, limit_ink, 1.5f, 6, 3);
-        entry("true enough");
-    }
-    if (!content.label_meaning.empty()) {
-        // A label as a sample, where it is not too long: of a run that has an error.
-        const auto mark = std::find_if(content.marks.begin(), content.marks.end(),
-                                       [](const ChartMark &m) { return !m.failed; });
-        if (mark != content.marks.end() && pen.text_size(mark->label, Face::label).x < 30)
-            pen.text({left + 12, y}, mark->label, Face::label, ink, {0.5f, 0.5f});
-        entry("label: " + content.label_meaning);
-    }
-    if (any([](const ChartMark &mark) { return mark.cost_high > mark.cost_low; })) {
-        pen.line({left, y}, {left + 24, y}, faint_ink, 1);
-        entry("spread of the timings");
-    }
-    const auto list = [&](const char *title, const std::vector<std::string> &texts) {
-        if (texts.empty())
-            return;
-        y += 12;
-        pen.text({left, y}, title, Face::label, soft_ink, {0, 0.5f});
-        y += 21;
-        for (const std::string &text : texts)
-            for (const std::string &line :
-                 pen.wrapped(text, Face::footer, layout.size.x - 20 - left)) {
-                if (y > layout.plot.max.y - 4)
-                    return;
-                pen.text({left, y}, line, Face::footer, faint_ink, {0, 0.5f});
-                y += 16;
-            }
-    };
-    list("Worst expectation", content.worst);
-    list("Not on this chart", content.left_out);
-}
-
-void draw_chart(ChartPen &pen, const ChartContent &content) {
-    const ChartLayout layout =
-        lay_out(content, [&pen](std::string_view text, float size) -> glm::vec2 {
-            // The layout asks for one of our own sizes.
-            return pen.text_size(text, size == chart_style::label_text ? Face::label : Face::axis);
-        });
-    const float left = 40, right = layout.size.x - 40;
-    pen.text({left, 30}, pen.fitted(content.title, Face::title, right - left), Face::title, ink);
-    pen.text({left, 66}, pen.fitted(content.subtitle, Face::subtitle, right - left), Face::subtitle,
-             soft_ink);
-    draw_grid(pen, content, layout);
-    draw_marks(pen, content, layout);
-    draw_legend(pen, content, layout);
-    float y = layout.plot.max.y + 66;
-    for (const std::string &text : content.footer)
-        for (const std::string &line : pen.wrapped(text, Face::footer, right - left)) {
-            if (y > layout.size.y - 16)
-                return;
-            pen.text({left, y}, pen.fitted(line, Face::footer, right - left), Face::footer,
-                     faint_ink);
-            y += 16;
-        }
-}
+    ImDrawList &list_;
+    const ChartFonts &fonts_;
+};
 
 Image reduced(const Image &large) {
     Image small(large.width / supersampling, large.height / supersampling);
@@ -267,7 +99,7 @@ struct OwnImGui {
 struct ChartPainter::Parts {
     std::unique_ptr<GlContext> gl;
     OwnImGui imgui;
-    std::array<ImFont *, 5> fonts{};
+    ChartFonts fonts{};
     std::unique_ptr<ImguiRenderer> renderer;
 
     ~Parts() { gl->make_current(); } // for the renderer's end
@@ -280,9 +112,7 @@ ChartPainter::ChartPainter(const std::filesystem::path &shader_dir) {
     parts_ = std::make_unique<Parts>();
     parts_->gl = std::move(gl);
     const CurrentImGui current(parts_->imgui.context);
-    for (const Face face : {Face::title, Face::subtitle, Face::axis, Face::label, Face::footer})
-        parts_->fonts[static_cast<std::size_t>(face)] =
-            load_font(*ImGui::GetIO().Fonts, ChartPen::font_size(face) * supersampling);
+    parts_->fonts = load_chart_fonts(*ImGui::GetIO().Fonts);
     parts_->renderer = std::make_unique<ImguiRenderer>(shader_dir);
 }
 
@@ -294,7 +124,8 @@ Image ChartPainter::paint(const std::function<void(ChartPen &)> &draw) {
     const glm::ivec2 size = glm::ivec2(chart_style::size) * supersampling;
     const Image large = paint_image(*parts_->renderer, size, glm::vec3(0.984f, 0.988f, 0.992f),
                                     [&](ImDrawList &list) {
-                                        ChartPen pen(list, parts_->fonts);
+                                        PixelCanvas canvas(list, parts_->fonts);
+                                        ChartPen pen(canvas);
                                         draw(pen);
                                     });
     return reduced(large);

@@ -105,6 +105,17 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     }
     if (content.limit && *content.limit > 0)
         errors.push_back(*content.limit);
+    // A line in the next decade or so is worth the room.
+    constexpr double reach = 20;
+    const bool has_budget = content.budget && !costs.empty();
+    bool budget_shows = false, budget_is_above = false;
+    if (has_budget) {
+        const auto [least, greatest] = std::minmax_element(costs.begin(), costs.end());
+        budget_is_above = *content.budget > *greatest;
+        budget_shows = *content.budget <= reach * *greatest && *content.budget * reach >= *least;
+        if (budget_shows)
+            costs.push_back(*content.budget);
+    }
     layout.cost_range = log_range(costs);
     layout.error_range = log_range(errors);
     if (any_failed) {
@@ -142,29 +153,53 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     }
 
     std::vector<PixelBox> obstacles;
+    // The place with the fewest marks in the way, the first of equals; off what is placed already.
+    const auto best_place = [&](const std::vector<PixelBox> &places) {
+        const auto score = [&](const PixelBox &box) {
+            float sum = layout.plot.contains(box) ? 0.0f : 1000.0f;
+            for (const glm::vec2 &mark : layout.marks)
+                sum += box.overlaps({mark - mark_radius - 2.0f, mark + mark_radius + 2.0f}) ? 10.0f
+                                                                                            : 0.0f;
+            for (const PixelBox &obstacle : obstacles)
+                sum += box.overlaps(obstacle) ? 1000.0f : 0.0f;
+            return sum;
+        };
+        const PixelBox best = *std::ranges::min_element(places, {}, score);
+        obstacles.push_back(best);
+        return best;
+    };
+    const auto box_at = [](float x, float y, glm::vec2 text) {
+        return PixelBox{{x, y}, {x + text.x, y + text.y}};
+    };
     if (content.limit) {
         layout.limit_line = zero_is_the_limit ? field.max.y : y_of(*content.limit);
         const glm::vec2 text = text_size(content.limit_label, label_text);
-        // At the right end above the line, or at the left or below it when marks are in the way.
-        float best = std::numeric_limits<float>::infinity();
-        for (const bool below : {false, true})
-            for (const bool left : {false, true}) {
-                const float x = left ? field.min.x + 10 : field.max.x - 10 - text.x;
-                const float y = below ? *layout.limit_line + 4 : *layout.limit_line - 4 - text.y;
-                const PixelBox box{{x, y}, {x + text.x, y + text.y}};
-                float score = (left ? 1.0f : 0.0f) + (below ? 0.5f : 0.0f);
-                if (!layout.plot.contains(box))
-                    score += 1000;
-                for (const glm::vec2 &mark : layout.marks)
-                    if (box.overlaps({mark - mark_radius - 2.0f, mark + mark_radius + 2.0f}))
-                        score += 10;
-                if (score < best) {
-                    best = score;
-                    layout.limit_text = box;
-                }
-            }
-        obstacles.push_back(layout.limit_text);
+        const float left = field.min.x + 10, right = field.max.x - 10 - text.x;
+        const float above = *layout.limit_line - 4 - text.y, below = *layout.limit_line + 4;
+        layout.limit_text = best_place({box_at(right, above, text), box_at(right, below, text),
+                                        box_at(left, above, text), box_at(left, below, text)});
     }
+    if (has_budget) {
+        const std::string cost =
+            content.budget_label + ": " + short_quantity(*content.budget, content.cost_unit);
+        layout.budget_label = budget_shows ? cost : budget_is_above ? cost + " »" : "« " + cost;
+        const glm::vec2 text = text_size(layout.budget_label, label_text);
+        const float top = field.min.y + 6, bottom = field.max.y - 6 - text.y;
+        if (budget_shows) {
+            layout.budget_line = x_of(*content.budget);
+            const float left = *layout.budget_line - 6 - text.x, right = *layout.budget_line + 6;
+            layout.budget_text =
+                best_place({box_at(left, bottom, text), box_at(left, top, text),
+                            box_at(right, bottom, text), box_at(right, top, text)});
+        } else {
+            const float x = budget_is_above ? field.max.x - 8 - text.x : field.min.x + 8;
+            layout.budget_text = best_place({box_at(x, bottom, text), box_at(x, top, text),
+                                             box_at(x, 0.5f * (top + bottom), text)});
+        }
+    }
+    if (layout.limit_line && (layout.budget_line || !has_budget || budget_is_above))
+        layout.corner = {{plot.min.x, *layout.limit_line},
+                         {layout.budget_line.value_or(plot.max.x), plot.max.y}};
 
     // The front, from cheap to dear.
     std::vector<std::size_t> front;
@@ -199,6 +234,9 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     if (layout.limit_line)
         lines.emplace_back(glm::vec2(field.min.x, *layout.limit_line),
                            glm::vec2(field.max.x, *layout.limit_line));
+    if (layout.budget_line)
+        lines.emplace_back(glm::vec2(*layout.budget_line, field.min.y),
+                           glm::vec2(*layout.budget_line, plot.max.y));
     std::vector<std::size_t> order(content.marks.size());
     std::vector<glm::vec2> sizes;
     std::vector<float> radii;

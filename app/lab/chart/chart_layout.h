@@ -25,9 +25,12 @@ struct ChartMark {
     std::size_t series = 0;
 };
 
+// A style is a colour, by what is left of it when divided by this, and one of 5 shapes.
+inline constexpr std::size_t series_colour_count = 7;
+
 struct ChartSeries {
     std::string name;
-    std::size_t style = 0;                       // colour and shape: the method's registry index
+    std::size_t style = 0;                       // colour and shape
     std::vector<std::vector<std::size_t>> lines; // indices of marks, joined in this order
 };
 
@@ -41,9 +44,12 @@ struct ChartContent {
     std::string label_meaning;   // "substeps"
     std::optional<double> limit; // true enough at most; 0 where only an error of exactly zero is
     std::string limit_label;
+    std::optional<double> budget; // what it may cost; true enough and within it is the corner
+    std::string budget_label;
     std::vector<ChartSeries> series;
     std::vector<ChartMark> marks;
     std::vector<std::string> worst;    // the expectations that are the worst of some run
+    std::vector<std::string> failures; // of each failed run, which and why
     std::vector<std::string> left_out; // methods that are not here, and why
     std::vector<std::string> footer;
 };
@@ -89,6 +95,12 @@ struct ChartLayout {
                                      // go without where there is no room
     std::optional<float> limit_line; // y; for a limit of 0 the top of the strip for zero
     PixelBox limit_text;
+    // x; none where there is no budget, or it lies so far from all runs that the scale leaves it
+    // out: then the text says on which side.
+    std::optional<float> budget_line;
+    std::string budget_label;
+    PixelBox budget_text;
+    std::optional<PixelBox> corner;      // of what is true enough and within the budget
     std::vector<glm::vec2> pareto_steps; // a staircase through the front, in pixels
 };
 

@@ -1,7 +1,7 @@
-// What charts are drawn with: ImGui's draw list, in pixels of the finished picture.
+// What charts are drawn with, in pixels of the finished picture.
 #pragma once
 
-#include "app/lab/chart/chart_layout.h"
+#include "app/lab/chart/chart_canvas.h"
 #include "app/lab/chart/log_axis.h"
 
 #include <algorithm>
@@ -16,15 +16,13 @@
 
 namespace plumb {
 
-// Drawn this many times larger, then averaged down, for smooth edges everywhere.
-inline constexpr int supersampling = 2;
-
 namespace chart_colour {
 
 constexpr ImU32 colour(unsigned rgb, unsigned alpha = 255) {
     return IM_COL32((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255, alpha);
 }
 
+inline constexpr ImU32 background = colour(0xfbfcfd);
 inline constexpr ImU32 ink = colour(0x22262b);
 inline constexpr ImU32 soft_ink = colour(0x5f666e);
 inline constexpr ImU32 faint_ink = colour(0x8b929a);
@@ -34,27 +32,23 @@ inline constexpr ImU32 frame = colour(0xa4abb2);
 inline constexpr ImU32 paper = colour(0xffffff);
 inline constexpr ImU32 fine_tint = colour(0xf0f7f1);
 inline constexpr ImU32 limit_ink = colour(0x2f7d4f);
+inline constexpr ImU32 budget_ink = colour(0x9a5b13);
 inline constexpr ImU32 front = colour(0xdcdfe3);
 
 // Colours that people with any of the usual kinds of colour blindness can tell apart (Okabe and Ito
 // 2008), without the yellow, which is too light on white. The shape of the mark says it again.
-inline constexpr std::array<unsigned, 7> series_colours{0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7,
-                                                        0xe69f00, 0x56b4e9, 0x4d4d4d};
+inline constexpr std::array<unsigned, series_colour_count> series_colours{
+    0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x4d4d4d};
 inline constexpr std::size_t shape_count = 5; // coprime to the number of colours: 35 combinations
 
 } // namespace chart_colour
 
-// Sizes of text: chart_style says which.
-enum class Face { title, subtitle, axis, label, footer };
-
 class ChartPen {
   public:
-    ChartPen(ImDrawList &list, const std::array<ImFont *, 5> &fonts) : list_(list), fonts_(fonts) {}
-
-    static ImVec2 at(glm::vec2 p) { return {p.x * supersampling, p.y * supersampling}; }
+    explicit ChartPen(ChartCanvas &canvas) : canvas_(canvas) {}
 
     void line(glm::vec2 a, glm::vec2 b, ImU32 c, float width) {
-        list_.AddLine(at(a), at(b), c, width * supersampling);
+        canvas_.stroke(std::array{a, b}, c, width);
     }
     void dashed(glm::vec2 a, glm::vec2 b, ImU32 c, float width, float dash, float gap) {
         const glm::vec2 d = b - a;
@@ -62,17 +56,13 @@ class ChartPen {
         for (float t = 0; t < length; t += dash + gap)
             line(a + d * (t / length), a + d * (std::min(t + dash, length) / length), c, width);
     }
-    void fill(const PixelBox &box, ImU32 c) { list_.AddRectFilled(at(box.min), at(box.max), c); }
+    void fill(const PixelBox &box, ImU32 c) { canvas_.box(box, c); }
     void outline(const PixelBox &box, ImU32 c, float width) {
-        list_.AddRect(at(box.min), at(box.max), c, 0, 0, width * supersampling);
+        const glm::vec2 a = box.min, b = box.max;
+        canvas_.stroke(std::array{a, glm::vec2(b.x, a.y), b, glm::vec2(a.x, b.y), a}, c, width);
     }
     void path(const std::vector<glm::vec2> &points, ImU32 c, float width) {
-        for (const glm::vec2 &p : points)
-            list_.PathLineTo(at(p));
-        list_.PathStroke(c, 0, width * supersampling);
-    }
-    void ring(glm::vec2 p, float radius, ImU32 c, float width) {
-        list_.AddCircle(at(p), radius * supersampling, c, 40, width * supersampling);
+        canvas_.stroke(points, c, width);
     }
     void cross(glm::vec2 p, float r, ImU32 c, float width) {
         line(p + glm::vec2(-r, -r), p + glm::vec2(r, r), c, width);
@@ -82,10 +72,10 @@ class ChartPen {
     void mark(glm::vec2 p, std::size_t shape, float r, ImU32 c) {
         switch (shape % chart_colour::shape_count) {
         case 0:
-            list_.AddCircleFilled(at(p), r * supersampling, c, 40);
+            polygon(p, r, 40, 0, c);
             break;
         case 1:
-            list_.AddRectFilled(at(p - 0.86f * r), at(p + 0.86f * r), c);
+            fill({p - 0.86f * r, p + 0.86f * r}, c);
             break;
         case 2:
             polygon(p, r * 1.15f, 3, -90, c);
@@ -110,10 +100,10 @@ class ChartPen {
     void text(glm::vec2 p, std::string_view text, Face face, ImU32 c, glm::vec2 anchor = {0, 0}) {
         const glm::vec2 start = p - anchor * text_size(text, face);
         const std::string_view head = text.substr(0, text.find(raised_from));
-        plain_text(start, head, face, 1, c);
+        canvas_.text(start, head, face, 1, c);
         if (head.size() < text.size())
-            plain_text(start + glm::vec2(plain_size(head, face, 1).x, -0.12f * font_size(face)),
-                       text.substr(head.size() + 1), face, raised_scale, c);
+            canvas_.text(start + glm::vec2(plain_size(head, face, 1).x, -0.12f * font_size(face)),
+                         text.substr(head.size() + 1), face, raised_scale, c);
     }
     // The text cut to the width, with an ellipsis where something is missing.
     [[nodiscard]] std::string fitted(const std::string &text, Face face, float width) const {
@@ -147,48 +137,23 @@ class ChartPen {
         return lines;
     }
 
-    static float font_size(Face face) {
-        using namespace chart_style;
-        switch (face) {
-        case Face::title:
-            return title_text;
-        case Face::subtitle:
-            return subtitle_text;
-        case Face::axis:
-            return axis_text;
-        case Face::label:
-            return label_text;
-        case Face::footer:
-            return footer_text;
-        }
-        return axis_text;
-    }
-
   private:
     static constexpr float raised_scale = 0.72f;
 
     [[nodiscard]] glm::vec2 plain_size(std::string_view text, Face face, float scale) const {
-        const ImVec2 size = fonts_[static_cast<std::size_t>(face)]->CalcTextSizeA(
-            scale * font_size(face) * supersampling, 1e9f, 0, text.data(),
-            text.data() + text.size());
-        return {size.x / supersampling, size.y / supersampling};
-    }
-    void plain_text(glm::vec2 p, std::string_view text, Face face, float scale, ImU32 c) {
-        list_.AddText(fonts_[static_cast<std::size_t>(face)],
-                      scale * font_size(face) * supersampling, at(p), c, text.data(),
-                      text.data() + text.size());
+        return plumb::text_size(canvas_.fonts(), text, face, scale);
     }
     void polygon(glm::vec2 p, float r, int corners, float degrees, ImU32 c) {
+        std::vector<glm::vec2> points;
         for (int i = 0; i < corners; ++i) {
             const float angle = 0.01745329f * (degrees + 360.0f * static_cast<float>(i) /
                                                              static_cast<float>(corners));
-            list_.PathLineTo(at(p + r * glm::vec2(std::cos(angle), std::sin(angle))));
+            points.push_back(p + r * glm::vec2(std::cos(angle), std::sin(angle)));
         }
-        list_.PathFillConvex(c);
+        canvas_.polygon(points, c);
     }
 
-    ImDrawList &list_;
-    const std::array<ImFont *, 5> &fonts_;
+    ChartCanvas &canvas_;
 };
 
 } // namespace plumb

@@ -1,7 +1,10 @@
 // A chart's numbers: as CSV, and as a table for people.
 #include "app/lab/chart/chart.h"
+#include "app/lab/chart/chart_columns.h"
+#include "app/lab/chart/convergence.h"
 #include "app/lab/chart/log_axis.h"
 #include "app/lab/csv.h"
+#include "app/lab/provenance.h"
 #include "app/lab/run/run_text.h"
 
 #include <algorithm>
@@ -16,23 +19,12 @@ std::string error_unit(const ErrorMeasure &measure) {
     return measure.kind == ErrorMeasure::Kind::worst ? "tolerance" : measure.unit;
 }
 
-// "dt_s", "gravity_y_m_s2"
-std::string setting_column(SettingNumber number) {
-    std::string column = setting_name(number);
-    if (const std::string_view unit = number.setting().unit; !unit.empty())
-        column += "_" + std::string(unit);
-    std::erase(column, '^');
-    for (char &c : column)
-        if (c == '.' || c == '/')
-            c = '_';
-    return column;
-}
-
 } // namespace
 
-void write_chart_csv(std::ostream &out, const SceneChart &chart) {
+void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::string &fingerprint) {
+    const std::string here = machine(), commit = build_commit();
     CsvWriter csv(out);
-    for (const char *name : {"scene", "method", "precision"})
+    for (const char *name : {"scene", "run", "method", "precision", "threads"})
         csv.cell(name);
     for (const SettingNumber number : setting_numbers())
         csv.cell(setting_column(number));
@@ -41,7 +33,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart) {
                              "cpu_s_per_s",
                              "cpu_s_per_s_least",
                              "cpu_s_per_s_greatest",
-                             "timings",
+                             "timings_s_per_s",
                              "body_passes_per_s",
                              "constraint_passes_per_s",
                              "charted_error",
@@ -55,8 +47,20 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart) {
                              "max_energy_change_J",
                              "max_energy_error",
                              "unresolved_impacts",
+                             "had_contacts",
                              "diverged_at_s",
-                             "diverged"})
+                             "diverged",
+                             "against",
+                             "clock",
+                             "budget_s_per_s",
+                             "sweep",
+                             "planned",
+                             "repeats",
+                             "timed_s",
+                             "seed",
+                             "machine",
+                             "commit",
+                             "fingerprint"})
         csv.cell(name);
     for (const ExpectDesc &expect : everything_expected(chart.scene))
         for (const char *column : {".measured", ".error", ".limit", ".scaled_error", ".passed"})
@@ -64,8 +68,10 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart) {
     csv.end_row();
     for (const ChartRun &run : chart.runs) {
         csv.cell(chart.scene.name)
+            .cell(static_cast<std::uint64_t>(run.index))
             .cell(run.resolved.method->name)
-            .cell(precision_name(run.resolved.precision));
+            .cell(precision_name(run.resolved.precision))
+            .cell(run.threads);
         for (const SettingNumber number : setting_numbers())
             csv.cell(setting_value(run.resolved.settings, number));
         csv.cell(status_name(run.status))
@@ -73,7 +79,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart) {
             .cell(run.cost)
             .cell(run.cost_low)
             .cell(run.cost_high)
-            .cell(static_cast<std::uint64_t>(run.timings.size()))
+            .cell(numbers_text(run.timings))
             .cell(run.body_passes)
             .cell(run.constraint_passes)
             .cell(chart.measure.name)
@@ -86,11 +92,23 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart) {
             .cell(run.run.max_joint_drift)
             .cell(run.run.max_energy_change)
             .cell(run.run.max_energy_error)
-            .cell(run.run.unresolved_impacts);
+            .cell(run.run.unresolved_impacts)
+            .cell(run.run.had_contacts);
         if (run.run.divergence)
-            csv.cell(run.run.divergence->time).cell(describe(*run.run.divergence));
+            csv.cell(run.run.divergence->time).cell(run.failure);
         else
             csv.cell("").cell("");
+        csv.cell(chart.convergence ? "dt" : "cost")
+            .cell(chart.wall_clock ? "wall" : "cpu")
+            .cell(chart.budget)
+            .cell(sweep_text(chart.sweep))
+            .cell(static_cast<std::uint64_t>(chart.planned))
+            .cell(chart.repeats)
+            .cell(chart.timed)
+            .cell(chart.seed)
+            .cell(run.machine.empty() ? here : run.machine)
+            .cell(run.commit.empty() ? commit : run.commit)
+            .cell(fingerprint);
         for (const ExpectOutcome &outcome : run.run.outcomes)
             if (outcome.judged())
                 csv.cell(outcome.measured)
@@ -134,9 +152,11 @@ void print(std::ostream &out, const SceneChart &chart) {
         if (run.worst && !run.run.divergence && everything_expected(chart.scene).size() > 1)
             out << "; worst: " << run.run.outcomes[*run.worst].desc.name;
         out << '\n';
-        if (run.run.divergence)
-            out << "    " << describe(*run.run.divergence) << '\n';
+        if (!run.failure.empty())
+            out << "    " << run.failure << '\n';
     }
+    for (const FittedOrder &fitted : fitted_orders(chart))
+        out << "  " << fitted.name << ": order " << order_text(fitted) << '\n';
     for (const std::string &why : chart.left_out)
         out << "  left out: " << why << '\n';
     if (chart.interrupted)

@@ -2,6 +2,7 @@
 
 #include "app/files/output_file.h"
 #include "app/lab/chart/chart_image.h"
+#include "app/lab/chart/chart_svg.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/map/map_picture.h"
 #include "app/lab/map/map_resume.h"
@@ -26,9 +27,16 @@ void write_picture(const MapCommand &command, const StabilityMap &map, std::ostr
     if (!command.command.empty())
         picture.footer.push_back(command.command);
     std::filesystem::path place = command.image;
+    const std::string kind = place.extension().string();
     if (map.interrupted)
-        place.replace_extension(".partial.png");
-    write_png(place, ChartPainter(command.shader_dir).paint(picture));
+        place.replace_extension(".partial" + kind);
+    if (kind == ".svg") {
+        OutputFile svg(place);
+        write_chart_svg(svg.stream(), picture);
+        svg.finish();
+    } else {
+        write_png(place, ChartPainter(command.shader_dir).paint(picture));
+    }
     err << "wrote " << place.string() << '\n';
 }
 

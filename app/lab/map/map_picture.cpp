@@ -8,9 +8,9 @@ using namespace chart_colour;
 
 namespace {
 
-Face face_of(float font_size) {
+Face face_of(float size) {
     for (const Face face : {Face::title, Face::subtitle, Face::axis, Face::label})
-        if (ChartPen::font_size(face) == font_size)
+        if (font_size(face) == size)
             return face;
     return Face::footer;
 }

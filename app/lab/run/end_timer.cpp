@@ -4,6 +4,7 @@
 #include "engine/core/check.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -19,8 +20,8 @@ constexpr int most_rounds = 1000;        // in one timing
 } // namespace
 
 EndTimer::EndTimer(std::unique_ptr<Simulation> simulation, std::unique_ptr<Simulation::Saved> saved,
-                   double timed, double cost)
-    : simulation_(std::move(simulation)), saved_(std::move(saved)) {
+                   double timed, double cost, bool wall_clock)
+    : simulation_(std::move(simulation)), saved_(std::move(saved)), wall_clock_(wall_clock) {
     const double dt = simulation_->settings().dt;
     steps_ = std::max(1, static_cast<int>(std::lround(timed / dt)));
     const double segment = cost * steps_ * dt;
@@ -40,6 +41,12 @@ std::optional<double> EndTimer::time(const std::function<bool()> &stop) const {
         }
         return true;
     };
+    const auto now = [&] {
+        return wall_clock_ ? std::chrono::duration<double>(
+                                 std::chrono::steady_clock::now().time_since_epoch())
+                                 .count()
+                           : thread_cpu_time();
+    };
     double used = 0;
     try {
         simulation_->restore(*saved_);
@@ -48,10 +55,10 @@ std::optional<double> EndTimer::time(const std::function<bool()> &stop) const {
             return std::nullopt;
         for (int round = 0; round < rounds_; ++round) {
             simulation_->restore(*saved_);
-            const double before = thread_cpu_time();
+            const double before = now();
             if (!go(steps_))
                 return std::nullopt;
-            used += thread_cpu_time() - before;
+            used += now() - before;
         }
     } catch (const CheckFailure &) {
         return std::nullopt;

@@ -1,0 +1,23 @@
+// How chart_table.cpp writes what chart_rows.cpp reads.
+#pragma once
+
+#include "app/lab/run/sweep.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace plumb {
+
+// "dt_s", "gravity_y_m_s2"
+[[nodiscard]] std::string setting_column(SettingNumber number);
+
+// "substeps=1,2;dt=0.01,0.02", exactly; parsed_sweeps reads it.
+[[nodiscard]] std::string sweep_text(const std::vector<SweepAxis> &sweep);
+[[nodiscard]] std::vector<SweepAxis> parsed_sweeps(std::string_view text);
+
+// "0.1;0.2", exactly; parsed_numbers reads it, and passes over what is no number.
+[[nodiscard]] std::string numbers_text(const std::vector<double> &numbers);
+[[nodiscard]] std::vector<double> parsed_numbers(std::string_view text);
+
+} // namespace plumb

@@ -1,0 +1,217 @@
+#include "app/lab/chart/chart_drawing.h"
+
+#include "app/lab/chart/chart_pen.h"
+
+#include <algorithm>
+
+namespace plumb {
+
+using namespace chart_colour;
+
+namespace {
+
+constexpr float hollow_radius = chart_style::mark_radius - 2.4f;
+
+ImU32 series_colour(const ChartSeries &series) {
+    return colour(series_colours[series.style % series_colours.size()]);
+}
+
+void draw_grid(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
+    const PixelBox &plot = layout.plot;
+    const PixelBox &field = layout.field;
+    pen.fill(plot, paper);
+    if (layout.corner && layout.corner->min.y < layout.corner->max.y)
+        pen.fill(*layout.corner, fine_tint);
+    for (const bool decade : {false, true}) {
+        for (const PlacedTick &tick : layout.cost_ticks)
+            if (tick.decade == decade)
+                pen.line({tick.pixel, plot.min.y}, {tick.pixel, plot.max.y},
+                         decade ? strong_grid : weak_grid, 1);
+        for (const PlacedTick &tick : layout.error_ticks)
+            if (tick.decade == decade)
+                pen.line({plot.min.x, tick.pixel}, {plot.max.x, tick.pixel},
+                         decade ? strong_grid : weak_grid, 1);
+    }
+    for (const PlacedTick &tick : layout.cost_ticks)
+        pen.text({tick.pixel, plot.max.y + 8}, tick.label, Face::axis, soft_ink, {0.5f, 0});
+    for (const PlacedTick &tick : layout.error_ticks)
+        pen.text({plot.min.x - 10, tick.pixel}, tick.label, Face::axis, soft_ink, {1, 0.5f});
+    if (layout.failed_line) {
+        pen.line({plot.min.x, field.min.y}, {plot.max.x, field.min.y}, frame, 1);
+        pen.text({plot.min.x - 10, *layout.failed_line}, "failed", Face::axis, soft_ink, {1, 0.5f});
+    }
+    if (layout.zero_line) {
+        pen.line({plot.min.x, field.max.y}, {plot.max.x, field.max.y}, frame, 1);
+        pen.text({plot.min.x - 10, *layout.zero_line}, "exactly 0", Face::axis, soft_ink,
+                 {1, 0.5f});
+    }
+    pen.outline(plot, frame, 1);
+    pen.text({plot.min.x, plot.min.y - 10}, content.error_title, Face::axis, ink, {0, 1});
+    pen.text({plot.max.x, plot.max.y + 30}, content.cost_title, Face::axis, ink, {1, 0});
+}
+
+void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
+    using chart_style::mark_radius;
+    const PixelBox &field = layout.field;
+    if (layout.pareto_steps.size() > 1)
+        pen.path(layout.pareto_steps, front, 7);
+    if (layout.limit_line) {
+        pen.dashed({field.min.x, *layout.limit_line}, {field.max.x, *layout.limit_line}, limit_ink,
+                   1.5f, 8, 5);
+        pen.text(layout.limit_text.min, content.limit_label, Face::label, limit_ink);
+    }
+    if (layout.budget_line)
+        pen.dashed({*layout.budget_line, layout.plot.min.y},
+                   {*layout.budget_line, layout.plot.max.y}, budget_ink, 1.5f, 8, 5);
+    if (!layout.budget_label.empty())
+        pen.text(layout.budget_text.min, layout.budget_label, Face::label, budget_ink);
+    for (const ChartSeries &series : content.series)
+        for (const auto &line : series.lines)
+            for (std::size_t k = 1; k < line.size(); ++k) {
+                // A line to a failed run would say that there is an error to read off.
+                if (content.marks[line[k - 1]].failed || content.marks[line[k]].failed)
+                    continue;
+                pen.line(layout.marks[line[k - 1]], layout.marks[line[k]], series_colour(series),
+                         1.8f);
+            }
+    const auto x_of = [&](double cost) {
+        return static_cast<float>(field.min.x + log_position(layout.cost_range, cost) *
+                                                    (field.max.x - field.min.x));
+    };
+    for (std::size_t i = 0; i < content.marks.size(); ++i) {
+        const ChartMark &mark = content.marks[i];
+        const ImU32 c = series_colour(content.series[mark.series]);
+        if (mark.cost_low > 0 && mark.cost_high > mark.cost_low) {
+            const float y = layout.marks[i].y;
+            const float left = std::max(x_of(mark.cost_low), field.min.x);
+            const float right = std::min(x_of(mark.cost_high), field.max.x);
+            pen.line({left, y}, {right, y}, c, 1);
+        }
+    }
+    for (std::size_t i = 0; i < content.marks.size(); ++i) {
+        const ChartMark &mark = content.marks[i];
+        const ChartSeries &series = content.series[mark.series];
+        const glm::vec2 p = layout.marks[i];
+        if (mark.failed) {
+            pen.cross(p, mark_radius, paper, 5);
+            pen.cross(p, mark_radius, series_colour(series), 2.5f);
+            continue;
+        }
+        if (mark.pareto) {
+            pen.mark(p, series.style, mark_radius + 4.5f, ink);
+            pen.mark(p, series.style, mark_radius + 2.6f, paper);
+        } else {
+            pen.mark(p, series.style, mark_radius + 1.3f, paper);
+        }
+        pen.mark(p, series.style, mark_radius, series_colour(series));
+        if (mark.outside)
+            pen.mark(p, series.style, hollow_radius, paper);
+    }
+    for (const PlacedLabel &label : layout.labels)
+        pen.text(label.box.min + glm::vec2(chart_style::label_margin, 0),
+                 content.marks[label.mark].label, Face::label, ink);
+}
+
+void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
+    using chart_style::mark_radius;
+    const float left = layout.plot.max.x + 28;
+    const float text_left = left + 34;
+    const float width = layout.size.x - 20 - text_left;
+    float y = layout.plot.min.y + 10;
+    constexpr float row = 26;
+    for (const ChartSeries &series : content.series) {
+        pen.line({left, y}, {left + 24, y}, series_colour(series), 1.8f);
+        pen.mark({left + 12, y}, series.style, mark_radius + 1.3f, paper);
+        pen.mark({left + 12, y}, series.style, mark_radius, series_colour(series));
+        pen.text({text_left, y}, pen.fitted(series.name, Face::axis, width), Face::axis, ink,
+                 {0, 0.5f});
+        y += row;
+    }
+    y += 12;
+    const auto any = [&](auto is_such) {
+        return std::any_of(content.marks.begin(), content.marks.end(), is_such);
+    };
+    const auto entry = [&](const std::string &text) {
+        pen.text({text_left, y}, text, Face::label, soft_ink, {0, 0.5f});
+        y += 23;
+    };
+    if (!layout.pareto_steps.empty()) {
+        pen.line({left, y}, {left + 24, y}, front, 7);
+        pen.mark({left + 12, y}, 0, mark_radius + 2.5f, ink);
+        pen.mark({left + 12, y}, 0, mark_radius + 0.6f, paper);
+        pen.mark({left + 12, y}, 0, mark_radius - 2, faint_ink);
+        entry("nothing cheaper is truer");
+    }
+    if (layout.failed_line) {
+        pen.cross({left + 12, y}, mark_radius - 1, soft_ink, 2.2f);
+        entry("diverged, or no result");
+    }
+    if (any([](const ChartMark &mark) { return mark.outside && !mark.failed; })) {
+        pen.mark({left + 12, y}, 0, mark_radius, soft_ink);
+        pen.mark({left + 12, y}, 0, hollow_radius, paper);
+        entry("misses what the scene expects");
+    }
+    if (layout.corner) {
+        pen.fill({{left, y - 7}, {left + 24, y + 7}}, fine_tint);
+        pen.dashed({left, y - 7}, {left + 24, y - 7}, limit_ink, 1.5f, 6, 3);
+        entry(content.budget ? "true enough, within the budget" : "true enough");
+    }
+    if (!content.label_meaning.empty()) {
+        // A label as a sample, where it is not too long: of a run that has an error.
+        const auto mark = std::find_if(content.marks.begin(), content.marks.end(),
+                                       [](const ChartMark &m) { return !m.failed; });
+        if (mark != content.marks.end() && pen.text_size(mark->label, Face::label).x < 30)
+            pen.text({left + 12, y}, mark->label, Face::label, ink, {0.5f, 0.5f});
+        entry("label: " + content.label_meaning);
+    }
+    if (any([](const ChartMark &mark) { return mark.cost_high > mark.cost_low; })) {
+        pen.line({left, y}, {left + 24, y}, faint_ink, 1);
+        entry("spread of the timings");
+    }
+    const auto list = [&](const char *title, const std::vector<std::string> &texts) {
+        if (texts.empty() || y + 33 > layout.plot.max.y - 4)
+            return;
+        y += 12;
+        pen.text({left, y}, title, Face::label, soft_ink, {0, 0.5f});
+        y += 21;
+        for (const std::string &text : texts)
+            for (const std::string &line :
+                 pen.wrapped(text, Face::footer, layout.size.x - 20 - left)) {
+                if (y > layout.plot.max.y - 4)
+                    return;
+                pen.text({left, y}, line, Face::footer, faint_ink, {0, 0.5f});
+                y += 16;
+            }
+    };
+    list("Failed", content.failures);
+    list("Worst expectation", content.worst);
+    list("Not on this chart", content.left_out);
+}
+
+} // namespace
+
+void draw_chart(ChartPen &pen, const ChartContent &content) {
+    const ChartLayout layout =
+        lay_out(content, [&pen](std::string_view text, float size) -> glm::vec2 {
+            // The layout asks for one of our own sizes.
+            return pen.text_size(text, size == chart_style::label_text ? Face::label : Face::axis);
+        });
+    const float left = 40, right = layout.size.x - 40;
+    pen.text({left, 30}, pen.fitted(content.title, Face::title, right - left), Face::title, ink);
+    pen.text({left, 66}, pen.fitted(content.subtitle, Face::subtitle, right - left), Face::subtitle,
+             soft_ink);
+    draw_grid(pen, content, layout);
+    draw_marks(pen, content, layout);
+    draw_legend(pen, content, layout);
+    float y = layout.plot.max.y + 66;
+    for (const std::string &text : content.footer)
+        for (const std::string &line : pen.wrapped(text, Face::footer, right - left)) {
+            if (y > layout.size.y - 16)
+                return;
+            pen.text({left, y}, pen.fitted(line, Face::footer, right - left), Face::footer,
+                     faint_ink);
+            y += 16;
+        }
+}
+
+} // namespace plumb

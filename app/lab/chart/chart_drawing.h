@@ -1,0 +1,12 @@
+// Draws a chart, once its layout is known.
+#pragma once
+
+#include "app/lab/chart/chart_layout.h"
+
+namespace plumb {
+
+class ChartPen;
+
+void draw_chart(ChartPen &pen, const ChartContent &content);
+
+} // namespace plumb

@@ -1,0 +1,16 @@
+// Charts and maps as scalable vector graphics: what their pixels show, as text. Needs no GL
+// context.
+#pragma once
+
+#include "app/lab/chart/chart_layout.h"
+
+#include <ostream>
+
+namespace plumb {
+
+struct MapPicture;
+
+void write_chart_svg(std::ostream &out, const ChartContent &content);
+void write_chart_svg(std::ostream &out, const MapPicture &picture);
+
+} // namespace plumb

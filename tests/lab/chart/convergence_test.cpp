@@ -1,0 +1,140 @@
+// Orders of convergence, the curves of a chart, its budget and its SVG.
+#include "app/lab/chart/convergence.h"
+
+#include "app/lab/chart/chart_svg.h"
+#include "engine/scene/scene_file.h"
+#include "tests/lab/chart/falling.h"
+
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+TEST(Convergence, TheOrderIsThatOfThePowerLawAlone) {
+    std::vector<std::pair<double, double>> points;
+    for (int k = 0; k < 8; ++k) {
+        const double dt = std::pow(0.5, k);
+        // Too coarse for two steps, then 3 dt^2, then what rounding leaves.
+        points.emplace_back(dt, k < 2 ? 1e6 * std::pow(dt, 9) : std::max(3 * dt * dt, 2e-3));
+    }
+    const auto fitted = fitted_order(points);
+    ASSERT_TRUE(fitted);
+    EXPECT_NEAR(fitted->slope, 2, 1e-12);
+    EXPECT_EQ(fitted->from, 4U);
+    points.resize(2);
+    EXPECT_FALSE(fitted_order(points));
+    EXPECT_FALSE(fitted_order({{1, 1e-16}, {0.5, 1.1e-16}, {0.25, 0}, {0.125, 1e-16}}));
+}
+
+TEST(Convergence, SmoothMethodsHaveTheirOrder) {
+    const SceneFileResult file = load_scene(PLUMB_SOURCE_DIR "/scenes/springs/mass_on_spring.toml");
+    ASSERT_TRUE(file.ok());
+    ChartOptions options;
+    options.convergence = true;
+    options.expect = "period";
+    options.methods = {"velocity_verlet", "rk4"};
+    options.sweep = {parse_sweep("dt=1/480..1/60")};
+    const SceneChart chart = chart_scene(file.scene, options);
+    const std::vector<FittedOrder> orders = fitted_orders(chart);
+    ASSERT_EQ(orders.size(), 2U);
+    EXPECT_NEAR(orders[0].slope, 2, 0.1);
+    EXPECT_NEAR(orders[1].slope, 4, 0.1);
+    EXPECT_TRUE(chart.runs[0].timings.empty());
+    EXPECT_EQ(chart.runs[0].resolved.precision, Precision::dual);
+    EXPECT_EQ(chart.runs[0].resolved.settings.substeps, 1);
+    const ChartContent content = chart_content(chart, "");
+    EXPECT_EQ(content.cost_title, "dt");
+    EXPECT_EQ(content.series.at(1).name, "Runge-Kutta 4: order " + order_text(orders[1]));
+    EXPECT_DOUBLE_EQ(content.marks.at(0).cost, 1.0 / 480);
+    EXPECT_FALSE(content.budget);
+    options.sweep = {parse_sweep("substeps=1,2")};
+    EXPECT_THROW((void)chart_scene(file.scene, options), std::invalid_argument);
+}
+
+TEST(ChartSweep, PrecisionAndThreadsAreCurvesOfTheirOwn) {
+    ChartOptions options = quick({});
+    for (const char *sweep : {"precision=float,double", "threads=1,2"})
+        add_sweep(options, sweep);
+    SceneDesc scene = falling_scene();
+    options.sweep = {parse_sweep("substeps=1,2")};
+    const SceneChart chart = chart_scene(scene, options);
+    EXPECT_EQ(chart.runs.size(), 8U);
+    EXPECT_TRUE(chart.wall_clock);
+    const ChartContent content = chart_content(chart, "");
+    ASSERT_EQ(content.series.size(), 4U);
+    EXPECT_EQ(content.series[0].name, "Soft step, float, 1 thread");
+    EXPECT_EQ(content.series[3].name, "Soft step, double, 2 threads");
+    EXPECT_EQ(content.cost_title, "Time per simulated second");
+    for (const char *wrong : {"precision=half", "threads=0", "threads=2,", "precision="})
+        EXPECT_THROW(add_sweep(options, wrong), std::invalid_argument) << wrong;
+}
+
+TEST(ChartBudget, IsALineWithTheCornerShadedOrSaysWhereItIs) {
+    const auto measure = [](std::string_view text, float size) {
+        return glm::vec2(0.5f * size * static_cast<float>(text.size()), size);
+    };
+    ChartContent content;
+    content.limit = 1;
+    content.budget = 1;
+    content.budget_label = "60 Hz";
+    content.series.push_back({"one", 0, {{0, 1}}});
+    for (const double cost : {0.2, 0.8}) {
+        ChartMark mark;
+        mark.cost = cost;
+        mark.error = 3 - 3 * cost;
+        content.marks.push_back(mark);
+    }
+    ChartLayout layout = lay_out(content, measure);
+    ASSERT_TRUE(layout.budget_line && layout.corner);
+    EXPECT_GT(*layout.budget_line, layout.marks[1].x);
+    EXPECT_EQ(layout.corner->max.x, *layout.budget_line);
+    EXPECT_EQ(layout.corner->min.y, *layout.limit_line);
+    EXPECT_EQ(layout.budget_label, "60 Hz: 1 s");
+    EXPECT_FALSE(layout.budget_text.overlaps(layout.limit_text));
+    content.budget = 1000;
+    layout = lay_out(content, measure);
+    EXPECT_FALSE(layout.budget_line);
+    EXPECT_EQ(layout.corner->max.x, layout.plot.max.x); // all that is true enough
+    EXPECT_EQ(layout.budget_label, "60 Hz: 1 ks »");
+    content.budget = 1e-6;
+    layout = lay_out(content, measure);
+    EXPECT_FALSE(layout.budget_line);
+    EXPECT_FALSE(layout.corner); // nothing is
+}
+
+TEST(ChartFailures, ACrossSaysWhy) {
+    const ChartContent content = chart_content(chart_scene(falling_scene(), quick(fakes(2))), "");
+    EXPECT_TRUE(content.marks.at(1).failed);
+    EXPECT_EQ(content.marks[1].label, "2 not finite");
+    ASSERT_EQ(content.failures.size(), 1U);
+    EXPECT_EQ(content.failures[0].substr(0, 50),
+              "Soft step, 2: not finite after step 30 (0.5 s): bo");
+}
+
+TEST(ChartSvg, SaysWhatThePictureSays) {
+    SceneDesc scene = falling_scene();
+    scene.title = "Fall < rise & so on";
+    std::ostringstream out;
+    write_chart_svg(out, chart_content(chart_scene(scene, quick(fakes(2))), "the command"));
+    const std::string svg = out.str();
+    EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0U);
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+    for (const char *text : {">Fall &lt; rise &amp; so on: what truth costs<", ">the command<",
+                             ">2 not finite<", ">8<", ">Soft step<", "#0072b2"})
+        EXPECT_NE(svg.find(text), std::string::npos) << text;
+    EXPECT_EQ(svg.find('&'), svg.find("&lt;")); // none that is bare before it
+    std::size_t opened = 0, closed = 0;
+    for (std::size_t i = svg.find("<text"); i != std::string::npos; i = svg.find("<text", i + 1))
+        ++opened;
+    for (std::size_t i = svg.find("</text>"); i != std::string::npos;
+         i = svg.find("</text>", i + 1))
+        ++closed;
+    EXPECT_GT(opened, 20U);
+    EXPECT_EQ(opened, closed);
+}
+
+} // namespace
+} // namespace plumb
