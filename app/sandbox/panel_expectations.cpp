@@ -87,6 +87,32 @@ void verdict_row(const ExpectOutcome &outcome, bool stopped) {
     ImGui::PopTextWrapPos();
 }
 
+// A light and what it means.
+void warn(const Fonts &fonts, const Colour &colour, const std::string &text) {
+    light(colour);
+    ImGui::SameLine();
+    ImGui::PushFont(fonts.small);
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    wrapped(text);
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+}
+
+// Red when the run has come to grief, amber when it is outside what the scene expects.
+void lights(const PanelContext &context) {
+    const Session &session = context.session;
+    if (const std::optional<Trouble> trouble = session.trouble())
+        warn(context.fonts, theme::error, trouble->text);
+    const std::vector<ExpectDesc> &expects = session.scene().expects;
+    std::string missed;
+    for (std::size_t i = 0; i < expects.size(); ++i)
+        if (const std::optional<double> since = session.missed_since(i))
+            missed += (missed.empty() ? "Outside tolerance: " : "; ") + expects[i].name +
+                      " since " + number(*since, "s");
+    if (!missed.empty())
+        warn(context.fonts, theme::warning, missed + ".");
+}
+
 } // namespace
 
 void expectations_panel(PanelContext &context) {
@@ -109,6 +135,7 @@ void expectations_panel(PanelContext &context) {
     if (!context.session.simulation()->has_world())
         return;
     heading(context.fonts, "Expected");
+    lights(context);
     if (scene.expects.empty())
         ImGui::TextDisabled("This scene expects nothing.");
     else if (context.session.disturbed()) {

@@ -32,6 +32,15 @@ void status(const PanelContext &context) {
     const Colour colour = session.stopped()        ? theme::error
                           : context.clock.paused() ? theme::warning
                                                    : theme::good;
+    const std::optional<Trouble> trouble = session.trouble();
+    bool missed = false;
+    for (std::size_t i = 0; i < session.scene().expects.size() && !trouble && !missed; ++i)
+        missed = session.missed_since(i).has_value();
+    if (trouble || missed) {
+        light(trouble ? theme::error : theme::warning);
+        tooltip(trouble ? trouble->text : "Outside the tolerance of what the scene expects.");
+        ImGui::SameLine();
+    }
     ImGui::TextColored(colour, "%s", state);
     ImGui::SameLine();
     ImGui::Text("%s", session.scene().name.c_str());

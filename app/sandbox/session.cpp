@@ -9,31 +9,6 @@
 
 namespace plumb {
 
-namespace {
-
-bool finite(const glm::dvec3 &v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// "body "a", step 12, 0.2 s": where a motion has blown up.
-std::string where_not_finite(const Simulation &simulation) {
-    std::string where;
-    const Frame frame = simulation.read();
-    for (std::size_t body = 0; body < frame.bodies.size() && where.empty(); ++body) {
-        if (!simulation.body_info(body).alive)
-            continue;
-        const BodyState &state = frame.bodies[body];
-        if (!finite(state.position) || !finite(state.velocity) || !finite(state.angular_velocity))
-            where = "body \"" + simulation.body_info(body).name + "\", ";
-    }
-    for (std::size_t i = 0; i < frame.particles.size() && where.empty(); ++i)
-        if (!finite(frame.particles[i].position) || !finite(frame.particles[i].velocity))
-            where = "particle \"" + simulation.soft_parts().particle_name(i) + "\", ";
-    return where + "step " + std::to_string(simulation.step_count());
-}
-
-} // namespace
-
 Session::Session(RunOptions options, TaskPool *tasks, Make make)
     : options_(std::move(options)), tasks_(tasks), make_(std::move(make)) {}
 
@@ -98,6 +73,9 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
         return false;
     }
     scene_ = scene;
+    troubles_.reset();
+    if (simulation_->has_world())
+        troubles_.emplace(scene_, *simulation_);
     probes_ = scene.probes;
     stopped_ = false;
     first_step_ = simulation_->step_count();
@@ -114,12 +92,16 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
 bool Session::step() {
     if (!simulation_ || stopped_ || !simulation_->has_world())
         return false;
+    double energy_before = 0;
     try {
         if (grab_)
             leave_recording();
+        if (grab_ || replay_) // which may bring energy in
+            energy_before = simulation_->energy();
         if (replay_ && !obey_replay())
             return false;
         pull_grabbed();
+        troubles_->begin_step(scene_, *simulation_);
         history_.remember(*simulation_);
         if (recorder_)
             recorder_->before_step(*simulation_);
@@ -127,8 +109,10 @@ bool Session::step() {
         simulation_->step(&times_);
     } catch (const std::exception &failure) {
         stopped_ = true;
+        const std::string why = reason(failure);
+        troubles_->failed(*simulation_, why);
         messages_.error("The step after " + std::to_string(simulation_->step_count()) +
-                        " failed: " + reason(failure));
+                        " failed: " + why);
         settle_poses();
         return false;
     }
@@ -137,15 +121,19 @@ bool Session::step() {
     graphs_.collide.add(times_.collide);
     graphs_.advance.add(times_.advance);
     graphs_.finish.add(times_.finish);
-    graphs_.energy.add(simulation_->energy());
+    const double energy = simulation_->energy();
+    if (grab_ || replay_)
+        troubles_->brought_in(*simulation_, energy - energy_before);
+    graphs_.energy.add(energy);
     std::swap(previous_, present_);
     read_present();
     see_impacts();
+    troubles_->sample(*simulation_, previous_.bodies);
     if (!report.finite) {
         stopped_ = true;
-        messages_.error("The motion is no longer finite: " + where_not_finite(*simulation_) +
-                        ", method " + std::string(simulation_->method().name) +
-                        ". A shorter step or more substeps may hold it.");
+        messages_.error(troubles_->trouble()->text + " Method " +
+                        std::string(simulation_->method().name) +
+                        ": a shorter step or more substeps may hold it.");
         return false;
     }
     watch_->sample(*simulation_);
@@ -202,6 +190,7 @@ bool Session::step_back() {
             recorder_->went_back(*simulation_);
         watch_->go_back(*simulation_);
         plots_.go_back(*simulation_);
+        troubles_->go_back(*simulation_);
         if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
             disturbed_from_.reset();
         if (replay_) // it knows what was chosen then
@@ -271,7 +260,10 @@ bool Session::set_settings(const StepSettings &settings) {
 
 void Session::apply(const Command &command) {
     leave_recording();
+    const double energy = simulation_->energy();
     simulation_->apply(command);
+    if (troubles_)
+        troubles_->brought_in(*simulation_, simulation_->energy() - energy);
     if (recorder_)
         recorder_->add(*simulation_, command);
 }
@@ -347,6 +339,14 @@ std::vector<ExpectOutcome> Session::expectations() const {
     for (std::size_t i = 0; watch_ && i < watch_->size(); ++i)
         outcomes.push_back(watch_->outcome(i));
     return outcomes;
+}
+
+std::optional<double> Session::missed_since(std::size_t expectation) const {
+    return watch_ ? watch_->missed_since(expectation) : std::nullopt;
+}
+
+std::optional<Trouble> Session::trouble() const {
+    return troubles_ ? troubles_->trouble() : std::nullopt;
 }
 
 void Session::disturb(std::uint64_t first_step) {

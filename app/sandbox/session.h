@@ -9,6 +9,7 @@
 #include "app/sandbox/messages.h"
 #include "app/sandbox/plots.h"
 #include "app/sandbox/pose_blend.h"
+#include "app/sandbox/run_trouble.h"
 #include "engine/core/task_pool.h"
 #include "engine/scene/probe.h"
 #include "engine/scene/recording.h"
@@ -97,6 +98,11 @@ class Session {
     // What has come so far of each of the scene's expectations, in its order: as `check` judges the
     // run from its start to the present step. Empty for a scene that has only probes.
     [[nodiscard]] std::vector<ExpectOutcome> expectations() const;
+    // Since when the run has been outside the tolerance of one of them (s); nothing while none is
+    // missed.
+    [[nodiscard]] std::optional<double> missed_since(std::size_t expectation) const;
+    // What the run has come to grief by: see TroubleWatch.
+    [[nodiscard]] std::optional<Trouble> trouble() const;
     // Something other than steps has changed the run after its start (another method or setting, a
     // shot, a grab): the expectations tell of what happened, not of what `check` would say.
     [[nodiscard]] bool disturbed() const { return disturbed_from_.has_value(); }
@@ -180,6 +186,7 @@ class Session {
     std::unique_ptr<Simulation> simulation_;
     History history_; // saved by simulation_
     std::optional<ExpectationWatch> watch_;
+    std::optional<TroubleWatch> troubles_;
     std::uint64_t first_step_ = 0;                // of the run
     std::optional<std::uint64_t> disturbed_from_; // states from this step on
     std::optional<Grab> grab_;

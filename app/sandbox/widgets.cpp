@@ -238,6 +238,15 @@ void value_row(std::string_view what, const std::string &value, const Colour &co
     ImGui::PopStyleColor();
 }
 
+void light(const Colour &colour) {
+    const float side = ImGui::GetTextLineHeight();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 centre(at.x + 0.4f * side, at.y + 0.5f * side);
+    ImGui::GetWindowDrawList()->AddCircleFilled(centre, 0.42f * side, packed(colour, 0.3f));
+    ImGui::GetWindowDrawList()->AddCircleFilled(centre, 0.28f * side, packed(colour));
+    ImGui::Dummy({0.8f * side, side});
+}
+
 void small_text(const Fonts &fonts, std::string_view text) {
     ImGui::PushFont(fonts.small);
     ImGui::PushStyleColor(ImGuiCol_Text, theme::dim);

@@ -37,6 +37,9 @@ void tooltip(std::string_view text);
 void value_row(std::string_view what, const std::string &value);
 void value_row(std::string_view what, const std::string &value, const Colour &colour);
 
+// A disc of this colour as high as a line of text, in which the eye finds trouble.
+void light(const Colour &colour);
+
 // Text in the small font and a dim colour.
 void small_text(const Fonts &fonts, std::string_view text);
 

@@ -40,18 +40,6 @@ bool has_springs(const SceneDesc &scene) {
                                [](const JointDesc &joint) { return joint.frequency > 0; });
 }
 
-bool brings_energy_in(const SceneDesc &scene) {
-    const glm::dvec3 still(0);
-    return has_springs(scene) ||
-           std::ranges::any_of(
-               scene.joints,
-               [](const JointDesc &joint) { return joint.motor_speed.has_value(); }) ||
-           std::ranges::any_of(scene.bodies, [&](const BodyDesc &body) {
-               return body.kind == BodyKind::kinematic &&
-                      (body.velocity != still || body.angular_velocity != still);
-           });
-}
-
 double smallest_moving_width(const SceneDesc &scene) {
     double width = std::numeric_limits<double>::infinity();
     for (const BodyDesc &body : scene.bodies)
@@ -80,6 +68,18 @@ Failing kind_of_miss(const ExpectOutcome &outcome) {
 }
 
 } // namespace
+
+bool brings_energy_in(const SceneDesc &scene) {
+    const glm::dvec3 still(0);
+    return has_springs(scene) ||
+           std::ranges::any_of(
+               scene.joints,
+               [](const JointDesc &joint) { return joint.motor_speed.has_value(); }) ||
+           std::ranges::any_of(scene.bodies, [&](const BodyDesc &body) {
+               return body.kind == BodyKind::kinematic &&
+                      (body.velocity != still || body.angular_velocity != still);
+           });
+}
 
 std::span<const FailingInfo> failings() {
     return all_failings;

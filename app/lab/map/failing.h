@@ -39,6 +39,9 @@ struct FailingInfo {
 inline constexpr double tolerated_energy_gain = 0.1; // of K0 + |U0|
 inline constexpr double tolerated_depth = 0.25;      // of the smallest width of a moving body
 
+// By a motor, a spring's joint or a moving kinematic body: then more of it is no failing.
+[[nodiscard]] bool brings_energy_in(const SceneDesc &scene);
+
 struct RunFailing {
     Failing failing = Failing::none;
     std::string what; // the missed expectation, the body that is not finite, "ball through wall"

@@ -32,7 +32,7 @@ struct Samples {
 };
 
 // The part of a course in [from, to], with the edges interpolated where no sample lies on them.
-Samples window(const std::vector<double> &times, const std::vector<double> &values, double from,
+Samples window(std::span<const double> times, std::span<const double> values, double from,
                double to, double slack) {
     Samples part;
     const auto interpolate = [&](std::size_t next, double time) {
@@ -123,23 +123,42 @@ bool ExpectationWatch::unseen(const Followed &expect) const {
     return begin < start - slack_ || (expect.quantity->since_start && start > slack_);
 }
 
-double ExpectationWatch::measured(const Followed &expect) const {
+double ExpectationWatch::measured(const Followed &expect, std::size_t samples) const {
+    const std::span<const double> times(times_.data(), samples);
+    const std::span<const double> values(courses_[expect.course].data(), samples);
     const bool last = expect.reduction->reduction == Reduction::last;
-    const double from = last ? std::min(expect.desc.to, times_.back()) : expect.desc.from;
-    const Samples part = window(times_, courses_[expect.course], from, expect.desc.to, slack_);
+    const double from = last ? std::min(expect.desc.to, times.back()) : expect.desc.from;
+    const Samples part = window(times, values, from, expect.desc.to, slack_);
     return reduce(part.times, part.values, expect.reduction->reduction, expect.desc.level);
 }
 
-ExpectOutcome ExpectationWatch::outcome(std::size_t expectation) const {
+ExpectOutcome ExpectationWatch::outcome(std::size_t expectation, std::size_t samples) const {
     const Followed &expect = expects_.at(expectation);
     const bool late = unseen(expect);
-    ExpectOutcome outcome =
-        judge(expect.desc, late ? std::numeric_limits<double>::quiet_NaN() : measured(expect));
+    ExpectOutcome outcome = judge(expect.desc, late ? std::numeric_limits<double>::quiet_NaN()
+                                                    : measured(expect, samples));
     if (late)
         outcome.verdict = Verdict::unseen;
-    else if (times_.back() < expect.desc.to - slack_ && !beyond_hope(outcome, *expect.reduction))
+    else if (times_[samples - 1] < expect.desc.to - slack_ &&
+             !beyond_hope(outcome, *expect.reduction))
         outcome.verdict = Verdict::pending;
     return outcome;
+}
+
+std::optional<double> ExpectationWatch::missed_since(std::size_t expectation) const {
+    const auto is_missed = [&](std::size_t samples) {
+        return outcome(expectation, samples).verdict == Verdict::missed;
+    };
+    if (!is_missed(times_.size()))
+        return {};
+    // Once it is missed it stays so: the first such number of samples is found by halving.
+    std::size_t not_yet = 0;
+    std::size_t missed = times_.size();
+    while (missed - not_yet > 1) {
+        const std::size_t middle = not_yet + (missed - not_yet) / 2;
+        (is_missed(middle) ? missed : not_yet) = middle;
+    }
+    return times_[missed - 1];
 }
 
 } // namespace plumb

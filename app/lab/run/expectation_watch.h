@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,7 +30,12 @@ class ExpectationWatch {
     [[nodiscard]] std::size_t size() const { return expects_.size(); }
     // Judged once its window has ended, or before that if it can no longer be met. Where a window's
     // edge falls between two steps, the quantity there is interpolated linearly.
-    [[nodiscard]] ExpectOutcome outcome(std::size_t expectation) const;
+    [[nodiscard]] ExpectOutcome outcome(std::size_t expectation) const {
+        return outcome(expectation, times_.size());
+    }
+    // When one that is missed came to be so (s): at the end of its window, or when it could no
+    // longer be met. Nothing of others.
+    [[nodiscard]] std::optional<double> missed_since(std::size_t expectation) const;
 
     // The values of `also` at the last sample, in that order.
     [[nodiscard]] std::span<const double> also_now() const { return also_now_; }
@@ -42,7 +48,9 @@ class ExpectationWatch {
         std::size_t course; // several expectations may share a quantity: it is read once
     };
     [[nodiscard]] bool unseen(const Followed &expect) const;
-    [[nodiscard]] double measured(const Followed &expect) const;
+    // Of the first so many samples, at least one.
+    [[nodiscard]] double measured(const Followed &expect, std::size_t samples) const;
+    [[nodiscard]] ExpectOutcome outcome(std::size_t expectation, std::size_t samples) const;
 
     std::vector<Followed> expects_;
     QuantityProbe probe_;
