@@ -34,6 +34,9 @@ struct SolverScratch {
     std::vector<std::uint8_t> changed;           // likewise: what follow_loads changed
     std::vector<FreeFlight> flights;             // one for each moving body
     std::vector<std::array<Vec3, 2>> velocities; // likewise, while pseudo velocities are solved
+    std::vector<Vec3> joint_impulses;            // likewise
+    std::vector<Vec3> contact_impulses;          // likewise
+    std::vector<Real> changes;                   // of all impulses by one pass
     std::vector<SpringConstraint> springs;
     std::vector<ParticleContactConstraint> particle_contacts;
     // Of each particle, of all its springs: stiffness and damping (N/m, N s/m).

@@ -135,25 +135,6 @@ void solve(StepContext &context, SpringConstraint &row) {
     apply(context, row, change);
 }
 
-// The hand's spring, critically damped, on a particle; never stronger than max_force.
-void pull_particle(StepContext &context, Real h) {
-    const Grab &grab = context.grab;
-    ParticleMotion &held = context.particles[grab.particle];
-    const Real omega = Real(2) * std::numbers::pi_v<Real> * grab.frequency;
-    const Real stiffness = grab.held_mass * omega * omega;
-    const Real damping = Real(2) * grab.damping_ratio * grab.held_mass * omega;
-    const Real pull = damping + h * stiffness;
-    const Real inv_mass = context.model.particles[grab.particle].inv_mass;
-    const Vec3 error = held.position - grab.target;
-    Vec3 impulse =
-        -(held.velocity + (stiffness / pull) * error) / (inv_mass + Real(1) / (h * pull));
-    const Real limit = grab.max_force * h;
-    const Real length = glm::length(impulse);
-    if (length > limit)
-        impulse *= limit / length;
-    held.velocity += inv_mass * impulse;
-}
-
 Vec3 relative_velocity(const StepContext &context, const ParticleContact &contact,
                        const ParticleContactConstraint &row) {
     return context.particles[contact.particle].velocity -
@@ -245,11 +226,30 @@ void kick_particles(StepContext &context, const Vec3 &gravity, Real h) {
             context.particles[i].velocity += h * gravity;
 }
 
+void pull_particle(StepContext &context, Real h) {
+    const Grab &grab = context.grab;
+    if (!grab.holds_particle())
+        return;
+    ParticleMotion &held = context.particles[grab.particle];
+    const Real omega = Real(2) * std::numbers::pi_v<Real> * grab.frequency;
+    const Real stiffness = grab.held_mass * omega * omega;
+    const Real damping = Real(2) * grab.damping_ratio * grab.held_mass * omega;
+    const Real pull = damping + h * stiffness;
+    const Real inv_mass = context.model.particles[grab.particle].inv_mass;
+    const Vec3 error = held.position - grab.target;
+    Vec3 impulse =
+        -(held.velocity + (stiffness / pull) * error) / (inv_mass + Real(1) / (h * pull));
+    const Real limit = grab.max_force * h;
+    const Real length = glm::length(impulse);
+    if (length > limit)
+        impulse *= limit / length;
+    held.velocity += inv_mass * impulse;
+}
+
 void refresh_particles(StepContext &context, Real h, SpringRule rule) {
     if (!context.active.has_particles)
         return;
-    if (context.grab.holds_particle())
-        pull_particle(context, h);
+    pull_particle(context, h);
     SolverScratch &s = context.scratch;
     for (SpringConstraint &row : s.springs) {
         refresh(context, row, h, rule);
@@ -284,6 +284,24 @@ void solve_particle_contacts(StepContext &context, const ParticlePush &push, Rea
             solve_friction(context, contact, row);
     }
     context.report.constraint_passes += context.scratch.particle_contacts.size();
+}
+
+void recall_particles(StepContext &context, Real share) {
+    for (SpringConstraint &row : context.scratch.springs) {
+        const Real recalled = share * row.remembered;
+        row.impulse += recalled;
+        apply(context, row, recalled);
+    }
+    for (ParticleContactConstraint &row : context.scratch.particle_contacts) {
+        const ParticleContact &contact = context.particle_contacts[row.contact];
+        const Vec3 recalled = share * row.remembered;
+        row.impulse += recalled;
+        apply(context, contact, row,
+              recalled.x * contact.normal + recalled.y * row.tangents.t1 +
+                  recalled.z * row.tangents.t2);
+    }
+    context.report.constraint_passes +=
+        context.scratch.springs.size() + context.scratch.particle_contacts.size();
 }
 
 void drift_particles(StepContext &context, Real h) {

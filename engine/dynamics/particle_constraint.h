@@ -21,6 +21,7 @@ struct SpringConstraint {
     Real bias = Real(0);     // beta / h times the error, m/s
     Real mass = Real(0);     // 1 / (K + gamma)
     Real impulse = Real(0);  // accumulated, along the axis on b (N s)
+    Real remembered = Real(0); // for recall_particles
 };
 
 // One particle against one body: a row along the normal, two of friction.
@@ -34,6 +35,7 @@ struct ParticleContactConstraint {
     Real normal_mass = Real(0);
     Real tangent_mass = Real(0); // as ContactPointConstraint::tangent_mass
     Vec3 impulse{Real(0)};       // accumulated in this substep: normal, t1, t2 (N s)
+    Vec3 remembered{Real(0)};    // for recall_particles
     Real approach = Real(0);     // relative normal velocity as the substep began (m/s)
 };
 
@@ -50,10 +52,15 @@ enum class SpringRule { implicit_euler, midpoint };
 
 void prepare_particles(StepContext &context);
 void kick_particles(StepContext &context, const Vec3 &gravity, Real h);
-// Rows and contacts at the present poses; begins both with what they bear by themselves.
+// The hand's spring on the particle that it holds, if it holds one; never stronger than max_force.
+void pull_particle(StepContext &context, Real h);
+// Pulls so; then rows and contacts at the present poses; begins both with what they bear by
+// themselves.
 void refresh_particles(StepContext &context, Real h, SpringRule rule);
 void solve_springs(StepContext &context);
 void solve_particle_contacts(StepContext &context, const ParticlePush &push, Real h);
+// Adds a share of what springs and contacts remember to their impulses, and applies it.
+void recall_particles(StepContext &context, Real share);
 void drift_particles(StepContext &context, Real h);
 // After the move, the rest of the springs' substep: the same forces along the lines as they are
 // now.

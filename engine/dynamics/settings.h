@@ -52,9 +52,12 @@ enum class SettingGroup {
     chosen,      // substeps of each island's own
     sleep,       // what rests is not stepped
     constraints, // whatever solves contacts and joints
+    speculative, // contacts made before they touch
     kept,        // manifolds kept while bodies rest against each other
     baumgarte,   // drift removed through the velocities
     soft,        // contacts and joints as springs
+    push,        // overlap taken back no faster than so
+    threshold,   // what is too slow to bounce
     impacts,     // bounces, with each impact handed on
     gyroscopic   // an implicit gyroscopic term
 };
@@ -94,7 +97,7 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"iterations", &StepSettings::iterations, "", 1, 10000, SettingGroup::constraints,
      "Passes over all constraints in each substep."},
     {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,
-     SettingGroup::constraints,
+     SettingGroup::speculative,
      "Contacts closer than this are made before they touch, so that nothing falls into its "
      "neighbour within a step; bodies that approach each other get their relative motion on top."},
     {"kept_travel", &StepSettings::kept_travel, "m", 0, 1e9, SettingGroup::kept,
@@ -120,10 +123,10 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "substeps; 0.2 with a damping of 5 is the stiffest that holds both."},
     {"joint_damping_ratio", &StepSettings::joint_damping_ratio, "", 0, 1e6, SettingGroup::soft,
      "Damping of a soft joint; 1 is critical."},
-    {"push_velocity", &StepSettings::push_velocity, "m/s", 0, 1e9, SettingGroup::constraints,
+    {"push_velocity", &StepSettings::push_velocity, "m/s", 0, 1e9, SettingGroup::push,
      "The fastest that overlapping bodies are pushed apart."},
     {"restitution_threshold", &StepSettings::restitution_threshold, "m/s", 0, 1e9,
-     SettingGroup::constraints, "Slower impacts do not bounce, so that bodies come to rest."},
+     SettingGroup::threshold, "Slower impacts do not bounce, so that bodies come to rest."},
     {"impact_lookahead", &StepSettings::impact_lookahead, "substeps", 0, 1000,
      SettingGroup::impacts,
      "An impact counts when it would happen within so many substeps: a hair less than one, and the "

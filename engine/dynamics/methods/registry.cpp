@@ -10,6 +10,7 @@
     METHOD(soft_step)                                                                              \
     METHOD(tgs_soft)                                                                               \
     METHOD(sequential_impulses)                                                                    \
+    METHOD(nncg)                                                                                   \
     METHOD(explicit_euler)                                                                         \
     METHOD(semi_implicit_euler)                                                                    \
     METHOD(stormer_verlet)                                                                         \

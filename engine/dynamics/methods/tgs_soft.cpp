@@ -65,7 +65,8 @@ Method tgs_soft() {
              .contacts = true,
              .joints = true,
              .springs = true,
-             .reads = {SettingGroup::constraints, SettingGroup::soft, SettingGroup::gyroscopic},
+             .reads = {SettingGroup::constraints, SettingGroup::speculative, SettingGroup::soft,
+                       SettingGroup::push, SettingGroup::threshold, SettingGroup::gyroscopic},
              .defaults = {.substeps = 4, .iterations = 1}},
             advance};
 }
