@@ -3,6 +3,7 @@
 
 #include "app/lab/chart/chart.h"
 #include "app/lab/csv.h"
+#include "app/lab/engines/other_engines.h"
 #include "app/lab/map/stability_map.h"
 #include "app/lab/queries/query_chart.h"
 #include "app/lab/run/check.h"
@@ -96,7 +97,7 @@ struct MeasureArguments {
 struct ChartArguments {
     ChartCommand command;
     std::vector<std::string> sweeps;
-    std::string methods, budget, shard;
+    std::string methods, engines, budget, shard;
 };
 
 // "2/4"
@@ -193,6 +194,12 @@ void add_chart(CommandLine &line) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     chart_command
+        ->add_option(
+            "--with", arguments->engines,
+            "Other engines beside the methods, judged by the same measures: bullet, ode (in a "
+            "build with PLUMB_BENCH=ON)")
+        ->type_name("ENGINE,...");
+    chart_command
         ->add_option("--budget", arguments->budget,
                      "What a frame of 1/60 s may cost, drawn as a line (all of it, 60 Hz)")
         ->type_name("1ms");
@@ -222,6 +229,8 @@ void add_chart(CommandLine &line) {
         }
         for (const std::string &sweep : arguments->sweeps)
             add_sweep(arguments->command.options, sweep);
+        if (!arguments->engines.empty())
+            arguments->command.options.engines = find_other_engines(parse_list(arguments->engines));
         if (!arguments->budget.empty())
             arguments->command.options.budget = parse_budget(arguments->budget);
         if (!arguments->shard.empty())

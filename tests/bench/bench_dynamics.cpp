@@ -5,13 +5,14 @@
 #include "app/files/output_file.h"
 #include "app/lab/cpu_clock.h"
 #include "app/lab/csv.h"
+#include "app/lab/engines/pose_measures.h"
 #include "app/lab/interrupt.h"
 #include "app/lab/progress.h"
 #include "app/lab/timing.h"
 #include "tests/bench/bench_scenes.h"
+#include "tests/bench/engines.h"
 #include "tests/bench/heap.h"
 #include "tests/bench/only.h"
-#include "tests/bench/pose_measures.h"
 
 #include <algorithm>
 #include <chrono>
@@ -189,7 +190,6 @@ std::size_t go(const EngineScene &scene, std::size_t steps, std::vector<Run> &ru
         run.engine = run.kind.create(scene);
         run.bytes_bodies = heap_in_use() - heap;
     }
-    const std::size_t bodies = scene.desc.bodies.size();
     for (std::size_t step = 1; step <= steps; ++step) {
         const bool at_end = step == steps;
         for (Run &run : runs) {

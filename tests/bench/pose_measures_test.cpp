@@ -1,5 +1,5 @@
 // What is measured of poses, against what follows from how they were made.
-#include "tests/bench/pose_measures.h"
+#include "app/lab/engines/pose_measures.h"
 #include "tests/bench/scene_parts.h"
 
 #include <gtest/gtest.h>

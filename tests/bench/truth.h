@@ -1,8 +1,8 @@
 // Small problems whose answer is known, put to an engine at its defaults, 60 Hz.
 #pragma once
 
-#include "tests/bench/engine.h"
-#include "tests/bench/pose_measures.h"
+#include "app/lab/engines/pose_measures.h"
+#include "tests/bench/engines.h"
 
 #include <functional>
 #include <stdexcept>

@@ -3,6 +3,7 @@
 #include "app/lab/chart/chart_plan.h"
 #include "app/lab/chart/pareto.h"
 #include "app/lab/csv.h"
+#include "app/lab/engines/engine_simulation.h"
 #include "app/lab/run/end_timer.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/timing.h"
@@ -201,6 +202,8 @@ class Charting {
     }
 
     std::unique_ptr<Simulation> simulation(const PlannedRun &run) {
+        if (run.engine != nullptr)
+            return engine_simulation(*run.engine, scene_, run.resolved);
         if (options_.make)
             return options_.make(scene_, run.options);
         std::unique_ptr<TaskPool> &pool = pools_[run.threads];

@@ -20,6 +20,8 @@
 
 namespace plumb {
 
+struct OtherEngine;
+
 using MakeSimulation =
     std::function<std::unique_ptr<Simulation>(const SceneDesc &, const RunOptions &)>;
 
@@ -65,7 +67,8 @@ struct Shard {
 };
 
 struct ChartOptions {
-    std::vector<std::string> methods;  // empty: all that can run the scene
+    std::vector<std::string> methods;         // empty: all that can run the scene
+    std::vector<const OtherEngine *> engines; // beside the methods; see lab/engines/engine.h
     std::vector<SweepAxis> sweep;      // empty: default_sweep(), or default_convergence_sweep()
     std::vector<Precision> precisions; // each a curve of its own; empty: base's or the scene's
     std::vector<int> threads;          // each a curve of its own; empty: one

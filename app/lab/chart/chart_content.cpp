@@ -77,7 +77,7 @@ std::size_t style_of(const MethodInfo &method, const std::vector<ChartSeries> &e
                                           [&](const MethodInfo &each) { return &each == &method; });
     std::size_t style = static_cast<std::size_t>(own - method_infos().begin());
     while (std::ranges::find(earlier, style, &ChartSeries::style) != earlier.end())
-        style += series_colour_count;
+        style += own != method_infos().end() ? series_colour_count : 1; // or of another engine
     return style;
 }
 

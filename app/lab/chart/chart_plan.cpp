@@ -1,5 +1,6 @@
 #include "app/lab/chart/chart_plan.h"
 
+#include "app/lab/engines/other_engines.h"
 #include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
 
@@ -42,6 +43,17 @@ std::vector<RunOptions> substep_modes(const SceneDesc &scene, const MethodInfo &
                                std::max(most, method.defaults.max_substeps));
     }
     return modes;
+}
+
+// Whether the same is planned already, at `first` or behind it.
+bool repeats(const PlannedRun &run, const std::vector<PlannedRun> &planned, std::size_t first) {
+    return std::any_of(planned.begin() + static_cast<std::ptrdiff_t>(first), planned.end(),
+                       [&](const PlannedRun &other) {
+                           return other.threads == run.threads &&
+                                  other.resolved.precision == run.resolved.precision &&
+                                  same_work(*run.resolved.method, run.resolved.settings,
+                                            other.resolved.settings);
+                       });
 }
 
 // The values of a sweep of what is no setting.
@@ -101,27 +113,31 @@ std::vector<PlannedRun> plan_chart(const SceneDesc &scene, const ChartOptions &o
     std::vector<PlannedRun> planned;
     for (const MethodInfo *method : methods_for(scene, options.methods, left_out)) {
         const std::size_t first = planned.size();
-        const auto add = [&](PlannedRun run) {
-            run.resolved = resolve_run(scene, run.options);
-            const bool repeated = std::any_of(
-                planned.begin() + static_cast<std::ptrdiff_t>(first), planned.end(),
-                [&](const PlannedRun &other) {
-                    return other.threads == run.threads &&
-                           other.resolved.precision == run.resolved.precision &&
-                           same_work(*method, run.resolved.settings, other.resolved.settings);
-                });
-            if (!repeated)
-                planned.push_back(std::move(run));
-        };
         for (const RunOptions &mode : substep_modes(scene, *method, options, sweep))
             for (const std::optional<Precision> &precision : precisions)
                 for (const int count : threads)
                     for (const SweepPoint &point : points) {
-                        PlannedRun run{mode, {}, count, point};
+                        PlannedRun run{mode, {}, count, point, nullptr};
                         run.options.precision = precision;
                         run.options.settings.give(given_by(sweep, point));
-                        add(std::move(run));
+                        run.resolved = resolve_run(scene, run.options);
+                        if (!repeats(run, planned, first))
+                            planned.push_back(std::move(run));
                     }
+    }
+    for (const OtherEngine *engine : options.engines) {
+        if (std::string why = why_not(*engine, scene); !why.empty()) {
+            left_out.push_back(std::move(why));
+            continue;
+        }
+        const std::size_t first = planned.size();
+        for (const SweepPoint &point : points) {
+            PlannedRun run{options.base, {}, 1, point, engine};
+            run.options.settings.give(given_by(sweep, point));
+            run.resolved = resolve_run(*engine, scene, run.options.settings);
+            if (!repeats(run, planned, first))
+                planned.push_back(std::move(run));
+        }
     }
     return planned;
 }

@@ -2,6 +2,7 @@
 
 #include "app/lab/chart/chart_columns.h"
 #include "app/lab/csv.h"
+#include "app/lab/engines/other_engines.h"
 #include "app/lab/fingerprint.h"
 #include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
@@ -37,7 +38,7 @@ std::optional<ChartRun> read_run(const CsvReader &row, const SceneDesc &scene,
                                  const std::vector<SweepAxis> &sweep) {
     ChartRun run;
     const auto status = find_status(row.cell("status"));
-    run.resolved.method = find_method_info(row.cell("method"));
+    run.resolved.method = find_charted(row.cell("method"));
     const auto index = row.number("run"), threads = row.number("threads"),
                cost = row.number("cpu_s_per_s"), end = row.number("end_s"),
                steps = row.number("steps");
@@ -135,6 +136,8 @@ std::string chart_fingerprint(const SceneDesc &scene, const ChartOptions &option
     print.add(sweep_text(options.sweep));
     for (const std::string &method : options.methods)
         print.add(method);
+    for (const OtherEngine *engine : options.engines)
+        print.add(engine->info.name);
     for (const Precision precision : options.precisions)
         print.add(precision_name(precision));
     for (const int threads : options.threads)

@@ -1,4 +1,4 @@
-#include "tests/bench/engine.h"
+#include "tests/bench/engines.h"
 
 namespace plumb {
 
@@ -45,7 +45,7 @@ std::vector<EngineKind> engines(TaskPool *tasks) {
         kinds.push_back({"Plumb", tasks->threads(),
                          [tasks](const EngineScene &scene) { return plumb_engine(scene, tasks); }});
     kinds.push_back({"Bullet", 1, bullet_engine});
-#ifdef PLUMB_BENCH_ODE
+#ifdef PLUMB_WITH_ODE
     kinds.push_back({"ODE", 1, ode_engine});
 #endif
     return kinds;

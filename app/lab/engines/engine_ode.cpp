@@ -1,7 +1,7 @@
-// ODE at its defaults: quick step, twenty iterations, one thread.
-#include "tests/bench/engine.h"
+// ODE at its defaults: quick step, twenty iterations unless told otherwise, one thread.
+#include "app/lab/engines/engine.h"
 
-#ifdef PLUMB_BENCH_ODE
+#ifdef PLUMB_WITH_ODE
 
 #include "app/lab/cpu_clock.h"
 
@@ -64,6 +64,8 @@ class OdeEngine final : public Engine {
           contacts_(dJointGroupCreate(0)) {
         const glm::dvec3 &g = scene.gravity();
         dWorldSetGravity(world_, real(g.x), real(g.y), real(g.z));
+        if (scene.iterations() > 0)
+            dWorldSetQuickStepNumIterations(world_, scene.iterations());
         for (std::size_t i = 0; i < scene.desc.bodies.size(); ++i)
             add_body(i);
         for (const JointDesc &joint : scene.desc.joints)

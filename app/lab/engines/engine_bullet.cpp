@@ -1,5 +1,7 @@
-// Bullet 3 at its defaults: sequential impulses, ten iterations, one thread.
-#include "tests/bench/engine.h"
+// Bullet 3 at its defaults: sequential impulses, ten iterations unless told otherwise, one thread.
+#include "app/lab/engines/engine.h"
+
+#ifdef PLUMB_WITH_BULLET
 
 #include "app/lab/cpu_clock.h"
 
@@ -77,6 +79,8 @@ class BulletEngine final : public Engine {
         : scene_(scene), dispatcher_(&configuration_),
           world_(&dispatcher_, &broad_phase_, &solver_, &configuration_) {
         world_.setGravity(of(scene.gravity()));
+        if (scene.iterations() > 0)
+            world_.getSolverInfo().m_numIterations = scene.iterations();
         for (std::size_t i = 0; i < scene.desc.bodies.size(); ++i)
             add_body(scene.desc.bodies[i], scene.masses[i]);
         for (const JointDesc &joint : scene.desc.joints)
@@ -238,3 +242,5 @@ std::unique_ptr<Engine> bullet_engine(const EngineScene &scene) {
 }
 
 } // namespace plumb
+
+#endif

@@ -1,7 +1,7 @@
 // What can be said of a run from its poses alone, the same for every engine, in double.
 #pragma once
 
-#include "tests/bench/engine.h"
+#include "app/lab/engines/engine.h"
 
 #include <memory>
 #include <span>

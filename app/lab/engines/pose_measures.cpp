@@ -1,5 +1,5 @@
 // Compiled with PLUMB_DOUBLE: depths of micrometres are to be told at 100 m from the origin.
-#include "tests/bench/pose_measures.h"
+#include "app/lab/engines/pose_measures.h"
 
 #include "engine/geometry/manifold.h"
 #include "engine/geometry/overlap.h"

@@ -1,15 +1,14 @@
-// Engines that run the same scenes, so that one set of measures judges them all.
+// Another engine that runs our scenes, judged by the same measures: from its poses and velocities.
 //
-// To add one: a file that derives Engine (engine_bullet.cpp is the pattern), a declaration of its
-// function below, and a line in `engines`. What it is asked for are poses and velocities, and what
-// it did in a step; nothing that it says of its own errors counts.
+// To add one (an afternoon): a file here that derives Engine (engine_bullet.cpp is the pattern), a
+// declaration of its function below, a line in other_engines.cpp, and its library in
+// app/CMakeLists.txt. What it is asked for is its state, and what it did in a step; nothing that it
+// says of its own errors counts.
 #pragma once
 
-#include "engine/core/task_pool.h"
 #include "engine/scene/simulation.h"
 
 #include <cstddef>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -29,8 +28,12 @@ struct EngineScene {
     SceneDesc desc;
     std::vector<BodyMass> masses; // as many as bodies
 
-    explicit EngineScene(SceneDesc scene);
-    [[nodiscard]] double dt() const { return dt_; }                      // s
+    // As the options have it; each of its steps in so many for the engine, which solves with so
+    // many iterations (0: its own default).
+    explicit EngineScene(SceneDesc scene, const RunOptions &options = {}, int substeps = 1,
+                         int iterations = 0);
+    [[nodiscard]] double dt() const { return dt_; } // s, of the engine's step
+    [[nodiscard]] int iterations() const { return iterations_; }
     [[nodiscard]] const glm::dvec3 &gravity() const { return gravity_; } // m/s^2
     [[nodiscard]] const MaterialDesc &material(const BodyDesc &body) const;
     [[nodiscard]] std::size_t body(const std::string &name) const; // its index
@@ -38,8 +41,13 @@ struct EngineScene {
   private:
     std::map<std::string, std::size_t> indices_; // of bodies, by name
     double dt_ = 0;
+    int iterations_ = 0;
     glm::dvec3 gravity_{0};
 };
+
+// What adaptors are not told of and a scene has: "particles", "a joint with a motor"; empty when
+// there is none.
+[[nodiscard]] std::string beyond_engines(const SceneDesc &scene);
 
 // Of the last step.
 struct StepWork {
@@ -64,19 +72,8 @@ class Engine {
     [[nodiscard]] virtual std::vector<BodyState> states() const = 0;
 };
 
-struct EngineKind {
-    std::string name;
-    int threads = 1;
-    // What it cannot run gives null. The scene outlives the engine.
-    std::function<std::unique_ptr<Engine>(const EngineScene &)> create;
-};
-
-// All at their defaults, with sleeping off.
-[[nodiscard]] std::unique_ptr<Engine> plumb_engine(const EngineScene &scene, TaskPool *tasks);
+// Bullet and ODE; null where the scene has what they are not given. The scene outlives the engine.
 [[nodiscard]] std::unique_ptr<Engine> bullet_engine(const EngineScene &scene);
 [[nodiscard]] std::unique_ptr<Engine> ode_engine(const EngineScene &scene);
-
-// Those that were built, Plumb with one thread first; with `tasks`, Plumb on those threads second.
-[[nodiscard]] std::vector<EngineKind> engines(TaskPool *tasks);
 
 } // namespace plumb

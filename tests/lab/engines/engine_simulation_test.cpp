@@ -1,0 +1,149 @@
+// A pretended engine, whose motion is a closed formula, seen through the adaptor.
+#include "app/lab/engines/engine_simulation.h"
+
+#include "app/lab/chart/chart.h"
+#include "app/lab/run/judged_run.h"
+#include "engine/scene/scene_file.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+constexpr double g = 9.81;
+
+// Falls as it should, but for an error that an iteration each halves.
+class FallingEngine final : public Engine {
+  public:
+    explicit FallingEngine(const EngineScene &scene) : scene_(scene) {}
+    void step() override { ++steps_; }
+    StepWork work() const override { return {0, 3, 5}; }
+    std::vector<BodyState> states() const override {
+        const double t = static_cast<double>(steps_) * scene_.dt();
+        std::vector<BodyState> states;
+        for (const BodyDesc &body : scene_.desc.bodies)
+            states.push_back({body.position, body.orientation, body.velocity});
+        states[1].position.y -= 0.5 * g * t * t * (1 + std::pow(0.5, scene_.iterations()));
+        states[1].velocity.y = -g * t;
+        return states;
+    }
+
+  private:
+    const EngineScene &scene_;
+    int steps_ = 0;
+};
+
+OtherEngine falling_engine() {
+    OtherEngine engine;
+    engine.info.name = "pretended";
+    engine.info.title = "Pretended";
+    engine.info.reads = {SettingGroup::constraints};
+    engine.info.defaults = {.substeps = 1, .iterations = 4};
+    engine.precision = Precision::dual;
+    engine.create = [](const EngineScene &scene) { return std::make_unique<FallingEngine>(scene); };
+    return engine;
+}
+
+SceneDesc ball_above_floor() {
+    SceneDesc scene;
+    scene.name = "ball";
+    BodyDesc floor;
+    floor.name = "floor";
+    floor.kind = BodyKind::fixed;
+    floor.colliders.emplace_back().shape = PlaneDesc{};
+    BodyDesc ball;
+    ball.name = "ball";
+    ball.mass = 2;
+    ball.position.y = 5.2;
+    ball.colliders.emplace_back().shape = SphereDesc{0.5};
+    scene.bodies = {floor, ball};
+    ExpectDesc expect;
+    expect.name = "y";
+    expect.quantity = "position.y";
+    expect.body = "ball";
+    expect.to = 1;
+    expect.value = 5.2 - 0.5 * g;
+    expect.tolerance = 0.1;
+    scene.expects = {expect};
+    return scene;
+}
+
+TEST(EngineSimulation, IsMeasuredByItsPosesAndVelocities) {
+    const OtherEngine engine = falling_engine();
+    const SceneDesc scene = ball_above_floor();
+    EXPECT_EQ(why_not(engine, scene), "");
+    GivenSettings given;
+    given.give(&StepSettings::iterations, 40); // as good as exact
+    given.give(&StepSettings::substeps, 4);
+    const ResolvedRun run = resolve_run(engine, scene, given);
+    const auto simulation = engine_simulation(engine, scene, run);
+    const auto start = simulation->save();
+    for (int i = 0; i < 60; ++i)
+        simulation->step();
+    EXPECT_NEAR(simulation->time(), 1, 1e-12);
+    EXPECT_NEAR(simulation->read().bodies.at(1).position.y, 5.2 - 0.5 * g, 1e-9);
+    const Measures now = simulation->measure();
+    EXPECT_NEAR(now.kinetic_energy, 0.5 * 2 * g * g, 1e-9);
+    EXPECT_NEAR(now.potential_energy, 2 * g * (5.2 - 0.5 * g), 1e-9);
+    EXPECT_NEAR(now.linear_momentum.y, -2 * g, 1e-9);
+    EXPECT_NEAR(now.max_penetration, 0.5 - (5.2 - 0.5 * g), 1e-9); // the ball's, in the plane
+    EXPECT_EQ(simulation->report().constraint_passes, 4U * 5);
+    EXPECT_TRUE(simulation->report().finite);
+    simulation->restore(*start);
+    EXPECT_EQ(simulation->read().bodies.at(1).position.y, 5.2);
+    EXPECT_THROW(simulation->set_method("soft_step"), std::invalid_argument);
+}
+
+TEST(EngineSimulation, StandsOnTheChartBesideTheMethods) {
+    const OtherEngine engine = falling_engine();
+    ChartOptions options;
+    options.methods = {"soft_step"};
+    options.engines = {&engine};
+    options.sweep = {parse_sweep("iterations=1,2,8")};
+    options.repeats = 2;
+    const SceneChart chart = chart_scene(ball_above_floor(), options);
+    std::vector<double> errors;
+    for (const ChartRun &run : chart.runs)
+        if (run.resolved.method == &engine.info) {
+            errors.push_back(run.error);
+            EXPECT_EQ(run.timings.size(), 2U);
+        }
+    ASSERT_EQ(errors.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(errors[i], 0.5 * g * std::pow(0.5, std::array{1, 2, 8}[i]), 1e-9);
+    EXPECT_EQ(chart_content(chart, "").series.back().name, "Pretended, double");
+}
+
+TEST(EngineSimulation, WhatItIsNotToldOfIsLeftOutWithAReason) {
+    const OtherEngine engine = falling_engine();
+    SceneDesc scene = ball_above_floor();
+    scene.bodies[1].linear_damping = 0.1;
+    EXPECT_EQ(
+        why_not(engine, scene),
+        "pretended is not told of what the scene has: a body with damping or gravity of its own");
+    scene = ball_above_floor();
+    scene.bodies[1].center_of_mass = glm::dvec3(0.1, 0, 0);
+    EXPECT_NE(why_not(engine, scene).find("frame"), std::string::npos);
+    scene = ball_above_floor();
+    JointDesc joint;
+    joint.type = JointType::slider;
+    joint.body_b = "ball";
+    joint.name = "rail";
+    joint.anchor_a_local = {0, 5.2, 0};
+    scene.joints = {joint};
+    EXPECT_NE(why_not(engine, scene).find("no ball and no hinge"), std::string::npos);
+    ChartOptions options;
+    options.methods = {"soft_step"};
+    options.engines = {&engine};
+    options.repeats = 1;
+    options.sweep = {parse_sweep("substeps=1")};
+    const SceneChart chart = chart_scene(scene, options);
+    ASSERT_FALSE(chart.left_out.empty());
+    EXPECT_EQ(chart.left_out.back(), why_not(engine, scene));
+    EXPECT_THROW((void)find_other_engines({"no_such_engine"}), std::invalid_argument);
+}
+
+} // namespace
+} // namespace plumb
