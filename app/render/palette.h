@@ -23,6 +23,7 @@ inline constexpr glm::vec3 contact{0.85f, 0.26f, 0.22f};
 inline constexpr glm::vec3 impact{0.93f, 0.70f, 0.15f};
 inline constexpr glm::vec3 joint{0.16f, 0.42f, 0.66f};
 inline constexpr glm::vec3 bounds{0.40f, 0.62f, 0.45f};
+inline constexpr glm::vec3 ghost{0.55f, 0.75f, 0.95f}; // another method's bodies
 inline constexpr glm::vec3 grab{0.95f, 0.50f, 0.12f};
 inline constexpr glm::vec3 probe_yes{0.24f, 0.62f, 0.45f};    // hit, inside, overlapping
 inline constexpr glm::vec3 probe_partly{0.93f, 0.70f, 0.25f}; // across

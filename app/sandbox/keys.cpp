@@ -128,8 +128,12 @@ std::optional<ActionInfo> row(Action action) {
                           Place::general, false, {plain('m')}};
     case Action::toggle_lab:
         return ActionInfo{action, "Lab",
-                          "Plots of the running scene over time.",
+                          "Plots, the trade-off and a stability map of the running scene.",
                           Place::general, false, {plain('l')}};
+    case Action::toggle_ghost:
+        return ActionInfo{action, "Ghost",
+                          "The same by another method, translucent beside the first.",
+                          Place::general, false, {plain('g')}};
     case Action::larger_panels:
         return ActionInfo{action, "Larger panels",
                           "Text and panels, by a tenth.",

@@ -37,6 +37,7 @@ enum class Action {
     toggle_panels,
     toggle_diagnostics,
     toggle_lab,
+    toggle_ghost,
     larger_panels,
     smaller_panels,
     screenshot,

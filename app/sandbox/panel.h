@@ -7,6 +7,7 @@
 #include "app/sandbox/panels.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/sandbox/session.h"
+#include "app/sandbox/studies.h"
 #include "app/sandbox/theme.h"
 #include "app/sandbox/view_state.h"
 
@@ -24,6 +25,8 @@ struct PanelContext {
     const StepClock &clock;
     const Pace &pace;
     std::span<const SceneEntry> scenes;
+    ChartStudy &chart;
+    MapStudy &map;
     const Fonts &fonts;
     bool frozen = false; // no text or graph that differs from run to run
     // How much higher the panel would be if it scrolled nothing inside itself, pixels.
@@ -34,6 +37,7 @@ struct PanelContext {
     std::optional<double> speed;
     bool restart_as_written = false;
     bool save_plots = false;
+    std::optional<RunChoice> run;
 };
 
 // A panel's title, with a sign that opens and closes the panel, and some text at the right end.
@@ -49,7 +53,11 @@ void expectations_panel(PanelContext &context); // of the scene, with its title 
 void probes_panel(PanelContext &context);
 void probe_labels(const PanelContext &context); // over the scene, under the panels
 void measures_panel(PanelContext &context);     // the lower part of the diagnostics
-void plots_tab(PanelContext &context);          // of the lab
+// Of the lab.
+void plots_tab(PanelContext &context);
+void tradeoff_tab(PanelContext &context);
+void map_tab(PanelContext &context);
+void ghost_tab(PanelContext &context);
 
 // The scenes whose path or title contains every word of `search`, in any case; indices. Those whose
 // name has them all come first, then those whose name and title have.

@@ -16,6 +16,9 @@ void lab_panel(PanelContext &context) {
         ImGui::EndTabItem();
     };
     tab("Plots", plots_tab);
+    tab("Trade-off", tradeoff_tab);
+    tab("Map", map_tab);
+    tab("Ghost", ghost_tab);
     ImGui::EndTabBar();
 }
 

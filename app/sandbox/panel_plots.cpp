@@ -1,4 +1,5 @@
 // Which quantities of the running scene are plotted, and the plots.
+#include "app/sandbox/lab_draw.h"
 #include "app/sandbox/panel.h"
 #include "app/sandbox/plot_draw.h"
 #include "app/sandbox/widgets.h"

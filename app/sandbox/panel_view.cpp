@@ -31,7 +31,11 @@ void view_panel(PanelContext &context) {
         ImGui::SameLine(0, spacing);
         box(Action::toggle_bounds, view.bounds, 1 - left);
     }
-    box(Action::toggle_wireframe, view.wireframe, 1);
+    box(Action::toggle_wireframe, view.wireframe, 0.6f);
+    if (has_world) {
+        ImGui::SameLine(0, spacing);
+        box(Action::toggle_ghost, context.session.ghost() != nullptr, 0.4f);
+    }
     if (has_world) {
         box(Action::toggle_diagnostics, view.diagnostics, 0.6f);
         ImGui::SameLine(0, spacing);

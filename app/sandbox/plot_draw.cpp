@@ -1,10 +1,10 @@
 #include "app/sandbox/plot_draw.h"
 
+#include "app/sandbox/lab_draw.h"
 #include "app/sandbox/plot_axis.h"
 #include "app/sandbox/widgets.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,25 +13,6 @@
 namespace plumb {
 
 namespace {
-
-constexpr std::array<Colour, 8> curve_colours{{{0.42f, 0.68f, 0.90f, 1},
-                                               {0.90f, 0.64f, 0.42f, 1},
-                                               {0.50f, 0.76f, 0.58f, 1},
-                                               {0.76f, 0.66f, 0.90f, 1},
-                                               {0.94f, 0.82f, 0.45f, 1},
-                                               {0.92f, 0.55f, 0.65f, 1},
-                                               {0.45f, 0.82f, 0.84f, 1},
-                                               {0.78f, 0.80f, 0.82f, 1}}};
-
-float small_width(const Fonts &fonts, const std::string &text) {
-    return fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e9f, 0, text.c_str()).x;
-}
-
-void small_at(const Fonts &fonts, float x, float y, const std::string &text) {
-    ImGui::GetWindowDrawList()->AddText(fonts.small, fonts.small->FontSize,
-                                        {std::round(x), std::round(y)}, packed(theme::dim),
-                                        text.c_str());
-}
 
 struct Span {
     double from = 0, to = 0; // s
@@ -182,12 +163,7 @@ void draw_unit(const PanelContext &context, const Group &group) {
     if (group.unit == "1")
         return;
     const std::string text(group.unit);
-    const float size = context.fonts.small->FontSize;
-    ImGui::GetWindowDrawList()->AddRectFilled(
-        {group.min.x + 3, group.min.y + 2},
-        {group.min.x + 9 + small_width(context.fonts, text), group.min.y + 4 + size},
-        packed(theme::panel, 0.8f), 2);
-    small_at(context.fonts, group.min.x + 6, group.min.y + 3, text);
+    small_on_ground(context.fonts, group.min.x + 6, group.min.y + 3, text);
 }
 
 // A line at the pointer, and what each curve was then.
@@ -230,10 +206,6 @@ void tell_at_pointer(const PanelContext &context, const std::vector<Group> &grou
 
 std::size_t plot_count(const Plots &plots) {
     return groups_of(plots.curves()).size();
-}
-
-Colour curve_colour(std::size_t curve) {
-    return curve_colours.at(curve % curve_colours.size());
 }
 
 std::string_view shown_unit(const QuantityInfo &quantity) {

@@ -9,7 +9,6 @@ namespace plumb {
 
 // How many plots there are, one below the other.
 [[nodiscard]] std::size_t plot_count(const Plots &plots);
-[[nodiscard]] Colour curve_colour(std::size_t curve);
 [[nodiscard]] std::string_view shown_unit(const QuantityInfo &quantity); // empty for a ratio
 
 // All of them in this size, pixels, over the time that the view asks for; there is one at least.

@@ -66,6 +66,8 @@ bool Sandbox::open_recording(const std::filesystem::path &path) {
 void Sandbox::started(bool another_scene) {
     tools_.let_go(session_);
     if (another_scene) {
+        chart_.clear();
+        map_.clear();
         view_.selected.reset();
         view_.selected_particle.reset();
         view_.joints = is_about_joints(*session_.simulation());
@@ -176,6 +178,9 @@ void Sandbox::perform(Action action) {
         break;
     case Action::toggle_lab:
         view_.lab = !view_.lab;
+        break;
+    case Action::toggle_ghost:
+        toggle_ghost();
         break;
     case Action::toggle_help:
         view_.help = !view_.help;
@@ -328,6 +333,8 @@ void Sandbox::reload() {
     session_.messages().clear();
     if (!session_.reload())
         return;
+    chart_.clear(); // the file may say otherwise now
+    map_.clear();
     view_.selected = name.empty() ? std::nullopt : session_.simulation()->find_body(name);
     started(false);
 }
@@ -361,6 +368,41 @@ void Sandbox::choose_neighbour_method(int direction) {
     }
     session_.set_method(
         able[direction > 0 ? (now + 1) % able.size() : (now + able.size() - 1) % able.size()]);
+}
+
+// By the method that was last chosen, or the next that can run the scene.
+void Sandbox::toggle_ghost() {
+    if (session_.ghost() || !session_.running()) {
+        session_.set_ghost("");
+        return;
+    }
+    const auto is_able = [&](const MethodInfo &method) {
+        return why_not(method, session_.scene()).empty();
+    };
+    std::string method = view_.ghost_method;
+    if (method.empty() || !is_able(*find_method_info(method))) {
+        const auto other = std::ranges::find_if(method_infos(), [&](const MethodInfo &info) {
+            return info.name != session_.simulation()->method().name && is_able(info);
+        });
+        method = other == method_infos().end() ? std::string() : std::string(other->name);
+    }
+    if (method.empty())
+        session_.messages().note("No other method can run this scene.");
+    else if (session_.set_ghost(method))
+        view_.ghost_method = method;
+}
+
+void Sandbox::go_on_with(const RunChoice &choice) {
+    if (choice.scene) {
+        if (!session_.open(*choice.scene, session_.path()))
+            return;
+        chart_.clear(); // of the scene as it was
+        started(false);
+    }
+    if (choice.method != session_.simulation()->method().name &&
+        !session_.set_method(choice.method))
+        return;
+    session_.set_settings(choice.settings);
 }
 
 void Sandbox::scale_panels(float factor) {
@@ -412,8 +454,8 @@ void Sandbox::dismiss() {
 
 PanelContext Sandbox::panel_context(const Fonts &fonts, bool frozen) {
     follow_simulation();
-    return PanelContext{session_, view_, clock_, pace_, scenes_, fonts, frozen,
-                        0,        {},    {},     {},    false,   false};
+    return PanelContext{session_, view_, clock_, pace_, scenes_, chart_, map_,  fonts,
+                        frozen,   0,     {},     {},    {},      false,  false, {}};
 }
 
 void Sandbox::take(const PanelContext &context) {
@@ -425,6 +467,8 @@ void Sandbox::take(const PanelContext &context) {
         started(false);
     if (context.save_plots)
         session_.save_plots(new_file(".csv"));
+    if (context.run)
+        go_on_with(*context.run);
     if (context.open_scene)
         open(*context.open_scene);
     follow_simulation();
@@ -452,6 +496,10 @@ DrawList Sandbox::draw_list() const {
         *session_.simulation(), view_.camera, options,
         blend(session_.previous_bodies(), session_.present_bodies(), clock_.alpha()),
         blend(session_.previous_particles(), session_.present().particles, clock_.alpha()));
+    if (const Ghost *ghost = session_.ghost(); ghost && ghost->failure().empty())
+        add_ghost(list, ghost->simulation(),
+                  blend(ghost->previous().bodies, ghost->present().bodies, clock_.alpha()),
+                  blend(ghost->previous().particles, ghost->present().particles, clock_.alpha()));
     draw_probes(list, session_.probes(), session_.answers(), view_.hovered_handle,
                 !session_.simulation()->has_world());
     if (session_.simulation()->has_world())

@@ -82,6 +82,8 @@ class Sandbox {
     void reload();
     void open_neighbour(int direction);
     void choose_neighbour_method(int direction);
+    void toggle_ghost();
+    void go_on_with(const RunChoice &choice);
     void scale_panels(float factor);
     void frame_selection();
     void dismiss();
@@ -95,6 +97,8 @@ class Sandbox {
     Tools tools_;
     StepClock clock_{1.0 / 60};
     Pace pace_; // while running
+    ChartStudy chart_;
+    MapStudy map_;
     bool quit_ = false;
     bool screenshot_ = false;
     bool release_keyboard_ = false;

@@ -86,6 +86,7 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     if (simulation_->has_world())
         plots_.start(*simulation_);
     settle_poses();
+    set_ghost(std::exchange(ghost_method_, {}));
     return true;
 }
 
@@ -102,6 +103,8 @@ bool Session::step() {
             return false;
         pull_grabbed();
         troubles_->begin_step(scene_, *simulation_);
+        if (ghost_)
+            ghost_->begin_step();
         history_.remember(*simulation_);
         if (recorder_)
             recorder_->before_step(*simulation_);
@@ -129,6 +132,8 @@ bool Session::step() {
     read_present();
     see_impacts();
     troubles_->sample(*simulation_, previous_.bodies);
+    if (ghost_)
+        ghost_->catch_up(*simulation_);
     if (!report.finite) {
         stopped_ = true;
         messages_.error(troubles_->trouble()->text + " Method " +
@@ -144,6 +149,9 @@ bool Session::step() {
 // False at the end, and where the run is not the recorded one.
 bool Session::obey_replay() {
     const std::string file = path_.filename().string();
+    for (const RecordedCommand &command : recording_->commands)
+        if (ghost_ && command.step == simulation_->step_count())
+            ghost_->apply(command.command);
     try {
         if (!replay_->obey(*simulation_)) {
             replay_outcome_ = ExitCode::outside_tolerance;
@@ -207,6 +215,8 @@ bool Session::step_back() {
                          &graphs_.energy})
         graph->take_back();
     settle_poses();
+    if (ghost_ && !ghost_->go_back())
+        set_ghost(std::string(ghost_method_));
     return true;
 }
 
@@ -262,6 +272,8 @@ void Session::apply(const Command &command) {
     leave_recording();
     const double energy = simulation_->energy();
     simulation_->apply(command);
+    if (ghost_)
+        ghost_->apply(command);
     if (troubles_)
         troubles_->brought_in(*simulation_, simulation_->energy() - energy);
     if (recorder_)
@@ -308,6 +320,21 @@ std::optional<std::size_t> Session::shoot(const glm::dvec3 &from, const glm::dve
     } catch (const std::exception &failure) {
         messages_.error("Cannot add a ball: " + reason(failure));
         return {};
+    }
+}
+
+bool Session::set_ghost(const std::string &method) {
+    ghost_.reset();
+    ghost_method_.clear();
+    if (method.empty() || !simulation_ || !simulation_->has_world())
+        return method.empty();
+    try {
+        ghost_.emplace(*simulation_, method);
+        ghost_method_ = method;
+        return true;
+    } catch (const std::exception &failure) {
+        messages_.note("No ghost: " + reason(failure));
+        return false;
     }
 }
 

@@ -4,6 +4,8 @@
 #include "app/files/output_file.h"
 #include "app/lab/exit_code.h"
 #include "app/lab/run/expectation_watch.h"
+#include "app/lab/run/scene_text.h"
+#include "app/sandbox/ghost.h"
 #include "app/sandbox/graphs.h"
 #include "app/sandbox/history.h"
 #include "app/sandbox/messages.h"
@@ -111,6 +113,16 @@ class Session {
     bool set_method(std::string_view name);
     bool set_settings(const StepSettings &settings);
 
+    // Of the running scene, to change numbers in: the file's, or where there is none (a recording
+    // is none) the scene as it began.
+    [[nodiscard]] SceneText scene_text() const;
+
+    // A second simulation by this method beside the first, from the present state; it begins anew
+    // when the run does, and where it is taken back to before it was there. Empty: none. False,
+    // with a message, for a method that cannot run the scene.
+    bool set_ghost(const std::string &method);
+    [[nodiscard]] const Ghost *ghost() const { return ghost_ ? &*ghost_ : nullptr; }
+
     // From the next step on; of a grab that goes on, only the target may change. Nothing: lets go.
     void grab(const std::optional<Grab> &grab);
     [[nodiscard]] const std::optional<Grab> &grabbed() const { return grab_; }
@@ -200,6 +212,8 @@ class Session {
     Frame previous_;
     Frame present_; // bodies and impacts
     std::vector<SeenImpact> impacts_;
+    std::optional<Ghost> ghost_;
+    std::string ghost_method_; // empty: none is wanted
     SessionGraphs graphs_;
     Plots plots_;
     StepTimes times_;

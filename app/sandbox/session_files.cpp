@@ -108,6 +108,16 @@ void Session::write_recording(OutputFile &file) const {
     file.finish();
 }
 
+SceneText Session::scene_text() const {
+    if (!recording_ && !path_.empty()) {
+        try {
+            return {path_, text_of(path_)};
+        } catch (const std::runtime_error &) { // it is gone, and the scene goes on
+        }
+    }
+    return {path_, write_scene(scene_)};
+}
+
 bool Session::save_plots(const std::filesystem::path &path) {
     try {
         if (path.has_parent_path())

@@ -45,14 +45,20 @@ struct ViewState {
     PerPanel<std::optional<bool>> opened; // or closed to its title; as it likes until a person says
     bool is_roomy = true;                 // the window, in which a panel likes to be open
     [[nodiscard]] bool is_open(PanelId panel) const { return opened[panel].value_or(is_roomy); }
-    float ui_scale = 1;                       // on top of the monitor's
-    std::optional<std::size_t> detailed_body; // that the details were last about
-    std::string search;                       // in the list of scenes
-    std::string plot_of;                      // whose quantities are offered; empty: the scene's
-    std::optional<std::size_t> offered_body;  // that was last selected for that
-    std::optional<double> plot_seconds;       // shown, up to now; all without
-    bool focus_search = false;                // the search box takes the keyboard in the next frame
-    std::filesystem::path scene_in_sight;     // to which the list of scenes was last scrolled
+    float ui_scale = 1;                        // on top of the monitor's
+    std::optional<std::size_t> detailed_body;  // that the details were last about
+    std::string search;                        // in the list of scenes
+    std::string plot_of;                       // whose quantities are offered; empty: the scene's
+    std::optional<std::size_t> offered_body;   // that was last selected for that
+    std::string sweeps;                        // of the chart
+    std::string sweep_mistake;                 // empty: none
+    std::string map_x = "dt=1/240..1/15:7log"; // axes of the map
+    std::string map_y = "substeps=1,2,4,8,16";
+    std::string map_mistake;
+    std::string ghost_method;             // that was last chosen
+    std::optional<double> plot_seconds;   // shown, up to now; all without
+    bool focus_search = false;            // the search box takes the keyboard in the next frame
+    std::filesystem::path scene_in_sight; // to which the list of scenes was last scrolled
 };
 
 } // namespace plumb

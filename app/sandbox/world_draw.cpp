@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -264,6 +265,33 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
         list.points.push_back(point);
     }
     return list;
+}
+
+void add_ghost(DrawList &list, const Simulation &simulation, const std::vector<BodyState> &poses,
+               const std::vector<ParticleState> &particles) {
+    DrawList ghost;
+    for (std::size_t body = 0; body < poses.size(); ++body)
+        if (simulation.body_info(body).alive && simulation.body_info(body).kind != BodyKind::fixed)
+            add_body(ghost, simulation.body_info(body), poses[body], body, {});
+    const Frame frame = simulation.read();
+    draw_soft_parts(ghost, {simulation.soft_parts(), poses, particles, frame.torn}, {}, {});
+    const auto pale = [](const glm::vec3 &colour) {
+        return glm::mix(colour, colours::ghost, 0.6f);
+    };
+    for (DrawShape shape : ghost.shapes) {
+        shape.glass = true;
+        shape.colour = pale(shape.colour);
+        list.shapes.push_back(shape);
+    }
+    for (DrawMesh mesh : ghost.meshes) {
+        mesh.glass = true;
+        mesh.colour = pale(mesh.colour);
+        list.meshes.push_back(std::move(mesh));
+    }
+    for (DrawLine line : ghost.lines) {
+        line.colour = pale(line.colour);
+        list.lines.push_back(line);
+    }
 }
 
 Around around(const Simulation &simulation, std::optional<std::size_t> body) {

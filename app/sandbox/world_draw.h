@@ -39,6 +39,10 @@ struct WorldDrawOptions {
                                   const std::vector<BodyState> &poses = {},
                                   const std::vector<ParticleState> &particles = {});
 
+// What moves of another simulation, translucent and pale, over what is there.
+void add_ghost(DrawList &list, const Simulation &simulation, const std::vector<BodyState> &poses,
+               const std::vector<ParticleState> &particles);
+
 // A sphere around a body, or around all that can move (particles and cloth too), else around all
 // but planes; half a metre at the origin if there is nothing.
 struct Around {

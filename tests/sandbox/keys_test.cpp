@@ -59,6 +59,7 @@ TEST(Keys, AreTheKnownOnes) {
                                                             {tab, Action::toggle_panels},
                                                             {'m', Action::toggle_diagnostics},
                                                             {'l', Action::toggle_lab},
+                                                            {'g', Action::toggle_ghost},
                                                             {f1, Action::toggle_help},
                                                             {'?', Action::toggle_help},
                                                             {escape, Action::dismiss},

@@ -269,6 +269,8 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
             cell = known->second;
             runner.skip(1);
         }
+        if (options.changed && options.tasks == nullptr)
+            options.changed(map);
     });
     std::vector<LimitItem> limits;
     if (!runner.stopped())

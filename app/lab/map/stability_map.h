@@ -75,7 +75,9 @@ struct MapOptions {
     std::function<bool()> stop;       // asked often, on any thread; true ends early
     Progress progress;                // called on any thread
     TaskPool *tasks = nullptr;        // null: one thread
-    KnownRows known;                  // not run again
+    // After each cell, where there is one thread. May be empty.
+    std::function<void(const StabilityMap &)> changed;
+    KnownRows known; // not run again
 };
 
 // Each cell is a run from the start on one thread, so that the map is the same for any number of

@@ -1,0 +1,100 @@
+#include "app/sandbox/ghost.h"
+
+#include <exception>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include <glm/geometric.hpp>
+
+namespace plumb {
+
+namespace {
+
+// A ghost with a shorter step takes so many for one of the other's, and no more: it shall not
+// stall the play.
+constexpr int most_steps = 64;
+
+} // namespace
+
+Ghost::Ghost(const Simulation &beside, const std::string &method) {
+    RunOptions options;
+    options.method = method;
+    simulation_ = Simulation::create(beside.describe(), options, nullptr);
+    simulation_->read(present_, {});
+    previous_ = present_;
+}
+
+void Ghost::begin_step() {
+    history_.remember(*simulation_);
+}
+
+void Ghost::catch_up(const Simulation &beside) {
+    std::swap(previous_, present_);
+    const double half = 0.5 * simulation_->settings().dt;
+    try {
+        for (int i = 0; i < most_steps && failure_.empty(); ++i) {
+            if (simulation_->time() + half > beside.time())
+                break;
+            simulation_->step();
+            if (!simulation_->report().finite)
+                failure_ = "no longer finite";
+        }
+    } catch (const std::exception &failure) {
+        failure_ = failure.what();
+    }
+    simulation_->read(present_, {});
+}
+
+bool Ghost::go_back() {
+    if (!history_.recall(*simulation_))
+        return false;
+    failure_.clear();
+    simulation_->read(present_, {});
+    previous_ = present_;
+    return true;
+}
+
+void Ghost::apply(const Command &command) {
+    if (std::holds_alternative<SetMethod>(command))
+        return;
+    Command mine = command;
+    if (auto *settings = std::get_if<SetSettings>(&mine)) {
+        settings->settings.erase_if(
+            [](const SettingRow &row) { return row.group != SettingGroup::world; });
+        if (settings->settings.empty())
+            return;
+    }
+    try {
+        simulation_->apply(mine);
+        simulation_->read(present_, {});
+        previous_ = present_;
+    } catch (const std::invalid_argument &failure) {
+        failure_ = failure.what();
+    }
+}
+
+GhostDistance Ghost::farthest(const Simulation &beside, const Frame &frame) const {
+    GhostDistance farthest;
+    const auto look = [&](const glm::dvec3 &a, const glm::dvec3 &b, const auto &name) {
+        const double distance = glm::distance(a, b);
+        if (distance > farthest.metres)
+            farthest = {distance, name()};
+    };
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+        const BodyInfo &info = beside.body_info(i);
+        if (!info.alive || info.kind == BodyKind::fixed)
+            continue;
+        const auto twin = simulation_->find_body(info.name);
+        if (twin && *twin < present_.bodies.size())
+            look(frame.bodies[i].position, present_.bodies[*twin].position,
+                 [&] { return info.name; });
+    }
+    if (frame.particles.size() == present_.particles.size())
+        for (std::size_t i = 0; i < frame.particles.size(); ++i)
+            look(frame.particles[i].position, present_.particles[i].position,
+                 [&] { return beside.soft_parts().particle_name(i); });
+    return farthest;
+}
+
+} // namespace plumb

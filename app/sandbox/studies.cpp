@@ -1,0 +1,96 @@
+#include "app/sandbox/studies.h"
+
+#include "engine/scene/file/change.h"
+#include "engine/scene/scene_file.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace plumb {
+
+namespace {
+
+// Few enough that a first answer is there soon; the command line takes more.
+constexpr int repeats = 3;
+
+template <typename Wanted>
+void give_running(GivenSettings &settings, const Simulation &simulation, const Wanted &wanted) {
+    for (const SettingNumber number : setting_numbers())
+        if (wanted(number.setting()))
+            settings.give(number, setting_value(simulation.settings(), number));
+}
+
+} // namespace
+
+void start_chart(ChartStudy &study, const Session &session, const std::string &sweeps) {
+    const Simulation &simulation = *session.simulation();
+    ChartOptions options;
+    std::istringstream words(sweeps);
+    for (std::string word; words >> word;)
+        add_sweep(options, word);
+    static_cast<void>(sweep_points(options.sweep));
+    options.repeats = repeats;
+    options.timed = 1;
+    options.base = session.options();
+    options.base.method.clear();
+    options.base.precision = simulation.precision();
+    give_running(options.base.settings, simulation, [](const SettingRow &row) {
+        return row.group == SettingGroup::world || row.member == SettingMember(&StepSettings::dt);
+    });
+    study.start([scene = session.scene(), options](ChartStudy::Desk &desk) {
+        ChartOptions mine = options;
+        mine.stop = [&] { return desk.stopped(); };
+        mine.progress = [&](double done, const std::string &) { desk.set_done(done); };
+        desk.publish(
+            chart_scene(scene, mine, [&](const SceneChart &chart) { desk.publish(chart); }));
+    });
+}
+
+void start_map(MapStudy &study, const Session &session, const std::string &x,
+               const std::string &y) {
+    const Simulation &simulation = *session.simulation();
+    const MapAxis along_x = parse_map_axis(x);
+    const MapAxis along_y = parse_map_axis(y);
+    if (along_x.name == along_y.name)
+        throw std::invalid_argument(along_x.name + " is on both axes");
+    MapOptions options;
+    options.methods = {std::string(simulation.method().name)};
+    options.base.precision = simulation.precision();
+    give_running(options.base.settings, simulation,
+                 [&](const SettingRow &row) { return reads(simulation.method(), row); });
+    study.start([text = session.scene_text(), along_x, along_y, options,
+                 settings = simulation.settings()](MapStudy::Desk &desk) {
+        MapOptions mine = options;
+        mine.stop = [&] { return desk.stopped(); };
+        mine.progress = [&](double done, const std::string &) { desk.set_done(done); };
+        mine.changed = [&](const StabilityMap &map) { desk.publish({map, settings}); };
+        desk.publish({map_scene(text, along_x, along_y, mine), settings});
+    });
+}
+
+RunChoice choice_of(const ChartRun &run) {
+    return {std::string(run.resolved.method->name), run.resolved.settings, std::nullopt};
+}
+
+RunChoice choice_of(const Session &session, const MethodStudy &study, double x, double y) {
+    const StabilityMap &map = study.map;
+    RunChoice choice{std::string(map.methods.front().method->name), study.settings, std::nullopt};
+    std::vector<ChangedNumber> changed;
+    for (const auto &[axis, value] : {std::pair(&map.x, x), std::pair(&map.y, y)})
+        if (axis->setting)
+            set_setting(choice.settings, *axis->setting, value);
+        else
+            changed.push_back({axis->name, value});
+    if (changed.empty())
+        return choice;
+    const SceneText text = session.scene_text();
+    SceneFileResult result = parse_scene(text.text, text.path.string(), {}, changed);
+    if (!result.ok())
+        throw std::invalid_argument("The scene no longer has " + changed.front().path + '.');
+    choice.scene = std::move(result.scene);
+    return choice;
+}
+
+} // namespace plumb

@@ -1,0 +1,78 @@
+#include "app/sandbox/background.h"
+
+#include <chrono>
+#include <stdexcept>
+
+#include <sched.h>
+
+#include <gtest/gtest.h>
+
+namespace plumb {
+namespace {
+
+using namespace std::chrono_literals;
+
+// False when it took longer than any machine needs.
+bool wait_for(const Background<int> &background) {
+    for (int i = 0; i < 6000 && background.running(); ++i)
+        std::this_thread::sleep_for(10ms);
+    return !background.running();
+}
+
+TEST(Background, PublishesBitByBitAndGivesWay) {
+    Background<int> background;
+    EXPECT_EQ(background.result(), nullptr);
+    std::atomic<bool> go_on = false;
+    std::atomic<int> policy = -1;
+    background.start([&](Background<int>::Desk &desk) {
+        policy = sched_getscheduler(0);
+        desk.publish(1);
+        desk.set_done(0.5);
+        while (!go_on)
+            std::this_thread::sleep_for(1ms);
+        desk.publish(2);
+    });
+    while (!background.result())
+        std::this_thread::sleep_for(1ms);
+    EXPECT_EQ(*background.result(), 1);
+    EXPECT_TRUE(background.running());
+    go_on = true;
+    ASSERT_TRUE(wait_for(background));
+    EXPECT_EQ(*background.result(), 2);
+    EXPECT_EQ(background.done(), 0.5);
+    EXPECT_EQ(policy, SCHED_IDLE);
+    background.clear();
+    EXPECT_EQ(background.result(), nullptr);
+}
+
+TEST(Background, IsReplacedWithoutWaitingAndEndsWhenAsked) {
+    std::atomic<int> ended = 0;
+    {
+        Background<int> background;
+        for (int i = 0; i < 3; ++i)
+            background.start([&, i](Background<int>::Desk &desk) {
+                desk.publish(i);
+                while (!desk.stopped())
+                    std::this_thread::sleep_for(1ms);
+                desk.publish(-1); // of one that was replaced nobody sees
+                ++ended;
+            });
+        while (!background.result())
+            std::this_thread::sleep_for(1ms);
+        EXPECT_EQ(*background.result(), 2);
+        background.stop();
+        ASSERT_TRUE(wait_for(background));
+        EXPECT_EQ(*background.result(), -1);
+    }
+    EXPECT_EQ(ended, 3);
+}
+
+TEST(Background, KeepsWhyItFailed) {
+    Background<int> background;
+    background.start([](Background<int>::Desk &) { throw std::runtime_error("no luck"); });
+    ASSERT_TRUE(wait_for(background));
+    EXPECT_EQ(background.failure(), "no luck");
+}
+
+} // namespace
+} // namespace plumb
