@@ -222,7 +222,7 @@ const std::vector<Problem> &problems() {
          torn_chain,
          {{"soft_step", {0.0001}},
           {"tgs_soft", {0.035, 0.015}},
-          {"sequential_impulses", {0.13, 0.05}},
+          {"sequential_impulses", {6, 0.05}},
           {"nncg", {1e-05}},
           {"xpbd", {0.001}}}},
         {"Spring",
