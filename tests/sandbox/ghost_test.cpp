@@ -75,8 +75,7 @@ TEST(Ghost, WhatIsDoneToTheOneIsDoneToTheOtherAndTheRunIsAsItWas) {
     const auto hash = [&](bool haunted) {
         Session session;
         EXPECT_TRUE(session.open(stack));
-        if (haunted)
-            EXPECT_TRUE(session.set_ghost("sequential_impulses"));
+        EXPECT_TRUE(session.set_ghost(haunted ? "sequential_impulses" : ""));
         for (int i = 0; i < 10; ++i)
             EXPECT_TRUE(session.step());
         EXPECT_TRUE(session.shoot({-10, 3, 0}, {8, 0, 0}, 0.3));
