@@ -1,5 +1,7 @@
 #include "app/sandbox/background.h"
 
+#include "tests/sandbox/hurry.h"
+
 #include <chrono>
 #include <stdexcept>
 
@@ -11,13 +13,6 @@ namespace plumb {
 namespace {
 
 using namespace std::chrono_literals;
-
-// False when it took longer than any machine needs.
-bool wait_for(const Background<int> &background) {
-    for (int i = 0; i < 6000 && background.running(); ++i)
-        std::this_thread::sleep_for(10ms);
-    return !background.running();
-}
 
 TEST(Background, PublishesBitByBitAndGivesWay) {
     Background<int> background;

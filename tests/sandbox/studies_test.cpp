@@ -4,11 +4,10 @@
 #include "app/sandbox/sandbox.h"
 #include "app/sandbox/ui.h"
 #include "engine/scene/scene_file.h"
+#include "tests/sandbox/hurry.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
-#include <thread>
 
 #include <unistd.h>
 
@@ -18,16 +17,7 @@
 namespace plumb {
 namespace {
 
-using namespace std::chrono_literals;
-
 const std::filesystem::path scenes = std::filesystem::path(PLUMB_SOURCE_DIR) / "scenes";
-
-// False when it took longer than any machine needs.
-template <typename Study> bool wait_for(const Study &study) {
-    for (int i = 0; i < 6000 && study.running(); ++i)
-        std::this_thread::sleep_for(10ms);
-    return !study.running();
-}
 
 // The run beside which a chart is made goes as it goes alone.
 TEST(Studies, AChartIsMadeBesideThePlayAndDoesNotTouchIt) {
