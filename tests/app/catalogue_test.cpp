@@ -41,7 +41,8 @@ class Scene : public testing::TestWithParam<fs::path> {};
 // Known failings: what a method cannot do by its nature, whatever its settings. TGS Soft falls by
 // semi-implicit Euler, and bounces once a step, one contact by itself. What does not look ahead
 // takes the planes of the start of the step for those of all of it. Explicit Euler speeds spins up,
-// and steps so short that it would not are lost in float.
+// and steps so short that it would not are lost in float. XPBD loses swings and spins, its friction
+// is off by some per cent, and impulses are not handed on. Under naive impulses nothing rests.
 bool is_known_failing(const MethodInfo &method, const std::string &scene) {
     static const std::map<std::string_view, std::set<std::string>> failing{
         {"tgs_soft",
@@ -49,6 +50,13 @@ bool is_known_failing(const MethodInfo &method, const std::string &scene) {
           "struck_before_wall"}},
         {"sequential_impulses", {"passing", "struck_before_wall"}},
         {"nncg", {"passing"}},
+        {"xpbd",
+         {"passing", "slope_holds", "slope_slides", "spinning_book", "hinge_pendulum",
+          "newtons_cradle", "barrel_run", "twenty_box_stack"}},
+        {"naive_impulses",
+         {"free_fall", "bounce_elastic", "bounce_half", "slope_holds", "struck_before_wall",
+          "barrel_run", "compounds", "dice", "terrain", "tumbling", "pyramid", "ten_box_stack",
+          "twenty_box_stack"}},
         {"explicit_euler", {"spinning_book"}}};
     const auto found = failing.find(method.name);
     return found != failing.end() && found->second.contains(scene);

@@ -108,7 +108,8 @@ TEST_P(Springs, KeepMomenta) {
     const Measures after = world.measure();
     EXPECT_LT(glm::distance(after.linear_momentum, before.linear_momentum), 3000 * epsilon);
     const double turned = glm::distance(after.angular_momentum, before.angular_momentum);
-    if (GetParam() == "explicit_euler" || GetParam() == "backward_euler")
+    if (GetParam() == "explicit_euler" || GetParam() == "backward_euler" ||
+        GetParam() == "xpbd") // whose forces are not along the lines as they are
         EXPECT_GT(turned, 1e-3);
     else
         EXPECT_LT(turned, GetParam() == "rk4" ? 1e-4 : 6000 * epsilon);
@@ -161,7 +162,8 @@ TEST_P(Springs, AHangingChainIsACatenary) {
     if (GetParam() == "explicit_euler")
         GTEST_SKIP() << "gains energy";
     const bool follows = GetParam() == "backward_euler" || GetParam() == "soft_step";
-    EXPECT_NEAR(sag_of_chain(GetParam(), follows ? 0 : 32), 1, 0.005);
+    const int substeps = follows ? 0 : GetParam() == "xpbd" ? 64 : 32;
+    EXPECT_NEAR(sag_of_chain(GetParam(), substeps), 1, 0.005);
 }
 
 // A known failing: where the substep is too long to follow stiff springs, the passes do not hold

@@ -11,6 +11,8 @@
     METHOD(tgs_soft)                                                                               \
     METHOD(sequential_impulses)                                                                    \
     METHOD(nncg)                                                                                   \
+    METHOD(xpbd)                                                                                   \
+    METHOD(naive_impulses)                                                                         \
     METHOD(explicit_euler)                                                                         \
     METHOD(semi_implicit_euler)                                                                    \
     METHOD(stormer_verlet)                                                                         \

@@ -1,0 +1,250 @@
+// XPBD for rigid bodies: Mueller, Macklin, Chentanez, Jeschke, Kim 2020, "Detailed Rigid Body
+// Simulation with Extended Position Based Dynamics", algorithm 2, and Macklin, Mueller, Chentanez
+// 2016, "XPBD: Position-Based Simulation of Compliant Constrained Dynamics", eqs. (18) and (26) for
+// what is compliant. Poses are predicted, then corrected by each constraint in turn, along its
+// direction at the present poses; velocities are what the poses did within the substep, and are
+// corrected for dynamic friction and restitution. Nothing is remembered from substep to substep.
+//
+// First order, and dissipative: the direction of a joint at the predicted pose takes energy away as
+// it turns, and turning by the normalised quaternion takes a spin's. As published but for this:
+// friction's bound is an impulse here (the paper's mixes it with a speed; Catto 2024, "Solver2D",
+// notes the same), restitution_threshold stands for the paper's 2 |g| h, spin is gyroscopic by the
+// implicit rule that all methods share.
+#include "engine/dynamics/method.h"
+#include "engine/dynamics/motion.h"
+#include "engine/dynamics/pose_correction.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+void predict(StepContext &context, Real h) {
+    for (const std::uint32_t i : context.moving()) {
+        SolverBody &body = context.bodies[i];
+        body.position += h * body.velocity;
+        body.turned = Vec3{Real(0)};
+        turn_pose(body, h * body.angular_velocity);
+        const Body &model = context.model.bodies[i];
+        if (model.kind == BodyKind::dynamic && !is_isotropic(model.inertia))
+            body.inv_inertia = solver_inverse_inertia(model, body.rotation);
+    }
+    drift_particles(context, h);
+    context.report.body_passes += context.moving().size();
+}
+
+void derive_spins(StepContext &context, Real h) {
+    for (const std::uint32_t i : context.moving()) {
+        SolverBody &body = context.bodies[i];
+        const Body &model = context.model.bodies[i];
+        if (model.kind != BodyKind::dynamic)
+            continue;
+        body.angular_velocity = Real(2) / h * body.turned;
+        for (int axis = 0; axis < 3; ++axis) // turns about the others add up to one about this
+            if (model.locked[static_cast<std::size_t>(axis) + 3])
+                body.angular_velocity[axis] = Real(0);
+    }
+    context.report.body_passes += context.moving().size();
+}
+
+Vec3 along(const RowBlock &rows, const Vec3 &row) {
+    if (rows.kind == RowKind::point)
+        return row;
+    return row.x * rows.axes[0] + row.y * rows.axes[1] + row.z * rows.axes[2];
+}
+
+Real inverse_mass(const RowBlock &rows, const SolverBody &a, const SolverBody &b, const Vec3 &n) {
+    return rows.kind == RowKind::angular ? glm::dot(n, (a.inv_inertia + b.inv_inertia) * n)
+                                         : inverse_effective_mass(a, b, rows.r_a, rows.r_b, n);
+}
+
+void correct(const RowBlock &rows, SolverBody &a, SolverBody &b, const Vec3 &p, Real h) {
+    if (rows.kind == RowKind::angular) {
+        turn_pose(a, -(a.inv_inertia * p));
+        turn_pose(b, b.inv_inertia * p);
+    } else {
+        shift_poses(a, b, rows.r_a, rows.r_b, p, h);
+    }
+}
+
+// Rigid rows all at once, along their error: the paper's vector constraints.
+void solve_rigid(JointConstraint &joint, SolverBody &a, SolverBody &b, Real h) {
+    Vec3 error = joint.rows.error;
+    if (joint.rows.bounds == RowBounds::at_least)
+        error.x = std::min(error.x, Real(0));
+    if (joint.rows.bounds == RowBounds::at_most)
+        error.x = std::max(error.x, Real(0));
+    const Real size = glm::length(error);
+    if (size == Real(0))
+        return;
+    const Real inverse = inverse_mass(joint.rows, a, b, along(joint.rows, error / size));
+    if (!(inverse > Real(0)))
+        return;
+    const Vec3 change = error / -inverse;
+    joint.impulse += change;
+    correct(joint.rows, a, b, along(joint.rows, change), h);
+}
+
+// One row of a spring, whose frequency and damping are those of the mass that it moves.
+void solve_spring(JointConstraint &joint, SolverBody &a, SolverBody &b, int row, Real h) {
+    const RowBlock &rows = joint.rows;
+    const Real error = rows.error[row];
+    if ((rows.bounds == RowBounds::at_least && error > Real(0)) ||
+        (rows.bounds == RowBounds::at_most && error < Real(0)))
+        return; // slack
+    Vec3 unit{Real(0)};
+    unit[row] = Real(1);
+    const Vec3 n = along(rows, unit);
+    const Real inverse = inverse_mass(rows, a, b, n);
+    if (!(inverse > Real(0)))
+        return;
+    const Real turn = Real(2) * std::numbers::pi_v<Real> * rows.frequency * h;
+    const Compliance compliance{turn * turn / inverse,
+                                Real(2) * rows.damping_ratio * turn / inverse};
+    const Real change = rows.kind == RowKind::angular
+                            ? Real(2) * glm::dot(n, b.turned - a.turned)
+                            : glm::dot(n, way_between(a, b, rows.r_a, rows.r_b, h));
+    Vec3 total = joint.impulse;
+    total[row] += multiplier(error, change, total[row], inverse, compliance);
+    const Real limit = rows.max_force * h * h;
+    const Real length = glm::length(total);
+    if (rows.bounds == RowBounds::pull && length > limit)
+        total *= limit / length;
+    correct(rows, a, b, along(rows, total - joint.impulse), h);
+    joint.impulse = total;
+}
+
+// Calls use(joint, a, b, refresh) for each block; refresh() reads its rows at the present poses.
+template <typename Use> void for_each_block(StepContext &context, Use &&use) {
+    SolverScratch &s = context.scratch;
+    std::size_t block = 0;
+    for (std::size_t i = 0; i < s.joints.size(); ++i) {
+        JointConstraint &joint = s.joints[i];
+        block = i > 0 && s.joints[i - 1].joint == joint.joint ? block + 1 : 0;
+        SolverBody &a = context.body(joint.a);
+        SolverBody &b = context.body(joint.b);
+        use(joint, a, b, [&] {
+            s.rows.clear();
+            RowWriter writer(s.rows);
+            if (joint.joint == JointConstraint::grab)
+                emit_rows(context.grab, a, b, writer);
+            else
+                emit_rows(context.model.joints[joint.joint], a, b, writer);
+            joint.rows = s.rows[block];
+        });
+    }
+    context.report.constraint_passes += s.joints.size();
+}
+
+void solve_joint_poses(StepContext &context, Real h) {
+    for_each_block(context,
+                   [&](JointConstraint &joint, SolverBody &a, SolverBody &b, const auto &refresh) {
+                       if (joint.rows.bounds == RowBounds::motor)
+                           return;
+                       if (joint.is_spring()) {
+                           for (int row = 0; row < joint.rows.count; ++row) {
+                               refresh();
+                               solve_spring(joint, a, b, row, h);
+                           }
+                           return;
+                       }
+                       refresh();
+                       solve_rigid(joint, a, b, h);
+                   });
+}
+
+// Motors drive speeds, by as much as their force does in a substep.
+void solve_motors(StepContext &context, Real h) {
+    for_each_block(context, [&](JointConstraint &joint, SolverBody &a, SolverBody &b,
+                                const auto &refresh) {
+        if (joint.rows.bounds != RowBounds::motor)
+            return;
+        refresh();
+        const RowBlock &rows = joint.rows;
+        const Vec3 &n = rows.axes[0];
+        const bool is_angular = rows.kind == RowKind::angular;
+        const Real inverse = inverse_mass(rows, a, b, n);
+        if (!(inverse > Real(0)))
+            return;
+        const Vec3 speed = is_angular ? b.angular_velocity - a.angular_velocity
+                                      : b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+        const Real limit = rows.max_force * h;
+        const Real impulse = std::clamp((rows.speed - glm::dot(n, speed)) / inverse, -limit, limit);
+        joint.impulse.x = h * impulse;
+        if (is_angular) {
+            a.apply_angular_impulse(-impulse * n);
+            b.apply_angular_impulse(impulse * n);
+        } else {
+            a.apply_impulse(-impulse * n, rows.r_a);
+            b.apply_impulse(impulse * n, rows.r_b);
+        }
+    });
+}
+
+// No constraint bears anything yet; how fast what touches approaches.
+void begin(StepContext &context) {
+    remember_joints(context);
+    remember_contacts(context);
+    note_approach(context);
+    begin_particle_corrections(context);
+}
+
+// What constraints bore in the last substep, as impulses.
+void store(StepContext &context, Real h) {
+    for (JointConstraint &joint : context.scratch.joints)
+        joint.impulse /= h;
+    for (ContactConstraint &contact : context.scratch.contacts)
+        for (ContactPointConstraint &point : contact.points)
+            point.impulse /= h;
+    store_joints(context);
+    store_contacts(context);
+}
+
+void advance(StepContext &context) {
+    const StepSettings &settings = context.settings;
+    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Vec3 gravity{settings.gravity};
+
+    prepare_contacts(context);
+    prepare_joints(context);
+    prepare_particles(context);
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        kick(context, gravity, h);
+        kick_particles(context, gravity, h);
+        pull_particle(context, h);
+        begin(context);
+        predict(context, h);
+        for (int i = 0; i < settings.iterations; ++i) {
+            solve_joint_poses(context, h);
+            solve_spring_poses(context, h);
+            solve_particle_contact_poses(context, h);
+            solve_contact_poses(context, h);
+        }
+        derive_spins(context, h);
+        solve_motors(context, h);
+        solve_particle_contact_velocities(context, h);
+        solve_contact_velocities(context, h);
+    }
+    store(context, h);
+}
+
+} // namespace
+
+Method xpbd() {
+    return {{.name = "xpbd",
+             .title = "XPBD",
+             .source = "Mueller et al. 2020, Detailed Rigid Body Simulation with XPBD",
+             .contacts = true,
+             .joints = true,
+             .springs = true,
+             .reads = {SettingGroup::constraints, SettingGroup::speculative,
+                       SettingGroup::threshold, SettingGroup::gyroscopic},
+             .defaults = {.substeps = 20, .iterations = 1}},
+            advance};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION
