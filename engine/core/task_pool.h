@@ -4,18 +4,21 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
-#include <functional>
+#include <cstdint>
+#include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace plumb {
 
 // `threads` workers in all, the calling thread among them. Which thread runs which part is not
-// determined, so work that shall give the same bits writes only to its own items.
+// determined, so work that must give the same bits writes only to its own items.
 class TaskPool {
   public:
-    explicit TaskPool(int threads); // >= 1
+    explicit TaskPool(int threads); // 1 to 1024
     ~TaskPool();
     TaskPool(const TaskPool &) = delete;
     TaskPool &operator=(const TaskPool &) = delete;
@@ -23,26 +26,69 @@ class TaskPool {
     int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
     // Calls body(begin, end) for parts of [0, count), of at most `grain` items when there are
-    // several threads and in one part when there is one; returns when all are done. Not reentrant.
-    // An exception from a part reaches the caller.
-    void for_parts(std::size_t count, std::size_t grain,
-                   const std::function<void(std::size_t, std::size_t)> &body);
+    // several threads and in one part when there is one; returns when all are done. Parts begin at
+    // multiples of `grain`. Not reentrant. An exception from a part reaches the caller; parts not
+    // yet begun are left out then. Allocates nothing.
+    template <class Body> void for_parts(std::size_t count, std::size_t grain, Body &&body) {
+        using Plain = std::remove_reference_t<Body>;
+        run({std::addressof(body),
+             [](const void *what, std::size_t begin, std::size_t end) {
+                 (*static_cast<Plain *>(const_cast<void *>(what)))(begin, end);
+             },
+             count, grain});
+    }
+
+    // While one of these lives, idle workers wait for the next loop awake: it begins within a
+    // microsecond instead of some tens. For stretches in which one short loop follows another, such
+    // as a step; of null: nothing.
+    class Awake {
+      public:
+        explicit Awake(TaskPool *pool);
+        ~Awake();
+        Awake(const Awake &) = delete;
+        Awake &operator=(const Awake &) = delete;
+
+      private:
+        TaskPool *pool_;
+    };
 
   private:
+    struct Loop {
+        const void *body = nullptr;
+        void (*call)(const void *, std::size_t, std::size_t) = nullptr;
+        std::size_t count = 0;
+        std::size_t grain = 1;
+    };
+    void run(Loop loop);
+    bool run_part(std::uint64_t &ticket);
     void work(const std::stop_token &stop);
-    void run_parts();
+    void wait_for_loop(std::uint64_t seen, const std::stop_token &stop);
 
+    // The loop in hand. Only read by who then takes a part of it, and it does not change before all
+    // its parts are done.
+    std::atomic<const void *> body_ = nullptr;
+    std::atomic<void (*)(const void *, std::size_t, std::size_t)> call_ = nullptr;
+    std::atomic<std::size_t> count_ = 0;
+    std::atomic<std::size_t> grain_ = 1;
+    std::atomic<std::uint32_t> parts_ = 0;
+    // Which loop it is, and its next part: the upper and the lower 32 bits.
+    alignas(64) std::atomic<std::uint64_t> ticket_ = 0;
+    alignas(64) std::atomic<std::uint32_t> done_ = 0; // parts
+    alignas(64) std::atomic<int> awake_ = 0;
+    std::atomic<int> asleep_ = 0; // workers
     std::mutex mutex_;
     std::condition_variable_any wake_;
-    std::condition_variable done_;
-    const std::function<void(std::size_t, std::size_t)> *body_ = nullptr;
-    std::size_t count_ = 0;
-    std::size_t grain_ = 1;
-    std::atomic<std::size_t> next_{0};
-    std::size_t round_ = 0;
-    std::size_t busy_ = 0;
     std::exception_ptr failure_;
     std::vector<std::jthread> workers_; // last: they stop before the rest goes
 };
+
+// Without a pool: in one part, by the caller.
+template <class Body>
+void for_parts(TaskPool *tasks, std::size_t count, std::size_t grain, Body &&body) {
+    if (tasks != nullptr)
+        tasks->for_parts(count, grain, body);
+    else if (count > 0)
+        body(std::size_t{0}, count);
+}
 
 } // namespace plumb

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <glm/geometric.hpp>
 
@@ -271,32 +270,17 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
 }
 
 // Manifolds of all candidates, with the impulses of those that were contacts before.
-void World::collide(TaskPool *tasks) const {
+void World::collide() const {
     Scratch &s = scratch_;
     // About 20 microseconds of work in a part: enough to pay for handing it out.
     constexpr std::size_t grain = 64;
     const std::size_t count = s.candidates.size();
-    const bool in_parts = tasks != nullptr && tasks->threads() > 1 && count > grain;
-    const std::size_t part_count = in_parts ? (count + grain - 1) / grain : 1;
-    if (s.parts.size() < part_count) {
-        s.parts.resize(part_count);
-        s.triangles.resize(part_count);
-    }
-    const auto collide_part = [&](std::size_t begin, std::size_t end) {
-        const std::size_t part = begin / grain;
-        s.parts[part].clear();
-        for (std::size_t i = begin; i < end; ++i)
-            collide_candidate(s.candidates[i], s.parts[part], s.triangles[part]);
-    };
-    s.contacts.clear();
-    if (!in_parts) {
-        collide_part(0, count);
-        std::swap(s.contacts, s.parts.front());
-        return;
-    }
-    tasks->for_parts(count, grain, std::ref(collide_part)); // by reference: nothing is allocated
-    for (std::size_t part = 0; part < part_count; ++part)
-        s.contacts.insert(s.contacts.end(), s.parts[part].begin(), s.parts[part].end());
+    s.triangles.resize(std::max(s.triangles.size(), part_count(s.tasks, count, grain)));
+    collect(s.tasks, count, grain, s.contact_parts, s.contacts,
+            [&](std::size_t begin, std::size_t end, std::size_t part, std::vector<Contact> &out) {
+                for (std::size_t i = begin; i < end; ++i)
+                    collide_candidate(s.candidates[i], out, s.triangles[part]);
+            });
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -153,10 +153,8 @@ bool has_turned_far(const SolverBody &body) {
 
 // Sets separations so that with what the kernels add they are exact at the present poses: of what
 // turned far, and of contacts made for the time of impact, whose arms are those of then.
-void correct_separations(StepContext &context) {
-    const bool any_far = std::ranges::any_of(
-        context.moving(), [&](std::uint32_t body) { return has_turned_far(context.bodies[body]); });
-    for (ContactBlock &block : context.scratch.schedule.blocks)
+void correct_separations(const StepContext &context, std::span<ContactBlock> blocks, bool any_far) {
+    for (ContactBlock &block : blocks)
         for (std::size_t lane = 0; (any_far || block.any_ahead) && lane < block.used; ++lane) {
             const Contact &contact = context.contacts[block.contacts[lane]];
             const SolverBody &a = context.bodies[contact.key.a];
@@ -177,6 +175,31 @@ void correct_separations(StepContext &context) {
                 block.points[k].separation.lanes[lane] = exact - way;
             }
         }
+}
+
+// Some microseconds of work.
+constexpr std::size_t blocks_a_part = 4;
+
+// Blocks that nobody else writes to, in parts.
+template <class Use> void for_blocks(StepContext &context, Use &&use) {
+    const std::span<ContactBlock> blocks = context.scratch.schedule.blocks;
+    for_parts(context.tasks, blocks.size(), blocks_a_part,
+              [&](std::size_t begin, std::size_t end) { use(blocks.subspan(begin, end - begin)); });
+}
+
+// In parts that share no dynamic body, one colour after another.
+template <class Use> void for_colours(StepContext &context, Use &&use) {
+    const ContactSchedule &schedule = context.scratch.schedule;
+    const std::span<ContactBlock> blocks = context.scratch.schedule.blocks;
+    std::size_t first = 0;
+    for (const std::uint32_t last : schedule.colour_ends) {
+        const std::span<ContactBlock> colour = blocks.subspan(first, last - first);
+        for_parts(
+            context.tasks, colour.size(), blocks_a_part,
+            [&](std::size_t begin, std::size_t end) { use(colour.subspan(begin, end - begin)); });
+        first = last;
+    }
+    use(blocks.subspan(first));
 }
 
 // Normal, tangents and arms of one contact as they are t seconds from now.
@@ -221,60 +244,85 @@ void express_anew(Contact &contact, const Vec3 &normal, const Vec3 &t1) {
 // What rides on a turntable is turned by friction all the time. With the arms of the step's start
 // it would be turned all at once, in the first substep, and friction cannot hold that.
 void turn_contact_columns(StepContext &context, Real t) {
-    for (ContactBlock &block : context.scratch.schedule.blocks)
-        for (std::size_t lane = 0; block.any_ahead && lane < block.used; ++lane)
-            if (context.contacts[block.contacts[lane]].moment == Moment::turning)
-                turn_lane(context, block, lane, t);
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        for (ContactBlock &block : blocks)
+            for (std::size_t lane = 0; block.any_ahead && lane < block.used; ++lane)
+                if (context.contacts[block.contacts[lane]].moment == Moment::turning)
+                    turn_lane(context, block, lane, t);
+    });
 }
 
 void prepare_contact_columns(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
     schedule.blocks.clear();
+    schedule.colour_ends.clear();
     schedule.lanes.clear();
     if (context.active.contacts.empty())
         return;
     colour(context);
     // A bucket's blocks come in order; the last bucket's have one lane each.
+    constexpr auto width = static_cast<std::uint32_t>(column_lanes);
     std::uint32_t block_count = 0;
     std::vector<std::uint32_t> &next = schedule.bucket_sizes; // becomes: the bucket's next lane
     for (std::uint32_t bucket = 0; bucket <= alone; ++bucket) {
         const std::uint32_t size = next[bucket];
-        next[bucket] = block_count * static_cast<std::uint32_t>(column_lanes);
-        constexpr auto width = static_cast<std::uint32_t>(column_lanes);
+        next[bucket] = block_count * width;
         block_count += bucket == alone ? size : (size + width - 1) / width;
+        const bool ends_colour = bucket % most_points == most_points - 1;
+        if (ends_colour && block_count * width > next[bucket + 1 - most_points])
+            schedule.colour_ends.push_back(block_count);
     }
-    // Lanes that are not used, and points that a lane does not have, are zeros: of no mass.
-    schedule.blocks.assign(block_count, ContactBlock{});
+    constexpr std::uint32_t none = UINT32_MAX;
+    schedule.contacts.assign(std::size_t{block_count} * width, none);
     for (const ContactSchedule::Lane &lane : schedule.lanes) {
-        const std::uint32_t place = next[lane.bucket];
-        next[lane.bucket] += lane.bucket == alone ? static_cast<std::uint32_t>(column_lanes) : 1;
-        ContactBlock &block = schedule.blocks[place / column_lanes];
-        fill_lane(context, block, block.used++, lane.contact);
+        schedule.contacts[next[lane.bucket]] = lane.contact;
+        next[lane.bucket] += lane.bucket == alone ? width : 1;
     }
-    kernels::finish(schedule.blocks);
+    schedule.blocks.resize(block_count);
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        const std::uint32_t *contact =
+            schedule.contacts.data() + (blocks.data() - schedule.blocks.data()) * width;
+        for (ContactBlock &block : blocks) {
+            // Lanes that are not used, and points that a lane does not have, are zeros: of no mass.
+            block = ContactBlock{};
+            for (std::uint32_t lane = 0; lane < width; ++lane, ++contact)
+                if (*contact != none)
+                    fill_lane(context, block, block.used++, *contact);
+        }
+        kernels::finish(blocks);
+    });
 }
 
 void recall_contact_columns(StepContext &context, Real share, bool remember_first) {
-    kernels::recall(context.scratch.schedule.blocks, reals_of(context.bodies), share,
-                    remember_first);
+    const BodyReals bodies = reals_of(context.bodies);
+    for_colours(context, [&](std::span<ContactBlock> blocks) {
+        kernels::recall(blocks, bodies, share, remember_first);
+    });
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }
 
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h) {
-    correct_separations(context);
-    kernels::solve(context.scratch.schedule.blocks, reals_of(context.bodies), bias, Real(1) / h);
+    const BodyReals bodies = reals_of(context.bodies);
+    const bool any_far = std::ranges::any_of(
+        context.moving(), [&](std::uint32_t body) { return has_turned_far(context.bodies[body]); });
+    for_colours(context, [&](std::span<ContactBlock> blocks) {
+        correct_separations(context, blocks, any_far);
+        kernels::solve(blocks, bodies, bias, Real(1) / h);
+    });
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }
 
 void store_contact_columns(StepContext &context) {
-    for (const ContactBlock &block : context.scratch.schedule.blocks)
-        for (std::size_t lane = 0; lane < block.used; ++lane) {
-            Contact &contact = context.contacts[block.contacts[lane]];
-            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
-                contact.impulses[k] = get(block.points[k].impulse, lane);
-            if (contact.moment == Moment::turning)
-                express_anew(contact, get(block.normal, lane), get(block.t1, lane));
-        }
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        for (const ContactBlock &block : blocks)
+            for (std::size_t lane = 0; lane < block.used; ++lane) {
+                Contact &contact = context.contacts[block.contacts[lane]];
+                for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
+                    contact.impulses[k] = get(block.points[k].impulse, lane);
+                if (contact.moment == Moment::turning)
+                    express_anew(contact, get(block.normal, lane), get(block.t1, lane));
+            }
+    });
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -65,14 +65,17 @@ struct ContactBlock {
     Point points[4]; // NOLINT(modernize-avoid-c-arrays)
 };
 
-// All contacts of a context that are no sensors' in blocks, one colour after another.
+// All contacts of a context that are no sensors' in blocks, one colour after another: blocks of one
+// colour share no dynamic body, so that they are solved at the same time.
 struct ContactSchedule {
     struct Lane {
         std::uint32_t contact = 0;
         std::uint32_t bucket = 0; // colour and number of points
     };
     std::vector<ContactBlock> blocks;
+    std::vector<std::uint32_t> colour_ends; // of blocks; those after the last stand for themselves
     std::vector<Lane> lanes;
+    std::vector<std::uint32_t> contacts;        // of each lane of each block, in the context
     std::vector<std::uint64_t> colours_of_body; // bit c: colour c has a contact of it
     std::vector<std::uint32_t> bucket_sizes;
 };

@@ -4,7 +4,9 @@
 #include "engine/core/check.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -46,11 +48,19 @@ constexpr Real expected_steps = Real(2);
 constexpr std::size_t most_near_pairs = 100'000'000;
 constexpr std::size_t most_candidates = 6'000'000;
 
-void refuse_more_than(std::size_t limit, std::size_t pairs, Scratch &scratch) {
-    if (pairs <= limit)
-        return;
-    scratch = Scratch{}; // what was found is only a part
-    PLUMB_CHECK(false, "more than " << limit << " pairs of shapes come near each other");
+void refuse_more_than(std::size_t limit, std::size_t pairs) {
+    PLUMB_CHECK(pairs <= limit, "more than " << limit << " pairs of shapes come near each other");
+}
+
+// Some microseconds of work.
+constexpr std::size_t colliders_a_part = 128;
+constexpr std::size_t pairs_a_part = 512;
+
+// What is in order already, as it is from step to step where nothing leaves its fat box, costs
+// one look.
+template <class T, class Key> void sort_by(std::vector<T> &list, Key key) {
+    if (!std::ranges::is_sorted(list, {}, key))
+        std::ranges::sort(list, {}, key);
 }
 
 } // namespace
@@ -73,47 +83,58 @@ Aabb World::swept_bounds(const Aabb &box, std::uint32_t body) const {
     return {box.min - reach, box.max + reach};
 }
 
-// Places the colliders and sweeps their boxes; notes which left their fat box.
+// Places a collider and sweeps its box; whether the tree has to know.
+bool World::place_collider(std::uint32_t i) const {
+    Scratch &s = scratch_;
+    const Collider &collider = model_->colliders[i];
+    if (collider.body == no_body)
+        return false;
+    const bool is_still = s.still[collider.body] != 0;
+    if (is_still && s.stays[i] != 0 && s.leaves[i] != DynamicTree::none)
+        return false;
+    s.stays[i] = is_still ? 1 : 0;
+    const Motion &motion = state_.motions[collider.body];
+    if (has_diverged(motion)) { // diverged: the report says so; nothing to collide
+        s.swept[i] = Aabb{};
+        return false;
+    }
+    if (!collider.surface)
+        s.placed[i] = placed(collider.shape, Transform{motion.position, motion.rotation});
+    if (collider.is_half_space())
+        return false;
+    const Aabb box = collider.surface ? surface_bounds(collider, motion) : bounds(s.placed[i]);
+    s.swept[i] = swept_bounds(box, collider.body);
+    if (!is_finite_box(s.swept[i])) { // about to diverge
+        s.swept[i] = Aabb{};
+        return false;
+    }
+    return s.leaves[i] == DynamicTree::none || !s.tree.holds(s.leaves[i], s.swept[i]);
+}
+
+// Places the colliders; notes which left their fat box, and whether any did.
 bool World::place_colliders() const {
     Scratch &s = scratch_;
     const std::size_t count = model_->colliders.size();
     s.placed.resize(count);
     s.swept.resize(count);
     s.leaves.resize(count, DynamicTree::none);
-    s.moved.assign(count, 0);
+    s.moved.resize(count);
     s.stays.resize(count, 0);
+    for_parts(s.tasks, count, colliders_a_part, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            s.moved[i] = place_collider(static_cast<std::uint32_t>(i)) ? 1 : 0;
+    });
     bool any_moved = false;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Collider &collider = model_->colliders[i];
-        if (collider.body == no_body)
+        if (s.moved[i] == 0)
             continue;
-        const bool is_still = s.still[collider.body] != 0;
-        if (is_still && s.stays[i] != 0 && s.leaves[i] != DynamicTree::none)
-            continue;
-        s.stays[i] = is_still ? 1 : 0;
-        const Motion &motion = state_.motions[collider.body];
-        if (has_diverged(motion)) { // diverged: the report says so; nothing to collide
-            s.swept[i] = Aabb{};
-            continue;
-        }
-        if (!collider.surface)
-            s.placed[i] = placed(collider.shape, Transform{motion.position, motion.rotation});
-        if (collider.is_half_space())
-            continue;
-        const Aabb box = collider.surface ? surface_bounds(collider, motion) : bounds(s.placed[i]);
-        s.swept[i] = swept_bounds(box, collider.body);
-        if (!is_finite_box(s.swept[i])) { // about to diverge
-            s.swept[i] = Aabb{};
-            continue;
-        }
+        any_moved = true;
+        const Motion &motion = state_.motions[model_->colliders[i].body];
         const Vec3 way = expected_steps * static_cast<Real>(settings_.dt) * motion.velocity;
-        if (s.leaves[i] == DynamicTree::none) {
+        if (s.leaves[i] == DynamicTree::none)
             s.leaves[i] = s.tree.insert(s.swept[i], i);
-            s.moved[i] = 1;
-        } else if (s.tree.update(s.leaves[i], s.swept[i], way)) {
-            s.moved[i] = 1;
-        }
-        any_moved = any_moved || s.moved[i] != 0;
+        else
+            s.tree.update(s.leaves[i], s.swept[i], way);
     }
     return any_moved;
 }
@@ -128,7 +149,7 @@ bool World::may_touch(std::uint32_t i, std::uint32_t j) const {
            may_collide(a.filter, b.filter);
 }
 
-void World::add_candidate(std::uint32_t i, std::uint32_t j) const {
+void World::add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidate> &out) const {
     if (scratch_.still[model_->colliders[i].body] != 0 &&
         scratch_.still[model_->colliders[j].body] != 0)
         return;
@@ -139,7 +160,52 @@ void World::add_candidate(std::uint32_t i, std::uint32_t j) const {
     if (!model_->joined.empty() &&
         std::ranges::binary_search(model_->joined, body_pair(a.body, b.body)))
         return;
-    scratch_.candidates.push_back({{a.body, b.body, a.child, b.child}, i, j});
+    out.push_back({{a.body, b.body, a.child, b.child}, i, j});
+}
+
+// Brings the pairs whose fat boxes touch up to date, after some left theirs.
+void World::find_fat_pairs() const {
+    Scratch &s = scratch_;
+    std::erase_if(s.fat_pairs, [&](std::uint64_t key) {
+        return s.moved[key >> 32] != 0 || s.moved[key & 0xFFFFFFFFU] != 0;
+    });
+    std::atomic<std::size_t> found = s.fat_pairs.size();
+    const auto find = [&](std::size_t begin, std::size_t end, std::size_t,
+                          std::vector<std::uint64_t> &out) {
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+            if (s.moved[i] == 0)
+                continue;
+            const std::size_t before = out.size();
+            s.tree.query(s.tree.fat_bounds(s.leaves[i]), [&](std::uint32_t other) {
+                const bool both_will_ask = s.moved[other] != 0 && other < i;
+                if (other != i && !both_will_ask && may_touch(i, other))
+                    out.push_back(body_pair(i, other));
+                return true;
+            });
+            refuse_more_than(most_near_pairs, found += out.size() - before);
+        }
+    };
+    collect(s.tasks, model_->colliders.size(), colliders_a_part, s.pair_parts, s.new_pairs, find);
+    s.fat_pairs.insert(s.fat_pairs.end(), s.new_pairs.begin(), s.new_pairs.end());
+    sort_by(s.fat_pairs, std::identity{});
+}
+
+void World::find_pairs_with_planes() const {
+    Scratch &s = scratch_;
+    s.plane_candidates.clear();
+    for (const std::uint32_t plane : model_->half_spaces) {
+        const std::uint32_t body = model_->colliders[plane].body;
+        HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
+        reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;
+        if (model_->bodies[body].kind != BodyKind::fixed)
+            reached.offset += glm::length(going(body).velocity) * static_cast<Real>(settings_.dt);
+        for (std::uint32_t i = 0; i < model_->colliders.size(); ++i) {
+            const Collider &other = model_->colliders[i];
+            if (other.body != no_body && !other.is_half_space() && may_touch(i, plane) &&
+                touch(s.swept[i], reached))
+                add_candidate(i, plane, s.plane_candidates);
+        }
+    }
 }
 
 // Candidates are the pairs whose swept boxes touch. The tree's fat boxes only save looking at all
@@ -152,45 +218,24 @@ void World::find_pairs() const {
             place_colliders();
         return;
     }
-    const auto count = static_cast<std::uint32_t>(model_->colliders.size());
-    if (place_colliders()) {
-        std::erase_if(s.fat_pairs, [&](std::uint64_t key) {
-            return s.moved[key >> 32] != 0 || s.moved[key & 0xFFFFFFFFU] != 0;
-        });
-        for (std::uint32_t i = 0; i < count; ++i) {
-            if (s.moved[i] == 0)
-                continue;
-            s.tree.query(s.tree.fat_bounds(s.leaves[i]), [&](std::uint32_t other) {
-                const bool both_will_ask = s.moved[other] != 0 && other < i;
-                if (other != i && !both_will_ask && may_touch(i, other))
-                    s.fat_pairs.push_back(body_pair(i, other));
-                return true;
+    if (place_colliders())
+        find_fat_pairs();
+    collect(s.tasks, s.fat_pairs.size(), pairs_a_part, s.candidate_parts, s.pair_candidates,
+            [&](std::size_t begin, std::size_t end, std::size_t, std::vector<Candidate> &out) {
+                for (std::size_t k = begin; k < end; ++k) {
+                    const auto i = static_cast<std::uint32_t>(s.fat_pairs[k] >> 32);
+                    const auto j = static_cast<std::uint32_t>(s.fat_pairs[k] & 0xFFFFFFFFU);
+                    if (touch(s.swept[i], s.swept[j]))
+                        add_candidate(i, j, out);
+                }
             });
-            refuse_more_than(most_near_pairs, s.fat_pairs.size(), s);
-        }
-        std::ranges::sort(s.fat_pairs);
-    }
-    for (const std::uint64_t key : s.fat_pairs) {
-        const auto i = static_cast<std::uint32_t>(key >> 32);
-        const auto j = static_cast<std::uint32_t>(key & 0xFFFFFFFFU);
-        if (touch(s.swept[i], s.swept[j]))
-            add_candidate(i, j);
-    }
-    for (const std::uint32_t plane : model_->half_spaces) {
-        const std::uint32_t body = model_->colliders[plane].body;
-        HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
-        reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;
-        if (model_->bodies[body].kind != BodyKind::fixed)
-            reached.offset += glm::length(going(body).velocity) * static_cast<Real>(settings_.dt);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const Collider &other = model_->colliders[i];
-            if (other.body != no_body && !other.is_half_space() && may_touch(i, plane) &&
-                touch(s.swept[i], reached))
-                add_candidate(i, plane);
-        }
-    }
-    refuse_more_than(most_candidates, s.candidates.size(), s);
-    std::ranges::sort(s.candidates, {}, &Candidate::key);
+    find_pairs_with_planes();
+    refuse_more_than(most_candidates, s.pair_candidates.size() + s.plane_candidates.size());
+    sort_by(s.pair_candidates, &Candidate::key);
+    sort_by(s.plane_candidates, &Candidate::key);
+    s.candidates.resize(s.pair_candidates.size() + s.plane_candidates.size());
+    std::ranges::merge(s.pair_candidates, s.plane_candidates, s.candidates.begin(), {},
+                       &Candidate::key, &Candidate::key);
     note_fixed_neighbors();
 }
 
@@ -208,7 +253,7 @@ void World::note_fixed_neighbors() const {
         if (!model_->colliders[fixed].sensor && !model_->colliders[other].sensor)
             s.beside_fixed.push_back(std::uint64_t{other} << 32 | fixed);
     }
-    std::ranges::sort(s.beside_fixed);
+    sort_by(s.beside_fixed, std::identity{});
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

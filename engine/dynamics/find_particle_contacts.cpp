@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <glm/geometric.hpp>
 
@@ -47,7 +46,8 @@ void World::add_particle_contact(std::uint32_t particle, std::uint32_t collider,
 
 // One particle against one collider. What goes farther in the step than its radius is met where it
 // will touch: the plane between the two as they are now would stop what flies past.
-void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::size_t part) const {
+void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::size_t part,
+                             std::vector<ParticleContact> &out) const {
     Scratch &s = scratch_;
     const Collider &what = model_->colliders[collider];
     const Body &body = model_->bodies[what.body];
@@ -74,7 +74,6 @@ void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::s
     const Sphere own{Vec3{Real(0)}, particle.radius};
     const Shape moving = own;
     const bool is_fast = way > particle.radius;
-    std::vector<ParticleContact> &out = s.particle_parts[part];
 
     const auto meet = [&](const auto &approach_of, const auto &manifold_at) {
         Approach met{Real(0), Real(0)};
@@ -120,7 +119,8 @@ void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::s
 }
 
 // One particle against all that is near its way.
-void World::collide_particle(std::uint32_t index, std::size_t part) const {
+void World::collide_particle(std::uint32_t index, std::size_t part,
+                             std::vector<ParticleContact> &out) const {
     Scratch &s = scratch_;
     const Particle &particle = model_->particles[index];
     const ParticleMotion &motion = state_.particles[index];
@@ -150,38 +150,25 @@ void World::collide_particle(std::uint32_t index, std::size_t part) const {
     }
     std::ranges::sort(near);
     for (const std::uint32_t collider : near)
-        collide_particle(index, collider, part);
+        collide_particle(index, collider, part, out);
 }
 
-void World::find_particle_contacts(TaskPool *tasks) const {
+void World::find_particle_contacts() const {
     Scratch &s = scratch_;
     s.particle_contacts.clear();
     if (!needs_particle_contacts())
         return;
     constexpr std::size_t grain = 64;
     const std::size_t count = model_->particles.size();
-    const bool in_parts = tasks != nullptr && tasks->threads() > 1 && count > grain;
-    const std::size_t parts = in_parts ? (count + grain - 1) / grain : 1;
-    if (s.particle_parts.size() < parts) {
-        s.particle_parts.resize(parts);
-        s.near_particle.resize(parts);
-        s.near_triangles.resize(parts);
-    }
-    const auto collide_part = [&](std::size_t begin, std::size_t end) {
-        const std::size_t part = begin / grain;
-        s.particle_parts[part].clear();
-        for (std::size_t i = begin; i < end; ++i)
-            collide_particle(static_cast<std::uint32_t>(i), part);
-    };
-    if (!in_parts) {
-        collide_part(0, count);
-        std::swap(s.particle_contacts, s.particle_parts.front());
-        return;
-    }
-    tasks->for_parts(count, grain, std::ref(collide_part)); // by reference: nothing is allocated
-    for (std::size_t part = 0; part < parts; ++part)
-        s.particle_contacts.insert(s.particle_contacts.end(), s.particle_parts[part].begin(),
-                                   s.particle_parts[part].end());
+    const std::size_t parts = part_count(s.tasks, count, grain);
+    s.near_particle.resize(std::max(s.near_particle.size(), parts));
+    s.near_triangles.resize(s.near_particle.size());
+    collect(s.tasks, count, grain, s.particle_contact_parts, s.particle_contacts,
+            [&](std::size_t begin, std::size_t end, std::size_t part,
+                std::vector<ParticleContact> &out) {
+                for (std::size_t i = begin; i < end; ++i)
+                    collide_particle(static_cast<std::uint32_t>(i), part, out);
+            });
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -279,13 +279,12 @@ void World::group_islands() {
 void World::note_contact_needs(const IslandGroup &group) {
     Scratch &s = scratch_;
     const double ratio = 2 * std::numbers::pi * settings_.contact_frequency_ratio;
-    for (const std::uint32_t i : group.contacts) {
-        const Contact &contact = s.contacts[i];
+    const auto wanted_of = [&](const Contact &contact) {
         const std::uint32_t a = contact.key.a;
         const std::uint32_t b = contact.key.b;
         // What is struck is not loaded yet; but the first step knows nothing else.
         if (contact.is_new && state_.paces[island_body(a, b)].substeps > 0)
-            continue;
+            return 0.0;
         double load = 0;
         for (int k = 0; k < contact.manifold.count; ++k)
             load += static_cast<double>(contact.impulses[static_cast<std::size_t>(k)].x);
@@ -296,10 +295,19 @@ void World::note_contact_needs(const IslandGroup &group) {
                 width = std::min(width,
                                  2 * static_cast<double>(least_half_width(model_->bodies[body])));
         const double depth = settings_.substep_tolerance * width;
-        const double squared =
-            0.5 * load * group.substeps * settings_.dt * inverse / (ratio * ratio * depth);
-        for (const std::uint32_t body : {a, b})
-            s.loads[body] = std::max(s.loads[body], squared);
+        return 0.5 * load * group.substeps * settings_.dt * inverse / (ratio * ratio * depth);
+    };
+    constexpr std::size_t contacts_a_part = 256;
+    s.contact_loads.resize(group.contacts.size());
+    for_parts(s.tasks, group.contacts.size(), contacts_a_part,
+              [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i)
+                      s.contact_loads[i] = wanted_of(s.contacts[group.contacts[i]]);
+              });
+    for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+        const ContactKey &key = s.contacts[group.contacts[i]].key;
+        for (const std::uint32_t body : {key.a, key.b})
+            s.loads[body] = std::max(s.loads[body], s.contact_loads[i]);
     }
 }
 

@@ -1,5 +1,6 @@
 #include "engine/dynamics/joint_constraint.h"
 
+#include "engine/core/collect.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
@@ -136,22 +137,27 @@ Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b
     return v;
 }
 
-void apply(SolverBody &a, SolverBody &b, const RowBlock &rows, const Vec3 &impulse) {
+void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
     if (rows.kind == RowKind::point) {
-        a.apply_impulse(-impulse, rows.r_a);
-        b.apply_impulse(impulse, rows.r_b);
+        body.apply_impulse(impulse, arm);
         return;
     }
     Vec3 sum = impulse.x * rows.axes[0];
     for (int i = 1; i < rows.count; ++i)
         sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
-    if (rows.kind == RowKind::angular) {
-        a.apply_angular_impulse(-sum);
-        b.apply_angular_impulse(sum);
-    } else {
-        a.apply_impulse(-sum, rows.r_a);
-        b.apply_impulse(sum, rows.r_b);
-    }
+    if (rows.kind == RowKind::angular)
+        body.apply_angular_impulse(sum);
+    else
+        body.apply_impulse(sum, arm);
+}
+
+// What does not move by forces is not written to: joints of other bodies, that are solved at the
+// same time, hang on it, too.
+void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
+    if (joint.moves_a)
+        apply(context.body(joint.a), joint.rows, joint.rows.r_a, -impulse);
+    if (joint.moves_b)
+        apply(context.body(joint.b), joint.rows, joint.rows.r_b, impulse);
 }
 
 // The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
@@ -231,12 +237,16 @@ Vec3 memory_of(const StepContext &context, const JointConstraint &constraint) {
     return memory;
 }
 
+// The right-hand sides of a group's equations, its own among those of all.
+std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
+    return std::span(context.scratch.sides).subspan(group.first, group.last - group.first);
+}
+
 // All rows of a group at once. Where bodies turn far within the substep, the ends of their arms
 // move along circles, and it takes some of Newton's steps until they meet.
 void solve_group(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = context.scratch.joint_system;
-    std::vector<Vec3> &sides = context.scratch.sides;
-    sides.resize(group.last - group.first);
+    const std::span<Vec3> sides = sides_of(context, group);
     // Far more than it takes when a body turns a radian within the substep.
     constexpr int most_steps = 8;
     constexpr Real tolerance = Real(1e-6); // of the arms' lengths
@@ -260,7 +270,7 @@ void solve_group(StepContext &context, const JointGroup &group, const JointPass 
             JointConstraint &joint = context.scratch.joints[system.block(place)];
             const Vec3 &change = sides[place - group.first];
             joint.impulse += change;
-            apply(context.body(joint.a), context.body(joint.b), joint.rows, change);
+            apply(context, joint, change);
         }
     }
 }
@@ -272,13 +282,11 @@ void let_go(StepContext &context, JointGroup &group) {
     group.is_held = false;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
-        SolverBody &a = context.body(joint.a);
-        SolverBody &b = context.body(joint.b);
         const Vec3 change = Real(0.5) * joint.remembered - joint.impulse;
         joint.impulse += change;
-        apply(a, b, joint.rows, change);
+        apply(context, joint, change);
         joint.is_held = false;
-        joint.mass = mass_of(joint.rows, a, b);
+        joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
     }
 }
 
@@ -286,7 +294,7 @@ void let_go(StepContext &context, JointGroup &group) {
 // answers to a unit impulse there: c^T K^-1 c, with c what the impulse does to the group's rows.
 Real answered(StepContext &context, const JointConstraint &joint, const JointGroup &group) {
     const JointSystem &system = context.scratch.joint_system;
-    std::vector<Vec3> &sides = context.scratch.sides;
+    const std::span<Vec3> sides = sides_of(context, group);
     const auto struck = [&](std::uint32_t body) {
         SolverBody motion = context.body(body);
         motion.velocity = motion.angular_velocity = Vec3{Real(0)};
@@ -294,7 +302,8 @@ Real answered(StepContext &context, const JointConstraint &joint, const JointGro
     };
     SolverBody a = struck(joint.a);
     SolverBody b = struck(joint.b);
-    apply(a, b, joint.rows, Vec3{Real(1), Real(0), Real(0)});
+    apply(a, joint.rows, joint.rows.r_a, Vec3{Real(-1), Real(0), Real(0)});
+    apply(b, joint.rows, joint.rows.r_b, Vec3{Real(1), Real(0), Real(0)});
     const SolverBody still;
     const auto after = [&](std::uint32_t body) -> const SolverBody & {
         return body == Joint::world ? still : body == joint.a ? a : body == joint.b ? b : still;
@@ -303,7 +312,6 @@ Real answered(StepContext &context, const JointConstraint &joint, const JointGro
         const JointConstraint &other = context.scratch.joints[system.block(place)];
         return row_velocity(other.rows, after(other.a), after(other.b), JointPass{});
     };
-    sides.resize(group.last - group.first);
     for (std::uint32_t place = group.first; place < group.last; ++place)
         sides[place - group.first] = effect(place);
     system.solve(group, sides);
@@ -346,23 +354,48 @@ void weigh_with_groups(StepContext &context, bool changed_only) {
     }
 }
 
-// Emits the rows of every joint that holds; calls use(joint, a, b) for each block, in order.
-template <typename Use> void emit_all(StepContext &context, Use &&use) {
-    std::vector<RowBlock> &rows = context.scratch.rows;
+// Some microseconds of work.
+constexpr std::size_t joints_a_part = 16;
+constexpr std::size_t groups_a_part = 1;
+
+// Calls use(joint, a, b, block) for the rows of the joints `first` to `last - 1` that hold, in
+// order; the grab comes after the last joint.
+template <typename Use>
+void emit(StepContext &context, std::size_t first, std::size_t last, std::vector<RowBlock> &rows,
+          Use &&use) {
     RowWriter writer(rows);
-    for (const std::uint32_t i : context.active.joints) {
+    const std::size_t count = context.active.joints.size();
+    for (std::size_t k = first; k < last && k < count; ++k) {
+        const std::uint32_t i = context.active.joints[k];
         const Joint &joint = context.model.joints[i];
         rows.clear();
         emit_rows(joint, context.body(joint.a), context.body(joint.b), writer);
         for (const RowBlock &block : rows)
             use(i, joint.a, joint.b, block);
     }
-    if (context.active.holds_grab) {
+    if (last > count && context.active.holds_grab) {
         rows.clear();
         emit_rows(context.grab, context.world_frame, context.body(context.grab.body), writer);
         for (const RowBlock &block : rows)
             use(JointConstraint::grab, Joint::world, context.grab.body, block);
     }
+}
+
+std::size_t joints_and_grab(const StepContext &context) {
+    return context.active.joints.size() + (context.active.holds_grab ? 1 : 0);
+}
+
+// Factors the groups that are held, and of which `is_due` says so.
+template <typename Due> void factor_groups(StepContext &context, Due &&is_due) {
+    JointSystem &system = context.scratch.joint_system;
+    const std::span<JointGroup> groups = system.groups();
+    for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
+        for (JointGroup &group : groups.subspan(begin, end - begin)) {
+            group.is_factored = group.is_held;
+            if (group.is_held && is_due(group))
+                system.factor(context, group, held_compliance);
+        }
+    });
 }
 
 } // namespace
@@ -379,33 +412,45 @@ void prepare_joints(StepContext &context) {
     context.scratch.joint_system.release();
     if (context.active.joints.empty() && !context.active.holds_grab)
         return;
-    emit_all(context,
+    const auto is_dynamic = [&](std::uint32_t body) {
+        return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
+    };
+    const std::size_t count = joints_and_grab(context);
+    context.scratch.rows.resize(
+        std::max<std::size_t>(part_count(context.tasks, count, joints_a_part), 1));
+    context.scratch.first_blocks.clear();
+    for (std::size_t k = 0; k < count; ++k) {
+        context.scratch.first_blocks.push_back(static_cast<std::uint32_t>(constraints.size()));
+        emit(context, k, k + 1, context.scratch.rows.front(),
              [&](std::uint32_t joint, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
                  JointConstraint &out = constraints.emplace_back();
                  out.joint = joint;
                  out.a = a;
                  out.b = b;
+                 out.moves_a = is_dynamic(a);
+                 out.moves_b = is_dynamic(b);
                  out.rows = block;
                  out.impulse = memory_of(context, out);
              });
+    }
 }
 
 void refresh_joints(StepContext &context) {
     if (context.scratch.joints.empty())
         return;
-    auto next = context.scratch.joints.begin();
-    emit_all(context, [&](std::uint32_t, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
-        next->rows = block;
-        if (!next->is_held)
-            next->mass = mass_of(block, context.body(a), context.body(b));
-        ++next;
-    });
-    JointSystem &system = context.scratch.joint_system;
-    for (JointGroup &group : system.groups()) {
-        group.is_factored = group.is_held;
-        if (group.is_held)
-            system.factor(context, group, held_compliance);
-    }
+    const auto refresh = [&](std::size_t begin, std::size_t end) {
+        JointConstraint *next = context.scratch.joints.data() + context.scratch.first_blocks[begin];
+        std::vector<RowBlock> &rows = context.scratch.rows[begin / joints_a_part];
+        emit(context, begin, end, rows,
+             [&](std::uint32_t, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
+                 next->rows = block;
+                 if (!next->is_held)
+                     next->mass = mass_of(block, context.body(a), context.body(b));
+                 ++next;
+             });
+    };
+    for_parts(context.tasks, joints_and_grab(context), joints_a_part, refresh);
+    factor_groups(context, [](const JointGroup &) { return true; });
     weigh_with_groups(context, false);
 }
 
@@ -415,11 +460,9 @@ void refresh_changed_joints(StepContext &context) {
         if (!joint.is_held && is_changed(context, joint))
             joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
     // A group that has changed has changed all of its bodies.
-    for (JointGroup &group : system.groups()) {
-        group.is_factored = group.is_held;
-        if (group.is_held && is_changed(context, context.scratch.joints[system.block(group.first)]))
-            system.factor(context, group, held_compliance);
-    }
+    factor_groups(context, [&](const JointGroup &group) {
+        return is_changed(context, context.scratch.joints[system.block(group.first)]);
+    });
     weigh_with_groups(context, true);
 }
 
@@ -436,7 +479,7 @@ void recall_joints(StepContext &context, Real share, Springs springs) {
             continue;
         const Vec3 recalled = share * joint.remembered;
         joint.impulse += recalled;
-        apply(context.body(joint.a), context.body(joint.b), joint.rows, recalled);
+        apply(context, joint, recalled);
     }
     context.report.constraint_passes += context.scratch.joints.size();
 }
@@ -444,7 +487,7 @@ void recall_joints(StepContext &context, Real share, Springs springs) {
 void repeat_springs(StepContext &context) {
     for (JointConstraint &joint : context.scratch.joints)
         if (joint.is_spring()) {
-            apply(context.body(joint.a), context.body(joint.b), joint.rows, joint.impulse);
+            apply(context, joint, joint.impulse);
             joint.impulse *= Real(2);
         }
 }
@@ -453,27 +496,34 @@ void repeat_springs(StepContext &context) {
 // did.
 void solve_joints(StepContext &context, const JointPass &pass) {
     const std::span<JointGroup> groups = context.scratch.joint_system.groups();
-    for (JointGroup &group : groups)
-        if (pass.at_the_end && group.is_held) {
-            solve_group(context, group, pass);
-            if (!can_follow(context, group, pass.h))
-                let_go(context, group);
-        }
+    const auto hold = [&](std::size_t begin, std::size_t end) {
+        for (JointGroup &group : groups.subspan(begin, end - begin))
+            if (group.is_held) {
+                solve_group(context, group, pass);
+                if (!can_follow(context, group, pass.h))
+                    let_go(context, group);
+            }
+    };
+    if (pass.at_the_end)
+        for_parts(context.tasks, groups.size(), groups_a_part, hold);
     bool is_changed = !pass.at_the_end;
     for (JointConstraint &joint : context.scratch.joints) {
         if (joint.is_held || (pass.springs == Springs::skip && joint.is_spring()) ||
             (pass.skips_motors && joint.rows.bounds == RowBounds::motor))
             continue;
-        SolverBody &a = context.body(joint.a);
-        SolverBody &b = context.body(joint.b);
-        const Vec3 change = impulse_change(joint, a, b, pass);
+        const Vec3 change =
+            impulse_change(joint, context.body(joint.a), context.body(joint.b), pass);
         joint.impulse += change;
-        apply(a, b, joint.rows, change);
+        apply(context, joint, change);
         is_changed = true;
     }
-    for (const JointGroup &group : groups)
-        if (is_changed && group.is_held)
-            solve_group(context, group, pass);
+    const auto solve = [&](std::size_t begin, std::size_t end) {
+        for (const JointGroup &group : groups.subspan(begin, end - begin))
+            if (group.is_held)
+                solve_group(context, group, pass);
+    };
+    if (is_changed)
+        for_parts(context.tasks, groups.size(), groups_a_part, solve);
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
@@ -481,11 +531,10 @@ void answer_impact(StepContext &context, std::uint32_t group) {
     if (group == JointSystem::none)
         return;
     JointSystem &system = context.scratch.joint_system;
-    std::vector<Vec3> &sides = context.scratch.sides;
     const JointGroup &all = system.groups()[group];
     if (!all.is_held)
         return;
-    sides.resize(all.last - all.first);
+    const std::span<Vec3> sides = sides_of(context, all);
     for (std::uint32_t place = all.first; place < all.last; ++place) {
         const JointConstraint &joint = context.scratch.joints[system.block(place)];
         sides[place - all.first] =
@@ -494,7 +543,7 @@ void answer_impact(StepContext &context, std::uint32_t group) {
     system.solve(all, sides);
     for (std::uint32_t place = all.first; place < all.last; ++place) {
         const JointConstraint &joint = context.scratch.joints[system.block(place)];
-        apply(context.body(joint.a), context.body(joint.b), joint.rows, sides[place - all.first]);
+        apply(context, joint, sides[place - all.first]);
     }
 }
 

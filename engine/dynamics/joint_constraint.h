@@ -18,6 +18,8 @@ struct JointConstraint {
     std::uint32_t joint = 0; // index in the model, or `grab`
     std::uint32_t a = 0;
     std::uint32_t b = 0;
+    bool moves_a = false; // by forces
+    bool moves_b = false;
     RowBlock rows;
     Mat3 mass{Real(0)};       // inverse of K; one row: [0][0] alone
     Vec3 impulse{Real(0)};    // accumulated in this substep, on b (N s, N m s)

@@ -29,15 +29,16 @@ bool is_torn(const RowBlock &rows) {
     return !(glm::dot(rows.error, rows.error) <= most * most);
 }
 
-// use(body, F r) for each end of a joint; `share` of the substep's impulse is in joint.impulse.
+// use(body, F r) for each end of a joint that moves by forces; `share` of the substep's impulse is
+// in joint.impulse.
 template <typename Use>
 void for_each_end(const JointConstraint &joint, Real h, Real share, Use &&use) {
     if (joint.rows.kind == RowKind::angular)
         return;
     const Real force = glm::length(joint.impulse) / (share * h);
-    if (joint.a != Joint::world)
+    if (joint.moves_a)
         use(joint.a, force * glm::length(joint.rows.r_a));
-    if (joint.b != Joint::world)
+    if (joint.moves_b)
         use(joint.b, force * glm::length(joint.rows.r_b));
 }
 
@@ -47,8 +48,7 @@ Real needed_inertia(Real stiffness, Real h, Real followed) {
 }
 
 bool is_followed(const Body &body, Real stiffness, Real h) {
-    return body.kind != BodyKind::dynamic ||
-           needed_inertia(stiffness, h, followed_together) <= least(body.inertia);
+    return needed_inertia(stiffness, h, followed_together) <= least(body.inertia);
 }
 
 // For the present substep; a body that bears less again is as it was. Says whether anything

@@ -40,8 +40,11 @@ void JointSystem::arrange(StepContext &context) {
     };
     is_arranged_ = true;
     if (!key_.empty() && key_.front() == context.bodies.size() &&
-        std::ranges::equal(std::span(key_).subspan(1), joints, {}, {}, key_of))
+        std::ranges::equal(std::span(key_).subspan(1), joints, {}, {}, key_of)) {
+        std::vector<Vec3> &sides = context.scratch.sides;
+        sides.resize(std::max(sides.size(), order_.size()));
         return;
+    }
     key_.assign(1, context.bodies.size());
     for (const JointConstraint &joint : joints)
         key_.push_back(key_of(joint));
@@ -101,6 +104,7 @@ void JointSystem::arrange(StepContext &context) {
                 if (is_dynamic(body))
                     group_of_body_[body] = static_cast<std::uint32_t>(groups_.size() - 1);
     }
+    context.scratch.sides.resize(std::max(context.scratch.sides.size(), order_.size()));
     effects_.resize(order_.size());
     softening_.resize(order_.size());
     diagonal_.resize(order_.size());
@@ -262,7 +266,7 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Real com
     }
 }
 
-void JointSystem::solve(const JointGroup &group, std::vector<Vec3> &sides) const {
+void JointSystem::solve(const JointGroup &group, std::span<Vec3> sides) const {
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         Vec3 &own = sides[place - group.first];
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)

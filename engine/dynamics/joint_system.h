@@ -52,7 +52,7 @@ class JointSystem {
     // What `factor` added to a block's inverse mass.
     const Mat3 &softening(std::uint32_t place) const { return softening_[place]; }
     // Replaces right-hand sides, one for each place of the group, by the solution.
-    void solve(const JointGroup &group, std::vector<Vec3> &sides) const;
+    void solve(const JointGroup &group, std::span<Vec3> sides) const;
 
   private:
     struct Entry { // below the diagonal, of one column

@@ -1,6 +1,7 @@
 // The seam between a world and the methods that advance it.
 #pragma once
 
+#include "engine/core/task_pool.h"
 #include "engine/dynamics/contact_columns.h"
 #include "engine/dynamics/contact_constraint.h"
 #include "engine/dynamics/events.h"
@@ -27,9 +28,10 @@ struct SolverScratch {
     std::vector<ContactConstraint> contacts;
     ContactSchedule schedule;
     std::vector<JointConstraint> joints;
-    std::vector<RowBlock> rows;
+    std::vector<std::vector<RowBlock>> rows; // that a part of a loop emits
+    std::vector<std::uint32_t> first_blocks; // of each active joint and the grab, in `joints`
     JointSystem joint_system;
-    std::vector<Vec3> sides;                     // of its equations
+    std::vector<Vec3> sides;                     // of its equations, one for each place
     std::vector<Real> stiffness;                 // of each body, see joint_stiffness
     std::vector<std::uint8_t> changed;           // likewise: what follow_loads changed
     std::vector<FreeFlight> flights;             // one for each moving body
@@ -66,6 +68,7 @@ struct StepContext {
     std::span<ParticleMotion> particles; // one for each particle of the model
     std::span<const std::uint8_t> torn;  // one for each spring of the model
     std::span<const ParticleContact> particle_contacts;
+    TaskPool *tasks = nullptr; // null: one thread; with more the bits are the same
 
     std::span<const std::uint32_t> moving() const { return active.moving; }
     bool is_free() const {

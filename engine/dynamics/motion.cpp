@@ -261,27 +261,40 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
         motion.angular_velocity += rotated(motion.rotation, flight.end_spin - flight.mean_spin);
 }
 
+namespace {
+
+// Some microseconds of work.
+constexpr std::size_t bodies_a_part = 64;
+
+} // namespace
+
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
     flights.resize(context.moving().size());
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const std::uint32_t body = context.moving()[i];
-        flights[i] = begin_flight(context.bodies[body], context.model.bodies[body], gravity, h,
-                                  kick, context.settings.gyroscopic_iterations);
-    }
+    const auto begin_part = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t body = context.moving()[i];
+            flights[i] = begin_flight(context.bodies[body], context.model.bodies[body], gravity, h,
+                                      kick, context.settings.gyroscopic_iterations);
+        }
+    };
+    for_parts(context.tasks, flights.size(), bodies_a_part, begin_part);
     context.report.body_passes += flights.size();
 }
 
 void end_flights(StepContext &context, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
-    for (std::size_t i = 0; i < flights.size(); ++i) {
-        const std::uint32_t body = context.moving()[i];
-        const std::vector<Real> &stiffness = context.scratch.stiffness;
-        move_held(context.bodies[body], context.model.bodies[body], flights[i], h,
-                  context.settings.gyroscopic_iterations,
-                  kick == Kick::around && !stiffness.empty() && stiffness[body] > Real(0));
-        end_flight(context.bodies[body], context.model.bodies[body], flights[i], kick);
-    }
+    const std::vector<Real> &stiffness = context.scratch.stiffness;
+    const auto end_part = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t body = context.moving()[i];
+            move_held(context.bodies[body], context.model.bodies[body], flights[i], h,
+                      context.settings.gyroscopic_iterations,
+                      kick == Kick::around && !stiffness.empty() && stiffness[body] > Real(0));
+            end_flight(context.bodies[body], context.model.bodies[body], flights[i], kick);
+        }
+    };
+    for_parts(context.tasks, flights.size(), bodies_a_part, end_part);
     context.report.body_passes += flights.size();
 }
 

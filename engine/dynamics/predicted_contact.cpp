@@ -182,7 +182,7 @@ Real World::least_half_width(const Body &body) const {
 // After a try of the step: whether bodies that something struck went far, for their size, where
 // nothing was looked for, and met something there. Its contacts are added, and the step is to be
 // tried again.
-bool World::find_surprises(TaskPool *tasks) {
+bool World::find_surprises() {
     if (!method_->info.looks_ahead)
         return false;
     Scratch &s = scratch_;
@@ -221,7 +221,7 @@ bool World::find_surprises(TaskPool *tasks) {
         return false;
     if (wake_touched(s.more)) {
         s.surprised.clear();
-        find_contacts(tasks);
+        find_contacts();
         return true;
     }
     s.contacts.insert(s.contacts.end(), s.more.begin(), s.more.end());

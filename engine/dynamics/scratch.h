@@ -2,6 +2,7 @@
 // for its memory, and because the tree's boxes change slowly. No result depends on it.
 #pragma once
 
+#include "engine/core/collect.h"
 #include "engine/dynamics/method.h"
 #include "engine/space/dynamic_tree.h"
 
@@ -21,6 +22,8 @@ struct Candidate {
 inline constexpr Real tree_margin = Real(0.1);
 
 struct Scratch {
+    TaskPool *tasks = nullptr; // of the step that runs; null: one thread
+
     // Broad phase, one for each collider of the model.
     DynamicTree tree{tree_margin};
     std::vector<DynamicTree::Leaf> leaves;
@@ -29,7 +32,12 @@ struct Scratch {
     std::vector<std::uint8_t> moved;
     std::vector<std::uint8_t> stays;      // placed where it still is
     std::vector<std::uint64_t> fat_pairs; // of colliders whose fat boxes touch, ascending
-    std::vector<Candidate> candidates;
+    std::vector<std::uint64_t> new_pairs; // those of what left its fat box
+    std::vector<Candidate> pair_candidates;
+    std::vector<Candidate> plane_candidates;
+    std::vector<Candidate> candidates; // both, ascending by key
+    FoundParts<std::uint64_t> pair_parts;
+    FoundParts<Candidate> candidate_parts;
     // Of candidates with one fixed body: (the other collider << 32 | the fixed one), ascending.
     std::vector<std::uint64_t> beside_fixed;
 
@@ -42,10 +50,14 @@ struct Scratch {
     std::vector<std::uint8_t> surprised; // empty: none
     std::vector<Motion> going;
     std::vector<Contact> more;
-    std::vector<std::vector<Contact>> parts; // found by each part of a parallel loop
-    std::vector<std::vector<std::uint32_t>> triangles;
+    FoundParts<Contact> contact_parts;
+    std::vector<std::vector<std::uint32_t>> triangles; // near what a part of the loop looks at
     std::vector<ContactMemory> next_memory;
     std::vector<PointMemory> next_points;
+    // Of each contact: how many of its points are remembered; then its place in next_memory.
+    std::vector<std::uint32_t> remembered;
+    // Of those between bodies that were still: where they were and where they are now.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> kept_memory;
 
     // Of each body: whether it does not move in this step (fixed, asleep, or driven at no speed),
     // so that it need not be met with others that do not.
@@ -65,14 +77,15 @@ struct Scratch {
     std::vector<IslandGroup> groups; // the first group_count of them
     std::size_t group_count = 0;
     std::vector<JointSystem> joint_systems; // one for each group, which is often that of last step
-    std::vector<double> loads;     // of each body: the square of the substeps that it wants
-    std::vector<double> stiffness; // of each body, that its joints' forces make (N m)
+    std::vector<double> loads;         // of each body: the square of the substeps that it wants
+    std::vector<double> contact_loads; // of each contact of a group, likewise
+    std::vector<double> stiffness;     // of each body, that its joints' forces make (N m)
     std::vector<Impact> impacts;
     std::vector<ParticleMotion> particles; // the step's copy
     std::vector<std::uint8_t> torn;
     std::vector<ParticleContact> particle_contacts; // by particle, then collider and triangle
-    std::vector<std::vector<ParticleContact>> particle_parts; // found by each part of a loop
-    std::vector<std::vector<std::uint32_t>> near_particle;    // colliders, likewise
+    FoundParts<ParticleContact> particle_contact_parts;
+    std::vector<std::vector<std::uint32_t>> near_particle; // colliders, in each part of the loop
     std::vector<std::vector<std::uint32_t>> near_triangles;
     std::vector<double> particle_rates; // see spring_rate
 };

@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
+
+// Some microseconds of work.
+constexpr std::size_t bodies_a_part = 256;
+constexpr std::size_t contacts_a_part = 256;
 
 // Adds the time until it goes to a phase, if anybody asks.
 class PhaseTimer {
@@ -59,8 +64,10 @@ void World::step(TaskPool *tasks, StepTimes *times) {
         return;
     }
     scratch_.contacts_are_current = false;
+    const TaskPool::Awake awake(tasks);
+    scratch_.tasks = tasks;
     try {
-        find_contacts(tasks, times);
+        find_contacts(times);
         {
             const PhaseTimer timer(times ? &times->advance : nullptr);
             const std::size_t impacts = scratch_.impacts.size();
@@ -75,7 +82,7 @@ void World::step(TaskPool *tasks, StepTimes *times) {
                 advance();
             }
             constexpr int most_tries = 8;
-            for (int tries = 1; tries < most_tries && find_surprises(tasks); ++tries) {
+            for (int tries = 1; tries < most_tries && find_surprises(); ++tries) {
                 scratch_.impacts.resize(impacts);
                 report_.impacts = before.impacts;
                 report_.unresolved_impacts = before.unresolved_impacts;
@@ -90,6 +97,7 @@ void World::step(TaskPool *tasks, StepTimes *times) {
             fall_asleep();
             finish();
         }
+        scratch_.tasks = nullptr;
     } catch (...) {
         scratch_ = Scratch{};
         throw;
@@ -97,43 +105,49 @@ void World::step(TaskPool *tasks, StepTimes *times) {
 }
 
 // Of all that moves. What that touches and sleeps is woken, and looked at again.
-void World::find_contacts(TaskPool *tasks, StepTimes *times) {
+void World::find_contacts(StepTimes *times) {
     do {
         {
             const PhaseTimer timer(times ? &times->find_pairs : nullptr);
             find_pairs();
         }
         const PhaseTimer timer(times ? &times->collide : nullptr);
-        collide(tasks);
+        collide();
         if (model_->has_particles())
-            find_particle_contacts(tasks);
+            find_particle_contacts();
     } while (wake_touched(scratch_.contacts));
+}
+
+void World::load_body(std::size_t i) {
+    Scratch &s = scratch_;
+    if (s.paces[i].is_asleep()) // nobody asks for it
+        return;
+    const Body &body = model_->bodies[i];
+    SolverBody &out = s.bodies[i];
+    out = SolverBody{};
+    static_cast<Motion &>(out) = state_.motions[i];
+    if (s.still[i] != 0 || body.kind != BodyKind::dynamic)
+        return;
+    out.inv_mass = Vec3{Real(1) / body.mass};
+    out.inv_inertia = solver_inverse_inertia(body, out.rotation);
+    for (std::size_t axis = 0; axis < 3 && body.has_locks; ++axis)
+        if (body.locked[axis]) {
+            out.inv_mass[static_cast<int>(axis)] = Real(0);
+            out.has_locked_translation = true;
+        }
 }
 
 void World::load_bodies() {
     Scratch &s = scratch_;
     s.bodies.resize(state_.motions.size());
     s.moving.clear();
-    for (std::uint32_t i = 0; i < s.bodies.size(); ++i) {
-        if (s.paces[i].is_asleep()) // nobody asks for it
-            continue;
-        const Body &body = model_->bodies[i];
-        SolverBody &out = s.bodies[i];
-        out = SolverBody{};
-        static_cast<Motion &>(out) = state_.motions[i];
-        if (s.still[i] != 0)
-            continue;
-        s.moving.push_back(i);
-        if (body.kind != BodyKind::dynamic)
-            continue;
-        out.inv_mass = Vec3{Real(1) / body.mass};
-        out.inv_inertia = solver_inverse_inertia(body, out.rotation);
-        for (std::size_t axis = 0; axis < 3 && body.has_locks; ++axis)
-            if (body.locked[axis]) {
-                out.inv_mass[static_cast<int>(axis)] = Real(0);
-                out.has_locked_translation = true;
-            }
-    }
+    for (std::uint32_t i = 0; i < s.bodies.size(); ++i)
+        if (!s.paces[i].is_asleep() && s.still[i] == 0)
+            s.moving.push_back(i);
+    for_parts(s.tasks, s.bodies.size(), bodies_a_part, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            load_body(i);
+    });
     s.joints = state_.joints;
     s.grab = state_.grab;
     s.world_frame = SolverBody{};
@@ -147,9 +161,14 @@ void World::advance() {
     for (std::size_t i = 0; i < s.group_count; ++i) {
         StepSettings settings = settings_;
         settings.substeps = s.groups[i].substeps;
-        StepContext context{*model_,   settings,    s.bodies,      s.groups[i],        s.contacts,
-                            s.joints,  s.grab,      s.world_frame, s.solver,           report_,
-                            s.impacts, s.particles, s.torn,        s.particle_contacts};
+        StepContext context{*model_,    settings,
+                            s.bodies,   s.groups[i],
+                            s.contacts, s.joints,
+                            s.grab,     s.world_frame,
+                            s.solver,   report_,
+                            s.impacts,  s.particles,
+                            s.torn,     s.particle_contacts,
+                            s.tasks};
         const bool has_joints = !s.groups[i].joints.empty();
         if (has_joints)
             std::swap(s.solver.joint_system, s.joint_systems[i]);
@@ -177,42 +196,85 @@ void World::advance() {
     }
 }
 
-// A contact that bears no load is not remembered. Of a collision within the step nothing is
-// remembered of its friction: what stopped the two from sliding then is no load of the next step.
-void World::remember(const Contact &contact) {
-    Scratch &s = scratch_;
+// A contact that bears no load is not remembered.
+std::uint32_t World::remembered_points(const Contact &contact) const {
     const auto count = static_cast<std::size_t>(contact.manifold.count);
-    const auto impulses = std::span(contact.impulses).first(count);
-    if (std::ranges::all_of(impulses, [](const Vec3 &one) { return one == Vec3{Real(0)}; }))
-        return;
-    s.next_memory.push_back({contact.key, static_cast<std::uint32_t>(s.next_points.size()),
-                             static_cast<std::uint32_t>(count), contact.origin});
+    const auto is_zero = [](const Vec3 &impulse) { return impulse == Vec3{Real(0)}; };
+    return std::ranges::all_of(std::span(contact.impulses).first(count), is_zero)
+               ? 0
+               : static_cast<std::uint32_t>(count);
+}
+
+// Of a collision within the step nothing is remembered of its friction: what stopped the two from
+// sliding then is no load of the next step.
+void World::remember(const Contact &contact, ContactMemory &memory) {
+    memory.key = contact.key;
+    memory.origin = contact.origin;
     const bool is_collision = contact.is_new && contact.moment == Moment::touch;
-    for (std::size_t k = 0; k < count; ++k)
-        s.next_points.push_back({contact.manifold.points[k].feature,
-                                 is_collision ? Vec3{impulses[k].x, Real(0), Real(0)} : impulses[k],
-                                 contact.anchors[k].core_a, contact.anchors[k].core_b});
+    for (std::size_t k = 0; k < memory.point_count; ++k) {
+        const Vec3 &impulse = contact.impulses[k];
+        scratch_.next_points[memory.first_point + k] = {
+            contact.manifold.points[k].feature,
+            is_collision ? Vec3{impulse.x, Real(0), Real(0)} : impulse, contact.anchors[k].core_a,
+            contact.anchors[k].core_b};
+    }
 }
 
 // What is remembered of contacts between those that were still stays as it is.
 void World::gather_memory() {
     Scratch &s = scratch_;
+    const std::size_t count = s.contacts.size();
+    s.remembered.resize(count);
+    for_parts(s.tasks, count, contacts_a_part, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            s.remembered[i] = remembered_points(s.contacts[i]);
+    });
+
+    // Their places, ascending by key.
+    constexpr std::uint32_t nowhere = UINT32_MAX;
     s.next_memory.clear();
-    s.next_points.clear();
-    auto contact = s.contacts.begin();
-    for (const ContactMemory &memory : state_.contacts) {
+    s.kept_memory.clear();
+    std::uint32_t points = 0;
+    const auto place = [&](std::uint32_t point_count) {
+        ContactMemory &memory = s.next_memory.emplace_back();
+        memory.first_point = std::exchange(points, points + point_count);
+        memory.point_count = point_count;
+    };
+    std::size_t next = 0;
+    const auto place_contact = [&] {
+        const std::uint32_t point_count = s.remembered[next];
+        s.remembered[next] =
+            point_count > 0 ? static_cast<std::uint32_t>(s.next_memory.size()) : nowhere;
+        if (point_count > 0)
+            place(point_count);
+        ++next;
+    };
+    for (std::uint32_t i = 0; i < state_.contacts.size(); ++i) {
+        const ContactMemory &memory = state_.contacts[i];
         if (s.still[memory.key.a] == 0 || s.still[memory.key.b] == 0)
             continue;
-        for (; contact != s.contacts.end() && contact->key < memory.key; ++contact)
-            remember(*contact);
-        s.next_memory.push_back(memory);
-        s.next_memory.back().first_point = static_cast<std::uint32_t>(s.next_points.size());
-        const auto points =
-            std::span(state_.points).subspan(memory.first_point, memory.point_count);
-        s.next_points.insert(s.next_points.end(), points.begin(), points.end());
+        while (next < count && s.contacts[next].key < memory.key)
+            place_contact();
+        s.kept_memory.emplace_back(i, static_cast<std::uint32_t>(s.next_memory.size()));
+        place(memory.point_count);
     }
-    for (; contact != s.contacts.end(); ++contact)
-        remember(*contact);
+    while (next < count)
+        place_contact();
+
+    s.next_points.resize(points);
+    for_parts(s.tasks, count, contacts_a_part, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (s.remembered[i] != nowhere)
+                remember(s.contacts[i], s.next_memory[s.remembered[i]]);
+    });
+    for (const auto &[from, to] : s.kept_memory) {
+        const ContactMemory &before = state_.contacts[from];
+        ContactMemory &memory = s.next_memory[to];
+        memory.key = before.key;
+        memory.origin = before.origin;
+        std::ranges::copy(std::span(state_.points).subspan(before.first_point, before.point_count),
+                          s.next_points.begin() + memory.first_point);
+    }
 }
 
 // Here nothing can fail any more.

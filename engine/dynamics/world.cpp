@@ -486,9 +486,14 @@ void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
 
 const std::vector<Contact> &World::contacts() const {
     if (!scratch_.contacts_are_current) {
-        note_still(false);
-        find_pairs();
-        collide(nullptr);
+        try {
+            note_still(false);
+            find_pairs();
+            collide();
+        } catch (...) {
+            scratch_ = Scratch{}; // what was found is only a part
+            throw;
+        }
         scratch_.contacts_are_current = true;
     }
     return scratch_.contacts;

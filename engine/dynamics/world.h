@@ -150,12 +150,14 @@ class World {
 
   private:
     // The phases of a step; those that are const work on scratch alone.
-    void find_contacts(TaskPool *tasks, StepTimes *times = nullptr);
+    void find_contacts(StepTimes *times = nullptr);
     void find_pairs() const;
-    void collide(TaskPool *tasks) const;
+    void collide() const;
+    void load_body(std::size_t i);
     void load_bodies();
     void advance();
-    void remember(const Contact &contact);
+    std::uint32_t remembered_points(const Contact &contact) const;
+    void remember(const Contact &contact, ContactMemory &memory);
     void gather_memory();
     void finish();
 
@@ -189,9 +191,11 @@ class World {
     // Particles and springs (world_particles.cpp, find_particle_contacts.cpp).
     bool moves_particles() const;
     bool needs_particle_contacts() const;
-    void find_particle_contacts(TaskPool *tasks) const;
-    void collide_particle(std::uint32_t index, std::size_t part) const;
-    void collide_particle(std::uint32_t index, std::uint32_t collider, std::size_t part) const;
+    void find_particle_contacts() const;
+    void collide_particle(std::uint32_t index, std::size_t part,
+                          std::vector<ParticleContact> &out) const;
+    void collide_particle(std::uint32_t index, std::uint32_t collider, std::size_t part,
+                          std::vector<ParticleContact> &out) const;
     void add_particle_contact(std::uint32_t particle, std::uint32_t collider,
                               const Manifold &manifold, const Motion &at,
                               std::vector<ParticleContact> &out) const;
@@ -210,9 +214,12 @@ class World {
 
     bool turn_together(std::uint32_t a, std::uint32_t b) const;
     bool needs_contacts() const;
+    bool place_collider(std::uint32_t i) const;
     bool place_colliders() const;
     bool may_touch(std::uint32_t i, std::uint32_t j) const;
-    void add_candidate(std::uint32_t i, std::uint32_t j) const;
+    void add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidate> &out) const;
+    void find_fat_pairs() const;
+    void find_pairs_with_planes() const;
     Aabb swept_bounds(const Aabb &box, std::uint32_t body) const;
     Real contact_margin(const Candidate &candidate) const;
     Manifold present_manifold(const Contact &contact) const;
@@ -232,7 +239,7 @@ class World {
     // Contacts of what does not touch yet (predicted_contact.cpp).
     const Motion &going(std::uint32_t body) const;
     Real least_half_width(const Body &body) const;
-    bool find_surprises(TaskPool *tasks);
+    bool find_surprises();
     Real contact_reach(const Candidate &candidate) const;
     Real turning_reach(std::uint32_t body) const;
     Real way_of(const Candidate &candidate) const;

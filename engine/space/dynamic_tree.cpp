@@ -97,7 +97,7 @@ void DynamicTree::remove(Leaf leaf) {
 bool DynamicTree::update(Leaf leaf, const Aabb &box, const Vec3 &way) {
     check_leaf(leaf);
     check_box(box);
-    if (holds(node(leaf).box, box))
+    if (plumb::holds(node(leaf).box, box))
         return false;
     unlink(leaf);
     Aabb fat = fattened(box);
@@ -111,6 +111,10 @@ bool DynamicTree::update(Leaf leaf, const Aabb &box, const Vec3 &way) {
 std::uint32_t DynamicTree::user(Leaf leaf) const {
     check_leaf(leaf);
     return node(leaf).user;
+}
+
+bool DynamicTree::holds(Leaf leaf, const Aabb &box) const {
+    return plumb::holds(fat_bounds(leaf), box);
 }
 
 const Aabb &DynamicTree::fat_bounds(Leaf leaf) const {

@@ -39,6 +39,8 @@ class DynamicTree {
     // The new fat box reaches farther by `way`, along which the box is expected to go on.
     bool update(Leaf leaf, const Aabb &box, const Vec3 &way = Vec3{Real(0)});
 
+    // Whether the leaf's fat box holds a box: then `update` changes nothing.
+    bool holds(Leaf leaf, const Aabb &box) const;
     std::uint32_t user(Leaf leaf) const;
     const Aabb &fat_bounds(Leaf leaf) const;
     std::size_t size() const { return leaf_count_; }

@@ -1,0 +1,53 @@
+// What the parts of a shared out loop find, put together in the order of the items.
+#pragma once
+
+#include "engine/core/task_pool.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace plumb {
+
+// Kept for its memory: a loop as large as one before allocates nothing.
+template <class T> struct FoundParts {
+    std::vector<std::vector<T>> parts;
+    std::vector<std::size_t> starts; // of each part in what all found, and the end
+};
+
+// How many parts `collect` makes of a loop: what each of them needs for itself must be there.
+inline std::size_t part_count(const TaskPool *tasks, std::size_t count, std::size_t grain) {
+    return tasks != nullptr && tasks->threads() > 1 && count > grain ? (count + grain - 1) / grain
+                                                                     : 1;
+}
+
+// Calls find(begin, end, part, found) for parts of [0, count); each appends what it finds to its
+// own `found`. `out` holds all of it then, the same for any number of threads.
+template <class T, class Find>
+void collect(TaskPool *tasks, std::size_t count, std::size_t grain, FoundParts<T> &scratch,
+             std::vector<T> &out, Find &&find) {
+    const std::size_t parts = part_count(tasks, count, grain);
+    if (parts == 1) {
+        out.clear();
+        find(std::size_t{0}, count, std::size_t{0}, out);
+        return;
+    }
+    if (scratch.parts.size() < parts)
+        scratch.parts.resize(parts);
+    tasks->for_parts(count, grain, [&](std::size_t begin, std::size_t end) {
+        std::vector<T> &found = scratch.parts[begin / grain];
+        found.clear();
+        find(begin, end, begin / grain, found);
+    });
+    scratch.starts.assign(1, 0);
+    for (std::size_t part = 0; part < parts; ++part)
+        scratch.starts.push_back(scratch.starts.back() + scratch.parts[part].size());
+    out.resize(scratch.starts.back());
+    tasks->for_parts(parts, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part)
+            std::ranges::copy(scratch.parts[part],
+                              out.begin() + static_cast<std::ptrdiff_t>(scratch.starts[part]));
+    });
+}
+
+} // namespace plumb
