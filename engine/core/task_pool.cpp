@@ -13,10 +13,17 @@ namespace plumb {
 
 namespace {
 
-constexpr std::uint64_t one_loop = std::uint64_t{1} << 32;
+constexpr unsigned part_bits = 20;
+constexpr std::uint64_t part_mask = (std::uint64_t{1} << part_bits) - 1;
 
-std::uint32_t part_of(std::uint64_t ticket) {
-    return static_cast<std::uint32_t>(ticket);
+std::uint64_t next_of(std::uint64_t share) {
+    return share & part_mask;
+}
+std::uint64_t end_of(std::uint64_t share) {
+    return share >> part_bits & part_mask;
+}
+std::uint64_t loop_of(std::uint64_t share) {
+    return share >> 2 * part_bits;
 }
 
 // Waits a moment. Now and then it lets others run, who may have more to do than wait where there
@@ -33,10 +40,10 @@ void wait_a_moment(unsigned turn) {
 
 } // namespace
 
-TaskPool::TaskPool(int threads) {
+TaskPool::TaskPool(int threads) : shares_(static_cast<std::size_t>(std::max(threads, 1))) {
     PLUMB_CHECK(threads >= 1 && threads <= 1024, "threads must be 1 to 1024, got " << threads);
-    for (int i = 1; i < threads; ++i)
-        workers_.emplace_back([this](const std::stop_token &stop) { work(stop); });
+    for (std::size_t i = 1; i < shares_.size(); ++i)
+        workers_.emplace_back([this, i](const std::stop_token &stop) { work(i, stop); });
 }
 
 TaskPool::~TaskPool() = default;
@@ -59,69 +66,83 @@ void TaskPool::run(Loop loop) {
         loop.call(loop.body, 0, loop.count);
         return;
     }
-    constexpr std::size_t most_parts = UINT32_MAX - 1;
+    constexpr std::size_t most_parts = part_mask;
     loop.grain = std::max(loop.grain, (loop.count + most_parts - 1) / most_parts);
-    const auto parts = static_cast<std::uint32_t>((loop.count + loop.grain - 1) / loop.grain);
-    // The loop before has no part left whatever its number of parts is now; who sees anything of
-    // this loop sees that, too.
-    std::uint64_t ticket = ticket_.load(std::memory_order_relaxed) | (one_loop - 1);
-    ticket_.store(ticket, std::memory_order_relaxed);
-    body_.store(loop.body, std::memory_order_release);
-    call_.store(loop.call, std::memory_order_release);
-    count_.store(loop.count, std::memory_order_release);
-    grain_.store(loop.grain, std::memory_order_release);
-    parts_.store(parts, std::memory_order_release);
+    const std::size_t parts = (loop.count + loop.grain - 1) / loop.grain;
+    body_.store(loop.body, std::memory_order_relaxed);
+    call_.store(loop.call, std::memory_order_relaxed);
+    count_.store(loop.count, std::memory_order_relaxed);
+    grain_.store(loop.grain, std::memory_order_relaxed);
     done_.store(0, std::memory_order_relaxed);
-    // Sequentially consistent, as is a worker's look at it after it said that it sleeps: one of the
-    // two sees the other.
-    ticket_.store(++ticket);
+    ++loops_;
+    const std::size_t threads = shares_.size();
+    // Sequentially consistent, as is a worker's look at its share after it said that it sleeps: one
+    // of the two sees the other.
+    for (std::size_t i = 0; i < threads; ++i)
+        shares_[i].parts.store(loops_ << 2 * part_bits | (parts * (i + 1) / threads) << part_bits |
+                               parts * i / threads);
     if (asleep_.load() > 0) {
         { const std::lock_guard lock(mutex_); }
         wake_.notify_all();
     }
-    while (run_part(ticket)) {
-    }
+    run_shares(0);
     for (unsigned turn = 0; done_.load(std::memory_order_acquire) < parts; ++turn)
         wait_a_moment(turn);
-    if (failure_) {
-        const std::exception_ptr failure = std::exchange(failure_, nullptr);
-        std::rethrow_exception(failure);
-    }
+    if (failure_)
+        std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-// Takes the next part of the loop in hand and runs it; false when there is none. That the ticket is
-// still the one that was read says that the loop was not done, so what was read of it was its own.
-bool TaskPool::run_part(std::uint64_t &ticket) {
-    Loop loop;
-    do {
-        ticket = ticket_.load(std::memory_order_acquire);
-        if (part_of(ticket) >= parts_.load(std::memory_order_acquire))
-            return false;
-        loop = {body_.load(std::memory_order_acquire), call_.load(std::memory_order_acquire),
-                count_.load(std::memory_order_acquire), grain_.load(std::memory_order_acquire)};
-    } while (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel,
-                                            std::memory_order_relaxed));
-    const std::size_t begin = part_of(ticket) * loop.grain;
-    std::uint32_t done = 1;
-    try {
-        loop.call(loop.body, begin, std::min(begin + loop.grain, loop.count));
-    } catch (...) {
-        const std::lock_guard lock(mutex_);
-        failure_ = std::current_exception();
-        // Nobody begins what is left.
-        const std::uint32_t parts = parts_.load(std::memory_order_relaxed);
-        std::uint64_t left = ticket_.load();
-        while (part_of(left) < parts &&
-               !ticket_.compare_exchange_weak(left, left / one_loop * one_loop + parts)) {
+// Takes parts of a share, one after another, until there are none; how many are done by that. That
+// the share is still as it was read says that the loop was not done, so what was read of the loop
+// is of the same.
+std::uint32_t TaskPool::run_share(Share &share) {
+    std::uint32_t done = 0;
+    std::uint64_t seen = share.parts.load(std::memory_order_acquire);
+    while (next_of(seen) < end_of(seen)) {
+        const Loop loop{
+            body_.load(std::memory_order_relaxed), call_.load(std::memory_order_relaxed),
+            count_.load(std::memory_order_relaxed), grain_.load(std::memory_order_relaxed)};
+        if (!share.parts.compare_exchange_weak(seen, seen + 1, std::memory_order_acq_rel,
+                                               std::memory_order_acquire))
+            continue;
+        const std::size_t begin = next_of(seen) * loop.grain;
+        ++done;
+        try {
+            loop.call(loop.body, begin, std::min(begin + loop.grain, loop.count));
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            failure_ = std::current_exception();
+            done += give_up();
         }
-        done += part_of(left) < parts ? parts - part_of(left) : 0;
+        seen = share.parts.load(std::memory_order_acquire);
     }
-    done_.fetch_add(done, std::memory_order_acq_rel);
-    return true;
+    return done;
 }
 
-void TaskPool::wait_for_loop(std::uint64_t seen, const std::stop_token &stop) {
-    const auto is_new = [&] { return ticket_.load() / one_loop != seen / one_loop; };
+// Takes all parts that nobody has begun, and leaves them alone.
+std::uint32_t TaskPool::give_up() {
+    std::uint64_t left = 0;
+    for (Share &share : shares_) {
+        std::uint64_t seen = share.parts.load();
+        while (next_of(seen) < end_of(seen) &&
+               !share.parts.compare_exchange_weak(seen, seen + end_of(seen) - next_of(seen))) {
+        }
+        left += end_of(seen) - std::min(next_of(seen), end_of(seen));
+    }
+    return static_cast<std::uint32_t>(left);
+}
+
+// A thread's own share, then what is left of the others'.
+void TaskPool::run_shares(std::size_t thread) {
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+        const std::uint32_t done = run_share(shares_[(thread + i) % shares_.size()]);
+        if (done > 0)
+            done_.fetch_add(done, std::memory_order_acq_rel);
+    }
+}
+
+void TaskPool::wait_for_loop(const Share &share, std::uint64_t seen, const std::stop_token &stop) {
+    const auto is_new = [&] { return loop_of(share.parts.load()) != loop_of(seen); };
     for (unsigned turn = 0; awake_.load(std::memory_order_relaxed) > 0; ++turn) {
         if (is_new() || stop.stop_requested())
             return;
@@ -133,12 +154,12 @@ void TaskPool::wait_for_loop(std::uint64_t seen, const std::stop_token &stop) {
     --asleep_;
 }
 
-void TaskPool::work(const std::stop_token &stop) {
-    std::uint64_t ticket = 0;
+void TaskPool::work(std::size_t thread, const std::stop_token &stop) {
+    const Share &own = shares_[thread];
     while (!stop.stop_requested()) {
-        while (run_part(ticket)) {
-        }
-        wait_for_loop(ticket, stop);
+        const std::uint64_t seen = own.parts.load(std::memory_order_acquire);
+        run_shares(thread);
+        wait_for_loop(own, seen, stop);
     }
 }
 

@@ -1,6 +1,7 @@
 // Threads that share out a loop.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
@@ -24,6 +25,13 @@ class TaskPool {
     TaskPool &operator=(const TaskPool &) = delete;
 
     int threads() const { return static_cast<int>(workers_.size()) + 1; }
+
+    // For a loop whose parts are of equal work: at least `least` items in a part, and no more parts
+    // than it takes to keep all threads busy to the end.
+    std::size_t grain(std::size_t count, std::size_t least) const {
+        const auto parts = static_cast<std::size_t>(4 * threads());
+        return std::max(least, (count + parts - 1) / parts);
+    }
 
     // Calls body(begin, end) for parts of [0, count), of at most `grain` items when there are
     // several threads and in one part when there is one; returns when all are done. Parts begin at
@@ -59,20 +67,27 @@ class TaskPool {
         std::size_t count = 0;
         std::size_t grain = 1;
     };
+    // The parts of the loop in hand that one thread takes first: which loop it is (24 bits), where
+    // its parts end and which is next (20 bits each). The same thread has the same share of every
+    // loop, so that it finds in its cache what it worked on last; when it is done it helps others.
+    struct alignas(64) Share {
+        std::atomic<std::uint64_t> parts = 0;
+    };
     void run(Loop loop);
-    bool run_part(std::uint64_t &ticket);
-    void work(const std::stop_token &stop);
-    void wait_for_loop(std::uint64_t seen, const std::stop_token &stop);
+    std::uint32_t run_share(Share &share);
+    void run_shares(std::size_t thread);
+    std::uint32_t give_up();
+    void work(std::size_t thread, const std::stop_token &stop);
+    void wait_for_loop(const Share &share, std::uint64_t seen, const std::stop_token &stop);
 
-    // The loop in hand. Only read by who then takes a part of it, and it does not change before all
+    // The loop in hand. Only used by who then takes a part of it, and it does not change before all
     // its parts are done.
     std::atomic<const void *> body_ = nullptr;
     std::atomic<void (*)(const void *, std::size_t, std::size_t)> call_ = nullptr;
     std::atomic<std::size_t> count_ = 0;
     std::atomic<std::size_t> grain_ = 1;
-    std::atomic<std::uint32_t> parts_ = 0;
-    // Which loop it is, and its next part: the upper and the lower 32 bits.
-    alignas(64) std::atomic<std::uint64_t> ticket_ = 0;
+    std::uint64_t loops_ = 0;
+    std::vector<Share> shares_;
     alignas(64) std::atomic<std::uint32_t> done_ = 0; // parts
     alignas(64) std::atomic<int> awake_ = 0;
     std::atomic<int> asleep_ = 0; // workers
@@ -82,11 +97,12 @@ class TaskPool {
     std::vector<std::jthread> workers_; // last: they stop before the rest goes
 };
 
-// Without a pool: in one part, by the caller.
+// Items of equal work, at least `least` of them in a part. Without a pool: in one part, by the
+// caller.
 template <class Body>
-void for_parts(TaskPool *tasks, std::size_t count, std::size_t grain, Body &&body) {
+void for_parts(TaskPool *tasks, std::size_t count, std::size_t least, Body &&body) {
     if (tasks != nullptr)
-        tasks->for_parts(count, grain, body);
+        tasks->for_parts(count, tasks->grain(count, least), body);
     else if (count > 0)
         body(std::size_t{0}, count);
 }

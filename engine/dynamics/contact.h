@@ -74,6 +74,15 @@ struct Contact {
     std::array<Vec3, 4> impulses{};
 };
 
+// What most ask of a contact, in a small place: contacts are large, and there are many.
+struct ContactEnds {
+    std::uint32_t a = 0; // bodies
+    std::uint32_t b = 0;
+    std::uint8_t points = 0;
+    bool is_sensor = false;
+    bool is_turning = false; // Moment::turning
+};
+
 // What is remembered of a loaded contact from step to step: its points, known by feature, with
 // their impulses, and where they were found.
 struct ContactMemory {

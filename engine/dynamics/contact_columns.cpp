@@ -72,17 +72,17 @@ void colour(StepContext &context) {
     const std::size_t count = active.size();
     for (std::size_t turn = 0; turn < 2 * count; ++turn) {
         const std::uint32_t i = active[turn < count ? turn : turn - count];
-        const Contact &contact = context.contacts[i];
-        const bool is_last =
-            !is_dynamic(context, contact.key.a) || !is_dynamic(context, contact.key.b);
+        const ContactEnds &contact = context.ends[i];
+        const bool moves_a = is_dynamic(context, contact.a);
+        const bool moves_b = is_dynamic(context, contact.b);
+        const bool is_last = !moves_a || !moves_b;
         if (turn == count)
             of_others = used;
         if (is_last != (turn >= count))
             continue;
-        const bool moves_a = is_dynamic(context, contact.key.a);
-        const bool moves_b = is_dynamic(context, contact.key.b);
-        std::uint64_t &of_a = schedule.colours_of_body[contact.key.a];
-        std::uint64_t &of_b = schedule.colours_of_body[contact.key.b];
+        schedule.any_turning = schedule.any_turning || contact.is_turning;
+        std::uint64_t &of_a = schedule.colours_of_body[contact.a];
+        std::uint64_t &of_b = schedule.colours_of_body[contact.b];
         const std::uint64_t taken = of_others | (moves_a ? of_a : 0) | (moves_b ? of_b : 0);
         const auto chosen = static_cast<std::uint32_t>(std::countr_one(taken));
         std::uint32_t bucket = alone;
@@ -90,7 +90,7 @@ void colour(StepContext &context) {
             used |= std::uint64_t{1} << chosen;
             of_a |= std::uint64_t{1} << chosen;
             of_b |= std::uint64_t{1} << chosen;
-            bucket = chosen * most_points + static_cast<std::uint32_t>(contact.manifold.count - 1);
+            bucket = chosen * most_points + contact.points - 1U;
         }
         schedule.lanes.push_back({i, bucket});
         ++schedule.bucket_sizes[bucket];
@@ -178,7 +178,7 @@ void correct_separations(const StepContext &context, std::span<ContactBlock> blo
 }
 
 // Some microseconds of work.
-constexpr std::size_t blocks_a_part = 4;
+constexpr std::size_t blocks_a_part = 8;
 
 // Blocks that nobody else writes to, in parts.
 template <class Use> void for_blocks(StepContext &context, Use &&use) {
@@ -244,6 +244,8 @@ void express_anew(Contact &contact, const Vec3 &normal, const Vec3 &t1) {
 // What rides on a turntable is turned by friction all the time. With the arms of the step's start
 // it would be turned all at once, in the first substep, and friction cannot hold that.
 void turn_contact_columns(StepContext &context, Real t) {
+    if (!context.scratch.schedule.any_turning)
+        return;
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (ContactBlock &block : blocks)
             for (std::size_t lane = 0; block.any_ahead && lane < block.used; ++lane)
@@ -257,6 +259,7 @@ void prepare_contact_columns(StepContext &context) {
     schedule.blocks.clear();
     schedule.colour_ends.clear();
     schedule.lanes.clear();
+    schedule.any_turning = false;
     if (context.active.contacts.empty())
         return;
     colour(context);

@@ -166,10 +166,7 @@ void World::add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidat
 // Brings the pairs whose fat boxes touch up to date, after some left theirs.
 void World::find_fat_pairs() const {
     Scratch &s = scratch_;
-    std::erase_if(s.fat_pairs, [&](std::uint64_t key) {
-        return s.moved[key >> 32] != 0 || s.moved[key & 0xFFFFFFFFU] != 0;
-    });
-    std::atomic<std::size_t> found = s.fat_pairs.size();
+    std::atomic<std::size_t> found = 0;
     const auto find = [&](std::size_t begin, std::size_t end, std::size_t,
                           std::vector<std::uint64_t> &out) {
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
@@ -186,8 +183,19 @@ void World::find_fat_pairs() const {
         }
     };
     collect(s.tasks, model_->colliders.size(), colliders_a_part, s.pair_parts, s.new_pairs, find);
-    s.fat_pairs.insert(s.fat_pairs.end(), s.new_pairs.begin(), s.new_pairs.end());
-    sort_by(s.fat_pairs, std::identity{});
+    std::ranges::sort(s.new_pairs);
+    s.merged_pairs.clear();
+    auto next = s.new_pairs.begin();
+    for (const std::uint64_t pair : s.fat_pairs) {
+        if (s.moved[pair >> 32] != 0 || s.moved[pair & 0xFFFFFFFFU] != 0)
+            continue; // it is among the new ones, if it still is one
+        for (; next != s.new_pairs.end() && *next < pair; ++next)
+            s.merged_pairs.push_back(*next);
+        s.merged_pairs.push_back(pair);
+    }
+    s.merged_pairs.insert(s.merged_pairs.end(), next, s.new_pairs.end());
+    std::swap(s.fat_pairs, s.merged_pairs);
+    refuse_more_than(most_near_pairs, s.fat_pairs.size());
 }
 
 void World::find_pairs_with_planes() const {

@@ -84,9 +84,9 @@ void World::find_islands() {
     Scratch &s = scratch_;
     Islands &islands = s.islands;
     islands.start(model_->bodies.size());
-    for (const Contact &contact : s.contacts)
-        if (!contact.sensor && moves(contact.key.a) && moves(contact.key.b))
-            islands.join(contact.key.a, contact.key.b);
+    for (const ContactEnds &contact : s.ends)
+        if (!contact.is_sensor && moves(contact.a) && moves(contact.b))
+            islands.join(contact.a, contact.b);
     for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
         const Joint &joint = model_->joints[i];
         if (holds(i) && moves(joint.a) && moves(joint.b))
@@ -117,9 +117,9 @@ void World::gather_needs() {
         const Vec3 &velocity = state_.motions[i].velocity;
         needs.rests = needs.rests && glm::dot(velocity, velocity) <= fast * fast;
     }
-    for (const Contact &contact : s.contacts)
-        if (!contact.sensor)
-            ++islands.needs[islands.root_of(island_body(contact.key.a, contact.key.b))].work;
+    for (const ContactEnds &contact : s.ends)
+        if (!contact.is_sensor)
+            ++islands.needs[islands.root_of(island_body(contact.a, contact.b))].work;
     for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
         const Joint &joint = model_->joints[i];
         if (!holds(i))
@@ -258,9 +258,9 @@ void World::group_islands() {
     };
     for (const std::uint32_t i : s.moving)
         group_of(i).moving.push_back(i);
-    for (std::uint32_t i = 0; i < s.contacts.size(); ++i)
-        if (!s.contacts[i].sensor)
-            group_of(island_body(s.contacts[i].key.a, s.contacts[i].key.b)).contacts.push_back(i);
+    for (std::uint32_t i = 0; i < s.ends.size(); ++i)
+        if (!s.ends[i].is_sensor)
+            group_of(island_body(s.ends[i].a, s.ends[i].b)).contacts.push_back(i);
     for (std::uint32_t i = 0; i < model_->joints.size(); ++i)
         if (holds(i))
             group_of(island_body(model_->joints[i].a, model_->joints[i].b)).joints.push_back(i);
@@ -305,8 +305,8 @@ void World::note_contact_needs(const IslandGroup &group) {
                       s.contact_loads[i] = wanted_of(s.contacts[group.contacts[i]]);
               });
     for (std::size_t i = 0; i < group.contacts.size(); ++i) {
-        const ContactKey &key = s.contacts[group.contacts[i]].key;
-        for (const std::uint32_t body : {key.a, key.b})
+        const ContactEnds &ends = s.ends[group.contacts[i]];
+        for (const std::uint32_t body : {ends.a, ends.b})
             s.loads[body] = std::max(s.loads[body], s.contact_loads[i]);
     }
 }

@@ -416,8 +416,7 @@ void prepare_joints(StepContext &context) {
         return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
     };
     const std::size_t count = joints_and_grab(context);
-    context.scratch.rows.resize(
-        std::max<std::size_t>(part_count(context.tasks, count, joints_a_part), 1));
+    context.scratch.rows.resize(part_count(context.tasks, count, joints_a_part));
     context.scratch.first_blocks.clear();
     for (std::size_t k = 0; k < count; ++k) {
         context.scratch.first_blocks.push_back(static_cast<std::uint32_t>(constraints.size()));
@@ -449,7 +448,10 @@ void refresh_joints(StepContext &context) {
                  ++next;
              });
     };
-    for_parts(context.tasks, joints_and_grab(context), joints_a_part, refresh);
+    if (context.tasks != nullptr)
+        context.tasks->for_parts(joints_and_grab(context), joints_a_part, refresh);
+    else
+        refresh(0, joints_and_grab(context));
     factor_groups(context, [](const JointGroup &) { return true; });
     weigh_with_groups(context, false);
 }

@@ -68,7 +68,8 @@ struct StepContext {
     std::span<ParticleMotion> particles; // one for each particle of the model
     std::span<const std::uint8_t> torn;  // one for each spring of the model
     std::span<const ParticleContact> particle_contacts;
-    TaskPool *tasks = nullptr; // null: one thread; with more the bits are the same
+    std::span<const ContactEnds> ends; // of each contact
+    TaskPool *tasks = nullptr;         // null: one thread; with more the bits are the same
 
     std::span<const std::uint32_t> moving() const { return active.moving; }
     bool is_free() const {

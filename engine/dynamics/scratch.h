@@ -33,6 +33,7 @@ struct Scratch {
     std::vector<std::uint8_t> stays;      // placed where it still is
     std::vector<std::uint64_t> fat_pairs; // of colliders whose fat boxes touch, ascending
     std::vector<std::uint64_t> new_pairs; // those of what left its fat box
+    std::vector<std::uint64_t> merged_pairs;
     std::vector<Candidate> pair_candidates;
     std::vector<Candidate> plane_candidates;
     std::vector<Candidate> candidates; // both, ascending by key
@@ -45,6 +46,7 @@ struct Scratch {
     // the step that led to them.
     std::vector<Contact> contacts;
     bool contacts_are_current = false;
+    std::vector<ContactEnds> ends; // of each contact, while the step advances
     // Bodies that went another way than at the start of the step, how all go now, and whom they
     // met.
     std::vector<std::uint8_t> surprised; // empty: none

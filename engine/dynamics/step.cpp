@@ -155,8 +155,22 @@ void World::load_bodies() {
         load_particles();
 }
 
+void World::note_ends() {
+    Scratch &s = scratch_;
+    s.ends.resize(s.contacts.size());
+    for_parts(s.tasks, s.ends.size(), contacts_a_part, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Contact &contact = s.contacts[i];
+            s.ends[i] = {contact.key.a, contact.key.b,
+                         static_cast<std::uint8_t>(contact.manifold.count), contact.sensor,
+                         contact.moment == Moment::turning};
+        }
+    });
+}
+
 void World::advance() {
     Scratch &s = scratch_;
+    note_ends();
     choose_substeps();
     for (std::size_t i = 0; i < s.group_count; ++i) {
         StepSettings settings = settings_;
@@ -168,7 +182,7 @@ void World::advance() {
                             s.solver,   report_,
                             s.impacts,  s.particles,
                             s.torn,     s.particle_contacts,
-                            s.tasks};
+                            s.ends,     s.tasks};
         const bool has_joints = !s.groups[i].joints.empty();
         if (has_joints)
             std::swap(s.solver.joint_system, s.joint_systems[i]);
@@ -185,8 +199,8 @@ void World::advance() {
     report_.joints = model_->alive_joints;
     report_.pairs = static_cast<std::uint32_t>(s.candidates.size());
     report_.contacts = static_cast<std::uint32_t>(s.contacts.size());
-    for (const Contact &contact : s.contacts)
-        report_.contact_points += static_cast<std::uint32_t>(contact.manifold.count);
+    for (const ContactEnds &contact : s.ends)
+        report_.contact_points += contact.points;
     for (const std::uint32_t i : s.moving) {
         const Motion &motion = s.bodies[i];
         const Vec3 linear = motion.position + motion.velocity;

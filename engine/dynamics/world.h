@@ -155,6 +155,7 @@ class World {
     void collide() const;
     void load_body(std::size_t i);
     void load_bodies();
+    void note_ends();
     void advance();
     std::uint32_t remembered_points(const Contact &contact) const;
     void remember(const Contact &contact, ContactMemory &memory);
