@@ -17,8 +17,10 @@ template <class T> struct FoundParts {
 
 // How many parts `collect` makes of a loop: what each of them needs for itself must be there.
 inline std::size_t part_count(const TaskPool *tasks, std::size_t count, std::size_t grain) {
-    return tasks != nullptr && tasks->threads() > 1 && count > grain ? (count + grain - 1) / grain
-                                                                     : 1;
+    if (tasks == nullptr || tasks->threads() == 1)
+        return 1;
+    grain = tasks->grain(grain);
+    return std::max<std::size_t>((count + grain - 1) / grain, 1);
 }
 
 // Calls find(begin, end, part, found) for parts of [0, count); each appends what it finds to its
@@ -32,6 +34,7 @@ void collect(TaskPool *tasks, std::size_t count, std::size_t grain, FoundParts<T
         find(std::size_t{0}, count, std::size_t{0}, out);
         return;
     }
+    grain = tasks->grain(grain);
     if (scratch.parts.size() < parts)
         scratch.parts.resize(parts);
     tasks->for_parts(count, grain, [&](std::size_t begin, std::size_t end) {

@@ -40,7 +40,8 @@ void wait_a_moment(unsigned turn) {
 
 } // namespace
 
-TaskPool::TaskPool(int threads) : shares_(static_cast<std::size_t>(std::max(threads, 1))) {
+TaskPool::TaskPool(int threads, Parts parts)
+    : parts_(parts), shares_(static_cast<std::size_t>(std::max(threads, 1))) {
     PLUMB_CHECK(threads >= 1 && threads <= 1024, "threads must be 1 to 1024, got " << threads);
     for (std::size_t i = 1; i < shares_.size(); ++i)
         workers_.emplace_back([this, i](const std::stop_token &stop) { work(i, stop); });

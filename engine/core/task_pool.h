@@ -19,7 +19,9 @@ namespace plumb {
 // determined, so work that must give the same bits writes only to its own items.
 class TaskPool {
   public:
-    explicit TaskPool(int threads); // 1 to 1024
+    // `single` makes parts of one item each: slow, to look for races with.
+    enum class Parts { large, single };
+    explicit TaskPool(int threads, Parts parts = Parts::large); // 1 to 1024
     ~TaskPool();
     TaskPool(const TaskPool &) = delete;
     TaskPool &operator=(const TaskPool &) = delete;
@@ -28,10 +30,15 @@ class TaskPool {
 
     // For a loop whose parts are of equal work: at least `least` items in a part, and no more parts
     // than it takes to keep all threads busy to the end.
-    std::size_t grain(std::size_t count, std::size_t least) const {
+    std::size_t equal_grain(std::size_t count, std::size_t least) const {
+        if (parts_ == Parts::single)
+            return 1;
         const auto parts = static_cast<std::size_t>(4 * threads());
         return std::max(least, (count + parts - 1) / parts);
     }
+
+    // For other loops: as given.
+    std::size_t grain(std::size_t given) const { return parts_ == Parts::single ? 1 : given; }
 
     // Calls body(begin, end) for parts of [0, count), of at most `grain` items when there are
     // several threads and in one part when there is one; returns when all are done. Parts begin at
@@ -86,6 +93,7 @@ class TaskPool {
     std::atomic<void (*)(const void *, std::size_t, std::size_t)> call_ = nullptr;
     std::atomic<std::size_t> count_ = 0;
     std::atomic<std::size_t> grain_ = 1;
+    Parts parts_;
     std::uint64_t loops_ = 0;
     std::vector<Share> shares_;
     alignas(64) std::atomic<std::uint32_t> done_ = 0; // parts
@@ -102,7 +110,7 @@ class TaskPool {
 template <class Body>
 void for_parts(TaskPool *tasks, std::size_t count, std::size_t least, Body &&body) {
     if (tasks != nullptr)
-        tasks->for_parts(count, tasks->grain(count, least), body);
+        tasks->for_parts(count, tasks->equal_grain(count, least), body);
     else if (count > 0)
         body(std::size_t{0}, count);
 }

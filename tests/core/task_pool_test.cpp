@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace plumb {
@@ -39,6 +40,41 @@ TEST(TaskPool, PartsAreNotEmptyAndNoLargerThanTheGrain) {
             ++bad;
     });
     EXPECT_EQ(bad, 0);
+}
+
+// The same thread's share comes to the same items, loop after loop, and what is left over goes to
+// who is free: nobody is waited for.
+TEST(TaskPool, FreeThreadsHelpOthers) {
+    TaskPool tasks(4);
+    std::atomic<int> done{0};
+    tasks.for_parts(64, 1, [&](std::size_t begin, std::size_t) {
+        ++done;
+        while (begin == 0 && done < 64) // the first part's share waits until others did the rest
+            std::this_thread::yield();
+    });
+    EXPECT_EQ(done, 64);
+}
+
+TEST(TaskPool, LoopsOfOneItemAPartToLookForRacesWith) {
+    TaskPool tasks(3, TaskPool::Parts::single);
+    EXPECT_EQ(tasks.equal_grain(1000, 64), 1U);
+    EXPECT_EQ(tasks.grain(64), 1U);
+    EXPECT_EQ(TaskPool(3).grain(64), 64U);
+    EXPECT_EQ(TaskPool(3).equal_grain(1000, 64), 84U); // 12 parts
+    EXPECT_EQ(TaskPool(3).equal_grain(100, 64), 64U);
+}
+
+// A pool that is kept awake works as one that sleeps between loops, and goes back to sleep.
+TEST(TaskPool, StaysAwakeWhileItIsAsked) {
+    TaskPool tasks(4);
+    for (int turn = 0; turn < 50; ++turn) {
+        const TaskPool::Awake awake(&tasks);
+        std::atomic<int> done{0};
+        for (int loop = 0; loop < 20; ++loop)
+            tasks.for_parts(8, 1, [&](std::size_t, std::size_t) { ++done; });
+        EXPECT_EQ(done, 160);
+    }
+    const TaskPool::Awake of_nobody(nullptr);
 }
 
 TEST(TaskPool, NothingToDoCallsNothing) {

@@ -156,9 +156,9 @@ TEST_P(Determinism, ACopyContinuesAsTheOriginal) {
 
 TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
     World alone = random_world(GetParam(), 2);
-    std::vector<World> worlds(4, alone);
-    TaskPool one(1), two(2), three(3), eight(8);
-    const std::array<TaskPool *, 4> pools{&one, &two, &three, &eight};
+    std::vector<World> worlds(5, alone);
+    TaskPool one(1), two(2), three(3), eight(8), many(8, TaskPool::Parts::single);
+    const std::array<TaskPool *, 5> pools{&one, &two, &three, &eight, &many};
     for (int i = 0; i < 90; ++i) {
         alone.step(nullptr);
         for (std::size_t k = 0; k < worlds.size(); ++k) {

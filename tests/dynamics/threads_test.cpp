@@ -34,9 +34,9 @@ World heap(const std::string &method) {
     return world;
 }
 
-TEST_P(Threads, ShareAStepWithoutARace) {
-    World alone = heap(GetParam()), shared = heap(GetParam());
-    TaskPool tasks(8);
+void share_steps(const std::string &method, TaskPool::Parts parts) {
+    World alone = heap(method), shared = heap(method);
+    TaskPool tasks(8, parts);
     SavedWorld saved;
     for (int step = 0; step < 8; ++step) {
         alone.step(nullptr);
@@ -56,6 +56,14 @@ TEST_P(Threads, ShareAStepWithoutARace) {
     for (int step = 0; step < 2; ++step)
         shared.step(&tasks);
     EXPECT_TRUE(shared.report().finite);
+}
+
+TEST_P(Threads, ShareAStepWithoutARace) {
+    share_steps(GetParam(), TaskPool::Parts::large);
+}
+
+TEST_P(Threads, ShareItInTheSmallestPartsWithoutARace) {
+    share_steps(GetParam(), TaskPool::Parts::single);
 }
 
 } // namespace
