@@ -201,6 +201,7 @@ void World::find_fat_pairs() const {
 void World::find_pairs_with_planes() const {
     Scratch &s = scratch_;
     s.plane_candidates.clear();
+    s.plane_candidates.reserve(model_->half_spaces.size() * model_->colliders.size());
     for (const std::uint32_t plane : model_->half_spaces) {
         const std::uint32_t body = model_->colliders[plane].body;
         HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
@@ -228,6 +229,8 @@ void World::find_pairs() const {
     }
     if (place_colliders())
         find_fat_pairs();
+    // As if all of them touched, so that nothing is allocated when some begin to.
+    s.pair_candidates.reserve(s.fat_pairs.capacity());
     collect(s.tasks, s.fat_pairs.size(), pairs_a_part, s.candidate_parts, s.pair_candidates,
             [&](std::size_t begin, std::size_t end, std::size_t, std::vector<Candidate> &out) {
                 for (std::size_t k = begin; k < end; ++k) {
@@ -241,6 +244,7 @@ void World::find_pairs() const {
     refuse_more_than(most_candidates, s.pair_candidates.size() + s.plane_candidates.size());
     sort_by(s.pair_candidates, &Candidate::key);
     sort_by(s.plane_candidates, &Candidate::key);
+    s.candidates.reserve(s.pair_candidates.capacity() + s.plane_candidates.capacity());
     s.candidates.resize(s.pair_candidates.size() + s.plane_candidates.size());
     std::ranges::merge(s.pair_candidates, s.plane_candidates, s.candidates.begin(), {},
                        &Candidate::key, &Candidate::key);
