@@ -128,13 +128,14 @@ template <typename Use> void for_each_block(StepContext &context, Use &&use) {
         SolverBody &a = context.body(joint.a);
         SolverBody &b = context.body(joint.b);
         use(joint, a, b, [&] {
-            s.rows.clear();
-            RowWriter writer(s.rows);
+            std::vector<RowBlock> &rows = s.rows.front();
+            rows.clear();
+            RowWriter writer(rows);
             if (joint.joint == JointConstraint::grab)
                 emit_rows(context.grab, a, b, writer);
             else
                 emit_rows(context.model.joints[joint.joint], a, b, writer);
-            joint.rows = s.rows[block];
+            joint.rows = rows[block];
         });
     }
     context.report.constraint_passes += s.joints.size();
