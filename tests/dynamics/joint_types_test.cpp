@@ -93,7 +93,10 @@ TEST_P(JointTypes, AMotorSpinsUpByItsTorque) {
     Joined j = joined(GetParam(), weightless(settings_for(GetParam())), def,
                       dynamic_body(ball(radius), mass, V{0}), V{0, 1, 0});
     run(j.world, 60);
-    EXPECT_NEAR(spin_of(j.world, j.id).y, 0.5 / inertia, 0.5 / inertia * (1e-4 + 500 * epsilon));
+    const double reached = 0.5 / inertia; // after 1 s
+    const double lost =
+        GetParam() == "xpbd" ? spin_lost_by_xpbd(j.world, std::pow(reached, 3) / 4) : 0;
+    EXPECT_NEAR(spin_of(j.world, j.id).y, reached - lost, reached * (1e-4 + 500 * epsilon));
     run(j.world, 240); // 10 rad/s are reached after 4 s
     EXPECT_NEAR(spin_of(j.world, j.id).y, 10, 1e-3);
 }

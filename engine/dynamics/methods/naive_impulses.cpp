@@ -128,7 +128,8 @@ Method naive_impulses() {
          .title = "Naive impulses",
          .source = "Szauer 2017, Game Physics Cookbook, chapter 15",
          .contacts = true,
-         .reads = {SettingGroup::constraints, SettingGroup::baumgarte, SettingGroup::gyroscopic},
+         .reads = {SettingGroup::speculative, SettingGroup::constraints, SettingGroup::baumgarte,
+                   SettingGroup::gyroscopic},
          .defaults = {.substeps = 1, .iterations = 5, .penetration_slop = 0.01, .baumgarte = 0.45}},
         advance};
 }
