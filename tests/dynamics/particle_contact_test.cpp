@@ -179,14 +179,9 @@ TEST_P(ParticleContacts, KeepMomenta) {
         const Measures after = world.measure();
         EXPECT_NE(spin_of(world, world.body_id(0)), spin);
         EXPECT_LT(glm::distance(after.linear_momentum, before.linear_momentum), 200 * epsilon);
-        // XPBD makes ten times as many substeps, and loses spin.
-        const V end = spin_of(world, world.body_id(0));
-        const double spun = std::max(glm::length(spin), glm::length(end));
-        const double inertia = 0.4 * 1.5 * 0.3 * 0.3;
-        const double bound =
-            GetParam() == "xpbd"
-                ? 1200 * epsilon + inertia * spin_lost_by_xpbd(world, 0.5 * std::pow(spun, 3))
-                : 400 * epsilon;
+        // XPBD loses spin, and corrects poses by arms and turns of first order: 9e-5 at most here,
+        // of some 0.3 (kg m^2/s).
+        const double bound = GetParam() == "xpbd" ? 2e-4 : 400 * epsilon;
         EXPECT_LT(glm::distance(after.angular_momentum, before.angular_momentum), bound);
         EXPECT_LT(after.kinetic_energy, before.kinetic_energy);
     }
