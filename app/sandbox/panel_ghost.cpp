@@ -21,7 +21,8 @@ void method_box(PanelContext &context, const Ghost *ghost) {
         const std::string why = why_not(method, context.session.scene());
         ImGui::BeginDisabled(!why.empty());
         if (ImGui::Selectable(std::string(method.title).c_str(),
-                              ghost && ghost->simulation().method().name == method.name) &&
+                              ghost != nullptr &&
+                                  ghost->simulation().method().name == method.name) &&
             context.session.set_ghost(std::string(method.name)))
             context.view.ghost_method = method.name;
         ImGui::EndDisabled();

@@ -17,7 +17,7 @@ namespace plumb {
 
 // `threads` workers in all, the calling thread among them. Which thread runs which part is not
 // determined, so work that must give the same bits writes only to its own items.
-class TaskPool {
+class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache lines of their own
   public:
     // `single` makes parts of one item each: slow, to look for races with.
     enum class Parts { large, single };
