@@ -20,7 +20,7 @@ void view_panel(PanelContext &context) {
             context.actions.push_back(action);
     };
     const Simulation *simulation = context.session.simulation();
-    const bool has_world = simulation && simulation->has_world();
+    const bool has_world = simulation != nullptr && simulation->has_world();
     if (has_world) {
         // The longer titles stand on the left.
         constexpr float left = 0.54f;

@@ -100,11 +100,11 @@ void draw_curve(const Group &group, const PlotCurve &curve, const PlotAxis &time
     const auto close = [&] {
         if (!column)
             return;
-        line.push_back({column->x, column->first});
+        line.emplace_back(column->x, column->first);
         if (column->low < column->high) {
-            line.push_back({column->x, column->low});
-            line.push_back({column->x, column->high});
-            line.push_back({column->x, column->last});
+            line.emplace_back(column->x, column->low);
+            line.emplace_back(column->x, column->high);
+            line.emplace_back(column->x, column->last);
         }
         column.reset();
     };
