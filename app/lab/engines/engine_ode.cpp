@@ -216,7 +216,9 @@ class OdeEngine final : public Engine {
 
     void collide(dGeomID geom_a, dGeomID geom_b) {
         dBodyID a = dGeomGetBody(geom_a), b = dGeomGetBody(geom_b);
-        const auto moves = [](dBodyID body) { return body != nullptr && !dBodyIsKinematic(body); };
+        const auto moves = [](dBodyID body) {
+            return body != nullptr && dBodyIsKinematic(body) == 0;
+        };
         if ((!moves(a) && !moves(b)) ||
             (a != nullptr && b != nullptr && dAreConnectedExcluding(a, b, dJointTypeContact) != 0))
             return;

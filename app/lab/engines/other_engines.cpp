@@ -55,7 +55,7 @@ std::vector<const OtherEngine *> find_other_engines(const std::vector<std::strin
                     "(-DPLUMB_BENCH=ON)");
             std::string known;
             for (const OtherEngine &other : other_engines())
-                known += (known.empty() ? "" : ", ") + std::string(other.info.name);
+                known.append(known.empty() ? "" : ", ").append(other.info.name);
             throw std::invalid_argument("there is no engine \"" + name + "\"; there are " + known);
         }
         if (std::ranges::find(found, &*engine) == found.end())
