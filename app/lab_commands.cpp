@@ -80,6 +80,7 @@ int bench(const BenchArguments &arguments, const CommonOptions &common) {
         for (std::string &name : parse_list(arguments.only))
             passed_on.push_back(std::move(name));
     std::vector<char *> pointers;
+    pointers.reserve(passed_on.size() + 1);
     for (std::string &argument : passed_on)
         pointers.push_back(argument.data());
     pointers.push_back(nullptr);
