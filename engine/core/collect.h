@@ -15,12 +15,24 @@ template <class T> struct FoundParts {
     std::vector<std::size_t> starts; // of each part in what all found, and the end
 };
 
-// How many parts `collect` makes of a loop: what each of them needs for itself must be there.
+// How many parts the loops below have: what each of them needs for itself must be there.
 inline std::size_t part_count(const TaskPool *tasks, std::size_t count, std::size_t grain) {
     if (tasks == nullptr || tasks->threads() == 1)
         return 1;
     grain = tasks->grain(grain);
     return std::max<std::size_t>((count + grain - 1) / grain, 1);
+}
+
+// Calls body(begin, end, part) for parts of [0, count), which it counts from 0.
+template <class Body>
+void for_counted_parts(TaskPool *tasks, std::size_t count, std::size_t grain, Body &&body) {
+    if (part_count(tasks, count, grain) == 1) {
+        body(std::size_t{0}, count, std::size_t{0});
+        return;
+    }
+    grain = tasks->grain(grain);
+    tasks->for_parts(count, grain,
+                     [&](std::size_t begin, std::size_t end) { body(begin, end, begin / grain); });
 }
 
 // Calls find(begin, end, part, found) for parts of [0, count); each appends what it finds to its
@@ -29,19 +41,17 @@ template <class T, class Find>
 void collect(TaskPool *tasks, std::size_t count, std::size_t grain, FoundParts<T> &scratch,
              std::vector<T> &out, Find &&find) {
     const std::size_t parts = part_count(tasks, count, grain);
-    if (parts == 1) {
+    if (parts == 1) { // nothing to put together
         out.clear();
         find(std::size_t{0}, count, std::size_t{0}, out);
         return;
     }
-    grain = tasks->grain(grain);
-    if (scratch.parts.size() < parts)
-        scratch.parts.resize(parts);
-    tasks->for_parts(count, grain, [&](std::size_t begin, std::size_t end) {
-        std::vector<T> &found = scratch.parts[begin / grain];
-        found.clear();
-        find(begin, end, begin / grain, found);
-    });
+    scratch.parts.resize(std::max(scratch.parts.size(), parts));
+    for_counted_parts(tasks, count, grain,
+                      [&](std::size_t begin, std::size_t end, std::size_t part) {
+                          scratch.parts[part].clear();
+                          find(begin, end, part, scratch.parts[part]);
+                      });
     scratch.starts.assign(1, 0);
     for (std::size_t part = 0; part < parts; ++part)
         scratch.starts.push_back(scratch.starts.back() + scratch.parts[part].size());

@@ -61,6 +61,13 @@ void push_apart(StepContext &context, const ContactBias &bias, Real h, Solve &&s
     }
 }
 
+// Of the settings, in `advance_by_impulses`.
+inline std::vector<SettingGroup> read_by_impulses() {
+    return {SettingGroup::constraints, SettingGroup::speculative, SettingGroup::baumgarte,
+            SettingGroup::push,        SettingGroup::threshold,   SettingGroup::impacts,
+            SettingGroup::gyroscopic};
+}
+
 // `solve` is called with a pass over all rows, and may do it as often as it likes.
 template <typename Solve> void advance_by_impulses(StepContext &context, Solve &&solve) {
     const StepSettings &settings = context.settings;

@@ -437,9 +437,9 @@ void prepare_joints(StepContext &context) {
 void refresh_joints(StepContext &context) {
     if (context.scratch.joints.empty())
         return;
-    const auto refresh = [&](std::size_t begin, std::size_t end, std::vector<RowBlock> &rows) {
+    const auto refresh = [&](std::size_t begin, std::size_t end, std::size_t part) {
         JointConstraint *next = context.scratch.joints.data() + context.scratch.first_blocks[begin];
-        emit(context, begin, end, rows,
+        emit(context, begin, end, context.scratch.rows[part],
              [&](std::uint32_t, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
                  next->rows = block;
                  if (!next->is_held)
@@ -447,16 +447,7 @@ void refresh_joints(StepContext &context) {
                  ++next;
              });
     };
-    const std::size_t count = joints_and_grab(context);
-    std::vector<std::vector<RowBlock>> &rows = context.scratch.rows;
-    if (rows.size() == 1) {
-        refresh(0, count, rows.front());
-    } else {
-        const std::size_t grain = context.tasks->grain(joints_a_part);
-        context.tasks->for_parts(count, grain, [&](std::size_t begin, std::size_t end) {
-            refresh(begin, end, rows[begin / grain]);
-        });
-    }
+    for_counted_parts(context.tasks, joints_and_grab(context), joints_a_part, refresh);
     factor_groups(context, [](const JointGroup &) { return true; });
     weigh_with_groups(context, false);
 }

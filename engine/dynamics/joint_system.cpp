@@ -33,26 +33,20 @@ void JointSystem::arrange(StepContext &context) {
     const auto is_dynamic = [&](std::uint32_t body) {
         return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
     };
-    const auto key_of = [&](std::uint32_t i) {
-        const std::uint64_t a = is_dynamic(joints[i].a) ? joints[i].a : Joint::world;
-        const std::uint64_t b = is_dynamic(joints[i].b) ? joints[i].b : Joint::world;
-        return a << 32 | b;
+    const auto key_of = [&](const JointConstraint &joint) {
+        const std::uint64_t a = is_dynamic(joint.a) ? joint.a : Joint::world;
+        const std::uint64_t b = is_dynamic(joint.b) ? joint.b : Joint::world;
+        return is_rigid(joint) ? a << 32 | b : ~std::uint64_t{0};
     };
-    // Limits come and go; that changes nothing of the arrangement.
-    rigid_.clear();
-    for (std::uint32_t i = 0; i < joints.size(); ++i)
-        if (is_rigid(joints[i]))
-            rigid_.push_back(i);
     is_arranged_ = true;
     if (!key_.empty() && key_.front() == context.bodies.size() &&
-        std::ranges::equal(std::span(key_).subspan(1), rigid_, {}, {}, key_of)) {
-        std::vector<Vec3> &sides = context.scratch.sides;
-        sides.resize(std::max(sides.size(), order_.size()));
+        std::ranges::equal(std::span(key_).subspan(1), joints, {}, {}, key_of)) {
+        context.scratch.sides.resize(std::max(context.scratch.sides.size(), order_.size()));
         return;
     }
     key_.assign(1, context.bodies.size());
-    for (const std::uint32_t i : rigid_)
-        key_.push_back(key_of(i));
+    for (const JointConstraint &joint : joints)
+        key_.push_back(key_of(joint));
     groups_.clear();
     order_.clear();
     column_start_.assign(1, 0);
@@ -63,16 +57,17 @@ void JointSystem::arrange(StepContext &context) {
 
     std::vector<std::vector<std::uint32_t>> blocks_of(context.bodies.size());
     const auto bodies_of = [&](std::uint32_t block) {
-        return std::array{joints[rigid_[block]].a, joints[rigid_[block]].b};
+        return std::array{joints[block].a, joints[block].b};
     };
-    for (std::uint32_t i = 0; i < rigid_.size(); ++i)
-        for (const std::uint32_t body : bodies_of(i))
-            if (is_dynamic(body))
-                blocks_of[body].push_back(i);
-    std::vector<std::vector<std::uint32_t>> neighbours(rigid_.size());
-    std::vector<std::uint8_t> is_seen(rigid_.size(), 0);
-    for (std::uint32_t seed = 0; seed < rigid_.size(); ++seed) {
-        if (is_seen[seed] != 0)
+    for (std::uint32_t i = 0; i < joints.size(); ++i)
+        if (is_rigid(joints[i]))
+            for (const std::uint32_t body : bodies_of(i))
+                if (is_dynamic(body))
+                    blocks_of[body].push_back(i);
+    std::vector<std::vector<std::uint32_t>> neighbours(joints.size());
+    std::vector<std::uint8_t> is_seen(joints.size(), 0);
+    for (std::uint32_t seed = 0; seed < joints.size(); ++seed) {
+        if (is_seen[seed] != 0 || !is_rigid(joints[seed]))
             continue;
         std::vector<std::uint32_t> members{seed};
         is_seen[seed] = 1;
@@ -225,11 +220,11 @@ void JointSystem::add_coupling(const Effect &u, const Effect &v, Mat3 &sum) {
 void JointSystem::factor(StepContext &context, const JointGroup &group, Real compliance) {
     const std::vector<JointConstraint> &joints = context.scratch.joints;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
-        const JointConstraint &joint = joints[block(place)];
+        const JointConstraint &joint = joints[order_[place]];
         effects_[place] = {effect_of(context, joint, false), effect_of(context, joint, true)};
     }
     for (std::uint32_t place = group.first; place < group.last; ++place) {
-        const int count = joints[block(place)].rows.count;
+        const int count = joints[order_[place]].rows.count;
         Mat3 own{Real(0)};
         for (const Effect &effect : effects_[place])
             if (effect.body != Joint::world)

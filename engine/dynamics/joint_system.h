@@ -44,7 +44,7 @@ class JointSystem {
         return is_arranged_ ? group_of_body_[body] : none;
     }
     // The constraint at a place in the order of elimination.
-    std::uint32_t block(std::uint32_t place) const { return rigid_[order_[place]]; }
+    std::uint32_t block(std::uint32_t place) const { return order_[place]; }
 
     // At the present poses and inertias. Each block is made softer by `compliance` times its own
     // inverse mass, so that joints that say the same twice can be solved.
@@ -82,7 +82,6 @@ class JointSystem {
     std::vector<std::uint64_t> key_; // of the arrangement: pairs of bodies
     std::vector<JointGroup> groups_;
     std::vector<std::uint32_t> group_of_body_;
-    std::vector<std::uint32_t> rigid_; // blocks that may be of a group: what follows counts these
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> column_start_; // one more than places
     std::vector<std::uint32_t> rows_;         // of the entries, column by column, ascending

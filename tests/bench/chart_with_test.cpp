@@ -2,6 +2,7 @@
 #include "app/lab/chart/chart.h"
 #include "app/lab/engines/other_engines.h"
 #include "engine/scene/scene_file.h"
+#include "tests/lab/chart/falling.h"
 
 #include <map>
 
@@ -43,20 +44,10 @@ TEST(ChartWith, BulletAndOdeKeepAStackOfTenBoxes) {
 }
 
 TEST(ChartWith, AFallIsTheSameInAll) {
-    SceneDesc fall;
-    fall.name = "fall";
-    BodyDesc ball;
-    ball.name = "ball";
-    ball.colliders.emplace_back().shape = SphereDesc{0.5};
-    fall.bodies.push_back(ball);
-    ExpectDesc expect;
-    expect.name = "y";
+    SceneDesc fall = falling_scene();
+    ExpectDesc &expect = fall.expects.front();
     expect.quantity = "position.y";
-    expect.body = "ball";
-    expect.to = 1;
     expect.value = -0.5 * 9.81;
-    expect.tolerance = 0.1;
-    fall.expects.push_back(expect);
     ChartOptions options;
     options.methods = {"semi_implicit_euler"};
     for (const OtherEngine &engine : other_engines())

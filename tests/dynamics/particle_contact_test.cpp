@@ -181,7 +181,7 @@ TEST_P(ParticleContacts, KeepMomenta) {
         EXPECT_LT(glm::distance(after.linear_momentum, before.linear_momentum), 200 * epsilon);
         // XPBD loses spin, and corrects poses by arms and turns of first order: 9e-5 at most here,
         // of some 0.3 (kg m^2/s).
-        const double bound = GetParam() == "xpbd" ? 2e-4 : 400 * epsilon;
+        const double bound = GetParam() == "xpbd" ? 1.4e-4 : 400 * epsilon;
         EXPECT_LT(glm::distance(after.angular_momentum, before.angular_momentum), bound);
         EXPECT_LT(after.kinetic_energy, before.kinetic_energy);
     }
@@ -260,6 +260,14 @@ TEST_P(ParticleContacts, ANetBearsABall) {
     const double speed = glm::length(velocity_of(world, world.body_id(1)));
     if (GetParam() == "nncg") { // sixteen conjugated passes leave the ball bobbing
         EXPECT_GT(speed, 0.03);
+        // On average it bears the ball: whatever its bobbing, but for its momentum.
+        const int steps = 600;
+        double sum = 0;
+        for (int i = 0; i < steps; ++i) {
+            run(world, 1);
+            sum += borne(world);
+        }
+        EXPECT_NEAR(sum / steps, 1, 0.02);
         return;
     }
     EXPECT_LT(speed, 0.03);

@@ -83,9 +83,7 @@ Method nncg() {
              .contacts = true,
              .joints = true,
              .springs = true,
-             .reads = {SettingGroup::constraints, SettingGroup::speculative,
-                       SettingGroup::baumgarte, SettingGroup::push, SettingGroup::threshold,
-                       SettingGroup::impacts, SettingGroup::gyroscopic},
+             .reads = read_by_impulses(),
              .defaults = {.substeps = 1, .iterations = 50}},
             advance};
 }

@@ -4,6 +4,7 @@
 
 #include "engine/core/random.h"
 #include "engine/scene/scene_file.h"
+#include "tests/lab/chart/falling.h"
 
 #include <array>
 #include <cmath>
@@ -121,19 +122,13 @@ TEST(ChartAndCheck, AgreeOnAnythingThatABallIsHeldTo) {
 
 // A scene's probes count too.
 TEST(ChartAndCheck, AgreeOnProbes) {
-    SceneDesc scene;
-    scene.name = "ball";
-    BodyDesc ball;
-    ball.name = "ball";
-    ball.colliders.emplace_back().shape = SphereDesc{0.5};
-    scene.bodies.push_back(ball);
-    ExpectDesc expect;
-    expect.name = "falls";
+    SceneDesc scene = falling_scene();
+    ExpectDesc &expect = scene.expects.front();
     expect.quantity = "position.y";
-    expect.body = "ball";
     expect.to = 0.5;
+    expect.value = 0;
+    expect.tolerance = 0;
     expect.relation = ExpectDesc::Relation::at_most;
-    scene.expects.push_back(expect);
     ProbeDesc probe;
     probe.name = "origin";
     probe.question = ProbeQuestion::contains;
