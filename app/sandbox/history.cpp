@@ -1,31 +1,41 @@
 #include "app/sandbox/history.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace plumb {
 
-std::size_t History::capacity(std::size_t bodies, std::size_t contacts) {
-    const std::size_t state =
-        std::max(bytes_per_body * std::max<std::size_t>(bodies, 1), bytes_per_contact * contacts);
-    const std::size_t fits = memory_limit / state;
-    return std::clamp<std::size_t>(fits, 1, most_states);
+void History::clear() {
+    states_.clear();
+    bytes_ = 0;
+}
+
+// What the next one shares with it stays.
+std::unique_ptr<Simulation::Saved> History::forget_oldest() {
+    std::unique_ptr<Simulation::Saved> oldest = std::move(states_.front());
+    states_.pop_front();
+    bytes_ -= oldest->bytes_beside(states_.empty() ? nullptr : states_.front().get());
+    return oldest;
 }
 
 void History::remember(const Simulation &simulation) {
     // The oldest one's memory is used again.
     std::unique_ptr<Simulation::Saved> oldest;
-    while (states_.size() >= capacity(simulation.body_count(), simulation.report().contacts)) {
-        oldest = std::move(states_.front());
-        states_.pop_front();
-    }
-    states_.push_back(simulation.save(std::move(oldest)));
+    if (states_.size() == most_states || bytes_ >= memory_limit)
+        oldest = forget_oldest();
+    const Simulation::Saved *before = states_.empty() ? nullptr : states_.back().get();
+    states_.push_back(simulation.save(std::move(oldest), before));
+    bytes_ += states_.back()->bytes_beside(before);
+    while (bytes_ > memory_limit && states_.size() > 1)
+        forget_oldest();
 }
 
 bool History::recall(Simulation &simulation) {
     if (states_.empty())
         return false;
-    simulation.restore(*states_.back());
+    const std::unique_ptr<Simulation::Saved> newest = std::move(states_.back());
     states_.pop_back();
+    bytes_ -= newest->bytes_beside(states_.empty() ? nullptr : states_.back().get());
+    simulation.restore(*newest);
     return true;
 }
 

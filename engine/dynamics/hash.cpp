@@ -112,7 +112,7 @@ std::uint64_t World::hash() const {
     hash_settings(hash, settings_);
     for (const char c : method_->info.name)
         hash.add(static_cast<std::uint64_t>(c));
-    hash.add(state_.step_count);
+    hash.add(state_.clock.step_count);
     // Bodies are named by their rank among the living, so that holes do not count.
     std::vector<std::uint64_t> rank(bodies().size());
     std::uint64_t alive = 0;

@@ -181,7 +181,7 @@ int World::chosen_substeps(const Islands::Needs &needs, int budget) const {
     const int wanted = rounded(needs.wanted);
     if (wanted >= needs.before)
         return wanted;
-    const bool may_go_down = state_.step_count % steps_to_go_down == 0 && needs.rests &&
+    const bool may_go_down = state_.clock.step_count % steps_to_go_down == 0 && needs.rests &&
                              rounded(spare * needs.wanted) < needs.before;
     return std::clamp(may_go_down ? fewer_substeps(needs.before) : needs.before, least, most);
 }

@@ -11,6 +11,13 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
+struct StateClock {
+    std::uint64_t step_count = 0;
+    // Simulated time is a product, not a sum, of each dt that was set.
+    double time_before = 0; // s, until dt was last changed
+    std::uint64_t steps_before = 0;
+};
+
 // Flat arrays of plain values: a save is a copy, and a copy continues with the same bits.
 struct State {
     std::vector<Motion> motions;         // one for each body of the model
@@ -21,10 +28,7 @@ struct State {
     std::vector<ParticleMotion> particles; // one for each particle of the model
     std::vector<std::uint8_t> torn;        // one for each spring of the model
     Grab grab;
-    std::uint64_t step_count = 0;
-    // Simulated time is a product, not a sum, of each dt that was set.
-    double time_before = 0; // s, until dt was last changed
-    std::uint64_t steps_before = 0;
+    StateClock clock;
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

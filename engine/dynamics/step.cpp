@@ -60,7 +60,7 @@ void World::step(TaskPool *tasks, StepTimes *times) {
     // All that there is sleeps, or never moves.
     if (scratch_.awake == 0 && !moves_particles()) {
         report_.joints = model_->alive_joints;
-        ++state_.step_count;
+        ++state_.clock.step_count;
         return;
     }
     scratch_.contacts_are_current = false;
@@ -305,7 +305,7 @@ void World::finish() {
         std::swap(state_.particles, s.particles);
         std::swap(state_.torn, s.torn);
     }
-    ++state_.step_count;
+    ++state_.clock.step_count;
     // Those of what slept were not looked for.
     s.contacts_are_current = std::ranges::none_of(state_.paces, &Pace::is_asleep);
 }

@@ -105,8 +105,8 @@ void World::set_method(std::string_view method) {
 void World::set_settings(const StepSettings &settings) {
     check_settings(settings);
     if (settings.dt != settings_.dt) {
-        state_.time_before = time();
-        state_.steps_before = state_.step_count;
+        state_.clock.time_before = time();
+        state_.clock.steps_before = state_.clock.step_count;
     }
     wake_all();
     use(settings);
@@ -461,9 +461,9 @@ void World::set_pace(BodyId id, const Pace &pace) {
 }
 
 void World::set_step_count(std::uint64_t count) {
-    state_.step_count = count;
-    state_.time_before = 0;
-    state_.steps_before = 0;
+    state_.clock.step_count = count;
+    state_.clock.time_before = 0;
+    state_.clock.steps_before = 0;
 }
 
 void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
@@ -497,29 +497,6 @@ const std::vector<Contact> &World::contacts() const {
         scratch_.contacts_are_current = true;
     }
     return scratch_.contacts;
-}
-
-void World::save(SavedWorld &into) const {
-    into.model = model_;
-    into.state = state_;
-    into.method = method_;
-    into.settings = settings_;
-}
-
-void World::restore(const SavedWorld &saved) {
-    PLUMB_CHECK(saved.model != nullptr, "nothing was saved");
-    if (saved.model != model_) {
-        // Edits copy a model that is shared, so this one is not changed while `saved` lives.
-        model_ = std::const_pointer_cast<Model>(saved.model);
-        scratch_ = Scratch{};
-    }
-    scratch_.stays.clear();
-    state_ = saved.state;
-    method_ = saved.method;
-    use(saved.settings);
-    scratch_.contacts_are_current = false;
-    scratch_.impacts.clear();
-    report_ = StepReport{};
 }
 
 std::optional<WorldHit> World::raycast(const Ray &ray) const {

@@ -5,6 +5,7 @@
 #include "engine/core/task_pool.h"
 #include "engine/dynamics/measures.h"
 #include "engine/dynamics/method.h"
+#include "engine/dynamics/saved_world.h"
 #include "engine/dynamics/scratch.h"
 
 #include <memory>
@@ -18,14 +19,6 @@ struct WorldHit {
     BodyId body;
     std::uint16_t child = 0;
     RayHit hit;
-};
-
-// What decides the future: the model, which saves share until it is edited, and the state.
-struct SavedWorld {
-    std::shared_ptr<const Model> model;
-    State state;
-    const Method *method = nullptr;
-    StepSettings settings;
 };
 
 // A manifold and the poses that it is of: those of now, or those in which two bodies will touch.
@@ -106,20 +99,22 @@ class World {
     // step that throws leaves the state as it was. `times`, when not null, gets the phases' times.
     void step(TaskPool *tasks, StepTimes *times = nullptr);
     const StepReport &report() const { return report_; }
-    std::uint64_t step_count() const { return state_.step_count; }
+    std::uint64_t step_count() const { return state_.clock.step_count; }
     // For a world that continues a saved one, when its bodies and joints are there again.
     void set_pace(BodyId id, const Pace &pace);
     // For a world that continues a saved one; all its steps count as of the present dt.
     void set_step_count(std::uint64_t count);
     // Simulated time (s): step k is where it should be.
     double time() const {
-        return state_.time_before +
-               static_cast<double>(state_.step_count - state_.steps_before) * settings_.dt;
+        const StateClock &clock = state_.clock;
+        return clock.time_before +
+               static_cast<double>(clock.step_count - clock.steps_before) * settings_.dt;
     }
 
-    // Copies the state, and shares the model. `into` keeps its memory, so that a ring of saves
-    // allocates nothing once it is full.
-    void save(SavedWorld &into) const;
+    // Copies the state, shares the model, and shares with `before` (may be null) each part of the
+    // state that has not changed since. `into` keeps its memory, so that a ring of saves allocates
+    // nothing once it is full, as long as all that it saves moves.
+    void save(SavedWorld &into, const SavedWorld *before = nullptr) const;
     void restore(const SavedWorld &saved);
 
     // The nearest body; of two at the same t, the one with the lower index. Sensors are not met.

@@ -41,7 +41,7 @@ class ProbeSimulation final : public Simulation {
         }
     }
 
-    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>, const Saved *) const override {
         return std::make_unique<Saved>();
     }
     void restore(const Saved &) override {}

@@ -112,10 +112,14 @@ class Simulation {
     class Saved {
       public:
         virtual ~Saved() = default;
+        // Of memory that it does not share with another save of the same simulation (null: all).
+        virtual std::size_t bytes_beside(const Saved *) const { return 0; }
     };
-    // Into the memory of an older save of this simulation, if one is given.
-    virtual std::unique_ptr<Saved> save(std::unique_ptr<Saved> reuse) const = 0;
-    std::unique_ptr<Saved> save() const { return save(nullptr); }
+    // Into the memory of an older save of this simulation, if one is given. What has not changed
+    // since `before`, likewise, is shared with it.
+    virtual std::unique_ptr<Saved> save(std::unique_ptr<Saved> reuse,
+                                        const Saved *before) const = 0;
+    std::unique_ptr<Saved> save() const { return save(nullptr, nullptr); }
     virtual void restore(const Saved &saved) = 0; // saved by this simulation
 
     // The present state as a scene that loads to the same hash.

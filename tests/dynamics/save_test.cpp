@@ -133,6 +133,36 @@ TEST_P(Saves, EditsDoNotReachWhatWasSaved) {
     ASSERT_EQ(world.hash(), expected);
 }
 
+// What has not changed since the save before is shared with it, and nothing else is.
+TEST_P(Saves, ShareWhatRests) {
+    if (!find_method(GetParam())->info.joints)
+        GTEST_SKIP() << "no joints";
+    World world = heap(GetParam(), 20);
+    run(world, 10);
+    SavedWorld first;
+    world.save(first);
+    SavedWorld second;
+    world.save(second, &first);
+    EXPECT_GT(first.bytes_beside(nullptr), 0U);
+    EXPECT_EQ(second.bytes_beside(&first), 0U);
+    EXPECT_EQ(second.bytes_beside(nullptr), first.bytes_beside(nullptr));
+    const std::uint64_t before = world.hash();
+    run(world, 1);
+    const std::uint64_t after = world.hash();
+    ASSERT_NE(after, before);
+    SavedWorld third;
+    world.save(third, &second);
+    EXPECT_GT(third.bytes_beside(&second), 0U);
+    // A save into the memory of one whose columns another shares leaves that as it was.
+    world.save(first);
+    world.restore(second);
+    EXPECT_EQ(world.hash(), before);
+    for (const SavedWorld *saved : {&first, &third}) {
+        world.restore(*saved);
+        EXPECT_EQ(world.hash(), after);
+    }
+}
+
 // Lets a world fall until nobody's substeps have changed for a second.
 bool settles(World &world) {
     run(world, 240);

@@ -18,6 +18,7 @@ class FakeSimulation final : public Simulation {
     std::optional<std::uint64_t> diverges_at; // the step from this count on gives NaN
     std::vector<Command> commands;            // in order
     double advance_time = 0;                  // s, that each step says it took
+    void set_save_bytes(std::size_t bytes) { state_.bytes = bytes; }
 
     explicit FakeSimulation(const SceneDesc &scene) {
         scene.world.settings.apply_to(settings_);
@@ -81,10 +82,12 @@ class FakeSimulation final : public Simulation {
     }
 
     struct State final : Saved {
+        std::size_t bytes = 0; // that a save is said to take
+        std::size_t bytes_beside(const Saved *) const override { return bytes; }
         std::uint64_t steps = 0;
         std::vector<BodyState> bodies;
     };
-    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>, const Saved *) const override {
         return std::make_unique<State>(state_);
     }
     void restore(const Saved &saved) override {

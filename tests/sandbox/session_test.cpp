@@ -543,26 +543,6 @@ TEST(SessionWithFake, WhatDivergesIsNotJudgedFurther) {
     EXPECT_EQ(verdicts(session), (Verdicts{pending, pending, pending}));
 }
 
-TEST(History, KeepsTheNewestWithinItsMemory) {
-    EXPECT_EQ(History::capacity(1), History::most_states);
-    EXPECT_EQ(History::capacity(0), History::most_states);
-    EXPECT_EQ(History::capacity(1'000'000'000), 1u);
-    for (const std::size_t bodies : {1u, 100u, 5000u, 200'000u})
-        EXPECT_LE(History::capacity(bodies) * bodies * History::bytes_per_body,
-                  History::memory_limit);
-    // Contacts are remembered too.
-    EXPECT_EQ(History::capacity(4000, 3'000'000), 1U);
-    FakeSimulation simulation(two_balls());
-    History history;
-    for (std::size_t i = 0; i < History::most_states + 5; ++i) {
-        history.remember(simulation);
-        simulation.step();
-    }
-    EXPECT_EQ(history.size(), History::most_states);
-    ASSERT_TRUE(history.recall(simulation));
-    EXPECT_EQ(simulation.step_count(), History::most_states + 4);
-}
-
 TEST(Messages, NotesGoAndErrorsStay) {
     Messages messages;
     messages.note("saved");

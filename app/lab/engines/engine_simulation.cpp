@@ -100,7 +100,7 @@ class EngineSimulation final : public Simulation {
     struct Place final : Saved {
         std::uint64_t steps = 0;
     };
-    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>, const Saved *) const override {
         auto place = std::make_unique<Place>();
         place->steps = steps_;
         return place;

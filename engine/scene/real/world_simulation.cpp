@@ -75,13 +75,14 @@ class WorldSimulation final : public Simulation {
         }
     }
 
-    std::unique_ptr<Saved> save(std::unique_ptr<Saved> reuse) const override {
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved> reuse, const Saved *before) const override {
         auto *old = dynamic_cast<SavedState *>(reuse.get());
         if (old == nullptr) {
             reuse = std::make_unique<SavedState>();
             old = static_cast<SavedState *>(reuse.get());
         }
-        world_.save(old->world);
+        const auto *earlier = dynamic_cast<const SavedState *>(before);
+        world_.save(old->world, earlier != nullptr ? &earlier->world : nullptr);
         old->book = book_;
         return reuse;
     }
@@ -117,6 +118,10 @@ class WorldSimulation final : public Simulation {
 
   private:
     struct SavedState final : Saved {
+        std::size_t bytes_beside(const Saved *other) const override {
+            const auto *saved = dynamic_cast<const SavedState *>(other);
+            return world.bytes_beside(saved != nullptr ? &saved->world : nullptr);
+        }
         SavedWorld world;
         std::shared_ptr<Book> book;
     };

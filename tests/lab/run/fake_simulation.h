@@ -60,7 +60,7 @@ class FakeSimulation : public Simulation {
     struct State : Saved {
         std::uint64_t steps = 0;
     };
-    std::unique_ptr<Saved> save(std::unique_ptr<Saved>) const override {
+    std::unique_ptr<Saved> save(std::unique_ptr<Saved>, const Saved *) const override {
         auto saved = std::make_unique<State>();
         saved->steps = steps_;
         return saved;

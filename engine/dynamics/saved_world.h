@@ -1,0 +1,76 @@
+// What a save keeps: the state, column by column. A column in which no bit has changed since the
+// save before is shared with it, so that what rests is kept once, however often it is saved.
+#pragma once
+
+#include "engine/dynamics/method.h"
+#include "engine/dynamics/state.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+template <typename Item> class SavedColumn {
+  public:
+    // What this column held is overwritten in its place, unless another save shares it.
+    void take(const std::vector<Item> &items, const SavedColumn &before) {
+        if (before.items_ != nullptr && same_bits(*before.items_, items))
+            items_ = before.items_;
+        else if (items_ != nullptr && items_.use_count() == 1)
+            *items_ = items;
+        else
+            items_ = std::make_shared<std::vector<Item>>(items);
+    }
+    void give(std::vector<Item> &items) const {
+        if (items_ != nullptr)
+            items = *items_;
+        else
+            items.clear();
+    }
+    // 0 if it is shared with `other`.
+    std::size_t bytes_beside(const SavedColumn &other) const {
+        return items_ == nullptr || items_ == other.items_ ? 0 : items_->capacity() * sizeof(Item);
+    }
+
+  private:
+    static_assert(std::is_trivially_copyable_v<Item>);
+
+    static bool same_bits(const std::vector<Item> &a, const std::vector<Item> &b) {
+        const std::span bits_a = std::as_bytes(std::span(a));
+        const std::span bits_b = std::as_bytes(std::span(b));
+        return bits_a.size() == bits_b.size() &&
+               (bits_a.empty() || std::memcmp(bits_a.data(), bits_b.data(), bits_a.size()) == 0);
+    }
+
+    std::shared_ptr<std::vector<Item>> items_; // null: none
+};
+
+struct SavedState {
+    SavedColumn<Motion> motions;
+    SavedColumn<Pace> paces;
+    SavedColumn<JointMemory> joints;
+    SavedColumn<ContactMemory> contacts;
+    SavedColumn<PointMemory> points;
+    SavedColumn<ParticleMotion> particles;
+    SavedColumn<std::uint8_t> torn;
+    StateClock clock;
+    Grab grab;
+};
+
+// What decides the future: the model, which saves share until it is edited, and the state.
+struct SavedWorld {
+    std::shared_ptr<const Model> model;
+    SavedState state;
+    const Method *method = nullptr;
+    StepSettings settings;
+
+    // What the state takes beside that of another save, which may be null.
+    std::size_t bytes_beside(const SavedWorld *before) const;
+};
+
+} // namespace plumb::inline PLUMB_PRECISION
