@@ -1,6 +1,7 @@
 #include "engine/dynamics/approach.h"
 
 #include "engine/dynamics/motion.h"
+#include "engine/geometry/gjk.h"
 #include "engine/geometry/half_space.h"
 #include "engine/geometry/hull_queries.h"
 
@@ -26,18 +27,38 @@ Transform pose_of(const Motion &motion) {
     return {motion.position, motion.rotation};
 }
 
-template <typename A, typename B> Gap gap_between(const A &a, const B &b) {
+// `guess`: a direction from A to B to look along first, of any length; zero: from middle to middle.
+template <typename A, typename B> ClosestPoints closest(const A &a, const B &b, const Vec3 &guess) {
+    if constexpr (requires {
+                      core_of(a, Vec3{});
+                      core_of(b, Vec3{});
+                  }) {
+        const Vec3 origin = place_of(a);
+        const auto core_a = core_of(a, origin);
+        const auto core_b = core_of(b, origin);
+        if constexpr (!HasNearestPoints<decltype(core_a), decltype(core_b)>)
+            return closest_points(
+                gjk(core_a, core_b,
+                    guess == Vec3{Real(0)} ? core_b.middle() - core_a.middle() : guess,
+                    std::numeric_limits<Real>::infinity()),
+                core_a.radius, core_b.radius, origin);
+    }
+    return distance(a, b);
+}
+
+template <typename A, typename B> Gap gap_between(const A &a, const B &b, const Vec3 &guess) {
     if constexpr (std::same_as<A, HalfSpace> && std::same_as<B, HalfSpace>) {
         return {std::numeric_limits<Real>::infinity(), Vec3{Real(0), Real(1), Real(0)}};
     } else {
-        const ClosestPoints found = distance(a, b);
+        const ClosestPoints found = closest(a, b, guess);
         return {found.distance, found.normal};
     }
 }
 
-Gap gap_between(const Shape &a, const Shape &b) {
+Gap gap_between(const Shape &a, const Shape &b, const Vec3 &guess) {
     return std::visit(
-        [](const auto &first, const auto &second) { return gap_between(first, second); }, a, b);
+        [&](const auto &first, const auto &second) { return gap_between(first, second, guess); }, a,
+        b);
 }
 
 // How far the core of a shape reaches along a vector of any length, from the
@@ -115,7 +136,7 @@ template <typename Solid> struct TurningReach {
 template <typename B>
 Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real extent_a,
                 const B &b, const Motion &motion_b, Real extent_b, Real t, Real left, Real least,
-                Real margin, bool &stays) {
+                Real enough, bool &stays) {
     const Vec3 velocity = motion_b.velocity - motion_a.velocity;
     const Vec3 between = (motion_b.position - motion_a.position) + t * velocity;
     const TurningReach reach_a(a, motion_a, extent_a, normal, t);
@@ -124,7 +145,7 @@ Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real
         return glm::dot(between + later * velocity, normal) - reach_a(later) - reach_b(later);
     };
     const Real at_end = apart(left);
-    stays = at_end >= margin;
+    stays = at_end >= enough;
     if (at_end > least)
         return left;
     Real time = Real(0);
@@ -137,11 +158,13 @@ Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real
     return time;
 }
 
-// The pair on its way. `gap_after(t)` gives the gap after t seconds;
+// The pair on its way. `gap_after(t, guess)` gives the gap after t seconds, looked for along the
+// guess first;
 // `apart_for(n, t, left, least, stays)` is time_apart.
 template <typename GapAfter, typename ApartFor>
 Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Motion &a,
-                 Real extent_a, const Motion &b, Real extent_b, Real duration, Real margin) {
+                 Real extent_a, const Motion &b, Real extent_b, Real duration, Real margin,
+                 Vec3 guess) {
     const Vec3 velocity = b.velocity - a.velocity;
     const auto straight = [&](const Gap &gap) { return -glm::dot(velocity, gap.normal); };
     // A point of a turning body at distance r moves along n with at most |n x w|
@@ -152,14 +175,22 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
     };
     constexpr int step_limit = 32;
     constexpr Real near = Real(1e-3); // of the margin: as good as a touch
+    constexpr Real close = Real(0.05);
+    Real gap_before = Real(0);
     Approach best{Real(0), std::numeric_limits<Real>::infinity()};
     Real t = Real(0);
     Real before = Real(0);        // the time of the step before,
     bool was_approaching = false; // and whether they came nearer then
     for (int step = 0; step < step_limit; ++step) {
-        const Gap gap = gap_after(t);
+        const Gap gap = gap_after(t, guess);
+        guess = gap.normal;
         if (gap.distance <= near * margin)
             return {t, Real(0)};
+        // Hardly nearer than a step ago: they slide or roll along each other, and the bounds, which
+        // know of the whole body's turn, would creep to the touch.
+        if (step > 0 && gap.distance <= close * margin && gap.distance > Real(0.5) * gap_before)
+            return {t, Real(0)};
+        gap_before = gap.distance;
         const Real closing = straight(gap);
         if (gap.distance < best.distance)
             best = {t, gap.distance};
@@ -172,7 +203,7 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
             constexpr int most_cuts = 30;
             for (int cut = 0; cut < most_cuts; ++cut) {
                 const Real middle = Real(0.5) * (low + high);
-                const Gap between = gap_after(middle);
+                const Gap between = gap_after(middle, guess);
                 if (between.distance < best.distance)
                     best = {middle, between.distance};
                 if (between.distance <= near * margin)
@@ -190,7 +221,10 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
         was_approaching = closing > Real(0);
         before = t;
         bool stays = false;
-        const Real apart = apart_for(gap.normal, t, left, Real(0.5) * near * margin, stays);
+        // Out of the margin, or about as far apart as they are now all along this normal: nothing
+        // that is made of it would push.
+        const Real enough = std::min(margin, Real(0.5) * gap.distance);
+        const Real apart = apart_for(gap.normal, t, left, Real(0.5) * near * margin, enough, stays);
         if (stays)
             return best;
         t = std::min(t + std::max(apart, gap.distance / fastest), duration);
@@ -206,30 +240,35 @@ Motion ahead(const Motion &motion, Real t) {
             motion.angular_velocity};
 }
 
-Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin) {
-    const auto gap_after = [&](Real t) {
+Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
+                  const Vec3 &guess) {
+    const auto gap_after = [&](Real t, const Vec3 &along) {
         return gap_between(placed(*a.shape, pose_of(ahead(a.motion, t))),
-                           placed(*b.shape, pose_of(ahead(b.motion, t))));
+                           placed(*b.shape, pose_of(ahead(b.motion, t))), along);
     };
-    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, bool &stays) {
+    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, Real enough,
+                               bool &stays) {
         return time_apart(normal, *a.shape, a.motion, a.extent, *b.shape, b.motion, b.extent, t,
-                          left, least, margin, stays);
+                          left, least, enough, stays);
     };
-    return advance(gap_after, apart_for, a.motion, a.extent, b.motion, b.extent, duration, margin);
+    return advance(gap_after, apart_for, a.motion, a.extent, b.motion, b.extent, duration, margin,
+                   guess);
 }
 
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
-                  Real duration, Real margin) {
-    const auto gap_after = [&](Real t) {
+                  Real duration, Real margin, const Vec3 &guess) {
+    const auto gap_after = [&](Real t, const Vec3 &along) {
         const Triangle triangle = placed(b, pose_of(ahead(motion_b, t)));
-        return std::visit([&](const auto &solid) { return gap_between(solid, triangle); },
+        return std::visit([&](const auto &solid) { return gap_between(solid, triangle, along); },
                           placed(*a.shape, pose_of(ahead(a.motion, t))));
     };
-    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, bool &stays) {
+    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, Real enough,
+                               bool &stays) {
         return time_apart(normal, *a.shape, a.motion, a.extent, b, motion_b, extent_b, t, left,
-                          least, margin, stays);
+                          least, enough, stays);
     };
-    return advance(gap_after, apart_for, a.motion, a.extent, motion_b, extent_b, duration, margin);
+    return advance(gap_after, apart_for, a.motion, a.extent, motion_b, extent_b, duration, margin,
+                   guess);
 }
 
 Real core_extent(const Shape &local) {

@@ -27,10 +27,12 @@ struct Approach {
 //
 // By conservative advancement (shape_cast.h), with what the spins may add to the speed of approach
 // (Mirtich 1996, 2.3), so nothing is passed through. Two half-spaces are never near each other.
-Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin);
+// `guess`: where b is from a at the start, as far as it is known; it only saves time.
+Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
+                  const Vec3 &guess = Vec3{Real(0)});
 // The same with a triangle (in the mass frame of its body) in place of the second solid.
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
-                  Real duration, Real margin);
+                  Real duration, Real margin, const Vec3 &guess = Vec3{Real(0)});
 
 // The distance of the farthest point of a shape's core from the origin: of what turning moves.
 Real core_extent(const Shape &local);

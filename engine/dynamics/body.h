@@ -135,7 +135,7 @@ struct SolverBody : Motion {
     Vec3 inv_mass{Real(0)};    // along the world's axes, which differ where one is locked
     Mat3 inv_inertia{Real(0)}; // world; follows the rotation
     Vec3 moved{Real(0)};       // since the step began (m)
-    Vec3 turned{Real(0)};      // likewise, the sum of the turns (rad, world)
+    Vec3 turned{Real(0)};      // likewise, as a rotation vector (rad, world)
     bool has_locked_translation = false;
 
     Vec3 velocity_at(const Vec3 &r) const { return velocity + glm::cross(angular_velocity, r); }

@@ -233,7 +233,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         if (is_turning)
             found.moment = Moment::turning;
         else if (found.manifold.count > 0 && is_predicted && !touches(found.manifold))
-            found = predicted_manifold(candidate);
+            found = predicted_manifold(candidate, found.manifold.normal);
         else if (found.manifold.count > 0 && is_predicted)
             guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
         drop_inner_edges(candidate, ContactKey::no_triangle, found);
@@ -263,7 +263,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
             if (is_turning)
                 found.moment = Moment::turning;
             else if (is_predicted && !touches(found.manifold))
-                found = predicted_manifold(candidate, triangle);
+                found = predicted_manifold(candidate, found.manifold.normal, triangle);
             drop_inner_edges(candidate, triangle, found);
             add_contact(candidate, triangle, found, out);
         });

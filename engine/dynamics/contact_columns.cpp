@@ -125,7 +125,6 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     set(block.inv_inertia_a, lane, a.inv_inertia);
     set(block.inv_inertia_b, lane, b.inv_inertia);
     block.is_new = block.is_new || contact.is_new;
-    block.any_ahead = block.any_ahead || contact.moment != Moment::start;
     block.points_used = std::max(block.points_used, contact.manifold.count);
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
         ContactBlock::Point &point = block.points[k];
@@ -136,45 +135,23 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     }
 }
 
-// As the kernels have it: how far an arm's end came along n since the step began.
-Real way_along(const Vec3 &n, const Vec3 &turn, const Vec3 &r, Real rounding) {
-    const Real turn_n = glm::dot(turn, n);
-    const Real core_n = glm::dot(r, n) - rounding;
-    const Real core_turn = glm::dot(r, turn) - rounding * turn_n;
-    const Real second = turn_n * core_turn - glm::dot(turn, turn) * core_n;
-    return glm::dot(n, glm::cross(turn, r)) + Real(0.5) * second;
+bool is_ahead(const StepContext &context, const ContactBlock &block) {
+    return std::any_of(block.contacts, block.contacts + block.used, [&](std::uint32_t contact) {
+        return context.contacts[contact].moment != Moment::start;
+    });
 }
 
-// Whether a body turned too far for the second order.
-bool has_turned_far(const SolverBody &body) {
-    constexpr Real far = Real(0.02); // rad
-    return glm::dot(body.turned, body.turned) > far * far;
-}
-
-// Sets separations so that with what the kernels add they are exact at the present poses: of what
-// turned far, and of contacts made for the time of impact, whose arms are those of then.
-void correct_separations(const StepContext &context, std::span<ContactBlock> blocks, bool any_far) {
-    for (ContactBlock &block : blocks)
-        for (std::size_t lane = 0; (any_far || block.any_ahead) && lane < block.used; ++lane) {
-            const Contact &contact = context.contacts[block.contacts[lane]];
-            const SolverBody &a = context.bodies[contact.key.a];
-            const SolverBody &b = context.bodies[contact.key.b];
-            if (contact.moment == Moment::start && !has_turned_far(a) && !has_turned_far(b))
-                continue;
-            const Vec3 n = get(block.normal, lane);
-            const Real rounding_a = block.rounding_a.lanes[lane];
-            const Real rounding_b = block.rounding_b.lanes[lane];
-            for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
-                const ContactAnchor &anchor = contact.anchors[k];
-                const Real exact = separation_along(n, anchor.core_a, anchor.core_b,
-                                                    rounding_a + rounding_b, a, b);
-                const Real way =
-                    glm::dot(n, b.moved - a.moved) +
-                    way_along(n, b.turned, get(block.points[k].r_b, lane), -rounding_b) -
-                    way_along(n, a.turned, get(block.points[k].r_a, lane), rounding_a);
-                block.points[k].separation.lanes[lane] = exact - way;
-            }
+void fill_start_arms(const StepContext &context, const ContactBlock &block, StartArms &arms) {
+    arms = {};
+    for (std::size_t lane = 0; lane < block.used; ++lane) {
+        const Contact &contact = context.contacts[block.contacts[lane]];
+        const Quat &rotation_a = context.starts[contact.key.a].rotation;
+        const Quat &rotation_b = context.starts[contact.key.b].rotation;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+            set(arms.points[k].core_a, lane, rotation_a * contact.anchors[k].core_a);
+            set(arms.points[k].core_b, lane, rotation_b * contact.anchors[k].core_b);
         }
+    }
 }
 
 // Some microseconds of work.
@@ -202,9 +179,14 @@ template <class Use> void for_colours(StepContext &context, Use &&use) {
     use(blocks.subspan(first));
 }
 
-// Normal, tangents and arms of one contact as they are t seconds from now.
-void turn_lane(const StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
+// Normal, tangents and arms of one contact as they are t seconds from now; and its separation along
+// that normal when the step began, on top of which comes what the bodies moved since.
+void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
     const Contact &contact = context.contacts[block.contacts[lane]];
+    const StartArms &arms = context.scratch.schedule.start_arms[block.ahead];
+    const Vec3 offset =
+        context.starts[contact.key.b].position - context.starts[contact.key.a].position;
+    const Real rounding = block.rounding_a.lanes[lane] + block.rounding_b.lanes[lane];
     const Motion a = ahead(context.bodies[contact.key.a], t);
     const Motion b = ahead(context.bodies[contact.key.b], t);
     const bool a_moves = is_dynamic(context, contact.key.a);
@@ -222,6 +204,8 @@ void turn_lane(const StepContext &context, ContactBlock &block, std::size_t lane
         const Vec3 half = Real(0.5) * glm::dot((b.position - a.position) + (on_b - on_a), n) * n;
         set(block.points[k].r_a, lane, on_a + (Real(1) + side) * half);
         set(block.points[k].r_b, lane, on_b - (Real(1) - side) * half);
+        const Vec3 cores = get(arms.points[k].core_b, lane) - get(arms.points[k].core_a, lane);
+        block.points[k].separation.lanes[lane] = glm::dot(offset + cores, n) - rounding;
     }
 }
 
@@ -248,7 +232,8 @@ void turn_contact_columns(StepContext &context, Real t) {
         return;
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (ContactBlock &block : blocks)
-            for (std::size_t lane = 0; block.any_ahead && lane < block.used; ++lane)
+            for (std::size_t lane = 0; block.ahead != ContactBlock::none && lane < block.used;
+                 ++lane)
                 if (context.contacts[block.contacts[lane]].moment == Moment::turning)
                     turn_lane(context, block, lane, t);
     });
@@ -257,6 +242,7 @@ void turn_contact_columns(StepContext &context, Real t) {
 void prepare_contact_columns(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
     schedule.blocks.clear();
+    schedule.start_arms.clear();
     schedule.colour_ends.clear();
     schedule.lanes.clear();
     schedule.any_turning = false;
@@ -294,6 +280,17 @@ void prepare_contact_columns(StepContext &context) {
         }
         kernels::finish(blocks);
     });
+    std::uint32_t ahead = 0;
+    for (ContactBlock &block : schedule.blocks)
+        if (is_ahead(context, block))
+            block.ahead = ahead++;
+    schedule.start_arms.resize(ahead);
+    if (ahead > 0)
+        for_blocks(context, [&](std::span<const ContactBlock> blocks) {
+            for (const ContactBlock &block : blocks)
+                if (block.ahead != ContactBlock::none)
+                    fill_start_arms(context, block, schedule.start_arms[block.ahead]);
+        });
 }
 
 void recall_contact_columns(StepContext &context, Real share, bool remember_first) {
@@ -306,11 +303,12 @@ void recall_contact_columns(StepContext &context, Real share, bool remember_firs
 
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h) {
     const BodyReals bodies = reals_of(context.bodies);
-    const bool any_far = std::ranges::any_of(
-        context.moving(), [&](std::uint32_t body) { return has_turned_far(context.bodies[body]); });
+    const bool any_far = std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
+        return has_turned_far(context.bodies[body].turned);
+    });
+    const std::span<const StartArms> start_arms = context.scratch.schedule.start_arms;
     for_colours(context, [&](std::span<ContactBlock> blocks) {
-        correct_separations(context, blocks, any_far);
-        kernels::solve(blocks, bodies, bias, Real(1) / h);
+        kernels::solve(blocks, start_arms, bodies, bias, Real(1) / h, any_far);
     });
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }

@@ -39,6 +39,7 @@ struct ContactBlock {
     };
     // Of each body, as an index of a Real from the first one of the array of bodies; and whether it
     // is dynamic: others are never written.
+    static constexpr std::uint32_t none = UINT32_MAX;
     using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
     alignas(64) Index body_a[column_lanes]; // NOLINT(modernize-avoid-c-arrays)
     alignas(64) Index body_b[column_lanes]; // NOLINT(modernize-avoid-c-arrays)
@@ -49,7 +50,7 @@ struct ContactBlock {
     int points_used = 0;
     // Whether any of its contacts is new and was not solved yet.
     bool is_new = false;
-    bool any_ahead = false; // not of the start of the step (Contact::moment)
+    std::uint32_t ahead = none; // its StartArms, if any contact is not of the start of the step
     // Whether any of its bodies has an inertia that turns with it.
     bool inertia_turns = false;
     Columns3 normal;
@@ -65,6 +66,16 @@ struct ContactBlock {
     Point points[4]; // NOLINT(modernize-avoid-c-arrays)
 };
 
+// Of contacts whose arms are not those of the step's start (Contact::moment): the arms to the
+// bodies' cores as they were then, in world axes, which say how separations change.
+struct StartArms {
+    struct Point {
+        Columns3 core_a;
+        Columns3 core_b;
+    };
+    Point points[4]; // NOLINT(modernize-avoid-c-arrays)
+};
+
 // All contacts of a context that are no sensors' in blocks, one colour after another: blocks of one
 // colour share no dynamic body, so that they are solved at the same time.
 struct ContactSchedule {
@@ -73,6 +84,7 @@ struct ContactSchedule {
         std::uint32_t bucket = 0; // colour and number of points
     };
     std::vector<ContactBlock> blocks;
+    std::vector<StartArms> start_arms;
     std::vector<std::uint32_t> colour_ends; // of blocks; those after the last stand for themselves
     bool any_turning = false;               // Moment::turning
     std::vector<Lane> lanes;
@@ -105,8 +117,9 @@ namespace kernels {
 void finish(std::span<ContactBlock> blocks);
 void recall(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
             bool remember_first);
-void solve(std::span<ContactBlock> blocks, const BodyReals &bodies, const ContactBias &bias,
-           Real inv_h);
+// `any_far`: some body has turned so far that separations need more than the second order.
+void solve(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
+           const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far);
 } // namespace kernels
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -233,17 +233,44 @@ void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool 
     }
 }
 
-// How far an arm's end comes along n when the arm turns by `turn`, to second order: with the core
-// that is the arm less its rounding along n, n . (turn x r + turn x (turn x core) / 2).
-HWY_INLINE Lanes way_along(const Vector &n, const Vector &turn, Lanes turn_n, Lanes turn_squared,
-                           const Vector &r, Lanes rounding) {
-    const Lanes core_n = hn::Sub(dot(r, n), rounding);
-    const Lanes core_turn = hn::Sub(dot(r, turn), hn::Mul(rounding, turn_n));
-    const Lanes second = hn::Sub(hn::Mul(turn_n, core_turn), hn::Mul(turn_squared, core_n));
-    return hn::Add(dot(n, cross(turn, r)), hn::Mul(all(Real(0.5)), second));
+// How a body turned since the step began.
+struct Turned {
+    Vector turn;         // the rotation vector
+    Lanes along;         // n
+    Lanes squared;       // its length, squared
+    Lanes first, second; // sin(x) / x and (1 - cos(x)) / x^2 of its length
+};
+
+// Series, to rounding for turns of up to two radians; without `far` to what separations need for
+// turns that are no farther than has_turned_far says.
+HWY_INLINE Turned turned_by(const Vector &turn, const Vector &n, bool far) {
+    const Lanes x = dot(turn, turn);
+    Turned out{turn, dot(turn, n), x, all(Real(1)), all(Real(0.5))};
+    if (!far)
+        return out;
+    const auto series = [&](Real a, Real b, Real c, Real d, Real e) HWY_ATTR {
+        Lanes sum = hn::Sub(all(d), hn::Mul(x, all(e)));
+        sum = hn::Sub(all(c), hn::Mul(x, sum));
+        sum = hn::Sub(all(b), hn::Mul(x, sum));
+        return hn::Sub(all(a), hn::Mul(x, sum));
+    };
+    out.first = series(Real(1), Real(1) / 6, Real(1) / 120, Real(1) / 5040, Real(1) / 362880);
+    out.second =
+        series(Real(1) / 2, Real(1) / 24, Real(1) / 720, Real(1) / 40320, Real(1) / 3628800);
+    return out;
 }
 
-void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias &bias, Real inv_h) {
+// How far an arm's end comes along n when the arm turns (Rodrigues): with the core that is the arm
+// less its rounding along n, n . (first turn x r + second turn x (turn x core)).
+HWY_INLINE Lanes way_along(const Vector &n, const Turned &by, const Vector &r, Lanes rounding) {
+    const Lanes core_n = hn::Sub(dot(r, n), rounding);
+    const Lanes core_turn = hn::Sub(dot(r, by.turn), hn::Mul(rounding, by.along));
+    const Lanes second = hn::Sub(hn::Mul(by.along, core_turn), hn::Mul(by.squared, core_n));
+    return hn::Add(hn::Mul(by.first, dot(n, cross(by.turn, r))), hn::Mul(by.second, second));
+}
+
+void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReals &bodies,
+                const ContactBias &bias, Real inv_h, bool any_far) {
     const Lanes zero = hn::Zero(tag);
     const Lanes slop = all(bias.slop);
     const Lanes rate = all(bias.softness.bias_rate);
@@ -262,17 +289,15 @@ void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias 
         const Indices index_b = hn::Load(index_tag, block.body_b + lane);
         const Vector moved = minus(gather(bodies.bodies, bodies.moved, index_b),
                                    gather(bodies.bodies, bodies.moved, index_a));
-        const Vector turned_a = gather(bodies.bodies, bodies.turned, index_a);
-        const Vector turned_b = gather(bodies.bodies, bodies.turned, index_b);
         const Vector n = load(block.normal, lane);
         const Lanes way = dot(n, moved);
-        const Lanes turned_a_n = dot(turned_a, n);
-        const Lanes turned_b_n = dot(turned_b, n);
-        const Lanes turned_a_squared = dot(turned_a, turned_a);
-        const Lanes turned_b_squared = dot(turned_b, turned_b);
-        const Lanes rounding_a = load(block.rounding_a, lane);
+        const Turned turned_a =
+            turned_by(gather(bodies.bodies, bodies.turned, index_a), n, any_far);
+        const Turned turned_b =
+            turned_by(gather(bodies.bodies, bodies.turned, index_b), n, any_far);
         // The normal points at b: its surface is on the other side of its core.
-        const Lanes rounding_b = hn::Neg(load(block.rounding_b, lane));
+        const Lanes rounding_a = start_arms ? zero : load(block.rounding_a, lane);
+        const Lanes rounding_b = start_arms ? zero : hn::Neg(load(block.rounding_b, lane));
         const Vector t1 = load(block.t1, lane);
         const Vector t2 = cross(n, t1);
         const Lanes friction = load(block.friction, lane);
@@ -282,10 +307,12 @@ void solve_impl(ContactBlock &block, const BodyReals &bodies, const ContactBias 
                 ContactBlock::Point &point = block.points[k];
                 const Vector r_a = load(point.r_a, lane);
                 const Vector r_b = load(point.r_b, lane);
-                const Lanes way_a =
-                    way_along(n, turned_a, turned_a_n, turned_a_squared, r_a, rounding_a);
-                const Lanes way_b =
-                    way_along(n, turned_b, turned_b_n, turned_b_squared, r_b, rounding_b);
+                const Lanes way_a = way_along(
+                    n, turned_a, start_arms ? load(start_arms->points[k].core_a, lane) : r_a,
+                    rounding_a);
+                const Lanes way_b = way_along(
+                    n, turned_b, start_arms ? load(start_arms->points[k].core_b, lane) : r_b,
+                    rounding_b);
                 const Lanes separation =
                     hn::Add(load(point.separation, lane), hn::Add(way, hn::Sub(way_b, way_a)));
                 const Lanes before = load(point.impulse.x, lane);
@@ -353,10 +380,11 @@ void recall_blocks(std::span<ContactBlock> blocks, const BodyReals &bodies, Real
     for (ContactBlock &block : blocks)
         recall_impl(block, bodies, share, remember_first);
 }
-void solve_blocks(std::span<ContactBlock> blocks, const BodyReals &bodies, const ContactBias &bias,
-                  Real inv_h) {
+void solve_blocks(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
+                  const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far) {
     for (ContactBlock &block : blocks)
-        solve_impl(block, bodies, bias, inv_h);
+        solve_impl(block, block.ahead == ContactBlock::none ? nullptr : &start_arms[block.ahead],
+                   bodies, bias, inv_h, any_far);
 }
 
 } // namespace kernels::HWY_NAMESPACE
@@ -378,9 +406,9 @@ void recall(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
             bool remember_first) {
     HWY_DYNAMIC_DISPATCH(recall_blocks)(blocks, bodies, share, remember_first);
 }
-void solve(std::span<ContactBlock> blocks, const BodyReals &bodies, const ContactBias &bias,
-           Real inv_h) {
-    HWY_DYNAMIC_DISPATCH(solve_blocks)(blocks, bodies, bias, inv_h);
+void solve(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
+           const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far) {
+    HWY_DYNAMIC_DISPATCH(solve_blocks)(blocks, start_arms, bodies, bias, inv_h, any_far);
 }
 
 } // namespace kernels

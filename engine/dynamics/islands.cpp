@@ -215,6 +215,14 @@ void World::share_budget() {
 void World::choose_substeps() {
     Scratch &s = scratch_;
     const bool chooses = chooses_substeps();
+    if (s.contacts.empty() && model_->alive_joints == 0 && !s.grab.is_holding() &&
+        !model_->has_particles()) { // each by itself
+        group_freely();
+        const int substeps = chooses ? settings_.substeps : 0;
+        for (const std::uint32_t i : s.moving)
+            s.paces[i].substeps = static_cast<std::uint16_t>(substeps);
+        return;
+    }
     if (chooses) {
         find_islands();
         gather_needs();
@@ -226,6 +234,21 @@ void World::choose_substeps() {
         s.paces[i].substeps =
             chooses ? static_cast<std::uint16_t>(s.islands.needs[s.islands.root_of(i)].substeps)
                     : std::uint16_t{0};
+}
+
+// All that moves in one group.
+void World::group_freely() {
+    Scratch &s = scratch_;
+    s.group_count = s.moving.empty() ? 0 : 1;
+    if (s.groups.empty())
+        s.groups.emplace_back();
+    IslandGroup &group = s.groups.front();
+    group.substeps = settings_.substeps;
+    group.moving.assign(s.moving.begin(), s.moving.end());
+    group.contacts.clear();
+    group.joints.clear();
+    group.holds_grab = false;
+    group.has_particles = false;
 }
 
 // In the order of their substeps.
@@ -367,6 +390,11 @@ void World::note_joint_needs(const IslandGroup &group) {
 // After a group was advanced: what its loads ask of the next step.
 void World::note_needs(const IslandGroup &group) {
     Scratch &s = scratch_;
+    if (group.is_free()) {
+        for (const std::uint32_t i : group.moving)
+            s.paces[i].wanted = 0;
+        return;
+    }
     s.loads.resize(s.bodies.size());
     s.stiffness.resize(s.bodies.size());
     for (const std::uint32_t i : group.moving)

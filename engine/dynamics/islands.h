@@ -33,6 +33,11 @@ struct IslandGroup {
     std::vector<std::uint32_t> joints;
     bool holds_grab = false;
     bool has_particles = false; // all of them, with all springs
+
+    // Whether each of its bodies is by itself.
+    bool is_free() const {
+        return contacts.empty() && joints.empty() && !holds_grab && !has_particles;
+    }
 };
 
 // The islands of a step, as trees of bodies. Kinematic bodies join what they touch, static ones do

@@ -54,7 +54,8 @@ struct SolverScratch {
 struct StepContext {
     const Model &model;
     const StepSettings &settings;
-    std::span<SolverBody> bodies; // one for each body of the model, holes included
+    std::span<SolverBody> bodies;   // one for each body of the model, holes included
+    std::span<const Motion> starts; // likewise, as the step began
     // What is to be advanced: dynamic and kinematic bodies, and the contacts and joints that they
     // have; ascending. Those left out are advanced by themselves, and share nothing with these.
     const IslandGroup &active;
@@ -72,10 +73,6 @@ struct StepContext {
     TaskPool *tasks = nullptr;         // null: one thread; with more the bits are the same
 
     std::span<const std::uint32_t> moving() const { return active.moving; }
-    bool is_free() const {
-        return active.contacts.empty() && active.joints.empty() && !active.holds_grab &&
-               !active.has_particles;
-    }
     SolverBody &body(std::uint32_t index) {
         return index == Joint::world ? world_frame : bodies[index];
     }

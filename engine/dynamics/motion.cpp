@@ -40,7 +40,13 @@ Mat3 world_inverse_inertia(const Quat &rotation, const Vec3 &inv_inertia) {
         return Mat3{inv_inertia.x};
     const Mat3 r = glm::mat3_cast(rotation);
     const Mat3 scaled{r[0] * inv_inertia.x, r[1] * inv_inertia.y, r[2] * inv_inertia.z};
-    return scaled * glm::transpose(r);
+    const auto entry = [&](int i, int j) {
+        return scaled[0][i] * r[0][j] + scaled[1][i] * r[1][j] + scaled[2][i] * r[2][j];
+    };
+    const Real xy = entry(0, 1);
+    const Real xz = entry(0, 2);
+    const Real yz = entry(1, 2);
+    return {entry(0, 0), xy, xz, xy, entry(1, 1), yz, xz, yz, entry(2, 2)};
 }
 
 Vec3 spin_momentum(const Quat &rotation, const Vec3 &inertia, const Vec3 &angular_velocity) {
@@ -48,14 +54,25 @@ Vec3 spin_momentum(const Quat &rotation, const Vec3 &inertia, const Vec3 &angula
 }
 
 Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h) {
-    const Real angle = glm::length(angular_velocity) * h;
-    if (angle == Real(0))
+    const Real squared = glm::dot(angular_velocity, angular_velocity) * (h * h);
+    if (squared == Real(0))
         return rotation;
-    // sin(x/2)/x for small x by its series, where the quotient would lose the direction.
-    const Real scale = angle > Real(1e-3) ? std::sin(angle / 2) / angle * h
-                                          : (Real(0.5) - angle * angle / Real(48)) * h;
-    const Vec3 v = scale * angular_velocity;
-    return glm::normalize(Quat{std::cos(angle / 2), v.x, v.y, v.z} * rotation);
+    // Of half of the angle: its sine by the whole of it, and its cosine.
+    Real sine = Real(0);
+    Real cosine = Real(0);
+    // Up to here what the series leave out is below rounding.
+    constexpr Real near = std::numeric_limits<Real>::digits > 24 ? Real(1e-5) : Real(1e-2);
+    if (squared < near) {
+        const Real x = Real(0.25) * squared;
+        sine = Real(0.5) - x * (Real(1) / 12 - x * (Real(1) / 240));
+        cosine = Real(1) - x * (Real(0.5) - x * (Real(1) / 24 - x * (Real(1) / 720)));
+    } else {
+        const Real angle = std::sqrt(squared);
+        sine = std::sin(Real(0.5) * angle) / angle;
+        cosine = std::cos(Real(0.5) * angle);
+    }
+    const Vec3 v = (sine * h) * angular_velocity;
+    return glm::normalize(Quat{cosine, v.x, v.y, v.z} * rotation);
 }
 
 namespace {
@@ -160,9 +177,7 @@ struct Damped {
     Real mean_gained = Real(0); // times g: mean
 };
 
-Damped damped(Real rate, Real h) {
-    if (rate == Real(0))
-        return {Real(1), Real(1), h, Real(0.5) * h};
+Damped strongly_damped(Real rate, Real h) {
     const double x = static_cast<double>(rate) * static_cast<double>(h);
     const double lost = -std::expm1(-x);
     const double mean = lost / x;
@@ -171,6 +186,11 @@ Damped damped(Real rate, Real h) {
     return {static_cast<Real>(1.0 - lost), static_cast<Real>(mean),
             static_cast<Real>(mean * static_cast<double>(h)),
             static_cast<Real>(rest * static_cast<double>(h))};
+}
+
+// Most bodies have no damping.
+inline Damped damped(Real rate, Real h) {
+    return rate == Real(0) ? Damped{Real(1), Real(1), h, Real(0.5) * h} : strongly_damped(rate, h);
 }
 
 // Mean and end of a torque-free, damped turn that begins with flight.start_spin.
@@ -191,7 +211,6 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
     if (body.kind == BodyKind::dynamic) {
         const Vec3 pull = gravity_on(body, gravity);
         const Damped linear = damped(body.linear_damping, h);
-        const Damped angular = damped(body.angular_damping, h);
         flight.mean_velocity = linear.mean_kept * motion.velocity + linear.mean_gained * pull;
         const Vec3 late = (linear.kept - linear.mean_kept) * motion.velocity +
                           (linear.gained - linear.mean_gained) * pull;
@@ -206,6 +225,7 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
             motion.angular_velocity =
                 rotated(motion.rotation, kick == Kick::around ? flight.mean_spin : flight.end_spin);
         } else if (body.angular_damping > Real(0)) {
+            const Damped angular = damped(body.angular_damping, h);
             flight.late_spin = kick == Kick::around
                                    ? (angular.kept - angular.mean_kept) * motion.angular_velocity
                                    : Vec3{Real(0)};
@@ -242,6 +262,14 @@ void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
         motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
     if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
         motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
+}
+
+// The rotation vector of a turn by no more than half of one.
+Vec3 rotation_vector(const Quat &turn) {
+    const Real sign = turn.w < Real(0) ? Real(-1) : Real(1);
+    const Vec3 axis{sign * turn.x, sign * turn.y, sign * turn.z};
+    const Real length = glm::length(axis);
+    return length > Real(0) ? Real(2) * std::atan2(length, sign * turn.w) / length * axis : axis;
 }
 
 } // namespace
@@ -288,14 +316,34 @@ void end_flights(StepContext &context, Real h, Kick kick) {
     const auto end_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = context.moving()[i];
-            move_held(context.bodies[body], context.model.bodies[body], flights[i], h,
+            SolverBody &motion = context.bodies[body];
+            move_held(motion, context.model.bodies[body], flights[i], h,
                       context.settings.gyroscopic_iterations,
                       kick == Kick::around && !stiffness.empty() && stiffness[body] > Real(0));
-            end_flight(context.bodies[body], context.model.bodies[body], flights[i], kick);
+            if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts off
+                motion.turned = rotation_vector(motion.rotation *
+                                                glm::conjugate(context.starts[body].rotation));
+            end_flight(motion, context.model.bodies[body], flights[i], kick);
         }
     };
     for_parts(context.tasks, flights.size(), bodies_a_part, end_part);
     context.report.body_passes += flights.size();
+}
+
+void fly_freely(StepContext &context, const Vec3 &gravity, Real h) {
+    const int iterations = context.settings.gyroscopic_iterations;
+    const std::span<const std::uint32_t> moving = context.moving();
+    const auto fly_part = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Body &body = context.model.bodies[moving[i]];
+            SolverBody &motion = context.bodies[moving[i]];
+            FreeFlight flight = begin_flight(motion, body, gravity, h, Kick::around, iterations);
+            move_held(motion, body, flight, h, iterations, false);
+            end_flight(motion, body, flight, Kick::around);
+        }
+    };
+    for_parts(context.tasks, moving.size(), bodies_a_part, fly_part);
+    context.report.body_passes += 2 * moving.size();
 }
 
 void kick(StepContext &context, const Vec3 &gravity, Real h) {

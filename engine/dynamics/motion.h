@@ -15,6 +15,13 @@ Vec3 spin_momentum(const Quat &rotation, const Vec3 &inertia, const Vec3 &angula
 // (exponential map).
 Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h);
 
+// Whether a turn (a rotation vector, rad) is too far for what keeps it to second order: its error
+// is of the third, a millionth of the arm here.
+inline bool has_turned_far(const Vec3 &turn) {
+    constexpr Real far = Real(0.02);
+    return turn.x * turn.x + turn.y * turn.y + turn.z * turn.z > far * far;
+}
+
 // The body-frame angular velocity after `h` seconds of torque-free spin, from `spin` in the body's
 // principal axes: Euler's equations I w' = -w x I w by the implicit midpoint rule, which keeps
 // kinetic energy and the length of the angular momentum for any step (quadratic invariants; Hairer,
@@ -73,6 +80,8 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
 struct StepContext;
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick);
 void end_flights(StepContext &context, Real h, Kick kick); // moves them, then ends the flights
+// Both, for bodies that nothing holds or touches, with nothing in between.
+void fly_freely(StepContext &context, const Vec3 &gravity, Real h);
 
 // The plain substep: gravity, damping and gyroscopic torque on the velocities, and, once the solver
 // is done, the move with the velocities that it left (semi-implicit Euler; Hairer, Lubich, Wanner

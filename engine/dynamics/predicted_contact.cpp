@@ -120,7 +120,7 @@ void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const
         add_guard(manifold, solid_b, width_b, solid_a, Real(-1));
 }
 
-FoundManifold World::predicted_manifold(const Candidate &candidate) const {
+FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &normal) const {
     const Collider &a = model_->colliders[candidate.collider_a];
     const Collider &b = model_->colliders[candidate.collider_b];
     const Motion &motion_a = going(candidate.key.a);
@@ -128,7 +128,7 @@ FoundManifold World::predicted_manifold(const Candidate &candidate) const {
     const auto dt = static_cast<Real>(settings_.dt);
     const Real near = contact_reach(candidate);
     const Approach met =
-        approach({&a.shape, motion_a, a.extent}, {&b.shape, motion_b, b.extent}, dt, near);
+        approach({&a.shape, motion_a, a.extent}, {&b.shape, motion_b, b.extent}, dt, near, normal);
     if (met.distance >= near)
         return {};
     const Motion at_a = ahead(motion_a, met.time);
@@ -143,7 +143,8 @@ FoundManifold World::predicted_manifold(const Candidate &candidate) const {
     return found;
 }
 
-FoundManifold World::predicted_manifold(const Candidate &candidate, std::uint32_t triangle) const {
+FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &normal,
+                                        std::uint32_t triangle) const {
     const bool solid_first = !model_->colliders[candidate.collider_a].surface;
     const std::uint32_t solid_body = solid_first ? candidate.key.a : candidate.key.b;
     const std::uint32_t surface_body = solid_first ? candidate.key.b : candidate.key.a;
@@ -155,9 +156,10 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, std::uint32_
     const Motion &surface_motion = going(surface_body);
     const auto dt = static_cast<Real>(settings_.dt);
     const Real near = contact_reach(candidate);
-    const Approach met = approach({&solid.shape, motion, solid.extent},
-                                  placed(surface.surface->triangle(triangle), surface.surface_pose),
-                                  surface_motion, surface.extent, dt, near);
+    const Approach met =
+        approach({&solid.shape, motion, solid.extent},
+                 placed(surface.surface->triangle(triangle), surface.surface_pose), surface_motion,
+                 surface.extent, dt, near, solid_first ? normal : -normal);
     if (met.distance >= near)
         return {};
     const Motion at_solid = ahead(motion, met.time);

@@ -175,13 +175,9 @@ void World::advance() {
     for (std::size_t i = 0; i < s.group_count; ++i) {
         StepSettings settings = settings_;
         settings.substeps = s.groups[i].substeps;
-        StepContext context{*model_,    settings,
-                            s.bodies,   s.groups[i],
-                            s.contacts, s.joints,
-                            s.grab,     s.world_frame,
-                            s.solver,   report_,
-                            s.impacts,  s.particles,
-                            s.torn,     s.particle_contacts,
+        StepContext context{*model_,    settings,  s.bodies,    state_.motions, s.groups[i],
+                            s.contacts, s.joints,  s.grab,      s.world_frame,  s.solver,
+                            report_,    s.impacts, s.particles, s.torn,         s.particle_contacts,
                             s.ends,     s.tasks};
         const bool has_joints = !s.groups[i].joints.empty();
         if (has_joints)
@@ -238,6 +234,11 @@ void World::remember(const Contact &contact, ContactMemory &memory) {
 void World::gather_memory() {
     Scratch &s = scratch_;
     const std::size_t count = s.contacts.size();
+    if (count == 0 && state_.contacts.empty()) {
+        s.next_memory.clear();
+        s.next_points.clear();
+        return;
+    }
     s.remembered.resize(count);
     for_parts(s.tasks, count, contacts_a_part, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

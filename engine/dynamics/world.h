@@ -167,6 +167,7 @@ class World {
     int chosen_substeps(const Islands::Needs &needs, int budget) const;
     void share_budget();
     void choose_substeps();
+    void group_freely();
     void group_islands();
     void note_contact_needs(const IslandGroup &group);
     void note_joint_needs(const IslandGroup &group);
@@ -241,8 +242,10 @@ class World {
     Real way_of(const Candidate &candidate) const;
     void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                       Manifold &manifold) const;
-    FoundManifold predicted_manifold(const Candidate &candidate) const;
-    FoundManifold predicted_manifold(const Candidate &candidate, std::uint32_t triangle) const;
+    // `normal`: of the manifold at the start.
+    FoundManifold predicted_manifold(const Candidate &candidate, const Vec3 &normal) const;
+    FoundManifold predicted_manifold(const Candidate &candidate, const Vec3 &normal,
+                                     std::uint32_t triangle) const;
 
     void use(const StepSettings &settings);
     // The model, to be changed; a copy of its own when saves share it.

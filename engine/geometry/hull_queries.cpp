@@ -284,20 +284,6 @@ Aabb bounds(const ConvexHull &hull) {
     return box;
 }
 
-Index support_vertex(const HullMesh &mesh, const Vec3 &direction) {
-    PLUMB_DEBUG_CHECK(is_finite(direction), "direction must be finite, got " << Printed{direction});
-    Index best = 0;
-    Real greatest = glm::dot(mesh.vertices[0], direction);
-    for (Index i = 1; i < mesh.vertices.size(); ++i) {
-        const Real reach = glm::dot(mesh.vertices[i], direction);
-        if (reach > greatest) {
-            greatest = reach;
-            best = i;
-        }
-    }
-    return best;
-}
-
 Index support_vertex(const HullMesh &mesh, const Vec3 &direction, Index start) {
     PLUMB_DEBUG_CHECK(is_finite(direction), "direction must be finite, got " << Printed{direction});
     PLUMB_DEBUG_CHECK(start < mesh.vertices.size(), "start must be one of " << mesh.vertices.size()

@@ -256,20 +256,22 @@ TEST_P(ParticleContacts, ANetBearsABall) {
         EXPECT_GT(borne(world), 1.2);
         return;
     }
-    EXPECT_GT(position_of(world, world.body_id(1)).y, 1.3);
     const double speed = glm::length(velocity_of(world, world.body_id(1)));
     if (GetParam() == "nncg") { // sixteen conjugated passes leave the ball bobbing
         EXPECT_GT(speed, 0.03);
         // On average it bears the ball, and some hundredths that only take overlap back.
         const int steps = 600;
-        double sum = 0;
+        double sum = 0, height = 0;
         for (int i = 0; i < steps; ++i) {
             run(world, 1);
             sum += borne(world);
+            height += position_of(world, world.body_id(1)).y;
         }
         EXPECT_NEAR(sum / steps, 1.05, 0.05);
+        EXPECT_GT(height / steps, 1.3);
         return;
     }
+    EXPECT_GT(position_of(world, world.body_id(1)).y, 1.3);
     EXPECT_LT(speed, 0.03);
     EXPECT_NEAR(borne(world), 1, 0.02);
     if (GetParam() == "tgs_soft") {

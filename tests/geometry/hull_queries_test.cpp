@@ -417,6 +417,24 @@ TEST(HullQueries, SupportAndFaces) {
     }
 }
 
+// Of any number of vertices, with equals among them: whatever the processor's width.
+TEST(HullQueries, TheSupportVertexIsTheFirstOfTheFarthest) {
+    Random random(7);
+    const auto whole = [&] { return static_cast<Real>(random.next_index(7)) - Real(3); };
+    for (std::size_t count = 1; count < 70; ++count)
+        for (int trial = 0; trial < 30; ++trial) {
+            HullMesh mesh;
+            while (mesh.vertices.size() < count)
+                mesh.vertices.emplace_back(whole(), whole(), whole());
+            const Vec3 d{whole(), whole(), whole()};
+            std::uint32_t farthest = 0;
+            for (std::uint32_t i = 1; i < count; ++i)
+                if (glm::dot(mesh.vertices[i], d) > glm::dot(mesh.vertices[farthest], d))
+                    farthest = i;
+            ASSERT_EQ(support_vertex(mesh, d), farthest) << count << " vertices";
+        }
+}
+
 TEST(HullQueries, BoundsAndSides) {
     Random random(5);
     const int count = trials(1'000'000);

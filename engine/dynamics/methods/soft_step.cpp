@@ -23,6 +23,11 @@ void advance(StepContext &context) {
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Real rate = Real(1) / h;
     const Vec3 gravity{settings.gravity};
+    if (context.active.is_free()) { // nothing of what follows would do anything
+        for (int substep = 0; substep < settings.substeps; ++substep)
+            fly_freely(context, gravity, h);
+        return;
+    }
     const Softness joint_softness =
         make_soft(static_cast<Real>(settings.joint_frequency_ratio) * rate,
                   static_cast<Real>(settings.joint_damping_ratio), h);
@@ -52,7 +57,6 @@ void advance(StepContext &context) {
     prepare_joints(context);
     prepare_particles(context);
     context.scratch.joint_system.arrange(context);
-    const bool is_free = context.is_free();
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         follow_loads(context, h);
@@ -62,10 +66,6 @@ void advance(StepContext &context) {
             refresh_changed_joints(context);
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
-        if (is_free) { // nothing of what follows would do anything
-            end_flights(context, h, Kick::around);
-            continue;
-        }
         remember_joints(context);
         recall_joints(context, Real(0.5), Springs::solve);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
