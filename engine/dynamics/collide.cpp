@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -181,7 +182,13 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
     Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
     contact.origin = origin;
     const Real side = acting_side(candidate.key);
-    contact.manifold.normal = origin.normal;
+    const Vec3 &normal = origin.normal;
+    const Mat3 then_a = glm::mat3_cast(origin.rotation_a);
+    const Mat3 then_b = glm::mat3_cast(origin.rotation_b);
+    const Mat3 now_a = glm::mat3_cast(motion_a.rotation);
+    const Mat3 now_b = glm::mat3_cast(motion_b.rotation);
+    const Vec3 offset = motion_b.position - motion_a.position;
+    contact.manifold.normal = normal;
     contact.manifold.count = static_cast<int>(before->point_count);
     for (std::size_t k = 0; k < points.size(); ++k) {
         const PointMemory &point = points[k];
@@ -189,19 +196,19 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
         ContactAnchor &anchor = contact.anchors[k];
         anchor.core_a = point.core_a;
         anchor.core_b = point.core_b;
-        const Vec3 surface_a = origin.rotation_a * point.core_a + a.rounding * origin.normal;
-        const Vec3 surface_b = origin.rotation_b * point.core_b - b.rounding * origin.normal;
-        const Vec3 half = Real(0.5) *
-                          glm::dot(origin.offset + (surface_b - surface_a), origin.normal) *
-                          origin.normal;
+        const Vec3 surface_a = then_a * point.core_a + a.rounding * normal;
+        const Vec3 surface_b = then_b * point.core_b - b.rounding * normal;
+        const Vec3 half =
+            Real(0.5) * glm::dot(origin.offset + (surface_b - surface_a), normal) * normal;
         anchor.arm_a = surface_a + (Real(1) + side) * half;
         anchor.arm_b = surface_b - (Real(1) - side) * half;
         ManifoldPoint &to = contact.manifold.points[k];
+        const Vec3 core_a = now_a * point.core_a;
+        const Vec3 core_b = now_b * point.core_b;
         to.feature = point.feature;
-        to.separation = separation_along(origin.normal, point.core_a, point.core_b,
-                                         a.rounding + b.rounding, motion_a, motion_b);
-        to.position = motion_a.position + motion_a.rotation * point.core_a +
-                      (a.rounding + Real(0.5) * to.separation) * origin.normal;
+        to.separation = glm::dot(offset + (core_b - core_a), normal) - (a.rounding + b.rounding);
+        to.position =
+            motion_a.position + core_a + (a.rounding + Real(0.5) * to.separation) * normal;
     }
     return true;
 }

@@ -28,7 +28,7 @@ name = "box"
 shape = "box"
 half_extents = [0.2, 0.2, 0.2]
 position = [0, 0.2, 0]
-repeat = { kind = "grid", counts = [40, 1, 25], spacing = [1, 1, 1] }
+repeat = { kind = "grid", count = [40, 1, 25], spacing = [1, 1, 1] }
 )" + more;
 }
 
