@@ -6,8 +6,9 @@ usage: scenes/report.py [--program build/release/bin/plumb] [--out out/report] [
                         [--quick] [--with bullet,ode]
 
 Writes OUT/report.md, and the tables and pictures beside it. All of it takes less than half an hour
-on two cores; --quick makes tiny charts, to see that it works. Interrupted, it goes on where it was.
-Exit code 1 when a command failed.
+on two cores; --quick makes tiny charts, to see that it works. Interrupted (Ctrl-C), it writes the page
+of what is done, and the same command goes on from there: OUT/done.txt says which commands this
+program has finished, until all are. Exit code 1 when a command failed.
 """
 
 import argparse
@@ -35,22 +36,54 @@ PROBLEMS = [
 QUICK = "--repeats 1 --sweep substeps=1,4 --methods soft_step,sequential_impulses"
 
 
+class Interrupted(Exception):
+    pass
+
+
+class Done:
+    """The commands that an interrupted report has finished, in a file: this program's alone."""
+
+    def __init__(self, path, program):
+        stat = pathlib.Path(program).stat()
+        self.path = path
+        self.head = f"{program} {stat.st_size} {stat.st_mtime_ns}"
+        lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+        self.commands = lines[1:] if lines[:1] == [self.head] else []
+
+    def add(self, command):
+        self.commands.append(command)
+        self.path.write_text("\n".join([self.head, *self.commands]) + "\n", encoding="utf-8")
+
+    def clear(self):
+        self.path.unlink(missing_ok=True)
+
+
 class Report:
     def __init__(self, options):
         self.program, self.out = options.program, pathlib.Path(options.out)
         self.quick, self.engines = options.quick, options.engines
         self.lines, self.failed = [], []
+        self.done = Done(self.out / "done.txt", self.program)
 
     def run(self, *arguments):
         """Runs a command of the program's; returns its text for the page."""
         shown = "plumb " + shlex.join(arguments)
+        if shown in self.done.commands:
+            return shown
         print(shown, file=sys.stderr)
-        done = subprocess.run([self.program, *arguments], cwd=self.out, check=False,
-                              stdout=subprocess.DEVNULL)
-        if done.returncode == 130:
-            sys.exit(130)
-        if done.returncode not in (0, 3):  # 3: all runs diverged, which is a result
-            self.failed.append(f"{shown}: exit code {done.returncode}")
+        with subprocess.Popen([self.program, *arguments], cwd=self.out,
+                              stdout=subprocess.DEVNULL) as process:
+            try:
+                code = process.wait()
+            except KeyboardInterrupt:  # which it got, too, and keeps what it has
+                process.wait()
+                raise Interrupted from None
+        if code in (130, 143):
+            raise Interrupted
+        if code in (0, 3):  # 3: all runs diverged, which is a result
+            self.done.add(shown)
+        else:
+            self.failed.append(f"{shown}: exit code {code}")
         return shown
 
     def rows(self, table):
@@ -139,17 +172,29 @@ def main():
     unknown = [name for name in only if name not in [p[0] for p in PROBLEMS]]
     if unknown:
         parser.error(f"no problem {unknown[0]}; there are {', '.join(p[0] for p in PROBLEMS)}")
+    if not pathlib.Path(options.program).is_file():
+        parser.error(f"there is no program {options.program}; ./plumb builds it")
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
     report = Report(options)
     report.say("# Which dt, which method, how many iterations?", "",
                "Made by `scenes/report.py`. Each problem runs by each method that can run it. True "
                "enough is what meets all that the scene expects of itself; of that, the cheapest is "
                "enough.", "")
-    for problem in PROBLEMS:
-        if not only or problem[0] in only:
+    problems = [problem for problem in PROBLEMS if not only or problem[0] in only]
+    page = report.out / "report.md"
+    for number, problem in enumerate(problems):
+        begin = len(report.lines)
+        try:
             report.problem(*problem)
-    (report.out / "report.md").write_text("\n".join(report.lines), encoding="utf-8")
-    print(f"wrote {report.out / 'report.md'}", file=sys.stderr)
+        except (Interrupted, KeyboardInterrupt):
+            del report.lines[begin:]
+            page.write_text("\n".join(report.lines), encoding="utf-8")
+            print(f"interrupted: {number} of {len(problems)} problems are done and in {page}; the "
+                  "same command goes on", file=sys.stderr)
+            return 130
+    page.write_text("\n".join(report.lines), encoding="utf-8")
+    report.done.clear()
+    print(f"wrote {page}", file=sys.stderr)
     for failure in report.failed:
         print(failure, file=sys.stderr)
     return 1 if report.failed else 0

@@ -40,6 +40,18 @@ fs::path name_beside(const fs::path &place) {
            (".plumb-" + std::to_string(getpid()) + "-" + std::to_string(count++));
 }
 
+bool is_link(const fs::path &path) {
+    std::error_code error;
+    return fs::is_symlink(fs::symlink_status(path, error));
+}
+
+// What a link leads to, one step on.
+fs::path target_of(const fs::path &link) {
+    return link.parent_path() / fs::read_symlink(link); // the target alone, if it is absolute
+}
+
+constexpr int most_links = 40; // as many as Linux follows
+
 } // namespace
 
 OutputBuffer::OutputBuffer(int descriptor, std::string name)
@@ -86,8 +98,6 @@ void OutputBuffer::close() {
 OutputFile::Opened OutputFile::open(const fs::path &path) {
     Opened opened;
     opened.place = path;
-    std::error_code error;
-    constexpr int most_links = 40; // as many as Linux follows
     for (int links = 0;; ++links) {
         if (const std::optional<int> own = own_descriptor(opened.place)) {
             opened.straight_through = true;
@@ -96,12 +106,11 @@ OutputFile::Opened OutputFile::open(const fs::path &path) {
                 fail(errno, path.string());
             return opened;
         }
-        if (!fs::is_symlink(fs::symlink_status(opened.place, error)))
+        if (!is_link(opened.place))
             break;
         if (links == most_links)
             fail(ELOOP, path.string());
-        const fs::path target = fs::read_symlink(opened.place, error);
-        opened.place = target.is_absolute() ? target : opened.place.parent_path() / target;
+        opened.place = target_of(opened.place);
     }
 
     struct stat before {};
@@ -170,12 +179,23 @@ void OutputFile::finish() {
     put(opened_.place);
 }
 
-fs::path OutputFile::keep_partial() {
+fs::path OutputFile::partial_place() const {
+    if (opened_.straight_through)
+        return {};
     fs::path place = opened_.place;
-    if (!opened_.straight_through)
-        place += ".partial";
+    place += ".partial";
+    for (int links = 0; is_link(place); ++links) {
+        if (links == most_links)
+            fail(ELOOP, place.string());
+        place = target_of(place);
+    }
+    return place;
+}
+
+fs::path OutputFile::keep_partial() {
+    const fs::path place = partial_place();
     put(place);
-    return opened_.straight_through ? path_ : place;
+    return place.empty() ? path_ : place;
 }
 
 StandardOutput::StandardOutput()

@@ -57,8 +57,11 @@ class OutputFile {
     [[nodiscard]] const std::filesystem::path &path() const { return path_; }
 
     void finish();
-    // Of one that shall not be completed, what was written: kept beside it, under its name with
-    // ".partial" appended. Returns where.
+    // Where what was written of one that shall not be completed is kept: beside the file itself,
+    // under its name with ".partial" appended; links are followed here, too. Empty where everything
+    // goes straight through.
+    [[nodiscard]] std::filesystem::path partial_place() const;
+    // Puts it there. Returns where, or path() where everything went straight through.
     std::filesystem::path keep_partial();
 
   private:

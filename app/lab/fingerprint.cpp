@@ -7,15 +7,25 @@
 
 namespace plumb {
 
-Fingerprint::Fingerprint() {
-    std::ifstream program("/proc/self/exe", std::ios::binary);
-    add(std::string(std::istreambuf_iterator<char>(program), {}));
+namespace {
+
+std::string hexadecimal(std::uint64_t value) {
+    constexpr std::size_t digits = 16;
+    std::array<char, digits> text{};
+    const auto written = std::to_chars(text.data(), text.data() + text.size(), value, 16);
+    return {text.data(), written.ptr};
 }
 
-void Fingerprint::add(std::string_view text) {
-    hash_.add(static_cast<std::uint64_t>(text.size()));
+void add_bytes(StateHash &hash, std::string_view text) {
+    hash.add(static_cast<std::uint64_t>(text.size()));
     for (const char c : text)
-        hash_.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+        hash.add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
+}
+
+} // namespace
+
+void Fingerprint::add(std::string_view text) {
+    add_bytes(hash_, text);
 }
 
 void Fingerprint::add(const RunOptions &options) {
@@ -29,10 +39,17 @@ void Fingerprint::add(const RunOptions &options) {
 }
 
 std::string Fingerprint::text() const {
-    constexpr std::size_t digits = 16;
-    std::array<char, digits> text{};
-    const auto written = std::to_chars(text.data(), text.data() + text.size(), hash_.value(), 16);
-    return {text.data(), written.ptr};
+    return of_program() + "-" + hexadecimal(hash_.value());
+}
+
+const std::string &Fingerprint::of_program() {
+    static const std::string program = [] {
+        std::ifstream file("/proc/self/exe", std::ios::binary);
+        StateHash hash;
+        add_bytes(hash, std::string(std::istreambuf_iterator<char>(file), {}));
+        return hexadecimal(hash.value());
+    }();
+    return program;
 }
 
 } // namespace plumb

@@ -12,13 +12,15 @@ namespace plumb {
 
 class Fingerprint {
   public:
-    Fingerprint(); // begins with the program itself: another build may come to other results
-
     void add(std::string_view text);
     void add(double value) { hash_.add(value); }
     void add(const RunOptions &options); // less its method
 
-    [[nodiscard]] std::string text() const; // 16 hexadecimal digits at most
+    // of_program(), "-" and 16 hexadecimal digits at most.
+    [[nodiscard]] std::string text() const;
+
+    // Of this program's file: another build may come to other results.
+    [[nodiscard]] static const std::string &of_program();
 
   private:
     StateHash hash_;

@@ -3,7 +3,7 @@
 #include "tests/bench/benches.h"
 
 #include "app/files/output_file.h"
-#include "app/lab/cpu_clock.h"
+#include "app/lab/clocks.h"
 #include "app/lab/csv.h"
 #include "app/lab/engines/pose_measures.h"
 #include "app/lab/interrupt.h"
@@ -15,7 +15,6 @@
 #include "tests/bench/only.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -23,11 +22,6 @@
 namespace plumb {
 
 namespace {
-
-double wall_time() {
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return std::chrono::duration<double>(now).count();
-}
 
 // Of how many steps the poses are measured.
 constexpr int measured_every = 6;
@@ -48,6 +42,7 @@ struct Run {
     double kinetic = 0;
 
     const std::vector<double> &times() const { return kind.threads > 1 ? wall : cpu; }
+    const char *clock() const { return kind.threads > 1 ? "wall" : "cpu"; }
 };
 
 double percentile(std::vector<double> values, double share) {
@@ -99,6 +94,7 @@ void write_header(CsvWriter &csv) {
                              "steps",
                              "engine",
                              "threads",
+                             "clock",
                              "median_ms",
                              "p95_ms",
                              "times_ours",
@@ -122,15 +118,16 @@ void report(const Line &line, bool stands, const std::vector<Run> &runs,
             const PoseMeasures &measures, CsvWriter &csv) {
     std::printf("\n%s: %zu bodies, %zu joints, %zu steps\n", line.scene.c_str(), line.bodies,
                 line.joints, line.steps);
-    std::printf("  %-9s %9s %9s %7s %8s %8s %7s %9s %9s %9s %8s %9s %9s %10s\n", "", "ms", "p95 ms",
-                "ratio", "collide", "ns/pass", "B/body", "B/contact", "deepest", "at end", "mean",
-                "drift", "top", "kinetic J");
+    std::printf("  %-14s %9s %9s %7s %8s %8s %7s %9s %9s %9s %8s %9s %9s %10s\n", "", "ms",
+                "p95 ms", "ratio", "collide", "ns/pass", "B/body", "B/contact", "deepest", "at end",
+                "mean", "drift", "top", "kinetic J");
     const Run &ours = runs.front();
     for (const Run &run : runs) {
         const std::string name =
-            run.kind.name + (run.kind.threads > 1 ? " x" + std::to_string(run.kind.threads) : "");
+            run.kind.name + (run.kind.threads > 1 ? " x" + std::to_string(run.kind.threads) : "") +
+            ", " + run.clock();
         if (run.cpu.empty()) {
-            std::printf("  %-9s cannot run it\n", name.c_str());
+            std::printf("  %-14s cannot run it\n", name.c_str());
             continue;
         }
         // Threads are compared by the wall, engines by their own time.
@@ -140,7 +137,7 @@ void report(const Line &line, bool stands, const std::vector<Run> &runs,
         const double of_body = run.bytes_bodies / static_cast<double>(line.bodies);
         const double of_contact = run.most_contacts > 0 ? run.bytes_contacts / contacts : 0;
         const double top = run.engine ? measures.top_displacement(run.states) : 0;
-        std::printf("  %-9s %9.3f %9.3f %7.2f %7.0f%% %8.0f %7.0f %9.0f", name.c_str(),
+        std::printf("  %-14s %9.3f %9.3f %7.2f %7.0f%% %8.0f %7.0f %9.0f", name.c_str(),
                     1e3 * median(run.times()), 1e3 * percentile(run.times(), 0.95), ratio,
                     100 * median(run.collide), 1e9 * median(run.a_pass), of_body, of_contact);
         if (run.diverged)
@@ -155,6 +152,7 @@ void report(const Line &line, bool stands, const std::vector<Run> &runs,
             .cell(std::uint64_t{line.steps})
             .cell(run.kind.name)
             .cell(run.kind.threads)
+            .cell(run.clock())
             .cell(1e3 * median(run.times()))
             .cell(1e3 * percentile(run.times(), 0.95))
             .cell(ratio)
@@ -221,10 +219,12 @@ ExitCode bench_dynamics(const EngineBenchOptions &options) {
     CsvWriter csv(file.stream());
     write_header(csv);
     TaskPool tasks(options.threads);
-    std::printf("every engine at its defaults, 60 Hz, sleeping off\nms: median of a step, of the "
-                "thread's own time (with several threads: of the "
-                "wall's)\nratio: to Plumb's; B: bytes of heap; deepest, mean, drift, top: mm, "
-                "measured from poses by Plumb's geometry in double\n");
+    std::printf(
+        "every engine at its defaults, 60 Hz, sleeping off\nms: median of a step, cpu: of the "
+        "thread's own time; wall: by the clock on the "
+        "wall, for several threads\nratio: to Plumb's; B: bytes of heap; deepest, mean, drift, "
+        "top: mm, "
+        "measured from poses by Plumb's geometry in double\n");
     for (std::size_t i = 0; i < scenes.size() && !InterruptGuard::requested(); ++i) {
         const BenchScene &one = scenes[i];
         const auto progress = [&](double part) {

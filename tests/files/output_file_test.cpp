@@ -93,6 +93,32 @@ TEST_F(OutputFileTest, WhatIsInterruptedIsKeptBeside) {
     EXPECT_EQ(entries(), 2U);
 }
 
+// Beside what the link leads to; and a link in the partial file's place stays one.
+TEST_F(OutputFileTest, WhatIsInterruptedFollowsLinks) {
+    fs::create_directory(folder_ / "below");
+    fs::create_symlink("below/a.csv", folder_ / "link.csv");
+    const fs::path partial = folder_ / "below" / "a.csv.partial";
+    const auto interrupt = [&](const std::string &text) {
+        OutputFile file(folder_ / "link.csv");
+        file.stream() << text;
+        const fs::path place = file.partial_place();
+        EXPECT_EQ(file.keep_partial(), place);
+        return place;
+    };
+    EXPECT_EQ(interrupt("rows"), partial);
+    EXPECT_EQ(text_of(partial), "rows");
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link.csv"));
+    EXPECT_FALSE(fs::exists(folder_ / "link.csv"));
+
+    fs::remove(partial);
+    fs::create_symlink("../elsewhere", partial);
+    EXPECT_EQ(fs::weakly_canonical(interrupt("more")), fs::weakly_canonical(folder_ / "elsewhere"));
+    EXPECT_TRUE(fs::is_symlink(partial));
+    EXPECT_EQ(text_of(folder_ / "elsewhere"), "more");
+
+    EXPECT_TRUE(OutputFile("/dev/null").partial_place().empty());
+}
+
 TEST_F(OutputFileTest, TwoIntoTheSameFileDoNotMeet) {
     const fs::path path = folder_ / "a.csv";
     OutputFile first(path);

@@ -55,7 +55,7 @@ void judge_error(const ErrorMeasure &measure, ChartRun &run) {
 void set_cost(ChartRun &run) {
     if (run.timings.empty()) {
         const double simulated = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
-        run.cost = simulated > 0 ? run.run.step_cpu_time / simulated : 0;
+        run.cost = simulated > 0 ? run.run.step_time / simulated : 0;
         run.cost_low = run.cost_high = run.cost;
     } else {
         run.cost = median(run.timings);
@@ -170,10 +170,10 @@ class Charting {
         for (std::size_t i = options_.shard.n - 1; i < planned_.size(); i += options_.shard.of)
             mine.push_back(i);
         for (const std::size_t index : mine) {
-            if (stopped())
-                break;
             const auto known =
                 options_.known.find(run_key(planned_[index].resolved, planned_[index].threads));
+            if (stopped() && known == options_.known.end())
+                continue; // what is known stays known
             // Both halves of the work count as half.
             const double share = (chart_.repeats > 0 ? 0.5 : 1) / static_cast<double>(mine.size());
             const double begin = share * static_cast<double>(chart_.runs.size());
@@ -223,6 +223,7 @@ class Charting {
         std::unique_ptr<Simulation::Saved> saved;
         JudgeOptions judging;
         judging.follow_errors = true;
+        judging.wall_clock = chart_.wall_clock;
         judging.duration = options_.duration;
         judging.stop = options_.stop;
         judging.at_time_seconds = end_ - chart_.timed;
@@ -250,7 +251,7 @@ class Charting {
         known.resolved = planned_[index].resolved;
         known.point = planned_[index].point;
         timers_.emplace_back();
-        if (!known.run.divergence &&
+        if (!stopped() && !known.run.divergence &&
             known.timings.size() < static_cast<std::size_t>(chart_.repeats))
             try {
                 std::unique_ptr<Simulation> simulated = simulation(planned_[index]);

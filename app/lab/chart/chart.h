@@ -47,9 +47,9 @@ struct ChartRun {
     // The expectation with the largest error in units of its tolerance, as an index into
     // run.outcomes; none when all errors are 0.
     std::optional<std::size_t> worst;
-    // CPU seconds of one thread per simulated second (see SceneChart::wall_clock): of each repeat,
-    // and their median, least and greatest. A run that could not be timed over its end (diverged,
-    // interrupted) has no repeats: its cost is what its full run took.
+    // Seconds per simulated second, CPU time of one thread or SceneChart::wall_clock: of each
+    // repeat, and their median, least and greatest. A run that could not be timed over its end
+    // (diverged, interrupted) has no repeats: its cost is what its full run took.
     std::vector<double> timings;
     double cost = 0, cost_low = 0, cost_high = 0;
     // Work per simulated second, as it was counted in the full run: see StepReport.
@@ -101,7 +101,7 @@ struct SceneChart {
     ErrorMeasure measure;
     std::vector<ChartRun> runs; // method by method, the first axis fastest; those that were begun
     bool convergence = false;
-    bool wall_clock = false; // seconds of the clock on the wall: where several threads are charted
+    bool wall_clock = false; // all times are by the clock on the wall: of charts of several threads
     double budget = 1;       // s per simulated second
     std::uint64_t seed = 1;
     std::vector<std::string> left_out; // why, of each method that cannot run the scene

@@ -6,15 +6,18 @@ namespace plumb {
 
 namespace {
 
-std::vector<std::string_view> parts_of(std::string_view text) {
+std::vector<std::string_view> parts_of(std::string_view text, std::string_view separator = ";") {
     std::vector<std::string_view> parts;
     while (!text.empty()) {
-        const std::size_t end = text.find(';');
+        const std::size_t end = text.find(separator);
         parts.push_back(text.substr(0, end));
-        text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+        text = end == std::string_view::npos ? std::string_view()
+                                             : text.substr(end + separator.size());
     }
     return parts;
 }
+
+constexpr std::string_view between_reasons = " | ";
 
 } // namespace
 
@@ -27,6 +30,15 @@ std::string setting_column(SettingNumber number) {
         if (c == '.' || c == '/')
             c = '_';
     return column;
+}
+
+CostColumns::CostColumns(bool wall_clock) {
+    const std::string clock = wall_clock ? "wall" : "cpu";
+    cost = clock + "_s_per_s";
+    least = cost + "_least";
+    greatest = cost + "_greatest";
+    timings = cost + "_timings";
+    worst_step = "worst_step_" + clock + "_s";
 }
 
 std::string sweep_text(const std::vector<SweepAxis> &sweep) {
@@ -59,6 +71,20 @@ std::vector<double> parsed_numbers(std::string_view text) {
         if (const std::optional<double> number = csv_number(part))
             numbers.push_back(*number);
     return numbers;
+}
+
+std::string reasons_text(const std::vector<std::string> &reasons) {
+    std::string text;
+    for (const std::string &reason : reasons)
+        text.append(text.empty() ? "" : between_reasons).append(reason);
+    return text;
+}
+
+std::vector<std::string> parsed_reasons(std::string_view text) {
+    std::vector<std::string> reasons;
+    for (const std::string_view part : parts_of(text, between_reasons))
+        reasons.emplace_back(part);
+    return reasons;
 }
 
 } // namespace plumb

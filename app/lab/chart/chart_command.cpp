@@ -5,6 +5,7 @@
 #include "app/lab/chart/chart_rows.h"
 #include "app/lab/chart/chart_svg.h"
 #include "app/lab/interrupt.h"
+#include "app/lab/partial_table.h"
 #include "app/lab/run/load_scenes.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
@@ -14,7 +15,10 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace plumb {
 
@@ -63,10 +67,6 @@ ExitCode write_pictures(const SceneChart &chart, const std::filesystem::path &st
     return ExitCode::fine;
 }
 
-std::filesystem::path partial_of(const std::filesystem::path &csv) {
-    return csv.string() + ".partial";
-}
-
 // Whether any run has come to something, and what is to be said if not.
 ExitCode code_of(const SceneChart &chart, std::ostream &err) {
     if (chart.runs.empty() && chart.planned == 0) {
@@ -78,8 +78,26 @@ ExitCode code_of(const SceneChart &chart, std::ostream &err) {
     return any || chart.runs.empty() || chart.interrupted ? ExitCode::fine : ExitCode::diverged;
 }
 
+// Of a scene that is done, while others are still to come.
+struct Charted {
+    PartialTable earlier;
+    std::string table, others; // the latter: rows of the earlier one that are not in the table
+
+    // The command ended: what was done before is of no more use, but for what is another's.
+    void finish() const { earlier.keep_only(others); }
+    // It was interrupted: this scene, too, is not run again when it goes on.
+    void keep() const {
+        if (earlier.place().empty())
+            return;
+        OutputFile file(earlier.place());
+        file.stream() << table << others;
+        file.finish();
+    }
+};
+
 ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPainter &painter,
-                   ProgressLine &line, std::ostream &out, std::ostream &err) {
+                   ProgressLine &line, std::vector<Charted> &charted, std::ostream &out,
+                   std::ostream &err) {
     ChartOptions options = command.options;
     options.stop = InterruptGuard::requested;
     options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
@@ -91,26 +109,30 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
         table += "." + std::to_string(shard.n) + "-of-" + std::to_string(shard.of);
     OutputFile csv(table + ".csv");
     const std::string fingerprint = chart_fingerprint(scene, options);
-    if (std::ifstream partial(partial_of(csv.path())); partial)
-        options.known = read_known_runs(partial, scene, fingerprint);
+    PartialTable earlier(csv.partial_place());
+    std::istringstream known(earlier.text());
+    options.known = read_known_runs(known, scene, fingerprint);
     const bool goes_on = !options.known.empty();
     if (goes_on)
-        err << "going on from " << partial_of(csv.path()).string() << '\n';
+        err << "going on from " << earlier.place().string() << '\n';
     const SceneChart chart = chart_scene(scene, options);
     line.clear();
-    write_chart_csv(csv.stream(), chart, fingerprint);
+    std::ostringstream rows;
+    write_chart_csv(rows, chart, fingerprint);
+    const std::string others = earlier.rows_not_in(rows.str(), chart_key_columns(), "fingerprint");
+    csv.stream() << rows.str();
     print(out, chart);
     out << std::flush;
     ExitCode code = code_of(chart, err);
     if (chart.interrupted) {
+        csv.stream() << others;
         err << "interrupted; rows so far: " << csv.keep_partial().string() << '\n';
     } else {
         csv.finish();
         err << "wrote " << csv.path().string() << '\n';
-        if (goes_on) {
-            std::filesystem::remove(partial_of(csv.path()));
+        if (goes_on)
             std::filesystem::remove(stem.string() + ".partial.png");
-        }
+        charted.push_back({std::move(earlier), rows.str(), others});
     }
     if (!chart.runs.empty() && shard.of == 1)
         code = worse(code, write_pictures(chart, stem, command.command, painter, err));
@@ -133,6 +155,7 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
     const InterruptGuard interrupt;
     ProgressLine line(err);
     LazyPainter painter(command.shader_dir);
+    std::vector<Charted> charted;
     for (const SceneDesc &scene : loaded.scenes) {
         if (InterruptGuard::requested())
             break;
@@ -141,13 +164,18 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
             continue;
         }
         try {
-            code = worse(code, chart_one(scene, command, painter, line, out, err));
+            code = worse(code, chart_one(scene, command, painter, line, charted, out, err));
         } catch (const std::invalid_argument &failure) {
             line.clear();
             err << scene.name << ": " << failure.what() << '\n';
             code = worse(code, ExitCode::bad_input);
         }
     }
+    for (const Charted &each : charted)
+        if (InterruptGuard::requested())
+            each.keep();
+        else
+            each.finish();
     return code;
 }
 

@@ -3,6 +3,7 @@
 #include "app/lab/chart/convergence.h"
 #include "app/lab/chart/log_axis.h"
 #include "app/lab/provenance.h"
+#include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
 
 #include <algorithm>
@@ -138,7 +139,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
                            std::to_string(chart.planned) + " runs. " + content.subtitle;
     }
     content.cost_title =
-        chart.wall_clock ? "Time per simulated second" : "CPU time per simulated second";
+        chart.wall_clock ? "Wall time per simulated second" : "CPU time per simulated second";
     content.error_title = chart.measure.title;
     // Where the numbers at the ticks have no unit of their own.
     if (chart.measure.unit != "1" && !takes_prefix(chart.measure.unit))
@@ -150,7 +151,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.worst = worst.texts();
     content.limit = chart.measure.limit;
     content.limit_label = chart.measure.limit_label;
-    content.left_out = chart.left_out;
+    content.left_out = grouped_reasons(chart.left_out);
 
     if (chart.convergence) {
         content.cost_title = "dt";

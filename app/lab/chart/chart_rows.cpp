@@ -4,7 +4,6 @@
 #include "app/lab/csv.h"
 #include "app/lab/engines/other_engines.h"
 #include "app/lab/fingerprint.h"
-#include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/timing.h"
 #include "engine/scene/scene_file.h"
@@ -37,10 +36,11 @@ ExpectOutcome read_outcome(const CsvReader &row, const ExpectDesc &expect) {
 std::optional<ChartRun> read_run(const CsvReader &row, const SceneDesc &scene,
                                  const std::vector<SweepAxis> &sweep) {
     ChartRun run;
+    const CostColumns times(row.cell("clock") == "wall");
     const auto status = find_status(row.cell("status"));
     run.resolved.method = find_charted(row.cell("method"));
     const auto index = row.number("run"), threads = row.number("threads"),
-               cost = row.number("cpu_s_per_s"), end = row.number("end_s"),
+               cost = row.number(times.cost), end = row.number("end_s"),
                steps = row.number("steps");
     if (!status || run.resolved.method == nullptr || !index || !threads || !cost || !end || !steps)
         return std::nullopt;
@@ -61,15 +61,16 @@ std::optional<ChartRun> read_run(const CsvReader &row, const SceneDesc &scene,
     for (const SweepAxis &axis : sweep)
         run.point.push_back(setting_value(run.resolved.settings, axis.setting));
 
-    run.timings = parsed_numbers(row.cell("timings_s_per_s"));
+    run.timings = parsed_numbers(row.cell(times.timings));
     run.cost = *cost;
-    run.cost_low = row.number("cpu_s_per_s_least").value_or(*cost);
-    run.cost_high = row.number("cpu_s_per_s_greatest").value_or(*cost);
+    run.cost_low = row.number(times.least).value_or(*cost);
+    run.cost_high = row.number(times.greatest).value_or(*cost);
     run.body_passes = row.number("body_passes_per_s").value_or(0);
     run.constraint_passes = row.number("constraint_passes_per_s").value_or(0);
     run.run.time = *end;
     run.run.steps = static_cast<std::uint64_t>(*steps);
-    run.run.step_cpu_time = *cost * *steps * run.resolved.settings.dt;
+    run.run.step_time = *cost * *steps * run.resolved.settings.dt;
+    run.run.worst_step_time = row.number(times.worst_step).value_or(0);
     run.run.had_contacts = row.cell("had_contacts") == "1";
     run.run.max_penetration = row.number("max_penetration_m").value_or(0);
     run.run.max_joint_drift = row.number("max_joint_drift_m").value_or(0);
@@ -152,6 +153,13 @@ std::string chart_fingerprint(const SceneDesc &scene, const ChartOptions &option
     return print.text();
 }
 
+std::vector<std::string> chart_key_columns() {
+    std::vector<std::string> columns{"method", "precision", "threads", "fingerprint"};
+    for (const SettingNumber number : setting_numbers())
+        columns.push_back(setting_column(number));
+    return columns;
+}
+
 KnownRuns read_known_runs(std::istream &in, const SceneDesc &scene,
                           const std::string &fingerprint) {
     KnownRuns known;
@@ -192,13 +200,15 @@ SceneChart merged_chart(const SceneDesc &scene, const std::vector<NamedTable> &t
                                             ": other settings, or another commit");
             if (auto run = read_run(table, scene, chart->sweep))
                 runs.insert_or_assign(run->index, std::move(*run));
+            for (std::string &why : parsed_reasons(table.cell("left_out")))
+                if (std::ranges::find(chart->left_out, why) == chart->left_out.end())
+                    chart->left_out.push_back(std::move(why));
         }
     }
     if (!chart)
         throw std::invalid_argument("there is nothing to merge: the tables have no rows");
     for (auto &[index, run] : runs)
         chart->runs.push_back(std::move(run));
-    (void)methods_for(scene, {}, chart->left_out);
     finish_chart(*chart);
     chart->interrupted = chart->runs.size() < chart->planned;
     return *chart;

@@ -12,6 +12,9 @@ namespace plumb {
 // See Fingerprint: of the scene, the options and what is swept; the shard is not in it.
 [[nodiscard]] std::string chart_fingerprint(const SceneDesc &scene, const ChartOptions &options);
 
+// The columns by which rows of the same chart, or of any, are told apart.
+[[nodiscard]] std::vector<std::string> chart_key_columns();
+
 // Those finished runs of a table that have this fingerprint; none of a table that is not to be
 // understood.
 [[nodiscard]] KnownRuns read_known_runs(std::istream &in, const SceneDesc &scene,

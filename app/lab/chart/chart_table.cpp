@@ -5,6 +5,7 @@
 #include "app/lab/chart/log_axis.h"
 #include "app/lab/csv.h"
 #include "app/lab/provenance.h"
+#include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
 
 #include <algorithm>
@@ -28,13 +29,12 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
         csv.cell(name);
     for (const SettingNumber number : setting_numbers())
         csv.cell(setting_column(number));
-    for (const char *name : {"status",
-                             "pareto",
-                             "cpu_s_per_s",
-                             "cpu_s_per_s_least",
-                             "cpu_s_per_s_greatest",
-                             "timings_s_per_s",
-                             "body_passes_per_s",
+    const CostColumns times(chart.wall_clock);
+    csv.cell("status").cell("pareto");
+    for (const std::string &name :
+         {times.cost, times.least, times.greatest, times.timings, times.worst_step})
+        csv.cell(name);
+    for (const char *name : {"body_passes_per_s",
                              "constraint_passes_per_s",
                              "charted_error",
                              "error",
@@ -54,6 +54,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
                              "clock",
                              "budget_s_per_s",
                              "sweep",
+                             "left_out",
                              "planned",
                              "repeats",
                              "timed_s",
@@ -80,6 +81,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
             .cell(run.cost_low)
             .cell(run.cost_high)
             .cell(numbers_text(run.timings))
+            .cell(run.run.worst_step_time)
             .cell(run.body_passes)
             .cell(run.constraint_passes)
             .cell(chart.measure.name)
@@ -102,6 +104,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
             .cell(chart.wall_clock ? "wall" : "cpu")
             .cell(chart.budget)
             .cell(sweep_text(chart.sweep))
+            .cell(reasons_text(chart.left_out))
             .cell(static_cast<std::uint64_t>(chart.planned))
             .cell(chart.repeats)
             .cell(chart.timed)
@@ -132,8 +135,9 @@ void print(std::ostream &out, const SceneChart &chart) {
     }
     out << '\n';
     char line[256];
-    std::snprintf(line, sizeof line, "  %-22s %9s %9s %10s %14s %8s %14s  %s\n", "method",
-                  "substeps", "iteration", "dt", "CPU ms/s", "spread", "error", "");
+    std::snprintf(line, sizeof line, "  %-22s %9s %9s %10s %12s %8s %14s %14s\n", "method",
+                  "substeps", "iteration", "dt", chart.wall_clock ? "wall ms/s" : "CPU ms/s",
+                  "spread", chart.wall_clock ? "worst wall ms" : "worst CPU ms", "error");
     out << line;
     for (const ChartRun &run : chart.runs) {
         char spread[24] = "-";
@@ -142,12 +146,12 @@ void print(std::ostream &out, const SceneChart &chart) {
                           100 * (run.cost_high - run.cost_low) / run.cost);
         const std::string error =
             std::isfinite(run.error) ? with_unit(run.error, chart.measure.unit) : "-";
-        std::snprintf(line, sizeof line, "  %-22.22s %9s %9d %10s %14.5g %8s %14s  %s%s",
-                      std::string(run.resolved.method->name).c_str(),
-                      substeps_text(run.resolved).c_str(), run.resolved.settings.iterations,
-                      format_dt(run.resolved.settings.dt).c_str(), 1e3 * run.cost, spread,
-                      error.c_str(), std::string(status_name(run.status)).c_str(),
-                      run.pareto ? ", Pareto front" : "");
+        std::snprintf(
+            line, sizeof line, "  %-22.22s %9s %9d %10s %12.5g %8s %14.4g %14s  %s%s",
+            std::string(run.resolved.method->name).c_str(), substeps_text(run.resolved).c_str(),
+            run.resolved.settings.iterations, format_dt(run.resolved.settings.dt).c_str(),
+            1e3 * run.cost, spread, 1e3 * run.run.worst_step_time, error.c_str(),
+            std::string(status_name(run.status)).c_str(), run.pareto ? ", Pareto front" : "");
         out << line;
         if (run.worst && !run.run.divergence && everything_expected(chart.scene).size() > 1)
             out << "; worst: " << run.run.outcomes[*run.worst].desc.name;
@@ -157,7 +161,9 @@ void print(std::ostream &out, const SceneChart &chart) {
     }
     for (const FittedOrder &fitted : fitted_orders(chart))
         out << "  " << fitted.name << ": order " << order_text(fitted) << '\n';
-    for (const std::string &why : chart.left_out)
+    if (!chart.runs.empty())
+        out << "  worst: the step that took longest, of the first run of each\n";
+    for (const std::string &why : grouped_reasons(chart.left_out))
         out << "  left out: " << why << '\n';
     if (chart.interrupted)
         out << "  interrupted: " << chart.runs.size() << " of " << chart.planned

@@ -3,7 +3,7 @@
 
 #ifdef PLUMB_WITH_BULLET
 
-#include "app/lab/cpu_clock.h"
+#include "app/lab/clocks.h"
 
 #include <cmath>
 #include <map>

@@ -3,7 +3,7 @@
 
 #ifdef PLUMB_WITH_ODE
 
-#include "app/lab/cpu_clock.h"
+#include "app/lab/clocks.h"
 
 #include <algorithm>
 #include <array>

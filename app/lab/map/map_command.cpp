@@ -7,23 +7,21 @@
 #include "app/lab/map/map_picture.h"
 #include "app/lab/map/map_resume.h"
 #include "app/lab/map/theory.h"
+#include "app/lab/partial_table.h"
+#include "app/lab/run/method_choice.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
 
-#include <fstream>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 namespace plumb {
 
 namespace {
 
-std::filesystem::path partial_of(const std::filesystem::path &csv) {
-    return csv.string() + ".partial";
-}
-
 void write_picture(const MapCommand &command, const StabilityMap &map, std::ostream &err) {
-    MapPicture picture{map, theory_of(map), map.left_out};
+    MapPicture picture{map, theory_of(map), grouped_reasons(map.left_out)};
     if (!command.command.empty())
         picture.footer.push_back(command.command);
     std::filesystem::path place = command.image;
@@ -55,30 +53,34 @@ ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &e
     options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
     // Before the work, so that a place that nothing can be written to is known at once.
     std::optional<OutputFile> csv;
+    std::optional<PartialTable> earlier;
     std::string fingerprint;
     if (!command.csv.empty()) {
         csv.emplace(command.csv);
+        earlier.emplace(csv->partial_place());
         fingerprint = map_fingerprint(*scene, command.x, command.y, options);
-        if (std::ifstream partial(partial_of(command.csv)); partial)
-            options.known = read_map_csv(partial, fingerprint);
+        std::istringstream known(earlier->text());
+        options.known = read_map_csv(known, fingerprint);
     }
-    const bool goes_on = !options.known.cells.empty();
-    if (goes_on)
-        err << "going on from " << partial_of(command.csv).string() << '\n';
+    if (!options.known.cells.empty())
+        err << "going on from " << earlier->place().string() << '\n';
     StabilityMap map = map_scene(*scene, command.x, command.y, options);
     map.fingerprint = fingerprint;
     line.clear();
     print(out, map);
     out << std::flush;
     if (csv) {
-        write_map_csv(csv->stream(), map);
+        std::ostringstream rows;
+        write_map_csv(rows, map);
+        const std::string others = earlier->rows_not_in(rows.str(), map_key_columns(map), "run");
+        csv->stream() << rows.str();
         if (map.interrupted) {
+            csv->stream() << others;
             err << "interrupted; rows so far: " << csv->keep_partial().string() << '\n';
         } else {
             csv->finish();
             err << "wrote " << csv->path().string() << '\n';
-            if (goes_on)
-                std::filesystem::remove(partial_of(command.csv));
+            earlier->keep_only(others);
         }
     }
     if (!command.image.empty())

@@ -9,6 +9,10 @@ std::string map_fingerprint(const SceneText &scene, const MapAxis &x, const MapA
                             const MapOptions &options) {
     Fingerprint print;
     print.add(scene.text);
+    for (const ChangedNumber &number : scene.changed) {
+        print.add(number.path);
+        print.add(number.value);
+    }
     for (const MapAxis *axis : {&x, &y}) {
         print.add(axis->name);
         print.add(axis->logarithmic ? 1 : 0);
@@ -16,6 +20,10 @@ std::string map_fingerprint(const SceneText &scene, const MapAxis &x, const MapA
     print.add(options.base);
     print.add(options.duration.value_or(0));
     return print.text();
+}
+
+std::vector<std::string> map_key_columns(const StabilityMap &map) {
+    return {"kind", "method", map.x.name, map.y.name, "low", "high", "run"};
 }
 
 KnownRows read_map_csv(std::istream &in, const std::string &fingerprint) {

@@ -4,6 +4,8 @@
 #include "app/lab/map/stability_map.h"
 
 #include <istream>
+#include <string>
+#include <vector>
 
 namespace plumb {
 
@@ -12,6 +14,9 @@ namespace plumb {
 // use.
 [[nodiscard]] std::string map_fingerprint(const SceneText &scene, const MapAxis &x,
                                           const MapAxis &y, const MapOptions &options);
+
+// The columns by which rows of maps with these axes are told apart.
+[[nodiscard]] std::vector<std::string> map_key_columns(const StabilityMap &map);
 
 // The rows of a table of write_map_csv that have this fingerprint.
 [[nodiscard]] KnownRows read_map_csv(std::istream &in, const std::string &fingerprint);

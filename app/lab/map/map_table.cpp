@@ -1,6 +1,7 @@
 #include "app/lab/map/stability_map.h"
 
 #include "app/lab/csv.h"
+#include "app/lab/run/method_choice.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -86,7 +87,7 @@ void print(std::ostream &out, const StabilityMap &map) {
             out << "  " << info.letter << "  " << info.meaning << '\n';
     for (const std::string &what : missed)
         out << "  " << what << '\n';
-    for (const std::string &why : map.left_out)
+    for (const std::string &why : grouped_reasons(map.left_out))
         out << "  left out: " << why << '\n';
     if (map.interrupted)
         out << "  interrupted: what is blank was not run\n";

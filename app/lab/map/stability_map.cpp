@@ -50,7 +50,7 @@ class Point {
 
   private:
     SceneFileResult parse(double x, double y) const {
-        std::vector<ChangedNumber> changed;
+        std::vector<ChangedNumber> changed = text_.changed;
         if (!x_.setting)
             changed.push_back({x_.name, x});
         if (!y_.setting)
@@ -233,7 +233,8 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     if (options.duration && !(*options.duration > 0))
         throw std::invalid_argument("a run must last longer than 0 s");
     StabilityMap map;
-    SceneFileResult as_it_is = parse_scene(scene.text, scene.path.string(), known_methods(), {});
+    SceneFileResult as_it_is =
+        parse_scene(scene.text, scene.path.string(), known_methods(), scene.changed);
     if (!as_it_is.ok())
         throw std::invalid_argument(scene.path.string() + " is not a scene");
     map.scene = std::move(as_it_is.scene);
@@ -250,25 +251,23 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
         throw std::invalid_argument("no method can run this scene");
 
     Runner runner(scene, map, options);
-    std::vector<CellItem> cells;
+    std::vector<CellItem> cells; // that are not known
     for (MethodMap &of_method : map.methods) {
         of_method.cells.resize(map.x.values.size() * map.y.values.size());
         for (std::size_t row = 0; row < map.y.values.size(); ++row)
-            for (std::size_t column = 0; column < map.x.values.size(); ++column)
-                cells.push_back({&of_method, column, row});
+            for (std::size_t column = 0; column < map.x.values.size(); ++column) {
+                const auto known = options.known.cells.find(
+                    {std::string(of_method.method->name), map.x.values[column], map.y.values[row]});
+                if (known != options.known.cells.end())
+                    of_method.cells[row * map.x.values.size() + column] = known->second;
+                else
+                    cells.push_back({&of_method, column, row});
+            }
     }
     constexpr double grid_share = 0.7; // of the time, as a guess
     runner.for_each(cells, 1, 0, grid_share, "cells", [&](const CellItem &item) {
-        const double x_value = map.x.values[item.column], y_value = map.y.values[item.row];
-        std::optional<MapRun> &cell = item.map->cells[item.row * map.x.values.size() + item.column];
-        const auto known =
-            options.known.cells.find({std::string(item.map->method->name), x_value, y_value});
-        if (known == options.known.cells.end()) {
-            cell = runner.run(*item.map->method, x_value, y_value);
-        } else {
-            cell = known->second;
-            runner.skip(1);
-        }
+        item.map->cells[item.row * map.x.values.size() + item.column] =
+            runner.run(*item.map->method, map.x.values[item.column], map.y.values[item.row]);
         if (options.changed && options.tasks == nullptr)
             options.changed(map);
     });

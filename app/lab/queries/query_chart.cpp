@@ -80,7 +80,7 @@ QueryChart chart_queries(const QueryChartOptions &options) {
 void write_query_csv(std::ostream &out, const QueryChart &chart) {
     CsvWriter csv(out);
     for (const char *name : {"query", "method", "family", "asked", "wrong", "wrong_rate",
-                             "ns_per_query", "ns_least", "ns_greatest", "timings"})
+                             "cpu_ns_per_query", "cpu_ns_least", "cpu_ns_greatest", "timings"})
         csv.cell(name);
     csv.end_row();
     for (const QueryRun &run : chart.runs) {

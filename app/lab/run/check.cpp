@@ -142,12 +142,19 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
     Tally tally;
     const std::size_t total = loaded.scenes.size() * runs.size();
     std::size_t done = 0;
+    const auto interrupted = [&] {
+        tally.print(out);
+        err << "interrupted: " << done << " of " << total << " runs are done\n";
+        return worse(code, ExitCode::outside_tolerance);
+    };
     for (const SceneDesc &scene : loaded.scenes)
         for (const RunOptions &options : runs) {
             if (!has_world(scene) && &options != &runs.front()) {
                 ++done; // no method makes a difference
                 continue;
             }
+            if (InterruptGuard::requested())
+                return interrupted();
             JudgeOptions judging;
             judging.stop = InterruptGuard::requested;
             judging.progress = [&](double fraction) {
@@ -164,6 +171,8 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
                     ++done;
                     continue;
                 }
+                if (outcome.run.stopped)
+                    return interrupted();
                 code = worse(code, exit_code(outcome));
                 tally.add(outcome);
             } catch (const std::invalid_argument &error) {
@@ -172,10 +181,6 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
                 code = ExitCode::bad_input;
             }
             ++done;
-            if (InterruptGuard::requested()) {
-                err << "interrupted: " << done << " of " << total << " runs were looked at\n";
-                return worse(code, ExitCode::outside_tolerance);
-            }
         }
     tally.print(out);
     return code;

@@ -1,10 +1,9 @@
 #include "app/lab/run/end_timer.h"
 
-#include "app/lab/cpu_clock.h"
+#include "app/lab/clocks.h"
 #include "engine/core/check.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -41,12 +40,7 @@ std::optional<double> EndTimer::time(const std::function<bool()> &stop) const {
         }
         return true;
     };
-    const auto now = [&] {
-        return wall_clock_ ? std::chrono::duration<double>(
-                                 std::chrono::steady_clock::now().time_since_epoch())
-                                 .count()
-                           : thread_cpu_time();
-    };
+    const auto now = [&] { return wall_clock_ ? wall_time() : thread_cpu_time(); };
     double used = 0;
     try {
         simulation_->restore(*saved_);

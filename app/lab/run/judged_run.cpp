@@ -1,6 +1,6 @@
 #include "app/lab/run/judged_run.h"
 
-#include "app/lab/cpu_clock.h"
+#include "app/lab/clocks.h"
 #include "app/lab/run/expectation_watch.h"
 #include "engine/core/check.h"
 #include "engine/scene/probe.h"
@@ -146,6 +146,7 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
                 return true;
         return false;
     };
+    const auto now = [&] { return options.wall_clock ? wall_time() : thread_cpu_time(); };
     LastPositions last_positions;
     bool at_time_due = static_cast<bool>(options.at_time);
     follow(true);
@@ -165,9 +166,11 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
         last_positions.note(simulation);
         const std::uint64_t step = simulation.step_count();
         try {
-            const double before = thread_cpu_time();
+            const double before = now();
             simulation.step();
-            run.step_cpu_time += thread_cpu_time() - before;
+            const double took = now() - before;
+            run.step_time += took;
+            run.worst_step_time = std::max(run.worst_step_time, took);
         } catch (const CheckFailure &failure) {
             run.divergence = last_positions.diverged(simulation, step + 1, failure.what());
             break;

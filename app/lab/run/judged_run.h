@@ -33,6 +33,8 @@ struct JudgeOptions {
     bool follow_errors = false;
     // For a scene without expectations: how long to run (s).
     double duration = 5;
+    // Steps are timed by the clock on the wall: for runs on several threads.
+    bool wall_clock = false;
     // Ends the run once an expectation is missed whatever comes; it is looked at now and then.
     bool give_up = false;
     // Asked before each step; true ends the run early. May be empty.
@@ -50,9 +52,11 @@ struct JudgedRun {
     std::vector<ExpectOutcome> outcomes;
     std::optional<Divergence> divergence;
     bool stopped = false;
-    double time = 0;          // s, at the end of the run
-    std::uint64_t steps = 0;  // that were done
-    double step_cpu_time = 0; // s, CPU time of the calling thread in all steps together
+    double time = 0;         // s, at the end of the run
+    std::uint64_t steps = 0; // that were done
+    // s, CPU time of the calling thread, or by the clock on the wall: of all steps together, and of
+    // the one that took longest.
+    double step_time = 0, worst_step_time = 0;
     // Of all steps together, as StepReport counts them.
     std::uint64_t body_passes = 0, constraint_passes = 0;
     std::uint64_t unresolved_impacts = 0;

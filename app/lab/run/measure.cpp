@@ -45,11 +45,11 @@ void write_header(CsvWriter &csv) {
                              "joints",
                              "impacts",
                              "unresolved_impacts",
-                             "find_pairs_s",
-                             "collide_s",
-                             "advance_s",
-                             "finish_s",
-                             "step_s",
+                             "find_pairs_wall_s",
+                             "collide_wall_s",
+                             "advance_wall_s",
+                             "finish_wall_s",
+                             "step_wall_s",
                              "finite"})
         csv.cell(name);
     csv.end_row();
@@ -199,7 +199,7 @@ void print(std::ostream &out, const MeasureSummary &s) {
     const double total = s.find_pairs + s.collide + s.advance + s.finish;
     if (total > 0 && s.steps > 0) {
         std::snprintf(line, sizeof line,
-                      "time a step       %.4g ms: find pairs %.0f %%, collide %.0f %%, advance "
+                      "wall time a step  %.4g ms: find pairs %.0f %%, collide %.0f %%, advance "
                       "%.0f %%, finish %.0f %%; %.4g times real time\n",
                       1e3 * total / static_cast<double>(s.steps), 100 * s.find_pairs / total,
                       100 * s.collide / total, 100 * s.advance / total, 100 * s.finish / total,

@@ -7,6 +7,40 @@
 
 namespace plumb {
 
+namespace {
+
+// "knows no joints" of one, "know no joints" of several.
+std::string of_several(std::string_view reason) {
+    for (const auto &[one, several] : {std::pair{"knows ", "know "}, std::pair{"is ", "are "}})
+        if (reason.starts_with(one))
+            return several + std::string(reason.substr(std::string_view(one).size()));
+    return std::string(reason);
+}
+
+} // namespace
+
+std::vector<std::string> grouped_reasons(const std::vector<std::string> &left_out) {
+    std::vector<std::pair<std::string_view, std::vector<std::string_view>>> groups;
+    for (const std::string &each : left_out) {
+        const std::size_t space = std::min(each.find(' '), each.size() - 1);
+        const std::string_view name = std::string_view(each).substr(0, space);
+        const std::string_view reason = std::string_view(each).substr(space + 1);
+        const auto group = std::ranges::find(groups, reason, &decltype(groups)::value_type::first);
+        if (group == groups.end())
+            groups.push_back({reason, {name}});
+        else
+            group->second.push_back(name);
+    }
+    std::vector<std::string> texts;
+    for (const auto &[reason, names] : groups) {
+        std::string text(names.front());
+        for (std::size_t i = 1; i < names.size(); ++i)
+            text.append(i + 1 < names.size() ? ", " : " and ").append(names[i]);
+        texts.push_back(text + " " + (names.size() > 1 ? of_several(reason) : std::string(reason)));
+    }
+    return texts;
+}
+
 std::vector<const MethodInfo *> methods_for(const SceneDesc &scene,
                                             const std::vector<std::string> &names,
                                             std::vector<std::string> &left_out) {

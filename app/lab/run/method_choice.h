@@ -15,4 +15,7 @@ namespace plumb {
                                                           const std::vector<std::string> &names,
                                                           std::vector<std::string> &left_out);
 
+// For people: methods with the same reason in one sentence.
+[[nodiscard]] std::vector<std::string> grouped_reasons(const std::vector<std::string> &left_out);
+
 } // namespace plumb

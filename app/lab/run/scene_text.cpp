@@ -2,10 +2,8 @@
 
 #include "app/lab/progress.h"
 #include "engine/dynamics/method_info.h"
-#include "engine/scene/file/change.h"
 
 #include <utility>
-#include <vector>
 
 namespace plumb {
 

@@ -27,9 +27,9 @@ void shift(BodyDesc &body, Random &random) {
 
 SceneDesc with_seed(const SceneText &text, const SceneDesc &scene, std::uint64_t seed) {
     try {
-        SceneFileResult result =
-            parse_scene(text.text, text.path.string(), {},
-                        std::vector{ChangedNumber{"world.seed", static_cast<double>(seed)}});
+        std::vector<ChangedNumber> changed = text.changed;
+        changed.push_back({"world.seed", static_cast<double>(seed)});
+        SceneFileResult result = parse_scene(text.text, text.path.string(), {}, changed);
         return result.ok() ? std::move(result.scene) : scene;
     } catch (const std::invalid_argument &) { // it has no [world]
         return scene;
@@ -39,7 +39,7 @@ SceneDesc with_seed(const SceneText &text, const SceneDesc &scene, std::uint64_t
 } // namespace
 
 std::vector<SceneDesc> starts_of(const SceneText &text, int others) {
-    const SceneDesc scene = parse_scene(text.text, text.path.string()).scene;
+    const SceneDesc scene = parse_scene(text.text, text.path.string(), {}, text.changed).scene;
     std::vector<SceneDesc> starts{scene};
     for (int i = 1; i <= others; ++i) {
         const auto number = static_cast<std::uint64_t>(i);

@@ -72,7 +72,7 @@ TunedRun Trial::run(const RunOptions &options, const Progress &progress) const {
         judge_in_full(starts_[start], judged, run);
         if (const double simulated = static_cast<double>(judged.steps) * run.resolved.settings.dt;
             simulated > 0) {
-            const double cost = judged.step_cpu_time / simulated;
+            const double cost = judged.step_time / simulated;
             run.cost = start == 0 ? cost : std::min(run.cost, cost);
             if (start == 0)
                 run.work =

@@ -1,4 +1,5 @@
 // What tuning came to, for people.
+#include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
 #include "app/lab/timing.h"
@@ -140,7 +141,7 @@ const TunedRun *nearest(const Tuning &tuning) {
 void print(std::ostream &out, const Tuning &tuning, bool explain) {
     if (explain)
         print_table(out, tuning);
-    for (const std::string &why : tuning.left_out)
+    for (const std::string &why : grouped_reasons(tuning.left_out))
         out << "  left out: " << why << '\n';
     const std::string all = tuning.expectations == 1
                                 ? "its expectation"

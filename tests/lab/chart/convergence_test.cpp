@@ -67,7 +67,7 @@ TEST(ChartSweep, PrecisionAndThreadsAreCurvesOfTheirOwn) {
     ASSERT_EQ(content.series.size(), 4U);
     EXPECT_EQ(content.series[0].name, "Soft step, float, 1 thread");
     EXPECT_EQ(content.series[3].name, "Soft step, double, 2 threads");
-    EXPECT_EQ(content.cost_title, "Time per simulated second");
+    EXPECT_EQ(content.cost_title, "Wall time per simulated second");
     for (const char *wrong : {"precision=half", "threads=0", "threads=2,", "precision="})
         EXPECT_THROW(add_sweep(options, wrong), std::invalid_argument) << wrong;
 }
