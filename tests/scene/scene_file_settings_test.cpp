@@ -101,12 +101,23 @@ TEST(SceneFileSettings, WithAnotherMethodTheOldOneKeepsItsSettings) {
                              ball;
     const std::string changed = written(text, with({"substeps=16"}, "tgs_soft"));
     EXPECT_EQ(changed, std::string("[world]\ndt = 0.01\nmethod = \"tgs_soft\"\nsubsteps = "
-                                   "16\n\n[methods.soft_step]\nsubsteps = 8 # of its own\n\n# "
-                                   "needs more\n\n[methods.rk4]\nsubsteps = 2\n") +
+                                   "16\n\n[methods.soft_step]\nsubsteps = 8 # of its "
+                                   "own\n\n[methods.rk4]\nsubsteps = 2\n") +
                            ball);
     EXPECT_EQ(run_of(changed, with({}, "soft_step")).settings.substeps, 8);
     EXPECT_EQ(run_of(changed, with({}, "rk4")).settings.substeps, 2);
     EXPECT_EQ(run_of(changed, {}).settings.substeps, 16);
+}
+
+// What was said of settings goes with them, within their table and above it.
+TEST(SceneFileSettings, CommentsOfWhatIsRemovedGoToo) {
+    const std::string text = "# all of it\n[world]\ndt = 0.01\n\n# needs more,\n# since it is "
+                             "soft\n[methods.tgs_soft]\n# at least\nsubsteps = 32\n" +
+                             std::string("\n# the ball\n") + ball;
+    EXPECT_EQ(written(text, with({"substeps=16"}, "tgs_soft")),
+              "# all of it\n[world]\ndt = 0.01\nmethod = \"tgs_soft\"\nsubsteps = 16\n\n# the "
+              "ball\n" +
+                  std::string(ball));
 }
 
 TEST(SceneFileSettings, LinesKeepTheirEnds) {

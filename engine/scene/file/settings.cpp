@@ -137,9 +137,14 @@ class Change {
             return;
         if (table->is_inline())
             throw std::invalid_argument(std::string(own_lines));
+        const std::size_t header = line_of(table->source());
+        std::size_t last = header;
         taken(table->source(), "[");
-        for (const auto &[key, value] : *table)
+        for (const auto &[key, value] : *table) {
+            last = std::max(last, line_of(key.source()));
             taken(key.source(), key.str());
+        }
+        take_comments(header, last);
     }
 
     std::string text() {
@@ -166,6 +171,19 @@ class Change {
         if (line.back() != '\n')
             line += '\n';
         return line;
+    }
+
+    // What was said of a table whose lines these were, and one of the blank lines around it.
+    void take_comments(std::size_t header, std::size_t last) {
+        const auto is_blank = [&](std::size_t i) {
+            return lines_.line(i).find_first_not_of(" \t\r\n") == std::string_view::npos;
+        };
+        for (std::size_t i = header; i <= last; ++i)
+            lines_.take(i);
+        while (header > 0 && lines_.line(header - 1).starts_with("#"))
+            lines_.take(--header);
+        if (header > 0 && is_blank(header - 1) && (last + 1 == lines_.size() || is_blank(last + 1)))
+            lines_.take(header - 1);
     }
 
     // The line of the first table, or of the comment right above it.
