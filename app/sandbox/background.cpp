@@ -11,4 +11,9 @@ void give_way_to_others() {
     static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_IDLE, &none));
 }
 
+void hurry(std::jthread::native_handle_type thread) {
+    const sched_param none{};
+    static_cast<void>(pthread_setschedparam(thread, SCHED_OTHER, &none));
+}
+
 } // namespace plumb

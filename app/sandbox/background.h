@@ -12,10 +12,14 @@
 #include <utility>
 #include <vector>
 
+#include <pthread.h>
+
 namespace plumb {
 
 // From now on the calling thread runs only where a processor would be idle.
 void give_way_to_others();
+// That thread runs as all do: what is waited for must not wait for others. A system may refuse it.
+void hurry(std::jthread::native_handle_type thread);
 
 // What is found is published piece by piece, and can be looked at at any time; one work at a time.
 template <typename Result> class Background {
@@ -28,6 +32,13 @@ template <typename Result> class Background {
     };
 
   public:
+    Background() = default;
+    ~Background() { stop(); } // and waits, also for what was stopped before
+    Background(Background &&) = default;
+    Background &operator=(Background &&) = default;
+    Background(const Background &) = delete;
+    Background &operator=(const Background &) = delete;
+
     // What the work is given.
     class Desk {
       public:
@@ -55,6 +66,8 @@ template <typename Result> class Background {
         threads_.push_back(
             {state_, std::jthread([work = std::move(work), state = state_](std::stop_token stop) {
                  give_way_to_others();
+                 if (stop.stop_requested()) // meanwhile
+                     hurry(pthread_self());
                  Desk desk(*state, std::move(stop));
                  try {
                      work(desk);
@@ -67,8 +80,11 @@ template <typename Result> class Background {
     }
     // Asks it to end, and keeps what it found.
     void stop() {
-        if (!threads_.empty())
-            threads_.back().thread.request_stop();
+        if (threads_.empty())
+            return;
+        threads_.back().thread.request_stop();
+        if (threads_.back().state->running)
+            hurry(threads_.back().thread.native_handle());
     }
     // And forgets it.
     void clear() {

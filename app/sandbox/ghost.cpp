@@ -27,6 +27,7 @@ Ghost::Ghost(const Simulation &beside, const std::string &method) {
 
 void Ghost::begin_step() {
     history_.remember(*simulation_);
+    ++steps_;
 }
 
 void Ghost::catch_up(const Simulation &beside) {
@@ -38,10 +39,10 @@ void Ghost::catch_up(const Simulation &beside) {
                 break;
             simulation_->step();
             if (!simulation_->report().finite)
-                failure_ = "no longer finite";
+                fail("no longer finite");
         }
     } catch (const std::exception &failure) {
-        failure_ = failure.what();
+        fail(failure.what());
     }
     simulation_->read(present_, {});
 }
@@ -49,7 +50,9 @@ void Ghost::catch_up(const Simulation &beside) {
 bool Ghost::go_back() {
     if (!history_.recall(*simulation_))
         return false;
-    failure_.clear();
+    --steps_;
+    if (steps_ < failed_from_)
+        failure_.clear();
     simulation_->read(present_, {});
     previous_ = present_;
     return true;
@@ -70,8 +73,15 @@ void Ghost::apply(const Command &command) {
         simulation_->read(present_, {});
         previous_ = present_;
     } catch (const std::invalid_argument &failure) {
-        failure_ = failure.what();
+        fail(failure.what());
     }
+}
+
+void Ghost::fail(const std::string &why) {
+    if (!failure_.empty())
+        return;
+    failure_ = why;
+    failed_from_ = steps_;
 }
 
 GhostDistance Ghost::farthest(const Simulation &beside, const Frame &frame) const {

@@ -4,6 +4,7 @@
 #include "app/sandbox/history.h"
 #include "engine/scene/simulation.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -26,7 +27,7 @@ class Ghost {
     // `beside` has gone back a step. False when the ghost did not exist then.
     bool go_back();
     // What is done to the one is done to the other, but for method and settings; the world's
-    // settings, gravity, are the same.
+    // settings, gravity, are the same. What it cannot obey ends its motion, and is told.
     void apply(const Command &command);
 
     [[nodiscard]] const Simulation &simulation() const { return *simulation_; }
@@ -37,10 +38,14 @@ class Ghost {
     [[nodiscard]] GhostDistance farthest(const Simulation &beside, const Frame &frame) const;
 
   private:
+    void fail(const std::string &why);
+
     std::unique_ptr<Simulation> simulation_;
     History history_; // one state for each step of the other
     Frame previous_, present_;
     std::string failure_;
+    std::int64_t steps_ = 0;       // of the other, since the ghost began
+    std::int64_t failed_from_ = 0; // the state after so many
 };
 
 } // namespace plumb

@@ -2,6 +2,7 @@
 #include "app/lab/run/run_text.h"
 #include "app/sandbox/lab_draw.h"
 #include "app/sandbox/panel.h"
+#include "app/sandbox/plot_axis.h"
 #include "app/sandbox/widgets.h"
 
 #include <algorithm>
@@ -106,7 +107,7 @@ void draw_numbers(const PanelContext &context, const Grid &grid) {
         const std::string label = value_label(grid.map.x, grid.map.x.values[i]);
         const float width = small_width(context.fonts, label);
         const float left =
-            std::min(grid.at(static_cast<double>(i), 0).x - width / 2, grid.max.x - width);
+            label_begin(grid.at(static_cast<double>(i), 0).x, width, grid.min.x, grid.max.x);
         if (left < free_from)
             continue;
         small_at(context.fonts, left, grid.max.y + 3, label);
@@ -118,8 +119,8 @@ void draw_numbers(const PanelContext &context, const Grid &grid) {
         const float y = grid.at(0, static_cast<double>(i)).y;
         if (y > free_above)
             continue;
-        small_at(context.fonts, grid.min.x - 5 - small_width(context.fonts, label), y - em / 2,
-                 label);
+        small_at(context.fonts, grid.min.x - 5 - small_width(context.fonts, label),
+                 label_begin(y, em, grid.min.y, grid.max.y), label);
         free_above = y - 1.1f * em;
     }
 }
@@ -206,11 +207,7 @@ void draw_map(PanelContext &context, const MethodStudy &study) {
     tell(map, x, y, map.cell(map.methods.front(), column, row));
     if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         return;
-    try {
-        context.run = choice_of(context.session, study, x, y);
-    } catch (const std::exception &mistake) {
-        context.view.map_mistake = mistake.what();
-    }
+    context.run = choice_of(study, x, y);
 }
 
 void axis_field(const char *id, const char *before, std::string &text, float width) {

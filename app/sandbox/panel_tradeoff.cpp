@@ -2,6 +2,7 @@
 #include "app/lab/run/run_text.h"
 #include "app/sandbox/lab_draw.h"
 #include "app/sandbox/panel.h"
+#include "app/sandbox/plot_axis.h"
 #include "app/sandbox/widgets.h"
 
 #include <algorithm>
@@ -72,7 +73,7 @@ void draw_axes(const PanelContext &context, const Placed &placed) {
                      packed(theme::line, tick.decade ? 1 : 0.6f));
         const std::string label = without_raised(tick.label);
         const float width = small_width(context.fonts, label);
-        const float left = std::min(x - width / 2, placed.max.x - width);
+        const float left = label_begin(x, width, placed.min.x, placed.max.x);
         if (label.empty() || left < free_from)
             continue;
         small_at(context.fonts, left, placed.max.y + 3, label);
@@ -82,8 +83,8 @@ void draw_axes(const PanelContext &context, const Placed &placed) {
     std::vector<PlacedTick> up = placed.layout.error_ticks;
     std::ranges::sort(up, std::ranges::greater{}, &PlacedTick::pixel);
     const auto beside = [&](float y, const std::string &label) {
-        small_at(context.fonts, placed.min.x - 5 - small_width(context.fonts, label), y - em / 2,
-                 label);
+        small_at(context.fonts, placed.min.x - 5 - small_width(context.fonts, label),
+                 label_begin(y, em, placed.min.y, placed.max.y), label);
     };
     if (placed.layout.zero_line) {
         beside(placed.y(*placed.layout.zero_line), "exactly 0");

@@ -36,6 +36,10 @@ std::string tick_label(double value, double distance, double largest) {
 
 } // namespace
 
+float label_begin(float at, float extent, float low, float high) {
+    return std::clamp(at - extent / 2, low, std::max(low, high - extent));
+}
+
 PlotAxis tight_axis(double low, double high, int most) {
     PlotAxis axis{low, high > low ? high : low + 1, {}};
     const double distance = tick_distance(axis.high - axis.low, most);

@@ -18,6 +18,10 @@ struct PlotAxis {
     [[nodiscard]] double fraction(double value) const { return (value - low) / (high - low); }
 };
 
+// Where a label begins that is as long as `extent` and has its middle at `at`, or as near as it can
+// be within the axis from `low` to `high`: so that it touches no label of another axis.
+[[nodiscard]] float label_begin(float at, float extent, float low, float high);
+
 // An axis that holds both values, finite and low <= high, with air around them and at most `most`
 // (>= 2) ticks. What differs by less than a hundred-thousandth of its size is rounding, and drawn
 // flat.

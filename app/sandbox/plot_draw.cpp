@@ -141,7 +141,7 @@ void draw_grid(const PanelContext &context, const Group &group, const PlotAxis &
         list.AddLine({group.min.x, y}, {group.max.x, y},
                      tick.value == 0 ? packed(theme::dim, 0.7f) : grid);
         small_at(context.fonts, group.min.x - 5 - small_width(context.fonts, tick.label),
-                 y - size / 2, tick.label);
+                 label_begin(y, size, group.min.y, group.max.y), tick.label);
     }
     float free_from = std::numeric_limits<float>::lowest();
     for (const PlotTick &tick : time.ticks) {
@@ -149,8 +149,7 @@ void draw_grid(const PanelContext &context, const Group &group, const PlotAxis &
         list.AddLine({x, group.min.y}, {x, group.max.y}, grid);
         const std::string text = tick.label + " s";
         const float width = small_width(context.fonts, text);
-        // Within the panel: the last one is moved to the left.
-        const float left = std::min(x - width / 2, group.max.x - width);
+        const float left = label_begin(x, width, group.min.x, group.max.x);
         if (!labels_time || left < free_from)
             continue;
         small_at(context.fonts, left, group.max.y + 3, text);

@@ -56,10 +56,31 @@ std::size_t pairs_to_follow(const SceneDesc &scene) {
     return count(BodyKind::dynamic) * count(BodyKind::fixed);
 }
 
+// Which contact is the deepest: "; body "box" and body "ground", at (1, 0, 2)".
+std::string deepest(const Simulation &simulation) {
+    Frame frame;
+    simulation.read(frame, {.contacts = true});
+    const auto found = std::ranges::min_element(frame.contacts, {}, &ContactView::separation);
+    if (found == frame.contacts.end())
+        return {};
+    return "; bodies \"" + simulation.body_info(found->body_a).name + "\" and \"" +
+           simulation.body_info(found->body_b).name + "\", at " + place(found->position);
+}
+
+// Likewise of joints.
+std::string worst_joint(const Simulation &simulation) {
+    Frame frame;
+    simulation.read(frame, {.joints = true});
+    const auto found = std::ranges::max_element(frame.joints, {}, &JointView::drift);
+    if (found == frame.joints.end())
+        return {};
+    return "; joint \"" + simulation.joint_name(found->joint) + "\", at " + place(found->anchor_a);
+}
+
 } // namespace
 
 TroubleWatch::TroubleWatch(const SceneDesc &scene, const Simulation &simulation)
-    : follows_energy_(!brings_energy_in(scene)) {
+    : follows_energy_(!brings_energy_in(scene)), tolerated_(tolerated_depths(scene)) {
     const std::size_t pairs = pairs_to_follow(scene);
     follows_passages_ = pairs > 0 && pairs <= most_pairs;
     const Measures start = simulation.measure();
@@ -88,12 +109,39 @@ void TroubleWatch::look_at_energy(const Simulation &simulation) {
                 simulation.step_count()};
 }
 
+void TroubleWatch::look_at_depths(const Simulation &simulation) {
+    const Measures now = simulation.measure();
+    const std::uint64_t step = simulation.step_count();
+    const auto lasts = [&](double depth, double tolerated, std::optional<std::uint64_t> &from) {
+        if (!(depth > tolerated))
+            from.reset();
+        else if (!from)
+            from = step;
+        return from && step - *from >= lasting;
+    };
+    const bool is_deep = lasts(now.max_penetration, tolerated_.penetration, deep_from_);
+    const bool is_adrift = lasts(now.max_joint_drift, tolerated_.drift, adrift_from_);
+    if (is_deep)
+        trouble_ = Trouble{Failing::penetration,
+                           formatted("Penetration stays above %.3g m: %.3g m in ",
+                                     tolerated_.penetration, now.max_penetration) +
+                               moment(simulation) + deepest(simulation) + ".",
+                           step};
+    else if (is_adrift)
+        trouble_ = Trouble{Failing::drift,
+                           formatted("A joint stays more than %.3g m apart: %.3g m in ",
+                                     tolerated_.drift, now.max_joint_drift) +
+                               moment(simulation) + worst_joint(simulation) + ".",
+                           step};
+}
+
 void TroubleWatch::begin_step(const SceneDesc &scene, const Simulation &simulation) {
     if (follows_passages_ && !passages_)
         passages_ = std::make_unique<PassageWatch>(scene, simulation);
 }
 
-void TroubleWatch::sample(const Simulation &simulation, const std::vector<BodyState> &before) {
+void TroubleWatch::sample(const Simulation &simulation, const std::vector<BodyState> &before,
+                          bool held) {
     if (!simulation.report().finite) {
         Divergence divergence = find_divergence(simulation, simulation.step_count());
         const auto body = simulation.find_body(divergence.body);
@@ -118,6 +166,13 @@ void TroubleWatch::sample(const Simulation &simulation, const std::vector<BodySt
     }
     if (follows_energy_)
         look_at_energy(simulation);
+    if (held) {
+        deep_from_.reset();
+        adrift_from_.reset();
+    } else if (!trouble_ && simulation.step_count() % steps_a_look == 0 &&
+               simulation.report().moving_bodies > 0) {
+        look_at_depths(simulation);
+    }
 }
 
 void TroubleWatch::failed(const Simulation &simulation, const std::string &message) {
@@ -137,7 +192,11 @@ void TroubleWatch::go_back(const Simulation &simulation) {
     for (std::optional<Trouble> *trouble : {&divergence_, &trouble_})
         if (*trouble && (*trouble)->step > now)
             trouble->reset();
-    passages_.reset();
+    for (std::optional<std::uint64_t> *from : {&deep_from_, &adrift_from_})
+        if (*from && **from > now)
+            from->reset();
+    if (passages_)
+        passages_->begin_again(simulation);
 }
 
 void TroubleWatch::brought_in(const Simulation &simulation, double energy) {

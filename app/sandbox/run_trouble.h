@@ -20,19 +20,25 @@ struct Trouble {
 };
 
 // Looks at each step for what can be seen at hardly any cost: a state that is not finite, energy
-// that grew by more than tolerated_energy_gain, a body that passed through what stands fast.
+// that grew by more than tolerated_energy_gain, a body that passed through what stands fast; and
+// now and then for contacts and joints beyond tolerated_depths that stay so.
 class TroubleWatch {
   public:
     // Bodies are followed for passages only where so few pairs of one that moves and one that does
     // not are looked at each step.
     static constexpr std::size_t most_pairs = 4096;
+    // After how many steps depths are looked at: that costs about as much as a part of a step. An
+    // impact may be deep for once; what is no less deep two looks later stays so.
+    static constexpr std::uint64_t steps_a_look = 16;
+    static constexpr std::uint64_t lasting = 2 * steps_a_look;
 
     // At the start of the run.
     TroubleWatch(const SceneDesc &scene, const Simulation &simulation);
 
-    // Before and after each step of that scene; `before`: the bodies before it.
+    // Before and after each step of that scene; `before`: the bodies before it; `held`: a person
+    // pulls at one, perhaps into another.
     void begin_step(const SceneDesc &scene, const Simulation &simulation);
-    void sample(const Simulation &simulation, const std::vector<BodyState> &before);
+    void sample(const Simulation &simulation, const std::vector<BodyState> &before, bool held);
     // The step after the present state failed, saying so.
     void failed(const Simulation &simulation, const std::string &message);
     // The simulation was restored to an earlier state of this run.
@@ -48,6 +54,7 @@ class TroubleWatch {
 
   private:
     void look_at_energy(const Simulation &simulation);
+    void look_at_depths(const Simulation &simulation);
     [[nodiscard]] double allowed_energy() const;
 
     std::optional<Trouble> divergence_, trouble_;
@@ -58,7 +65,9 @@ class TroubleWatch {
         double energy; // all since the start, J
     };
     std::vector<Brought> brought_;
-    std::unique_ptr<PassageWatch> passages_; // none after going back
+    std::unique_ptr<PassageWatch> passages_;
+    ToleratedDepths tolerated_;
+    std::optional<std::uint64_t> deep_from_, adrift_from_; // steps at which that was seen first
 };
 
 } // namespace plumb

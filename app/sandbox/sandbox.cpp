@@ -39,6 +39,12 @@ std::optional<ProbePoint> point_at(const Session &session, const PickRay &ray) {
 Sandbox::Sandbox(Session session, std::vector<SceneEntry> scenes, std::filesystem::path out_dir)
     : session_(std::move(session)), scenes_(std::move(scenes)), out_dir_(std::move(out_dir)) {}
 
+// Both at once are asked to end, then waited for.
+Sandbox::~Sandbox() {
+    chart_.stop();
+    map_.stop();
+}
+
 bool Sandbox::open(const std::filesystem::path &path) {
     session_.messages().clear();
     if (!session_.open(path))
@@ -68,6 +74,7 @@ void Sandbox::started(bool another_scene) {
     if (another_scene) {
         chart_.clear();
         map_.clear();
+        view_.map_mistake.clear();
         view_.selected.reset();
         view_.selected_particle.reset();
         view_.joints = is_about_joints(*session_.simulation());
@@ -394,7 +401,7 @@ void Sandbox::toggle_ghost() {
 
 void Sandbox::go_on_with(const RunChoice &choice) {
     if (choice.scene) {
-        if (!session_.open(*choice.scene, session_.path()))
+        if (!session_.open(*choice.scene, session_.path(), choice.text))
             return;
         chart_.clear(); // of the scene as it was
         started(false);

@@ -31,6 +31,11 @@ class Sandbox {
     // `scenes` are listed in this order. Saved scenes go to `out_dir`.
     explicit Sandbox(Session session, std::vector<SceneEntry> scenes = {},
                      std::filesystem::path out_dir = "out");
+    ~Sandbox();
+    Sandbox(Sandbox &&) = default;
+    Sandbox &operator=(Sandbox &&) = default;
+    Sandbox(const Sandbox &) = delete;
+    Sandbox &operator=(const Sandbox &) = delete;
 
     // With the scene's own camera and nothing selected. False, with messages, if it cannot run.
     bool open(const std::filesystem::path &path);

@@ -12,11 +12,13 @@ namespace plumb {
 Session::Session(RunOptions options, TaskPool *tasks, Make make)
     : options_(std::move(options)), tasks_(tasks), make_(std::move(make)) {}
 
-bool Session::open(const SceneDesc &scene, const std::filesystem::path &path) {
+bool Session::open(const SceneDesc &scene, const std::filesystem::path &path,
+                   std::optional<SceneText> text) {
     if (!start(scene, options_, {}))
         return false;
     recording_.reset();
     path_ = path;
+    text_ = std::move(text);
     return true;
 }
 
@@ -25,6 +27,7 @@ bool Session::play(const Recording &recording, const std::filesystem::path &path
     if (!start(kept->scene, {}, {}))
         return false;
     recording_ = std::move(kept);
+    text_.reset();
     replay_.emplace(*recording_);
     path_ = std::filesystem::path(path); // it may be path_ itself
     return true;
@@ -82,6 +85,8 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     disturbed_from_.reset();
     grab_.reset();
     pulled_to_.reset();
+    held_.reset();
+    has_grabbed_ = false;
     graphs_ = {};
     if (simulation_->has_world())
         plots_.start(*simulation_);
@@ -97,11 +102,11 @@ bool Session::step() {
     try {
         if (grab_)
             leave_recording();
-        if (grab_ || replay_) // which may bring energy in
-            energy_before = simulation_->energy();
         if (replay_ && !obey_replay())
             return false;
         pull_grabbed();
+        if (held_) // which may bring energy in
+            energy_before = simulation_->energy();
         troubles_->begin_step(scene_, *simulation_);
         if (ghost_)
             ghost_->begin_step();
@@ -125,13 +130,13 @@ bool Session::step() {
     graphs_.advance.add(times_.advance);
     graphs_.finish.add(times_.finish);
     const double energy = simulation_->energy();
-    if (grab_ || replay_)
+    if (held_)
         troubles_->brought_in(*simulation_, energy - energy_before);
     graphs_.energy.add(energy);
     std::swap(previous_, present_);
     read_present();
     see_impacts();
-    troubles_->sample(*simulation_, previous_.bodies);
+    troubles_->sample(*simulation_, previous_.bodies, held_.has_value());
     if (ghost_)
         ghost_->catch_up(*simulation_);
     if (!report.finite) {
@@ -149,14 +154,20 @@ bool Session::step() {
 // False at the end, and where the run is not the recorded one.
 bool Session::obey_replay() {
     const std::string file = path_.filename().string();
-    for (const RecordedCommand &command : recording_->commands)
-        if (ghost_ && command.step == simulation_->step_count())
-            ghost_->apply(command.command);
+    const std::size_t given = replay_->given();
+    const double energy = simulation_->energy();
     try {
         if (!replay_->obey(*simulation_)) {
             replay_outcome_ = ExitCode::outside_tolerance;
             messages_.error(file + ": " + replay_->difference(*simulation_));
         }
+        for (std::size_t i = given; i < replay_->given(); ++i) {
+            note_held(recording_->commands[i].command);
+            if (ghost_)
+                ghost_->apply(recording_->commands[i].command);
+        }
+        if (given < replay_->given())
+            troubles_->brought_in(*simulation_, simulation_->energy() - energy);
     } catch (const CommandFailure &failure) {
         replay_outcome_ = ExitCode::bad_input;
         messages_.error(file + ':' + std::to_string(failure.line) + ": " + failure.what());
@@ -184,6 +195,36 @@ void Session::leave_recording() {
     messages_.note("From step " + std::to_string(simulation_->step_count()) +
                    " on this is no longer the recorded run.");
     replay_.reset();
+    if (held_) // by a hand that lets go of it no more
+        apply(ReleaseGrab{});
+}
+
+// What holds something from now on.
+void Session::note_held(const Command &command) {
+    if (std::holds_alternative<GrabBody>(command) ||
+        std::holds_alternative<GrabParticle>(command)) {
+        held_ = command;
+        has_grabbed_ = true;
+    } else if (const auto *moved = std::get_if<MoveGrab>(&command)) {
+        if (auto *body = held_ ? std::get_if<GrabBody>(&*held_) : nullptr)
+            body->target = moved->target;
+        if (auto *particle = held_ ? std::get_if<GrabParticle>(&*held_) : nullptr)
+            particle->target = moved->target;
+    } else if (const auto *removed = std::get_if<RemoveBody>(&command)) {
+        const auto *body = held_ ? std::get_if<GrabBody>(&*held_) : nullptr;
+        if (body != nullptr && body->body == removed->body)
+            held_.reset();
+    } else if (std::holds_alternative<ReleaseGrab>(command)) {
+        held_.reset();
+    }
+}
+
+// The state may be one in which something was held, and is held by nobody now.
+void Session::let_go_of_all() {
+    grab_.reset();
+    pulled_to_.reset();
+    if (has_grabbed_)
+        apply(ReleaseGrab{});
 }
 
 bool Session::step_back() {
@@ -191,9 +232,12 @@ bool Session::step_back() {
         return false;
     const std::string method(simulation_->method().name);
     const StepSettings settings = simulation_->settings();
+    bool ghost_is_back = true;
     try {
         if (!history_.recall(*simulation_))
             return false;
+        // Before anything is done to both.
+        ghost_is_back = !ghost_ || ghost_->go_back();
         if (recorder_)
             recorder_->went_back(*simulation_);
         watch_->go_back(*simulation_);
@@ -201,21 +245,25 @@ bool Session::step_back() {
         troubles_->go_back(*simulation_);
         if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
             disturbed_from_.reset();
-        if (replay_) // it knows what was chosen then
+        if (replay_) { // it knows what was chosen then, and held
             replay_->went_back(*simulation_);
-        else
+            held_.reset();
+            for (std::size_t i = 0; i < replay_->given(); ++i)
+                note_held(recording_->commands[i].command);
+        } else {
             choose_again(method, settings);
+            let_go_of_all();
+        }
     } catch (const std::exception &failure) {
         messages_.error("Cannot step back: " + reason(failure));
         return false;
     }
     stopped_ = false;
-    grab(std::nullopt); // it may hold a body that does not exist yet
     for (Graph *graph : {&graphs_.find_pairs, &graphs_.collide, &graphs_.advance, &graphs_.finish,
                          &graphs_.energy})
         graph->take_back();
     settle_poses();
-    if (ghost_ && !ghost_->go_back())
+    if (!ghost_is_back)
         set_ghost(std::string(ghost_method_));
     return true;
 }
@@ -272,6 +320,7 @@ void Session::apply(const Command &command) {
     leave_recording();
     const double energy = simulation_->energy();
     simulation_->apply(command);
+    note_held(command);
     if (ghost_)
         ghost_->apply(command);
     if (troubles_)
@@ -331,6 +380,8 @@ bool Session::set_ghost(const std::string &method) {
     try {
         ghost_.emplace(*simulation_, method);
         ghost_method_ = method;
+        if (held_) // which is no part of a scene
+            ghost_->apply(*held_);
         return true;
     } catch (const std::exception &failure) {
         messages_.note("No ghost: " + reason(failure));

@@ -63,8 +63,10 @@ class Session {
 
     // False, with the reasons in messages(), if the file is not a scene that can run.
     bool open(const std::filesystem::path &path);
-    // A scene from elsewhere; `path` is where reload would look, and may be empty.
-    bool open(const SceneDesc &scene, const std::filesystem::path &path = {});
+    // A scene from elsewhere; `path` is where reload would look, and may be empty. `text` is its
+    // file's, if it is of one.
+    bool open(const SceneDesc &scene, const std::filesystem::path &path = {},
+              std::optional<SceneText> text = {});
     // A recording's file: the steps that follow do what was done in it, and each state is compared.
     // There is no step beyond its end, until something else is done to the world: from there on the
     // run is no longer the recorded one.
@@ -113,8 +115,8 @@ class Session {
     bool set_method(std::string_view name);
     bool set_settings(const StepSettings &settings);
 
-    // Of the running scene, to change numbers in: the file's, or where there is none (a recording
-    // is none) the scene as it began.
+    // Of the running scene, to change numbers in: the file's as it was opened, or where there is
+    // none (a recording is none) the scene as it began.
     [[nodiscard]] SceneText scene_text() const;
 
     // A second simulation by this method beside the first, from the present state; it begins anew
@@ -181,8 +183,10 @@ class Session {
     bool play(const Recording &recording, const std::filesystem::path &path);
     bool obey_replay();
     void leave_recording();
+    void note_held(const Command &command);
     void choose_again(const std::string &method, const StepSettings &settings);
     void pull_grabbed();
+    void let_go_of_all();
     void see_impacts();
     void read_present();
     void settle_poses();
@@ -195,6 +199,7 @@ class Session {
     Make make_;
     SceneDesc scene_;
     std::filesystem::path path_;
+    std::optional<SceneText> text_; // of scene_
     std::unique_ptr<Simulation> simulation_;
     History history_; // saved by simulation_
     std::optional<ExpectationWatch> watch_;
@@ -203,6 +208,8 @@ class Session {
     std::optional<std::uint64_t> disturbed_from_; // states from this step on
     std::optional<Grab> grab_;
     std::optional<glm::dvec3> pulled_to_; // what the simulation knows of the grab
+    std::optional<Command> held_;         // what grabs as things stand, in a replay too
+    bool has_grabbed_ = false; // in this run, so that an earlier state may hold something
     bool records_ = false;
     std::optional<Recorder> recorder_; // of the run that is going on
     std::vector<ProbeDesc> probes_;

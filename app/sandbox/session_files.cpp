@@ -9,6 +9,7 @@
 #include <new>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace plumb {
 
@@ -31,14 +32,20 @@ void write_whole(const std::filesystem::path &path, const std::string &text) {
 
 bool Session::open(const std::filesystem::path &path) {
     SceneFileResult file;
+    std::optional<SceneText> text;
     try {
+        if (std::filesystem::is_regular_file(path)) // a pipe can be read but once
+            text = SceneText{path, text_of(path)};
         file = load_scene(path);
     } catch (const std::bad_alloc &failure) {
         messages_.error(path.filename().string() + ": " + reason(failure));
         return false;
+    } catch (const std::runtime_error &failure) {
+        messages_.error(failure.what());
+        return false;
     }
     say(path, file.messages);
-    return file.ok() && open(file.scene, path);
+    return file.ok() && open(file.scene, path, std::move(text));
 }
 
 void Session::say(const std::filesystem::path &path, const std::vector<SceneMessage> &all) {
@@ -109,13 +116,7 @@ void Session::write_recording(OutputFile &file) const {
 }
 
 SceneText Session::scene_text() const {
-    if (!recording_ && !path_.empty()) {
-        try {
-            return {path_, text_of(path_)};
-        } catch (const std::runtime_error &) { // it is gone, and the scene goes on
-        }
-    }
-    return {path_, write_scene(scene_)};
+    return text_ ? *text_ : SceneText{path_, write_scene(scene_)};
 }
 
 bool Session::save_plots(const std::filesystem::path &path) {

@@ -65,31 +65,32 @@ void start_map(MapStudy &study, const Session &session, const std::string &x,
         MapOptions mine = options;
         mine.stop = [&] { return desk.stopped(); };
         mine.progress = [&](double done, const std::string &) { desk.set_done(done); };
-        mine.changed = [&](const StabilityMap &map) { desk.publish({map, settings}); };
-        desk.publish({map_scene(text, along_x, along_y, mine), settings});
+        mine.changed = [&](const StabilityMap &map) { desk.publish({map, settings, text}); };
+        desk.publish({map_scene(text, along_x, along_y, mine), settings, text});
     });
 }
 
 RunChoice choice_of(const ChartRun &run) {
-    return {std::string(run.resolved.method->name), run.resolved.settings, std::nullopt};
+    return {std::string(run.resolved.method->name), run.resolved.settings, {}, {}};
 }
 
-RunChoice choice_of(const Session &session, const MethodStudy &study, double x, double y) {
+RunChoice choice_of(const MethodStudy &study, double x, double y) {
     const StabilityMap &map = study.map;
-    RunChoice choice{std::string(map.methods.front().method->name), study.settings, std::nullopt};
-    std::vector<ChangedNumber> changed;
+    RunChoice choice{std::string(map.methods.front().method->name), study.settings, {}, study.text};
+    bool any_changed = false;
     for (const auto &[axis, value] : {std::pair(&map.x, x), std::pair(&map.y, y)})
-        if (axis->setting)
+        if (axis->setting) {
             set_setting(choice.settings, *axis->setting, value);
-        else
-            changed.push_back({axis->name, value});
-    if (changed.empty())
-        return choice;
-    const SceneText text = session.scene_text();
-    SceneFileResult result = parse_scene(text.text, text.path.string(), {}, changed);
-    if (!result.ok())
-        throw std::invalid_argument("The scene no longer has " + changed.front().path + '.');
-    choice.scene = std::move(result.scene);
+        } else {
+            std::erase_if(choice.text.changed, [name = axis->name](const ChangedNumber &number) {
+                return number.path == name;
+            });
+            choice.text.changed.push_back({axis->name, value});
+            any_changed = true;
+        }
+    if (any_changed) // the map was made of it, so that it is a scene
+        choice.scene =
+            parse_scene(choice.text.text, choice.text.path.string(), {}, choice.text.changed).scene;
     return choice;
 }
 

@@ -16,6 +16,7 @@ using ChartStudy = Background<SceneChart>;
 struct MethodStudy {
     StabilityMap map;
     StepSettings settings;
+    SceneText text;
 };
 using MapStudy = Background<MethodStudy>;
 
@@ -33,12 +34,12 @@ struct RunChoice {
     std::string method;
     StepSettings settings;
     std::optional<SceneDesc> scene; // begin with this one, in place of the running one
+    SceneText text;                 // of that scene
 };
 
 [[nodiscard]] RunChoice choice_of(const ChartRun &run);
 // The cell's values; numbers of the scene's file take effect from the start of a scene that has
-// them. Throws std::invalid_argument when the file no longer has them.
-[[nodiscard]] RunChoice choice_of(const Session &session, const MethodStudy &study, double x,
-                                  double y);
+// them.
+[[nodiscard]] RunChoice choice_of(const MethodStudy &study, double x, double y);
 
 } // namespace plumb

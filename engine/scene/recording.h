@@ -90,6 +90,8 @@ class Replay {
     std::string difference(const Simulation &simulation) const;
     // An earlier state has been restored, as it was after `obey`.
     void went_back(const Simulation &simulation);
+    // How many of the recording's commands have been given.
+    std::size_t given() const { return next_; }
     bool is_at_end(const Simulation &simulation) const {
         return simulation.step_count() >= recording_.last_step();
     }

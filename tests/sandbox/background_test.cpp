@@ -62,6 +62,31 @@ TEST(Background, IsReplacedWithoutWaitingAndEndsWhenAsked) {
     EXPECT_EQ(ended, 3);
 }
 
+// On a busy machine what gives way to all others would not end.
+TEST(Background, GivesWayNoMoreWhenItIsToEnd) {
+    std::atomic<int> policy = SCHED_IDLE;
+    Background<int> background;
+    background.start([&](Background<int>::Desk &desk) {
+        desk.publish(1);
+        while (!desk.stopped())
+            std::this_thread::sleep_for(1ms);
+        for (int i = 0; i < 1000 && policy == SCHED_IDLE; ++i) {
+            std::this_thread::sleep_for(1ms);
+            policy = sched_getscheduler(0);
+        }
+    });
+    while (!background.result())
+        std::this_thread::sleep_for(1ms);
+    background.stop();
+    ASSERT_TRUE(wait_for(background));
+    const sched_param none{}; // a system may let nobody but root do so
+    const bool may = sched_setscheduler(0, SCHED_IDLE, &none) == 0 &&
+                     sched_setscheduler(0, SCHED_OTHER, &none) == 0;
+    if (may) {
+        EXPECT_EQ(policy, SCHED_OTHER);
+    }
+}
+
 TEST(Background, KeepsWhyItFailed) {
     Background<int> background;
     background.start([](Background<int>::Desk &) { throw std::runtime_error("no luck"); });

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 namespace plumb {
@@ -99,6 +101,120 @@ TEST(Ghost, OfAMethodThatCannotRunTheSceneThereIsNone) {
     EXPECT_EQ(session.ghost(), nullptr);
     EXPECT_EQ(session.messages().all().size(), 1u);
     ASSERT_TRUE(session.step());
+}
+
+// What was chosen since stays chosen when both are taken back, for both.
+TEST(Ghost, IsTakenBackBeforeAnythingIsDoneToIt) {
+    Session session;
+    ASSERT_TRUE(session.open(drop()));
+    ASSERT_TRUE(session.set_ghost("explicit_euler"));
+    for (int i = 0; i < 3; ++i)
+        ASSERT_TRUE(session.step());
+    StepSettings lighter = session.simulation()->settings();
+    lighter.gravity.y = -1;
+    ASSERT_TRUE(session.set_settings(lighter));
+    for (int i = 0; i < 2; ++i)
+        ASSERT_TRUE(session.step());
+    for (int i = 0; i < 4; ++i)
+        ASSERT_TRUE(session.step_back());
+    EXPECT_EQ(session.ghost()->simulation().settings().gravity.y, -1);
+    EXPECT_EQ(session.ghost()->simulation().step_count(), 1U);
+    for (int i = 0; i < 4; ++i)
+        ASSERT_TRUE(session.step());
+    EXPECT_EQ(session.ghost()->simulation().settings().gravity.y, -1);
+}
+
+TEST(Ghost, WhatEndedItsMotionIsGoneOnlyBeforeThat) {
+    Session session;
+    ASSERT_TRUE(session.open(drop()));
+    ASSERT_TRUE(session.set_method("soft_step"));
+    ASSERT_TRUE(session.set_ghost("rk4"));
+    ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.shoot({-10, 3, 0}, {8, 0, 0}, 0.3));
+    EXPECT_NE(session.ghost()->failure(), "");
+    for (int i = 0; i < 3; ++i)
+        ASSERT_TRUE(session.step());
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_TRUE(session.step_back());
+        EXPECT_NE(session.ghost()->failure(), "") << i;
+    }
+    ASSERT_TRUE(session.step_back());
+    EXPECT_EQ(session.ghost()->failure(), "");
+}
+
+// A hand that holds the one holds the other, also where it held before the ghost came.
+TEST(Ghost, IsHeldToo) {
+    SceneDesc scene = drop();
+    scene.world.method = "soft_step";
+    Session session;
+    ASSERT_TRUE(session.open(scene));
+    session.grab(Grab{0, {0, 0, 0}, {3, 100, 0}, 1e5});
+    ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.set_ghost("sequential_impulses"));
+    for (int i = 0; i < 120; ++i)
+        ASSERT_TRUE(session.step());
+    EXPECT_NEAR(session.present_bodies()[0].position.x, 3, 0.1);
+    EXPECT_LT(distance(session).metres, 0.1);
+    session.grab(std::nullopt);
+    for (int i = 0; i < 60; ++i)
+        ASSERT_TRUE(session.step());
+    EXPECT_LT(session.ghost()->simulation().read().bodies[0].position.y, 97);
+}
+
+// What was recorded is done to the ghost once, forth and back, as it was when it was done.
+TEST(Ghost, FollowsARecording) {
+    const std::filesystem::path path = std::filesystem::temp_directory_path() /
+                                       ("plumb-ghost-" + std::to_string(::getpid()) + ".toml");
+    const std::filesystem::path stack =
+        std::filesystem::path(PLUMB_SOURCE_DIR) / "scenes/stacking/ten_box_stack.toml";
+    std::uint64_t live = 0;
+    {
+        Session session;
+        session.record();
+        ASSERT_TRUE(session.open(stack));
+        ASSERT_TRUE(session.set_ghost("sequential_impulses"));
+        ASSERT_TRUE(session.step());
+        ASSERT_TRUE(session.shoot({-10, 3, 0}, {8, 0, 0}, 0.3));
+        ASSERT_TRUE(session.step());
+        Grab grab{*session.simulation()->find_body("ball"), {0, 0, 0}, {0, 9, 0}, 1e3};
+        session.grab(grab);
+        ASSERT_TRUE(session.step());
+        grab.target.x = 3;
+        session.grab(grab);
+        for (int i = 0; i < 3; ++i)
+            ASSERT_TRUE(session.step());
+        session.grab(std::nullopt);
+        ASSERT_TRUE(session.step());
+        live = session.ghost()->simulation().hash();
+        OutputFile file(path);
+        session.write_recording(file);
+    }
+    Session session;
+    ASSERT_TRUE(session.open_recording(path));
+    ASSERT_TRUE(session.set_ghost("sequential_impulses"));
+    const auto play_to_the_end = [&] {
+        while (session.step()) {
+        }
+        EXPECT_FALSE(session.step()); // nothing is done once more at the end
+        EXPECT_EQ(session.replay_outcome(), ExitCode::fine);
+        EXPECT_EQ(session.ghost()->failure(), "");
+        return session.ghost()->simulation().hash();
+    };
+    EXPECT_EQ(play_to_the_end(), live);
+    for (const int back : {1, 3, 7}) {
+        for (int i = 0; i < back; ++i)
+            ASSERT_TRUE(session.step_back());
+        EXPECT_EQ(play_to_the_end(), live) << back;
+    }
+    // One that comes while something is held in the recording.
+    ASSERT_TRUE(session.set_ghost(""));
+    for (int i = 0; i < 3; ++i)
+        ASSERT_TRUE(session.step_back());
+    ASSERT_TRUE(session.set_ghost("sequential_impulses"));
+    play_to_the_end();
+    EXPECT_LT(distance(session).metres, 0.05);
+    std::filesystem::remove(path);
 }
 
 TEST(Ghost, IsDrawnTranslucentByItsKey) {

@@ -162,6 +162,14 @@ TEST(PlotAxis, TicksAscendAndTellTheirValues) {
     EXPECT_GE(plot_axis(0, 1, 6).ticks.size(), 3u);
 }
 
+// About its tick, but for the ends of the axis, beyond which those of another begin.
+TEST(PlotAxis, LabelsStayWithinIt) {
+    EXPECT_EQ(label_begin(50, 10, 0, 100), 45);
+    EXPECT_EQ(label_begin(2, 10, 0, 100), 0);
+    EXPECT_EQ(label_begin(99, 10, 0, 100), 90);
+    EXPECT_EQ(label_begin(3, 10, 0, 6), 0); // no room for it
+}
+
 TEST(PlotAxis, WhatRoundingDoesIsFlat) {
     const PlotAxis axis = plot_axis(1000, 1000.0001, 5);
     EXPECT_NEAR(axis.fraction(1000.0001) - axis.fraction(1000), 0.01, 0.002);

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 namespace plumb {
@@ -91,6 +93,60 @@ TEST(Trouble, ABodyThatPassesThroughAWallIsNamed) {
     EXPECT_FALSE(trouble_of(scene, "soft_step", 60));
 }
 
+// Far too heavy for contacts so soft; and one that is held by a hand in it is no failing.
+TEST(Trouble, WhatStaysDeepIsNamedAndStaysGoneBeforeIt) {
+    const SceneDesc scene = parse_scene(R"(
+[world]
+method = "tgs_soft"
+sleep_after = 0
+[[body]]
+name = "ground"
+shape = "plane"
+[[body]]
+name = "light"
+shape = "box"
+half_extents = [0.5, 0.5, 0.5]
+mass = 1
+position = [0, 0.5, 0]
+[[body]]
+name = "heavy"
+shape = "box"
+half_extents = [0.5, 0.5, 0.5]
+mass = 1000000
+position = [0, 1.5, 0]
+)",
+                                        "heap.toml")
+                                .scene;
+    Session session;
+    ASSERT_TRUE(session.open(scene));
+    for (int i = 0; i < 600 && !session.trouble(); ++i)
+        ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.trouble());
+    const Trouble told = *session.trouble();
+    EXPECT_EQ(told.failing, Failing::penetration);
+    EXPECT_TRUE(says(told, "\"light\"")) << told.text;
+    EXPECT_TRUE(says(told, "step " + std::to_string(told.step))) << told.text;
+    for (int i = 0; i < 5; ++i)
+        ASSERT_TRUE(session.step_back());
+    EXPECT_FALSE(session.trouble());
+    while (!session.trouble() && session.simulation()->step_count() < 700)
+        ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.trouble());
+    EXPECT_EQ(session.trouble()->text, told.text);
+}
+
+TEST(Trouble, AJointThatStaysApartIsNamed) {
+    SceneDesc scene = load_scene(scenes / "joints/heavy_chain.toml").scene;
+    scene.expects.clear(); // which say how far it may be
+    for (BodyDesc &body : scene.bodies)
+        if (body.name == "weight")
+            body.mass = 1e6;
+    const auto torn = trouble_of(scene, "tgs_soft", 600);
+    ASSERT_TRUE(torn);
+    EXPECT_EQ(torn->failing, Failing::drift) << torn->text;
+    EXPECT_TRUE(says(*torn, "joint \"")) << torn->text;
+}
+
 // What a person brings in is no failing of the method.
 TEST(Trouble, AShotAndAPullAreNone) {
     Session session;
@@ -105,6 +161,56 @@ TEST(Trouble, AShotAndAPullAreNone) {
     for (int i = 0; i < 10; ++i)
         ASSERT_TRUE(session.step());
     EXPECT_FALSE(session.trouble()) << session.trouble()->text;
+}
+
+// Nor is it in a recording, which is judged as the run was: the method's own gain is told.
+TEST(Trouble, InAReplayTheLightsAreThoseOfTheRun) {
+    const std::filesystem::path path = std::filesystem::temp_directory_path() /
+                                       ("plumb-trouble-" + std::to_string(::getpid()) + ".toml");
+    const auto record = [&](Session &session, const auto &act) {
+        session.record();
+        act();
+        OutputFile file(path);
+        session.write_recording(file);
+        return session.trouble();
+    };
+    const auto replayed = [&] {
+        Session session;
+        EXPECT_TRUE(session.open_recording(path));
+        while (session.step()) {
+        }
+        EXPECT_EQ(session.replay_outcome(), ExitCode::fine);
+        return session.trouble();
+    };
+    Session pulled;
+    EXPECT_FALSE(record(pulled, [&] {
+        ASSERT_TRUE(pulled.open(parse_scene(bullet_text, "bullet.toml").scene));
+        ASSERT_TRUE(pulled.shoot({0, 50, 0}, {0, 300, 0}, 0.5));
+        ASSERT_TRUE(pulled.step());
+        pulled.grab(Grab{*pulled.simulation()->find_body("ball"), {0, 0, 0}, {-500, 0, 0}, 1e5});
+        for (int i = 0; i < 30; ++i)
+            ASSERT_TRUE(pulled.step());
+        pulled.grab(std::nullopt);
+        for (int i = 0; i < 10; ++i)
+            ASSERT_TRUE(pulled.step());
+    }));
+    const auto none = replayed();
+    EXPECT_FALSE(none) << none->text;
+
+    RunOptions options;
+    options.method = "explicit_euler";
+    options.settings.give(&StepSettings::substeps, 1);
+    Session grown(options);
+    const auto told = record(grown, [&] {
+        ASSERT_TRUE(grown.open(scenes / "springs/mass_on_spring.toml"));
+        for (int i = 0; i < 300; ++i)
+            ASSERT_TRUE(grown.step());
+    });
+    ASSERT_TRUE(told);
+    const auto again = replayed();
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->text, told->text);
+    std::filesystem::remove(path);
 }
 
 TEST(Trouble, WhatIsNotFiniteComesFirst) {

@@ -69,7 +69,7 @@ TEST(Studies, AMapIsMadeAndItsCellsCanBeChosen) {
     EXPECT_EQ(map->methods[0].method, &session.simulation()->method());
     EXPECT_TRUE(std::ranges::all_of(map->methods[0].cells,
                                     [](const auto &cell) { return cell.has_value(); }));
-    const RunChoice choice = choice_of(session, *found, 1.0 / 30, 60);
+    const RunChoice choice = choice_of(*found, 1.0 / 30, 60);
     EXPECT_EQ(choice.settings.dt, 1.0 / 30);
     ASSERT_TRUE(choice.scene);
     EXPECT_EQ(choice.scene->bodies.back().position.y, 60);
@@ -80,6 +80,58 @@ TEST(Studies, AMapIsMadeAndItsCellsCanBeChosen) {
     sandbox.take(context);
     EXPECT_EQ(sandbox.session().simulation()->settings().dt, 1.0 / 30);
     EXPECT_EQ(sandbox.session().present_bodies().back().position.y, 60);
+}
+
+// What is shown and asked is the running scene, whatever became of its file.
+TEST(Studies, AreOfTheSceneThatRuns) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("plumb-running-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    std::filesystem::copy_file(scenes / "free/free_fall.toml", folder / "fall.toml");
+    Sandbox sandbox{Session()};
+    ASSERT_TRUE(sandbox.open(folder / "fall.toml"));
+    Session &session = sandbox.session();
+    const std::string body = session.scene().bodies.back().name;
+    const auto map_of = [&](const std::string &y) {
+        MapStudy study;
+        start_map(study, session, "dt=1/60,1/30", y);
+        EXPECT_TRUE(wait_for(study));
+        EXPECT_EQ(study.failure(), "");
+        return *study.result();
+    };
+    const auto click = [&](const RunChoice &choice) {
+        PanelContext context = sandbox.panel_context(Fonts{});
+        context.run = choice;
+        sandbox.take(context);
+    };
+    const MethodStudy heights = map_of("body." + body + ".position.y=50,60");
+    click(choice_of(heights, 1.0 / 60, 60));
+    EXPECT_EQ(session.scene().bodies.back().position.y, 60);
+    std::filesystem::resize_file(folder / "fall.toml", 0); // while it runs
+    EXPECT_NE(session.scene_text().text, "");
+    const MethodStudy weights = map_of("body." + body + ".gravity_scale=1,2");
+    EXPECT_EQ(weights.map.scene.bodies.back().position.y, 60); // as was clicked on before
+    click(choice_of(weights, 1.0 / 60, 2));
+    EXPECT_EQ(session.scene().bodies.back().position.y, 60);
+    EXPECT_EQ(session.scene().bodies.back().gravity_scale, 2);
+    click(choice_of(heights, 1.0 / 60, 50)); // of the earlier map
+    EXPECT_EQ(session.scene().bodies.back().position.y, 50);
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Studies, OfAnotherSceneAreForgottenAndEnd) {
+    Sandbox sandbox{Session()};
+    ASSERT_TRUE(sandbox.open(scenes / "stacking/pyramid.toml"));
+    PanelContext context = sandbox.panel_context(Fonts{});
+    start_chart(context.chart, sandbox.session(), "substeps=200,400");
+    start_map(context.map, sandbox.session(), "dt=1/60,1/30", "substeps=200,400");
+    sandbox.view().map_mistake = "of the old scene";
+    ASSERT_TRUE(sandbox.open(scenes / "free/free_fall.toml"));
+    EXPECT_FALSE(context.chart.running());
+    EXPECT_FALSE(context.map.running());
+    EXPECT_EQ(context.chart.result(), nullptr);
+    EXPECT_EQ(context.map.result(), nullptr);
+    EXPECT_EQ(sandbox.view().map_mistake, "");
 }
 
 // What is applied is recorded, and replayed to the same states.

@@ -96,6 +96,13 @@ std::optional<Failing> find_failing(std::string_view name) {
     return found == all_failings.end() ? std::nullopt : std::optional(found->failing);
 }
 
+ToleratedDepths tolerated_depths(const SceneDesc &scene) {
+    constexpr double any = std::numeric_limits<double>::infinity();
+    const double depth = tolerated_depth * smallest_moving_width(scene);
+    return {expects_about(scene, "penetration") ? any : depth,
+            expects_about(scene, "joint_drift") || has_springs(scene) ? any : depth};
+}
+
 RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::string &passage) {
     if (run.divergence)
         return {Failing::not_finite, run.divergence->body};
@@ -109,10 +116,10 @@ RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::s
     if (!expects_about(scene, "energy") && !brings_energy_in(scene) &&
         run.max_energy_gain > tolerated_energy_gain)
         found(Failing::energy_grew, "");
-    const double depth = tolerated_depth * smallest_moving_width(scene);
-    if (!expects_about(scene, "penetration") && run.end_penetration > depth)
+    const ToleratedDepths tolerated = tolerated_depths(scene);
+    if (run.end_penetration > tolerated.penetration)
         found(Failing::penetration, "");
-    if (!expects_about(scene, "joint_drift") && !has_springs(scene) && run.end_joint_drift > depth)
+    if (run.end_joint_drift > tolerated.drift)
         found(Failing::drift, "");
     // Of several of one kind the one that is missed by most.
     double error = 0;

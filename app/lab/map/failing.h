@@ -42,6 +42,13 @@ inline constexpr double tolerated_depth = 0.25;      // of the smallest width of
 // By a motor, a spring's joint or a moving kinematic body: then more of it is no failing.
 [[nodiscard]] bool brings_energy_in(const SceneDesc &scene);
 
+// How deep contacts may be and how far joints may drift (m), in a run that comes to rest so;
+// infinite where the scene says itself how far, and drift of springs.
+struct ToleratedDepths {
+    double penetration = 0, drift = 0;
+};
+[[nodiscard]] ToleratedDepths tolerated_depths(const SceneDesc &scene);
+
 struct RunFailing {
     Failing failing = Failing::none;
     std::string what; // the missed expectation, the body that is not finite, "ball through wall"

@@ -117,6 +117,15 @@ PassageWatch::PassageWatch(const SceneDesc &scene, const Simulation &simulation)
 
 PassageWatch::~PassageWatch() = default;
 
+void PassageWatch::begin_again(const Simulation &simulation) {
+    simulation.read(parts_->frame, {});
+    for (Mover &mover : parts_->movers)
+        mover.center = parts_->frame.bodies[mover.body].position;
+    for (Way &way : parts_->ways)
+        way.entered_by.reset();
+    parts_->first.clear();
+}
+
 void PassageWatch::sample(const Simulation &simulation) {
     if (!parts_->first.empty())
         return;

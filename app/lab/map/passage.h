@@ -22,6 +22,10 @@ class PassageWatch {
     PassageWatch(const PassageWatch &) = delete;
     PassageWatch &operator=(const PassageWatch &) = delete;
 
+    // The simulation was restored to another state: whoever is in the middle of something is no
+    // longer followed through it, and no passage has been.
+    void begin_again(const Simulation &simulation);
+
     // After each step that ended in a finite state.
     void sample(const Simulation &simulation);
 
