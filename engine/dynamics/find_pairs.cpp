@@ -2,6 +2,7 @@
 #include "engine/dynamics/world.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/aabb.h"
 
 #include <algorithm>
 #include <atomic>
@@ -15,11 +16,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-bool touch(const Aabb &a, const Aabb &b) {
-    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-           a.min.z <= b.max.z && b.min.z <= a.max.z;
-}
 
 // Whether a box reaches below a plane.
 bool touch(const Aabb &box, const HalfSpace &half_space) {

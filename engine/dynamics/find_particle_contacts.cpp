@@ -3,6 +3,7 @@
 #include "engine/dynamics/approach.h"
 #include "engine/dynamics/surface_contact.h"
 #include "engine/dynamics/world.h"
+#include "engine/geometry/aabb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +13,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-bool touch(const Aabb &a, const Aabb &b) {
-    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-           a.min.z <= b.max.z && b.min.z <= a.max.z;
-}
 
 Aabb around(const Vec3 &middle, Real reach) {
     return {middle - reach, middle + reach};

@@ -13,8 +13,8 @@ namespace {
 // The largest rate times substep that a single pass of Gauss-Seidel follows, measured with balls on
 // arms; and the largest that joints solved together follow, short of the 2 of every explicit rule
 // of second order.
-constexpr Real followed_alone = Real(1.2);
-constexpr Real followed_together = Real(1.7);
+constexpr Real inertia_alone = Real(1.2);
+constexpr Real inertia_together = Real(1.7);
 
 // Joints that are further from holding than this share of their arms, or as many radians, have been
 // torn apart: they are pulled together softly.
@@ -48,13 +48,13 @@ Real needed_inertia(Real stiffness, Real h, Real followed) {
 }
 
 bool is_followed(const Body &body, Real stiffness, Real h) {
-    return needed_inertia(stiffness, h, followed_together) <= least(body.inertia);
+    return needed_inertia(stiffness, h, inertia_together) <= least(body.inertia);
 }
 
 // For the present substep; a body that bears less again is as it was. Says whether anything
 // changed.
 bool raise_inertia(SolverBody &motion, const Body &body, Real stiffness, Real h) {
-    const Real needed = needed_inertia(stiffness, h, followed_alone);
+    const Real needed = needed_inertia(stiffness, h, inertia_alone);
     // The inertia of a body that is not a ball was found anew when it turned.
     if (!(needed > least(body.inertia)) && !is_isotropic(body.inertia))
         return false;

@@ -3,6 +3,7 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/approach.h"
+#include "engine/dynamics/check_value.h"
 #include "engine/dynamics/mass_frame.h"
 
 #include <algorithm>
@@ -26,11 +27,6 @@ void check_pose(const Transform &pose) {
 
 void check_velocity(const Vec3 &velocity, const Vec3 &angular_velocity) {
     PLUMB_CHECK(is_finite(velocity) && is_finite(angular_velocity), "body velocity must be finite");
-}
-
-void check_not_negative(const char *name, Real value) {
-    PLUMB_CHECK(std::isfinite(value) && value >= Real(0),
-                name << " must be finite and not negative, got " << value);
 }
 
 void check_collider(const ColliderDef &collider) {
@@ -63,7 +59,7 @@ bool is_identity(const Transform &frame) {
     return frame.position == Vec3{Real(0)} && frame.rotation == identity_rotation;
 }
 
-Real rounding_of(const Shape &shape) {
+Real rounding_radius(const Shape &shape) {
     if (const auto *sphere = std::get_if<Sphere>(&shape))
         return sphere->radius;
     if (const auto *capsule = std::get_if<Capsule>(&shape))
@@ -198,7 +194,7 @@ void World::add_colliders(const BodyDef &def, Body &body, std::uint32_t slot) {
                       .material = from.material,
                       .filter = from.filter,
                       .sensor = from.sensor,
-                      .rounding = from.surface ? Real(0) : rounding_of(from.shape),
+                      .rounding = from.surface ? Real(0) : rounding_radius(from.shape),
                       .body = slot,
                       .child = static_cast<std::uint16_t>(i)};
         if (body.has_mass_frame)

@@ -1,4 +1,5 @@
 // Particles and springs of a world: edits, measures, and their part in the step's phases.
+#include "engine/dynamics/check_value.h"
 #include "engine/dynamics/world.h"
 
 #include "engine/core/check.h"
@@ -14,16 +15,11 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // What moves slower is at rest: a share of what gravity adds in a step.
-constexpr double rest_share = 4e-3;
+constexpr double particle_rest_share = 4e-3;
 
 void check_positive(const char *name, Real value) {
     PLUMB_CHECK(std::isfinite(value) && value > Real(0),
                 name << " must be finite and positive, got " << value);
-}
-
-void check_not_negative(const char *name, Real value) {
-    PLUMB_CHECK(std::isfinite(value) && value >= Real(0),
-                name << " must be finite and not negative, got " << value);
 }
 
 void check_motion(const Vec3 &position, const Vec3 &velocity) {
@@ -127,7 +123,7 @@ bool World::needs_particle_contacts() const {
 
 bool World::is_particle_at_rest(const ParticleMotion &motion) const {
     const auto limit =
-        static_cast<Real>(rest_share * glm::length(settings_.gravity) * settings_.dt);
+        static_cast<Real>(particle_rest_share * glm::length(settings_.gravity) * settings_.dt);
     return glm::dot(motion.velocity, motion.velocity) <= limit * limit;
 }
 

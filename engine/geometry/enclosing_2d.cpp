@@ -2,6 +2,7 @@
 
 #include "engine/core/check.h"
 #include "engine/geometry/contains_2d.h"
+#include "engine/math/constants.h"
 
 #include <algorithm>
 #include <array>
@@ -13,8 +14,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
 Real squared_distance(const Vec2 &a, const Vec2 &b) {
     const Vec2 d = b - a;

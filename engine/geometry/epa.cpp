@@ -9,7 +9,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-constexpr std::size_t index(int i) {
+constexpr std::size_t slot(int i) {
     return static_cast<std::size_t>(i);
 }
 
@@ -43,18 +43,18 @@ Polytope::Polytope(const Simplex &simplex) : vertex_count_(4) {
 
 int Polytope::add_face(int p, int q, int r) {
     int f = first_free_;
-    while (f < face_end_ && faces_[index(f)].is_used)
+    while (f < face_end_ && faces_[slot(f)].is_used)
         ++f;
     first_free_ = f + 1;
     if (f == face_end_)
         ++face_end_;
-    Face &face = faces_[index(f)];
+    Face &face = faces_[slot(f)];
     face.vertices = {small(p), small(q), small(r)};
     face.is_used = true;
     face.is_visible = false;
-    const Vec3 &at_p = vertices_[index(p)].w;
-    const Vec3 &at_q = vertices_[index(q)].w;
-    const Vec3 &at_r = vertices_[index(r)].w;
+    const Vec3 &at_p = vertices_[slot(p)].w;
+    const Vec3 &at_q = vertices_[slot(q)].w;
+    const Vec3 &at_r = vertices_[slot(r)].w;
     const Vec3 normal = triangle_normal(at_q - at_p, at_r - at_p, at_r - at_q);
     const Real squared = glm::dot(normal, normal);
     if (squared >= std::numeric_limits<Real>::min()) {
@@ -72,10 +72,10 @@ int Polytope::add_face(int p, int q, int r) {
 }
 
 void Polytope::join(int f, int side, int g, int other_side) {
-    faces_[index(f)].neighbors[index(side)] = small(g);
-    faces_[index(f)].neighbor_sides[index(side)] = small(other_side);
-    faces_[index(g)].neighbors[index(other_side)] = small(f);
-    faces_[index(g)].neighbor_sides[index(other_side)] = small(side);
+    faces_[slot(f)].neighbors[slot(side)] = small(g);
+    faces_[slot(f)].neighbor_sides[slot(side)] = small(other_side);
+    faces_[slot(g)].neighbors[slot(other_side)] = small(f);
+    faces_[slot(g)].neighbor_sides[slot(other_side)] = small(side);
 }
 
 void Polytope::measure(Face &face, const Vec3 &size) const {
@@ -99,10 +99,10 @@ int Polytope::nearest(const Vec3 &size) {
     for (;;) {
         int best = -1;
         for (int f = 0; f < face_end_; ++f)
-            if (faces_[index(f)].is_used &&
-                (best < 0 || faces_[index(f)].distance < faces_[index(best)].distance))
+            if (faces_[slot(f)].is_used &&
+                (best < 0 || faces_[slot(f)].distance < faces_[slot(best)].distance))
                 best = f;
-        Face &face = faces_[index(best)];
+        Face &face = faces_[slot(best)];
         if (face.is_measured)
             return best;
         measure(face, size);
@@ -112,7 +112,7 @@ int Polytope::nearest(const Vec3 &size) {
 }
 
 void Polytope::finish(int i, Real height) {
-    Face &face = faces_[index(i)];
+    Face &face = faces_[slot(i)];
     face.height = height;
     face.distance = std::max(face.distance, height);
 }
@@ -124,16 +124,16 @@ bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
     constexpr std::size_t most = 2 * face_limit + 2;
     std::array<Side, most> open;   // sides still to be looked across, the last one first
     std::array<Side, most> border; // of faces that stay, in order around those that do not
-    std::array<std::uint8_t, index(face_limit)> removed;
+    std::array<std::uint8_t, slot(face_limit)> removed;
     std::size_t open_count = 0;
     std::size_t border_count = 0;
     std::size_t removed_count = 0;
     const auto remove = [&](int f, int first_side, int sides) {
-        Face &face = faces_[index(f)];
+        Face &face = faces_[slot(f)];
         face.is_visible = true;
         removed[removed_count++] = small(f);
         for (int k = sides - 1; k >= 0; --k) {
-            const std::size_t side = index((first_side + k) % 3);
+            const std::size_t side = slot((first_side + k) % 3);
             open[open_count++] = {face.neighbors[side], face.neighbor_sides[side]};
         }
     };
@@ -163,14 +163,14 @@ bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
     if (border_count < 3 ||
         face_end_ - static_cast<int>(removed_count) + static_cast<int>(border_count) > face_limit)
         return put_back();
-    std::array<bool, index(vertex_limit)> is_passed{};
+    std::array<bool, slot(vertex_limit)> is_passed{};
     for (std::size_t k = 0; k < border_count; ++k) {
         if (to(k) != from((k + 1) % border_count) || is_passed[from(k)])
             return put_back();
         is_passed[from(k)] = true;
     }
     for (int f = 0; f < vertex_count_; ++f)
-        if (vertices_[index(f)].w == point.w)
+        if (vertices_[slot(f)].w == point.w)
             return put_back();
 
     for (std::size_t k = 0; k < removed_count; ++k)
@@ -178,7 +178,7 @@ bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
     first_free_ = std::min<int>(
         first_free_, *std::min_element(removed.begin(), removed.begin() + removed_count));
     const int added = vertex_count_++;
-    vertices_[index(added)] = point;
+    vertices_[slot(added)] = point;
     int first = 0;
     int last = 0;
     for (std::size_t k = 0; k < border_count; ++k) {
@@ -200,7 +200,7 @@ Witnesses Polytope::nearest_points(const Vec3 &normal, Real height, const Vec3 &
     Simplex triangle;
     Real least = std::numeric_limits<Real>::infinity();
     for (int f = 0; f < face_end_; ++f) {
-        const Face &face = faces_[index(f)];
+        const Face &face = faces_[slot(f)];
         if (!face.is_used || !(glm::dot(face.normal, normal) > Real(0.9)))
             continue;
         triangle.count = 3;
@@ -221,7 +221,7 @@ Witnesses Polytope::nearest_points(const Vec3 &normal, Real height, const Vec3 &
 
 void keep_independent(Simplex &simplex, const Vec3 &size) {
     const Real tolerance = Real(2) * rounding_of(size);
-    const auto at = [&](int i) -> const Vec3 & { return simplex.vertices[index(i)].w; };
+    const auto at = [&](int i) -> const Vec3 & { return simplex.vertices[slot(i)].w; };
     if (simplex.count == 4) {
         const Vec3 normal = triangle_normal(at(1) - at(0), at(2) - at(0), at(2) - at(1));
         if (std::abs(glm::dot(at(3) - at(0), normal)) <= Real(2) * rounding_along(normal, size))

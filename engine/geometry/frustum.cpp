@@ -17,18 +17,18 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-constexpr std::array<std::array<std::uint8_t, 2>, 12> edges{{{0, 4},
-                                                             {1, 5},
-                                                             {2, 6},
-                                                             {3, 7},
-                                                             {0, 1},
-                                                             {0, 2},
-                                                             {2, 3},
-                                                             {1, 3},
-                                                             {4, 5},
-                                                             {4, 6},
-                                                             {6, 7},
-                                                             {5, 7}}};
+constexpr std::array<std::array<std::uint8_t, 2>, 12> box_edges{{{0, 4},
+                                                                 {1, 5},
+                                                                 {2, 6},
+                                                                 {3, 7},
+                                                                 {0, 1},
+                                                                 {0, 2},
+                                                                 {2, 3},
+                                                                 {1, 3},
+                                                                 {4, 5},
+                                                                 {4, 6},
+                                                                 {6, 7},
+                                                                 {5, 7}}};
 
 Vec3 narrow(const glm::dvec3 &v) {
     return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
@@ -42,7 +42,7 @@ void meet(FrustumSide &side, Real lowest, Real highest) {
         side = FrustumSide::across;
 }
 
-Real height_of(const Plane &plane, const Vec3 &point) {
+Real height_over(const Plane &plane, const Vec3 &point) {
     return glm::dot(plane.normal, point) - plane.offset;
 }
 
@@ -56,7 +56,7 @@ struct OpenBox {
 FrustumSide classify_box(const Frustum &frustum, const OpenBox &box) {
     FrustumSide side = FrustumSide::inside;
     for (const Plane &plane : frustum.planes) {
-        const Real height = height_of(plane, box.center);
+        const Real height = height_over(plane, box.center);
         const Real reach = glm::dot(glm::abs(plane.normal * box.axes), box.half);
         meet(side, height - reach, height + reach);
         if (side == FrustumSide::outside)
@@ -80,7 +80,7 @@ bool is_separated(const Frustum &frustum, const OpenBox &box) {
         if (low[i] > box.half[i] || high[i] < -box.half[i])
             return true;
 
-    for (const auto &[first, second] : edges) {
+    for (const auto &[first, second] : box_edges) {
         const Vec3 edge = corners[second] - corners[first];
         for (int i = 0; i < 3; ++i) {
             // The axis e_i x edge, of any length: what the roundings are worth is in proportion to
@@ -104,7 +104,7 @@ bool is_separated(const Frustum &frustum, const OpenBox &box) {
 
 bool is_behind_all(const Frustum &frustum, const Vec3 &point) {
     return std::ranges::all_of(
-        frustum.planes, [&](const Plane &plane) { return height_of(plane, point) <= Real(0); });
+        frustum.planes, [&](const Plane &plane) { return height_over(plane, point) <= Real(0); });
 }
 
 // A common point, where one is found without search: the box's middle, or its point closest to the
@@ -190,7 +190,7 @@ FrustumSide classify(const Frustum &frustum, const Vec3 &point) {
     check_point(point);
     FrustumSide side = FrustumSide::inside;
     for (const Plane &plane : frustum.planes) {
-        const Real height = height_of(plane, point);
+        const Real height = height_over(plane, point);
         if (height > Real(0))
             return FrustumSide::outside;
         if (height == Real(0))
@@ -203,7 +203,7 @@ FrustumSide classify(const Frustum &frustum, const Sphere &sphere) {
     check_valid(sphere);
     FrustumSide side = FrustumSide::inside;
     for (const Plane &plane : frustum.planes) {
-        const Real height = height_of(plane, sphere.center);
+        const Real height = height_over(plane, sphere.center);
         meet(side, height - sphere.radius, height + sphere.radius);
         if (side == FrustumSide::outside)
             break;
@@ -225,7 +225,7 @@ FrustumSide classify(const Frustum &frustum, const Capsule &capsule) {
     check_valid(capsule);
     FrustumSide side = FrustumSide::inside;
     for (const Plane &plane : frustum.planes) {
-        const Real at_a = height_of(plane, capsule.a), at_b = height_of(plane, capsule.b);
+        const Real at_a = height_over(plane, capsule.a), at_b = height_over(plane, capsule.b);
         meet(side, std::min(at_a, at_b) - capsule.radius, std::max(at_a, at_b) + capsule.radius);
         if (side == FrustumSide::outside)
             break;
@@ -243,13 +243,13 @@ Vec3 closest_point(const Frustum &frustum, const Vec3 &point) {
         return point;
     // The foot on a face's plane, if it is in the face.
     for (const Plane &plane : frustum.planes) {
-        const Real height = height_of(plane, point);
+        const Real height = height_over(plane, point);
         if (height <= Real(0))
             continue;
         const Vec3 foot = point - height * plane.normal;
         bool is_in_face = true;
         for (const Plane &other : frustum.planes)
-            is_in_face = is_in_face && (&other == &plane || height_of(other, foot) <= Real(0));
+            is_in_face = is_in_face && (&other == &plane || height_over(other, foot) <= Real(0));
         if (is_in_face)
             return foot;
     }
@@ -258,7 +258,7 @@ Vec3 closest_point(const Frustum &frustum, const Vec3 &point) {
     // itself is how far the frustum reaches beyond the plane across the way to the point.
     Vec3 closest{Real(0)};
     Real least = std::numeric_limits<Real>::infinity();
-    for (const auto &[first, second] : edges) {
+    for (const auto &[first, second] : box_edges) {
         const Segment edge{frustum.corners[first], frustum.corners[second]};
         const Vec3 on_edge = closest_point(edge, point);
         const Vec3 way = point - on_edge;

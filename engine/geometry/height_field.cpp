@@ -5,6 +5,7 @@
 #include "engine/geometry/closest_point.h"
 #include "engine/geometry/triangle.h"
 #include "engine/geometry/triangle_overlap.h"
+#include "engine/math/constants.h"
 #include "engine/math/printed.h"
 
 #include <array>
@@ -17,8 +18,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
 
 // The lines of the grid across one axis. Places ascend with the index, rounded or not.
 struct Lines {

@@ -3,6 +3,7 @@
 #include "engine/core/check.h"
 #include "engine/geometry/check_query.h"
 #include "engine/geometry/closest.h"
+#include "engine/math/constants.h"
 #include "engine/math/predicates.h"
 #include "engine/math/printed.h"
 
@@ -17,8 +18,6 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 using Index = std::uint32_t;
-constexpr Real infinity = std::numeric_limits<Real>::infinity();
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
 
 // From the world into the frame of the mesh and back. Without rotation only the position counts, so
 // that small integers stay exact.

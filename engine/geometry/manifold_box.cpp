@@ -60,18 +60,18 @@ int supporting_edge(int i, const Vec3 &direction) {
 }
 
 // A contact point before it is put into the world.
-struct Candidate {
+struct FaceContact {
     Vec3 position{Real(0)}; // midway, in the frame of the reference box
     Real separation = Real(0);
     std::uint32_t feature = 0;
 };
 
 // At most eight, of which four are kept.
-struct Candidates {
-    std::array<Candidate, 8> points{};
+struct FaceContacts {
+    std::array<FaceContact, 8> points{};
     int count = 0;
 
-    const Candidate &operator[](int i) const { return points[static_cast<std::size_t>(i)]; }
+    const FaceContact &operator[](int i) const { return points[static_cast<std::size_t>(i)]; }
     void add(const Vec3 &position, Real separation, std::uint32_t feature) {
         if (count < 8)
             points[static_cast<std::size_t>(count++)] = {position, separation, feature};
@@ -87,7 +87,7 @@ struct Candidates {
 // Keeps the deepest point and the three that with it span the largest area seen along `normal`. A
 // later point replaces an earlier one only when it is clearly better, so that equally good points
 // do not take turns.
-Candidates best_four(const Candidates &all, const Vec3 &normal) {
+FaceContacts best_four(const FaceContacts &all, const Vec3 &normal) {
     if (all.count <= 4)
         return all;
     constexpr Real clearly = Real(1.01);
@@ -145,18 +145,18 @@ Candidates best_four(const Candidates &all, const Vec3 &normal) {
     });
 
     std::sort(kept.begin(), kept.end());
-    Candidates result;
+    FaceContacts result;
     for (const int i : kept)
         result.add(all[i].position, all[i].separation, all[i].feature);
     return result;
 }
 
-Manifold in_world(const Candidates &local, const Vec3 &local_normal, const Box &frame,
+Manifold in_world(const FaceContacts &local, const Vec3 &local_normal, const Box &frame,
                   bool is_flipped) {
     Manifold manifold;
     if (local.count == 0)
         return manifold;
-    const Candidates kept = best_four(local, local_normal);
+    const FaceContacts kept = best_four(local, local_normal);
     manifold.normal = glm::normalize(frame.rotation * local_normal);
     if (is_flipped)
         manifold.normal = -manifold.normal;
@@ -171,7 +171,7 @@ Manifold in_world(const Candidates &local, const Vec3 &local_normal, const Box &
 // A corner of the polygon that is being clipped, in the coordinates of the reference face. `name`
 // is 0..3 for a corner of the incident face, else 4 + 4 * label of the polygon side + clip plane.
 // `side` labels the side from this corner to the next: 0..3 of the incident face, 4..7 clip planes.
-struct ClipCorner {
+struct FaceCorner {
     Real u = Real(0);
     Real v = Real(0);
     Real height = Real(0);
@@ -179,11 +179,11 @@ struct ClipCorner {
     int side = 0;
 };
 
-struct Polygon {
-    std::array<ClipCorner, 8> corners{};
+struct FacePolygon {
+    std::array<FaceCorner, 8> corners{};
     int count = 0;
 
-    void add(const ClipCorner &corner) {
+    void add(const FaceCorner &corner) {
         if (count < 8)
             corners[static_cast<std::size_t>(count++)] = corner;
     }
@@ -191,27 +191,27 @@ struct Polygon {
 
 // One plane of Sutherland and Hodgman 1974, "Reentrant polygon clipping". Corners within
 // feature_tolerance of the plane are on it and keep their names.
-Polygon clipped(const Polygon &in, int plane, Real limit) {
-    const auto beyond = [&](const ClipCorner &c) {
+FacePolygon clipped(const FacePolygon &in, int plane, Real limit) {
+    const auto beyond = [&](const FaceCorner &c) {
         const Real coordinate = plane < 2 ? c.u : c.v;
         const Real distance = (plane % 2 == 0 ? -coordinate : coordinate) - limit;
         return std::abs(distance) <= feature_tolerance ? Real(0) : distance;
     };
-    Polygon out;
+    FacePolygon out;
     for (int i = 0; i < in.count; ++i) {
-        const ClipCorner &here = in.corners[static_cast<std::size_t>(i)];
-        const ClipCorner &next = in.corners[static_cast<std::size_t>((i + 1) % in.count)];
+        const FaceCorner &here = in.corners[static_cast<std::size_t>(i)];
+        const FaceCorner &next = in.corners[static_cast<std::size_t>((i + 1) % in.count)];
         const Real d0 = beyond(here);
         const Real d1 = beyond(next);
         if (d0 <= Real(0)) {
-            ClipCorner kept = here;
+            FaceCorner kept = here;
             if (d0 == Real(0) && d1 > Real(0))
                 kept.side = 4 + plane; // the polygon goes on along the plane
             out.add(kept);
         }
         if ((d0 < Real(0) && d1 > Real(0)) || (d0 > Real(0) && d1 < Real(0))) {
             const Real s = d0 / (d0 - d1);
-            ClipCorner crossing;
+            FaceCorner crossing;
             crossing.u = here.u + s * (next.u - here.u);
             crossing.v = here.v + s * (next.v - here.v);
             crossing.height = here.height + s * (next.height - here.height);
@@ -225,8 +225,8 @@ Polygon clipped(const Polygon &in, int plane, Real limit) {
 
 // Contacts of the face `axis`, `sign` of a reference box with the face of the incident box that
 // looks most against it. `feature` names which box is the reference.
-Candidates face_contacts(const Vec3 &half, int axis, Real sign, const RelativeBox &incident,
-                         const Vec3 &incident_half, Real margin, std::uint32_t feature) {
+FaceContacts face_contacts(const Vec3 &half, int axis, Real sign, const RelativeBox &incident,
+                           const Vec3 &incident_half, Real margin, std::uint32_t feature) {
     int incident_axis = 0;
     Real steepest = Real(-1);
     for (int j = 0; j < 3; ++j) {
@@ -250,7 +250,7 @@ Candidates face_contacts(const Vec3 &half, int axis, Real sign, const RelativeBo
 
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;
-    Polygon polygon;
+    FacePolygon polygon;
     for (int i = 0; i < 4; ++i) {
         const Vec3 &p = face[static_cast<std::size_t>(i)];
         polygon.add({p[u], p[v], sign * p[axis] - half[axis], i, i});
@@ -260,9 +260,9 @@ Candidates face_contacts(const Vec3 &half, int axis, Real sign, const RelativeBo
 
     feature |= bits(face_number(axis, sign)) << 16 | bits(face_number(incident_axis, incident_sign))
                                                          << 8;
-    Candidates result;
+    FaceContacts result;
     for (int i = 0; i < polygon.count; ++i) {
-        const ClipCorner &c = polygon.corners[static_cast<std::size_t>(i)];
+        const FaceCorner &c = polygon.corners[static_cast<std::size_t>(i)];
         if (c.height > margin)
             continue;
         Vec3 position{Real(0)};
@@ -276,8 +276,8 @@ Candidates face_contacts(const Vec3 &half, int axis, Real sign, const RelativeBo
 
 // The contact of the two edges that the axis was made of. `sideways` is how far the line between
 // their closest points is off the axis: more than rounding when the closest points are ends.
-Candidates edge_contact(const RelativeBox &b, const Vec3 &half_a, const Vec3 &half_b,
-                        const BoxAxis &axis, Real &sideways) {
+FaceContacts edge_contact(const RelativeBox &b, const Vec3 &half_a, const Vec3 &half_b,
+                          const BoxAxis &axis, Real &sideways) {
     const int number_a = supporting_edge(axis.index_a, axis.normal);
     const Vec3 normal_in_b = -(axis.normal * b.axes); // transposed: into B's frame
     const int number_b = supporting_edge(axis.index_b, normal_in_b);
@@ -288,7 +288,7 @@ Candidates edge_contact(const RelativeBox &b, const Vec3 &half_a, const Vec3 &ha
     const SegmentPair pair = closest_between_segments(on_a.start, on_a.along, start_b, along_b);
     sideways = glm::length(pair.difference - axis.separation * axis.normal);
     const Vec3 middle = on_a.start + pair.s * on_a.along + Real(0.5) * pair.difference;
-    Candidates result;
+    FaceContacts result;
     result.add(middle, axis.separation, kind_edges | bits(number_a) << 8 | bits(number_b));
     return result;
 }
@@ -388,7 +388,7 @@ Manifold collide(const Box &a, const Box &b, Real margin) {
     Manifold result; // the one nearest to being tight
     Real off_best = std::numeric_limits<Real>::infinity();
     Real depth = std::numeric_limits<Real>::infinity();
-    const auto accept = [&](const Candidates &contacts, const Vec3 &normal, const Box &frame,
+    const auto accept = [&](const FaceContacts &contacts, const Vec3 &normal, const Box &frame,
                             bool is_flipped) {
         const Real deepest = contacts.deepest();
         const Real off = std::abs(deepest - best.separation);
@@ -417,7 +417,7 @@ Manifold collide(const Box &a, const Box &b, Real margin) {
     }
     if (axes.edges.separation > -std::numeric_limits<Real>::infinity()) {
         Real sideways = Real(0);
-        const Candidates contact = edge_contact(b_in_a, half_a, half_b, axes.edges, sideways);
+        const FaceContacts contact = edge_contact(b_in_a, half_a, half_b, axes.edges, sideways);
         const bool is_tight = sideways <= tight;
         if ((is_tight || best.separation <= Real(0)) &&
             accept(contact, axes.edges.normal, a, false))
@@ -432,7 +432,7 @@ Manifold collide(const Box &a, const Box &b, Real margin) {
         return result;
     if (depth <= distance + feature_tolerance)
         return result;
-    Candidates contact;
+    FaceContacts contact;
     contact.add(closest.on_a + Real(0.5) * closest.difference, distance, closest.feature);
     return in_world(contact, closest.difference / distance, a, false);
 }
@@ -477,7 +477,7 @@ Manifold collide(const Sphere &a, const Box &b, Real margin) {
     const Real separation = distance - a.radius;
     if (separation > margin)
         return {};
-    Candidates contact;
+    FaceContacts contact;
     contact.add(surface + Real(0.5) * separation * normal, separation, feature);
     return in_world(contact, normal, b, true);
 }
@@ -527,7 +527,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
         return {};
 
     // On a face: both ends of the part of the segment that is above it.
-    Candidates on_face;
+    FaceContacts on_face;
     const Vec3 face_normal = face.normal;
     if (edges.separation <= face.separation + feature_tolerance) {
         const int axis = face.index_a;
@@ -594,7 +594,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
             closest_between_segments(box_edge.start, box_edge.along, start, along);
         const Vec3 surface = box_edge.start + pair.s * box_edge.along;
         const Real separation = edges.separation - b.radius;
-        Candidates contact;
+        FaceContacts contact;
         contact.add(surface + Real(0.5) * separation * edges.normal, separation,
                     kind_edges | bits(number));
         return in_world(contact, edges.normal, a, false);
@@ -640,7 +640,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
     if (on_face.deepest() <= separation + feature_tolerance)
         return in_world(on_face, face_normal, a, false);
 
-    Candidates contacts;
+    FaceContacts contacts;
     const Vec3 normal = difference / distance;
     const Vec3 slope = glm::abs(direction);
     const int main_axis =
@@ -669,7 +669,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
 Manifold collide(const Box &a, const HalfSpace &b, Real margin) {
     const Vec3 up = glm::conjugate(a.rotation) * b.normal; // in the box's frame
     const Real height = glm::dot(b.normal, a.center) - b.offset;
-    Candidates corners;
+    FaceContacts corners;
     for (int i = 0; i < 8; ++i) {
         const Vec3 p = corner(a.half_extents, i);
         const Real separation = height + glm::dot(up, p);
@@ -683,7 +683,7 @@ Manifold collide(const Box &a, const HalfSpace &b, Real margin) {
         const int axis =
             steep.y >= steep.x && steep.y >= steep.z ? 1 : (steep.x >= steep.z ? 0 : 2);
         const int lower = up[axis] < Real(0) ? 1 << axis : 0;
-        Candidates kept;
+        FaceContacts kept;
         for (int i = 0; i < corners.count; ++i)
             if ((static_cast<int>(corners[i].feature) & (1 << axis)) == lower)
                 kept.add(corners[i].position, corners[i].separation, corners[i].feature);

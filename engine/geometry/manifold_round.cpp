@@ -13,7 +13,7 @@ namespace {
 
 // Capsules whose axes enclose an angle with a sine below this count as parallel and get a contact
 // at both ends of their overlap. Beyond it the far end of an overlap of one metre is 2 cm away.
-constexpr Real parallel_sine = Real(0.02);
+constexpr Real side_by_side_sine = Real(0.02);
 
 // One contact of two balls with the given normal and distance of their centres.
 Manifold ball_contact(const Vec3 &center_a, Real radius_a, const Vec3 &center_b, Real radius_b,
@@ -132,7 +132,8 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
     // The normal is at right angles to an axis that the contact is beside, however near to each
     // other the axes are. Where they cross, the shortest way out leads along their common
     // perpendicular.
-    const bool is_parallel = squared_cross <= parallel_sine * parallel_sine * squared_a * squared_b;
+    const bool is_parallel =
+        squared_cross <= side_by_side_sine * side_by_side_sine * squared_a * squared_b;
     const bool is_beside_a = closest.s > Real(0) && closest.s < Real(1);
     const bool is_beside_b = closest.t > Real(0) && closest.t < Real(1);
     Vec3 away = closest.difference;

@@ -2,6 +2,7 @@
 
 #include "engine/core/check.h"
 #include "engine/geometry/hull_queries.h"
+#include "engine/math/constants.h"
 
 #include <array>
 #include <cmath>
@@ -14,8 +15,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real pi = Real(3.14159265358979323846L);
 
 Real volume_of(const Sphere &sphere) {
     return Real(4) / Real(3) * pi * sphere.radius * sphere.radius * sphere.radius;

@@ -1,6 +1,7 @@
 #include "engine/geometry/overlap.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/aabb.h"
 #include "engine/geometry/closest_point.h"
 #include "engine/geometry/contains.h"
 #include "engine/geometry/plane.h"
@@ -16,10 +17,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-bool is_empty(const Aabb &box) {
-    return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
-}
 
 // A box as an Aabb in its own frame.
 Aabb local_box(const Box &box) {

@@ -38,13 +38,13 @@ bool comes_before(const Vec2 &a, const Vec2 &b) {
 }
 
 // On which sides of the line of the one the ends of the other are, exactly.
-struct Sides {
+struct SegmentSides {
     int b_a = 0; // of b.a, seen along a
     int b_b = 0;
     int a_a = 0;
     int a_b = 0;
 
-    Sides(const Segment2 &a, const Segment2 &b)
+    SegmentSides(const Segment2 &a, const Segment2 &b)
         : b_a(orient2d(a.a, a.b, b.a)), b_b(orient2d(a.a, a.b, b.b)), a_a(orient2d(b.a, b.b, a.a)),
           a_b(orient2d(b.a, b.b, a.b)) {}
     // For segments whose bounds touch, that is all there is to ask (Cormen, Leiserson, Rivest,
@@ -128,7 +128,7 @@ bool overlaps(const Compound2 &a, const Compound2 &b) {
 }
 
 bool overlaps(const Segment2 &a, const Segment2 &b) {
-    return touch(bounds(a), bounds(b)) && Sides(a, b).do_overlap();
+    return touch(bounds(a), bounds(b)) && SegmentSides(a, b).do_overlap();
 }
 
 std::optional<Segment2> intersection(const Segment2 &a, const Segment2 &b) {
@@ -136,7 +136,7 @@ std::optional<Segment2> intersection(const Segment2 &a, const Segment2 &b) {
     const Rectangle box_b = bounds(b);
     if (!touch(box_a, box_b))
         return std::nullopt;
-    const Sides sides(a, b);
+    const SegmentSides sides(a, b);
     if (!sides.do_overlap())
         return std::nullopt;
     if (sides.are_on_one_line()) {

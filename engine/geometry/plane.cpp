@@ -2,6 +2,7 @@
 
 #include "engine/core/check.h"
 #include "engine/geometry/check_query.h"
+#include "engine/math/constants.h"
 #include "engine/math/predicates.h"
 #include "engine/math/printed.h"
 #include "engine/math/rigid.h"
@@ -16,8 +17,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
 
 // Heights are normal . p - offset, metres times the length of the normal, which may be a little off
 // one.

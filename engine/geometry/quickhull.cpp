@@ -2,6 +2,7 @@
 
 #include "engine/core/check.h"
 #include "engine/geometry/mass.h"
+#include "engine/math/constants.h"
 #include "engine/math/predicates.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 
 using Wide = glm::dvec3;
 using Index = std::uint32_t;
-constexpr Index none = ~Index(0);
+constexpr Index no_index = ~Index(0);
 
 Wide wide(const Vec3 &v) {
     return {double(v.x), double(v.y), double(v.z)};
@@ -50,7 +51,7 @@ struct Facet {
     std::array<Index, 3> corners{}; // counter-clockwise from outside
     std::array<Index, 3> across{};  // the facet beyond the edge from corner i to corner i + 1
     Wide normal{0.0};               // outward unit normal
-    Index first_outside = none;     // a list of points in front of it
+    Index first_outside = no_index; // a list of points in front of it
     bool is_gone = false;
 };
 
@@ -59,7 +60,7 @@ class Surface {
     // Grows the hull of the points. The number of its vertices stays within the limit.
     Surface(std::vector<Vec3> points, double tolerance, std::size_t max_vertices)
         : points_(std::move(points)), tolerance_(tolerance), max_vertices_(max_vertices),
-          next_outside_(points_.size(), none), fan_at_(points_.size(), none) {
+          next_outside_(points_.size(), no_index), fan_at_(points_.size(), no_index) {
         problem_ = start();
         if (problem_ == HullProblem::none)
             grow();
@@ -119,7 +120,7 @@ template <typename Measure> Index Surface::farthest(Measure &&measure, double &g
     greatest = 0.0;
     for (Index i = 0; i < points_.size(); ++i)
         greatest = std::max(greatest, measure(wide(points_[i])));
-    Index best = none;
+    Index best = no_index;
     double best_squared = -1.0;
     for (Index i = 0; i < points_.size(); ++i) {
         const Wide from_center = wide(points_[i]) - center_;
@@ -187,7 +188,7 @@ Index Surface::make_facet(Index a, Index b, Index c) {
 // them. A point that is outside of the new hull and was in front of a facet that is gone sees a new
 // one (Barber et al. 1996, section 2).
 void Surface::assign(Index point, Index first_facet, Index end_facet) {
-    Index best = none;
+    Index best = no_index;
     double best_height = -std::numeric_limits<double>::infinity();
     for (Index i = first_facet; i < end_facet; ++i) {
         const double above = height(point, facets_[i]);
@@ -196,7 +197,7 @@ void Surface::assign(Index point, Index first_facet, Index end_facet) {
             best_height = above;
         }
     }
-    if (best == none)
+    if (best == no_index)
         return;
     next_outside_[point] = facets_[best].first_outside;
     facets_[best].first_outside = point;
@@ -205,13 +206,13 @@ void Surface::assign(Index point, Index first_facet, Index end_facet) {
 void Surface::propose(Index facet) {
     double greatest = 0.0;
     const Facet &here = facets_[facet];
-    for (Index i = here.first_outside; i != none; i = next_outside_[i])
+    for (Index i = here.first_outside; i != no_index; i = next_outside_[i])
         greatest = std::max(greatest, height(i, here));
     if (!(greatest > tolerance_))
         return;
-    Index best = none;
+    Index best = no_index;
     double best_squared = -1.0;
-    for (Index i = here.first_outside; i != none; i = next_outside_[i]) {
+    for (Index i = here.first_outside; i != no_index; i = next_outside_[i]) {
         const Wide from_center = wide(points_[i]) - center_;
         const double squared = glm::dot(from_center, from_center);
         // Of equal points (duplicates) the first in the input.
@@ -275,8 +276,8 @@ void Surface::add(const Candidate &eye) {
     }
 
     for (const Index gone : seen_) {
-        Index point = std::exchange(facets_[gone].first_outside, none);
-        while (point != none) {
+        Index point = std::exchange(facets_[gone].first_outside, no_index);
+        while (point != no_index) {
             const Index next = next_outside_[point];
             if (point != eye.point)
                 assign(point, first_new, end_new);
@@ -294,7 +295,7 @@ bool Surface::bring_back() {
     for (Index i = 0; i < count; ++i) {
         if (facets_[i].is_gone)
             continue;
-        for (Index p = facets_[i].first_outside; p != none; p = next_outside_[p]) {
+        for (Index p = facets_[i].first_outside; p != no_index; p = next_outside_[p]) {
             gather_seen(p, i);
             Index best = i;
             for (const Index facet : seen_) {
@@ -310,7 +311,7 @@ bool Surface::bring_back() {
 }
 
 std::vector<Facet> Surface::facets() const {
-    std::vector<Index> new_index(facets_.size(), none);
+    std::vector<Index> new_index(facets_.size(), no_index);
     Index count = 0;
     for (std::size_t i = 0; i < facets_.size(); ++i)
         if (!facets_[i].is_gone)
@@ -330,7 +331,7 @@ std::vector<Vec3> Surface::left_over() const {
     std::vector<Vec3> result;
     for (const Facet &facet : facets_)
         if (!facet.is_gone)
-            for (Index i = facet.first_outside; i != none; i = next_outside_[i])
+            for (Index i = facet.first_outside; i != no_index; i = next_outside_[i])
                 result.push_back(points_[i]);
     return result;
 }
@@ -360,11 +361,11 @@ Faces join(const std::vector<Facet> &facets, const std::vector<Vec3> &points, do
                      [&](Index i, Index j) { return areas[i] > areas[j]; });
 
     Faces faces;
-    faces.face_of.assign(facets.size(), none);
-    std::vector<Index> corner_of(points.size(), none); // the last face that took the point
+    faces.face_of.assign(facets.size(), no_index);
+    std::vector<Index> corner_of(points.size(), no_index); // the last face that took the point
     std::vector<Index> grown;
     for (const Index seed : order) {
-        if (faces.face_of[seed] != none)
+        if (faces.face_of[seed] != no_index)
             continue;
         const Index face = static_cast<Index>(faces.seeds.size());
         faces.seeds.push_back(seed);
@@ -383,7 +384,7 @@ Faces join(const std::vector<Facet> &facets, const std::vector<Vec3> &points, do
         };
         const auto keeps_disc = [&](const Facet &facet) {
             int shared = 0;
-            Index third = none;
+            Index third = no_index;
             for (std::size_t i = 0; i < 3; ++i)
                 if (faces.face_of[facet.across[i]] == face) {
                     ++shared;
@@ -395,7 +396,7 @@ Faces join(const std::vector<Facet> &facets, const std::vector<Vec3> &points, do
         take(seed);
         for (std::size_t i = 0; i < grown.size(); ++i)
             for (const Index next : facets[grown[i]].across)
-                if (faces.face_of[next] == none &&
+                if (faces.face_of[next] == no_index &&
                     std::all_of(facets[next].corners.begin(), facets[next].corners.end(),
                                 is_in_plane) &&
                     keeps_disc(facets[next]))
@@ -434,7 +435,7 @@ Corners corners_of(const std::vector<Facet> &facets, const Faces &faces) {
 // Vertices, faces as loops of vertices, edges. Vertex k is point kept[k].
 void add_topology(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &faces,
                   const std::vector<Vec3> &points, const std::vector<Index> &kept) {
-    std::vector<Index> vertex_of(points.size(), none);
+    std::vector<Index> vertex_of(points.size(), no_index);
     for (const Index point : kept) {
         vertex_of[point] = static_cast<Index>(mesh.vertices.size());
         mesh.vertices.push_back(points[point]);
@@ -443,9 +444,9 @@ void add_topology(HullMesh &mesh, const std::vector<Facet> &facets, const Faces 
     std::vector<std::vector<Index>> facets_of(faces.seeds.size());
     for (Index i = 0; i < facets.size(); ++i)
         facets_of[faces.face_of[i]].push_back(i);
-    std::vector<Index> next_at(points.size(), none); // along the border of the current face
+    std::vector<Index> next_at(points.size(), no_index); // along the border of the current face
     for (Index face = 0; face < faces.seeds.size(); ++face) {
-        Index first = none;
+        Index first = no_index;
         for (const Index i : facets_of[face])
             for (std::size_t k = 0; k < 3; ++k) {
                 const Index beyond = faces.face_of[facets[i].across[k]];
@@ -454,7 +455,7 @@ void add_topology(HullMesh &mesh, const std::vector<Facet> &facets, const Faces 
                 const Index from = facets[i].corners[k];
                 const Index to = facets[i].corners[(k + 1) % 3];
                 next_at[from] = to;
-                first = first == none ? from : first;
+                first = first == no_index ? from : first;
                 if (face < beyond)
                     mesh.edges.push_back({vertex_of[from], vertex_of[to], face, beyond});
             }
@@ -502,7 +503,6 @@ void add_planes(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &f
     }
     const Vec3 far = glm::max(glm::abs(mesh.box.min), glm::abs(mesh.box.max));
     const Real reach = far.x + far.y + far.z;
-    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
     double tilt = 0.0;
     for (std::size_t face = 0; face < faces.seeds.size(); ++face) {
         Plane &plane = mesh.planes[face];

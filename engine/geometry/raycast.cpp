@@ -1,10 +1,12 @@
 #include "engine/geometry/raycast.h"
 
+#include "engine/geometry/aabb.h"
 #include "engine/geometry/check_query.h"
 #include "engine/geometry/contains.h"
 #include "engine/geometry/hull_queries.h"
 #include "engine/geometry/slab.h"
 #include "engine/geometry/triangle_exact.h"
+#include "engine/math/constants.h"
 #include "engine/math/predicates.h"
 #include "engine/math/rigid.h"
 
@@ -22,10 +24,6 @@ namespace {
 
 using Wide = glm::dvec3;
 template <typename T> using Vector = glm::vec<3, T, glm::defaultp>;
-
-constexpr Real infinity = std::numeric_limits<Real>::infinity();
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-constexpr Real least = std::numeric_limits<Real>::min();
 
 // The greatest power of two that is not above |x|, and so divides without rounding; the smallest
 // normal one for less.
@@ -119,10 +117,6 @@ bool is_rotated(const Box &box) {
 // faces are exact.
 Aabb aligned(const Box &box) {
     return {box.center - box.half_extents, box.center + box.half_extents};
-}
-
-bool is_empty(const Aabb &box) {
-    return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
 }
 
 std::optional<RayInterval> through_aligned(const Aabb &box, const Ray &ray) {
@@ -279,8 +273,9 @@ std::optional<RayInterval> ray_interval(const Sphere &sphere, const Ray &ray) {
     // is outside by that much has `middle` too large for its sign to be wrong, when the line meets
     // the ball: its square is at least the height over the ball times |d|^2.
     const Real e = Real(4) * epsilon * (((std::abs(m.x) + std::abs(m.y)) + std::abs(m.z)) + radius);
-    const Real doubt = both.squared * (e * (Real(2) * radius + e)) + least;
-    const Real depth_doubt = Real(4) * epsilon * (reach + away) + least;
+    const Real doubt =
+        both.squared * (e * (Real(2) * radius + e)) + std::numeric_limits<Real>::min();
+    const Real depth_doubt = Real(4) * epsilon * (reach + away) + std::numeric_limits<Real>::min();
     // Written so that what overflowed is in doubt.
     if (!(std::abs(both.rest) > doubt && std::abs(reach - away) > depth_doubt)) [[unlikely]]
         return through_touched(sphere, ray, d);

@@ -3,6 +3,7 @@
 #include "engine/geometry/contains_2d.h"
 #include "engine/geometry/oriented_frame_2d.h"
 #include "engine/geometry/overlap_2d.h"
+#include "engine/math/constants.h"
 #include "engine/math/predicates.h"
 
 #include <algorithm>
@@ -13,8 +14,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
 Real cross(const Vec2 &a, const Vec2 &b) {
     return a.x * b.y - a.y * b.x;

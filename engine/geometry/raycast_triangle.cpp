@@ -25,7 +25,7 @@ double parameter_of(const Ray &ray, const Vec3 &point) {
 }
 
 // The sign of the component of direction x (b - a) along the axis.
-int turn(int axis, const Vec3 &direction, const Vec3 &a, const Vec3 &b) {
+int turn_along(int axis, const Vec3 &direction, const Vec3 &a, const Vec3 &b) {
     return cross_sign(seen_along(axis, direction), seen_along(axis, a), seen_along(axis, b));
 }
 
@@ -33,7 +33,7 @@ int turn(int axis, const Vec3 &direction, const Vec3 &a, const Vec3 &b) {
 // first.
 std::optional<double> along_segment(const Ray &ray, const Vec3 &a, const Vec3 &b) {
     for (int axis = 0; axis < 3; ++axis)
-        if (turn(axis, ray.direction, ray.origin, a) != 0)
+        if (turn_along(axis, ray.direction, ray.origin, a) != 0)
             return std::nullopt; // beside it
     const double to_a = parameter_of(ray, a), to_b = parameter_of(ray, b);
     return to_a > 0.0 ? std::optional(std::min(to_a, to_b)) : std::nullopt;
@@ -42,13 +42,13 @@ std::optional<double> along_segment(const Ray &ray, const Vec3 &a, const Vec3 &b
 // A ray and a segment in one plane. The origin is not on the segment.
 std::optional<double> to_segment(const Ray &ray, const Vec3 &a, const Vec3 &b) {
     for (int axis = 0; axis < 3; ++axis) {
-        const int slope = turn(axis, ray.direction, a, b);
+        const int slope = turn_along(axis, ray.direction, a, b);
         if (slope == 0)
             continue;
         // Seen from here the plane is no line: the ray's line must pass between a and b, and go
         // towards that of the segment.
-        const int side_a = turn(axis, ray.direction, ray.origin, a);
-        const int side_b = turn(axis, ray.direction, ray.origin, b);
+        const int side_a = turn_along(axis, ray.direction, ray.origin, a);
+        const int side_b = turn_along(axis, ray.direction, ray.origin, b);
         const int side_origin =
             orient2d(seen_along(axis, ray.origin), seen_along(axis, a), seen_along(axis, b));
         if (side_a * side_b > 0 || side_origin * slope < 0)

@@ -1,6 +1,7 @@
 #include "engine/geometry/shapes_2d.h"
 
 #include "engine/core/check.h"
+#include "engine/math/constants.h"
 #include "engine/math/printed.h"
 
 #include <cmath>
@@ -12,9 +13,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real infinity = std::numeric_limits<Real>::infinity();
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
 
 bool is_finite(const Vec2 &v) {
     return std::isfinite(v.x) && std::isfinite(v.y);

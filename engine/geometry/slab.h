@@ -59,8 +59,8 @@ inline bool slab_interval(const Vec3 &near, const Vec3 &far, Real max_t, Real &e
 // loss.
 inline bool slab_interval(const Aabb &box, const Ray &ray, Real &enter, Real &exit,
                           int &enter_axis) {
-    constexpr Real infinity = std::numeric_limits<Real>::infinity();
-    Vec3 near{-infinity}, far{infinity};
+    constexpr Real endless = std::numeric_limits<Real>::infinity();
+    Vec3 near{-endless}, far{endless};
     for (int i = 0; i < 3; ++i) {
         const Real origin = ray.origin[i];
         const Real direction = ray.direction[i];

@@ -117,8 +117,8 @@ struct CylinderCore {
         outward -= glm::dot(axis, outward) * axis; // rounding left eps |direction| along the axis
         const Real squared = glm::dot(outward, outward);
         // Along the axis every point of the disc is farthest, to rounding; its middle is steady.
-        constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-        if (!(squared > epsilon * epsilon * along * along))
+        constexpr Real rounding = std::numeric_limits<Real>::epsilon();
+        if (!(squared > rounding * rounding * along * along))
             return end;
         return end + (side / std::sqrt(squared)) * outward;
     }

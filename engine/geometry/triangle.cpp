@@ -1,6 +1,7 @@
 #include "engine/geometry/triangle.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/check_query.h"
 #include "engine/geometry/triangle_exact.h"
 #include "engine/math/predicates.h"
 #include "engine/math/printed.h"
@@ -17,11 +18,6 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 using Wide = glm::dvec3;
-
-void check_point(const Vec3 &point) {
-    PLUMB_CHECK(std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z),
-                "point must be finite, got " << Printed{point});
-}
 
 double largest_magnitude(const Wide &v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});

@@ -96,17 +96,17 @@ bool segment_meets(const Vec3 &p, int side_p, const Vec3 &q, int side_q, const T
     return !are_opposite(bc, ca) && !are_opposite(ca, ab);
 }
 
-struct Sides {
+struct CornerSides {
     int a, b, c;
 
-    Sides(const Triangle &plane, const Triangle &corners)
+    CornerSides(const Triangle &plane, const Triangle &corners)
         : a(orient3d(plane.a, plane.b, plane.c, corners.a)),
           b(orient3d(plane.a, plane.b, plane.c, corners.b)),
           c(orient3d(plane.a, plane.b, plane.c, corners.c)) {}
     bool are_apart() const { return a != 0 && a == b && b == c; }
 };
 
-bool an_edge_meets(const Triangle &edges, const Sides &sides, const Triangle &t) {
+bool an_edge_meets(const Triangle &edges, const CornerSides &sides, const Triangle &t) {
     return segment_meets(edges.a, sides.a, edges.b, sides.b, t) ||
            segment_meets(edges.b, sides.b, edges.c, sides.c, t) ||
            segment_meets(edges.c, sides.c, edges.a, sides.a, t);
@@ -161,10 +161,10 @@ bool segment_meets_triangle(const Segment &segment, const Triangle &triangle) {
 // Two triangles that meet do so in an edge of one of them: the common stretch of two that cross
 // ends at edges, and of two in one plane either edges cross or one lies in the other.
 bool triangle_meets_triangle(const Triangle &a, const Triangle &b) {
-    const Sides of_b(a, b);
+    const CornerSides of_b(a, b);
     if (of_b.are_apart())
         return false;
-    const Sides of_a(b, a);
+    const CornerSides of_a(b, a);
     if (of_a.are_apart())
         return false;
     return an_edge_meets(b, of_b, a) || an_edge_meets(a, of_a, b);

@@ -1,5 +1,6 @@
 #include "engine/geometry/triangle_overlap.h"
 
+#include "engine/geometry/aabb.h"
 #include "engine/geometry/triangle_exact.h"
 #include "engine/math/predicates.h"
 
@@ -74,10 +75,6 @@ struct WideTriangle {
 
 double square(Real value) {
     return double(value) * double(value);
-}
-
-bool is_empty(const Aabb &box) {
-    return box.min.x > box.max.x || box.min.y > box.max.y || box.min.z > box.max.z;
 }
 
 } // namespace

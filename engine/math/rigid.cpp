@@ -1,6 +1,7 @@
 #include "engine/math/rigid.h"
 
 #include "engine/core/check.h"
+#include "engine/math/constants.h"
 #include "engine/math/printed.h"
 #include "engine/math/vectors.h"
 
@@ -12,9 +13,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-constexpr Real pi = Real(3.14159265358979323846L);
 
 Mat4 with_translation(const Mat3 &linear, const Vec3 &position) {
     return Mat4{Vec4{linear[0], Real(0)}, Vec4{linear[1], Real(0)}, Vec4{linear[2], Real(0)},

@@ -22,7 +22,7 @@ SettingNumber number_of(const SettingMember &member) {
     return {static_cast<std::size_t>(row - setting_rows.begin()), 0};
 }
 
-bool same_bits(double a, double b) {
+bool is_same_number(double a, double b) {
     return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
@@ -122,7 +122,7 @@ GivenSettings GivenSettings::differences(const StepSettings &by_default,
     GivenSettings given;
     for (const SettingNumber number : setting_numbers())
         if (const double value = setting_value(settings, number);
-            !same_bits(value, setting_value(by_default, number)))
+            !is_same_number(value, setting_value(by_default, number)))
             given.give(number, value);
     return given;
 }
@@ -198,7 +198,7 @@ std::string setting_text(const SettingRow &row, const StepSettings &settings) {
 std::string number_or_fraction(double value) {
     const std::string digits = shortest(value);
     const double n = std::round(1 / value);
-    const bool exact = n >= 2 && n <= 100'000 && same_bits(1 / n, value);
+    const bool exact = n >= 2 && n <= 100'000 && is_same_number(1 / n, value);
     const std::string quotient = exact ? "1/" + shortest(n) : digits;
     constexpr std::size_t plain = 6; // "0.125" reads better than "1/8"
     return digits.size() > plain && quotient.size() < digits.size() ? quotient : digits;

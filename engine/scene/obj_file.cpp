@@ -122,7 +122,7 @@ void check_face(std::string_view rest, std::size_t line) {
 }
 
 // The lines of a file that are read, and what each gives.
-struct Lines {
+struct ObjLines {
     std::vector<glm::dvec3> vertices;
     std::vector<std::size_t> face_lines;      // the number of each line with a face
     std::vector<std::size_t> vertices_before; // each face
@@ -131,8 +131,8 @@ struct Lines {
 
 // tinyobjloader takes what it cannot read for zero, overflows on long numbers, and its own are some
 // last digits off. So it gets no line that was not checked here, and vertices are read here.
-Lines checked_lines(std::string_view file) {
-    Lines lines;
+ObjLines checked_lines(std::string_view file) {
+    ObjLines lines;
     std::size_t number = 0;
     while (!file.empty()) {
         ++number;
@@ -340,7 +340,7 @@ class Cutter {
 
 // What tinyobjloader calls for each face.
 struct Faces {
-    const Lines &lines;
+    const ObjLines &lines;
     Cutter cutter;
     std::size_t face = 0;
     std::vector<std::uint32_t> corners;
@@ -367,7 +367,7 @@ struct Faces {
 
 ObjMesh read_mesh(std::istream &in) {
     const std::string file = read_all(in);
-    Lines lines = checked_lines(file);
+    ObjLines lines = checked_lines(file);
     ObjMesh mesh;
     Faces faces{lines, Cutter(lines.vertices, mesh.triangles), 0, {}};
     tinyobj::callback_t callback;

@@ -8,7 +8,7 @@ namespace plumb {
 
 namespace {
 
-struct Counter {
+struct SizeCounter {
     ProbeSize &size;
 
     void operator()(const FlatCompoundDesc &compound) const {
@@ -25,7 +25,7 @@ ProbeSize size_of(const ProbeDesc &probe) {
     ProbeSize size;
     size.shapes = probe.shapes.size();
     for (const ProbeShapeDesc &shape : probe.shapes)
-        std::visit(Counter{size}, shape.shape);
+        std::visit(SizeCounter{size}, shape.shape);
     if (probe.scatter)
         size.scattered = static_cast<std::size_t>(probe.scatter->count);
     const std::size_t shapes = probe.shapes.size();

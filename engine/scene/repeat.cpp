@@ -148,7 +148,7 @@ struct Placer {
     }
 };
 
-struct Counter {
+struct CopyCounter {
     std::uint64_t operator()(const GridRepeat &grid) const {
         return times(times(natural(grid.count.x), natural(grid.count.y)), natural(grid.count.z));
     }
@@ -170,7 +170,7 @@ struct Counter {
 } // namespace
 
 std::size_t repeat_count(const Repeat &repeat) {
-    return std::visit(Counter{}, repeat);
+    return std::visit(CopyCounter{}, repeat);
 }
 
 std::vector<Placement> placements(const Repeat &repeat, const glm::dvec3 &position,

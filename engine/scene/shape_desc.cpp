@@ -20,18 +20,19 @@ HullMeasures measure_hull(std::span<const glm::dvec3>);
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double pi = std::numbers::pi;
 
 struct Volume {
-    double operator()(const SphereDesc &s) const { return 4.0 / 3.0 * pi * std::pow(s.radius, 3); }
+    double operator()(const SphereDesc &s) const {
+        return 4.0 / 3.0 * std::numbers::pi * std::pow(s.radius, 3);
+    }
     double operator()(const BoxDesc &b) const {
         return 8 * b.half_extents.x * b.half_extents.y * b.half_extents.z;
     }
     double operator()(const CapsuleDesc &c) const {
-        return pi * c.radius * c.radius * (2 * c.half_height + 4.0 / 3.0 * c.radius);
+        return std::numbers::pi * c.radius * c.radius * (2 * c.half_height + 4.0 / 3.0 * c.radius);
     }
     double operator()(const CylinderDesc &c) const {
-        return pi * c.radius * c.radius * 2 * c.half_height;
+        return std::numbers::pi * c.radius * c.radius * 2 * c.half_height;
     }
     double operator()(const HullDesc &h) const { return f64::measure_hull(*h.points).volume; }
     double operator()(const PlaneDesc &) const { return infinite; }
@@ -54,7 +55,7 @@ struct SmallestWidth {
     double operator()(const HeightFieldDesc &) const { return infinite; }
 };
 
-struct Bounds {
+struct BoundsOf {
     const glm::dvec3 &position;
     const glm::dquat &orientation;
 
@@ -111,7 +112,7 @@ double smallest_width(const ShapeDesc &shape) {
 
 BoundsDesc bounds(const ShapeDesc &shape, const glm::dvec3 &position,
                   const glm::dquat &orientation) {
-    return std::visit(Bounds{position, orientation}, shape);
+    return std::visit(BoundsOf{position, orientation}, shape);
 }
 
 glm::dvec3 sample_point(const HeightFieldDesc &field, int row, int column) {

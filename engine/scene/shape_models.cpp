@@ -10,8 +10,6 @@ namespace plumb {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 // A grid of points over [0, 1] x [0, 1], as triangles; a direction that closes has its last row at
 // its first. Points that coincide (the poles of a ball) are one vertex.
 template <typename Place>
@@ -50,9 +48,10 @@ MeshData unit_model(MeshModel::Kind kind, int detail) {
     using enum MeshModel::Kind;
     const auto on_ball = [](double u, double v) {
         // The poles are exact, so that their copies are one.
-        const double ring = u == 0 || u == 1 ? 0 : std::sin(pi * u);
-        return glm::dvec3(ring * std::sin(2 * pi * v), u == 1 ? -1 : std::cos(pi * u),
-                          ring * std::cos(2 * pi * v));
+        const double ring = u == 0 || u == 1 ? 0 : std::sin(std::numbers::pi * u);
+        return glm::dvec3(ring * std::sin(2 * std::numbers::pi * v),
+                          u == 1 ? -1 : std::cos(std::numbers::pi * u),
+                          ring * std::cos(2 * std::numbers::pi * v));
     };
     if (kind == ball)
         return grid(detail, 2 * detail, false, true, on_ball);
@@ -62,13 +61,14 @@ MeshData unit_model(MeshModel::Kind kind, int detail) {
         });
     if (kind == torus)
         return grid(2 * detail, detail, true, true, [](double u, double v) {
-            const double ring = 0.7 + 0.3 * std::cos(2 * pi * v);
-            return glm::dvec3(ring * std::sin(2 * pi * u), std::sin(2 * pi * v),
-                              ring * std::cos(2 * pi * u));
+            const double ring = 0.7 + 0.3 * std::cos(2 * std::numbers::pi * v);
+            return glm::dvec3(ring * std::sin(2 * std::numbers::pi * u),
+                              std::sin(2 * std::numbers::pi * v),
+                              ring * std::cos(2 * std::numbers::pi * u));
         });
     // A tube around a trefoil.
     const auto on_knot = [](double u) {
-        const double t = 2 * pi * u;
+        const double t = 2 * std::numbers::pi * u;
         return glm::dvec3(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t),
                           -std::sin(3 * t)) /
                3.0;
@@ -77,7 +77,8 @@ MeshData unit_model(MeshModel::Kind kind, int detail) {
         const glm::dvec3 along = glm::normalize(on_knot(u + 1e-4) - on_knot(u - 1e-4));
         const glm::dvec3 side = glm::normalize(glm::cross(along, glm::dvec3(0, 0, 1)));
         const glm::dvec3 up = glm::cross(side, along);
-        return 0.85 * on_knot(u) + 0.14 * (std::cos(2 * pi * v) * side + std::sin(2 * pi * v) * up);
+        return 0.85 * on_knot(u) + 0.14 * (std::cos(2 * std::numbers::pi * v) * side +
+                                           std::sin(2 * std::numbers::pi * v) * up);
     });
 }
 

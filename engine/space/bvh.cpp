@@ -1,6 +1,7 @@
 #include "engine/space/bvh.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/aabb.h"
 
 #include <cmath>
 #include <iterator>
@@ -10,16 +11,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-Aabb joined(const Aabb &a, const Aabb &b) {
-    return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
-}
-
-// Half the surface area: what the cost of a tree is counted in.
-Real area(const Aabb &box) {
-    const Vec3 size = box.max - box.min;
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-}
 
 void check_box(const Aabb &box, std::size_t item) {
     constexpr Real reach = Real(1e15);
@@ -157,7 +148,7 @@ struct Bvh::Builder {
 
     static Real cost(const Aabb &box, std::uint32_t count) {
         const std::size_t leaves = (count + leaf_size - 1) / leaf_size;
-        return count == 0 ? Real(0) : area(box) * static_cast<Real>(leaves);
+        return count == 0 ? Real(0) : half_area(box) * static_cast<Real>(leaves);
     }
 
     // Where the right side of the range begins; its items are put in order.
@@ -209,8 +200,8 @@ struct Bvh::Builder {
             std::size_t widest = width;
             for (std::size_t i = 0; i < count; ++i)
                 if (branches[children[i]].left != 0 &&
-                    (widest == width || area(branches[children[i]].range.box) >
-                                            area(branches[children[widest]].range.box)))
+                    (widest == width || half_area(branches[children[i]].range.box) >
+                                            half_area(branches[children[widest]].range.box)))
                     widest = i;
             if (widest == width)
                 break;

@@ -1,6 +1,7 @@
 #include "engine/space/dynamic_tree.h"
 
 #include "engine/core/check.h"
+#include "engine/geometry/aabb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,22 +12,12 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-Aabb joined(const Aabb &a, const Aabb &b) {
-    return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
-}
-
 bool holds(const Aabb &outer, const Aabb &inner) {
     return outer.min.x <= inner.min.x && outer.min.y <= inner.min.y && outer.min.z <= inner.min.z &&
            inner.max.x <= outer.max.x && inner.max.y <= outer.max.y && inner.max.z <= outer.max.z;
 }
 
-// Half the surface area: what the cost of a tree is counted in (Goldsmith and Salmon 1987).
-Real area(const Aabb &box) {
-    const Vec3 size = box.max - box.min;
-    return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
-void check_box(const Aabb &box) {
+void check_finite_box(const Aabb &box) {
     for (int i = 0; i < 3; ++i) {
         PLUMB_CHECK(std::isfinite(box.min[i]) && std::isfinite(box.max[i]),
                     "a box in a tree must be finite, got [" << box.min[i] << ", " << box.max[i]
@@ -78,7 +69,7 @@ Aabb DynamicTree::fattened(const Aabb &box) const {
 }
 
 DynamicTree::Leaf DynamicTree::insert(const Aabb &box, std::uint32_t user) {
-    check_box(box);
+    check_finite_box(box);
     const Index leaf = allocate();
     node(leaf).box = fattened(box);
     node(leaf).user = user;
@@ -96,7 +87,7 @@ void DynamicTree::remove(Leaf leaf) {
 
 bool DynamicTree::update(Leaf leaf, const Aabb &box, const Vec3 &way) {
     check_leaf(leaf);
-    check_box(box);
+    check_finite_box(box);
     if (plumb::holds(node(leaf).box, box))
         return false;
     unlink(leaf);
@@ -148,9 +139,9 @@ void DynamicTree::release(Index index) {
 // what all its ancestors grow by. Branch and bound: below a node the cost is at least the leaf's
 // own area and the growth so far.
 DynamicTree::Index DynamicTree::best_sibling(const Aabb &box) const {
-    const Real own_area = area(box);
+    const Real own_area = half_area(box);
     Index best = root_;
-    Real best_cost = area(joined(node(root_).box, box));
+    Real best_cost = half_area(joined(node(root_).box, box));
     Pending pending; // the key is the growth of the ancestors
     pending.push(root_, Real(0));
     while (!pending.is_empty()) {
@@ -158,7 +149,7 @@ DynamicTree::Index DynamicTree::best_sibling(const Aabb &box) const {
         if (own_area + entry.key >= best_cost)
             continue;
         const Node &here = node(entry.index);
-        const Real joined_area = area(joined(here.box, box));
+        const Real joined_area = half_area(joined(here.box, box));
         const Real cost = joined_area + entry.key;
         if (cost < best_cost) {
             best_cost = cost;
@@ -166,14 +157,14 @@ DynamicTree::Index DynamicTree::best_sibling(const Aabb &box) const {
         }
         if (here.is_leaf())
             continue;
-        const Real growth = entry.key + (joined_area - area(here.box));
+        const Real growth = entry.key + (joined_area - half_area(here.box));
         if (own_area + growth >= best_cost)
             continue;
         // The child that grows less first: its cost is likely to bound the other away.
         std::array<Real, 2> grown{};
         for (std::size_t i = 0; i < 2; ++i) {
             const Aabb &child = node(here.children[i]).box;
-            grown[i] = area(joined(child, box)) - area(child);
+            grown[i] = half_area(joined(child, box)) - half_area(child);
         }
         const std::size_t later = grown[1] < grown[0] ? 0 : 1;
         pending.push(here.children[later], growth);
@@ -253,10 +244,10 @@ void DynamicTree::rotate(Index index) {
         const Node &other = node(here.children[1 - i]);
         if (other.is_leaf())
             continue;
-        const Real old_area = area(other.box);
+        const Real old_area = half_area(other.box);
         for (std::size_t j = 0; j < 2; ++j) {
             const Aabb &stays = node(other.children[1 - j]).box;
-            const Real gain = old_area - area(joined(child.box, stays));
+            const Real gain = old_area - half_area(joined(child.box, stays));
             if (gain > best_gain) {
                 best_gain = gain;
                 best_child = i;
@@ -296,7 +287,8 @@ void DynamicTree::overlapping_pairs(
                 pairs.push_back(std::minmax({node(a).user, node(b).user}));
                 continue;
             }
-            if (node(a).is_leaf() || (!node(b).is_leaf() && area(node(a).box) < area(node(b).box)))
+            if (node(a).is_leaf() ||
+                (!node(b).is_leaf() && half_area(node(a).box) < half_area(node(b).box)))
                 std::swap(a, b);
             pending.emplace_back(node(a).children[0], b);
             pending.emplace_back(node(a).children[1], b);

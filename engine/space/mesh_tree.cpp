@@ -4,6 +4,7 @@
 #include "engine/geometry/raycast.h"
 #include "engine/geometry/triangle.h"
 #include "engine/geometry/triangle_overlap.h"
+#include "engine/math/constants.h"
 #include "engine/math/predicates.h"
 #include "engine/math/printed.h"
 
@@ -18,8 +19,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
-
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
 
 std::vector<Aabb> boxes_of(const TriangleMesh &mesh) {
     check_valid(mesh);
@@ -36,7 +35,7 @@ bool is_within_reach(const Vec3 &point) {
            std::abs(point.z) <= mesh_reach;
 }
 
-void check_point(const Vec3 &point) {
+void check_point_of_mesh(const Vec3 &point) {
     PLUMB_CHECK(is_within_reach(point), "a point asked of a mesh must be finite and within "
                                             << mesh_reach << " m, got " << Printed{point});
 }
@@ -47,7 +46,7 @@ constexpr Real least_length =
 constexpr Real most_length =
     sizeof(Real) == sizeof(double) ? Real(1e300) : std::numeric_limits<Real>::max();
 
-void check_ray(const Ray &ray) {
+void check_ray_of_mesh(const Ray &ray) {
     const Vec3 &o = ray.origin;
     const Vec3 &d = ray.direction;
     const Real length = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
@@ -73,7 +72,7 @@ Aabb grown(const Aabb &box, Real by) {
     return {box.min - by, box.max + by};
 }
 
-Real largest(const Vec3 &v) {
+Real largest_part(const Vec3 &v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
@@ -118,7 +117,8 @@ void MeshTree::pack() {
                 for (int axis = 0; axis < 3; ++axis)
                     block.corners[corner][axis][lane] = (*corners[corner])[axis];
             const Vec3 size = glm::max(glm::max(t.a, t.b), t.c) - glm::min(glm::min(t.a, t.b), t.c);
-            block.sizes[lane] = is_used ? largest(size) : -std::numeric_limits<Real>::infinity();
+            block.sizes[lane] =
+                is_used ? largest_part(size) : -std::numeric_limits<Real>::infinity();
             block.triangles[lane] = item;
         }
     }
@@ -169,7 +169,7 @@ glm::dvec3 weights_at(const Triangle &triangle, const Vec3 &point) {
 } // namespace
 
 std::optional<MeshHit> raycast(const MeshTree &mesh, const Ray &ray) {
-    check_ray(ray);
+    check_ray_of_mesh(ray);
     const WideRay prepared = wide_ray(ray, mesh.tree().bounds());
     WideHit found;
     if (!first_hit(mesh.tree().nodes(), mesh.blocks().data(), prepared, found))
@@ -194,20 +194,20 @@ std::optional<MeshHit> raycast(const MeshTree &mesh, const Ray &ray) {
 }
 
 bool is_met(const MeshTree &mesh, const Ray &ray) {
-    check_ray(ray);
+    check_ray_of_mesh(ray);
     return any_hit(mesh.tree().nodes(), mesh.blocks().data(), wide_ray(ray, mesh.tree().bounds()));
 }
 
 bool linetest(const MeshTree &mesh, const Vec3 &a, const Vec3 &b) {
-    check_point(a);
-    check_point(b);
+    check_point_of_mesh(a);
+    check_point_of_mesh(b);
     // Boxes are asked for the segment's middle and half, grown by what rounding may take from the
     // three axes across the segment and the three of the box (Ericson 2005, "Real-Time Collision
     // Detection", 5.3.3).
     const Vec3 middle = (a + b) / Real(2);
     const Vec3 half = (b - a) / Real(2);
     const Vec3 size = glm::abs(half);
-    const Real reach = largest(middle) + largest(size);
+    const Real reach = largest_part(middle) + largest_part(size);
     const Real slack = Real(8) * epsilon * reach;
     bool is_found = false;
     mesh.tree().query_where(
@@ -243,7 +243,7 @@ bool linetest(const MeshTree &mesh, const Vec3 &a, const Vec3 &b) {
 
 bool overlaps(const MeshTree &mesh, const Sphere &sphere) {
     check_valid(sphere);
-    const Real slack = Real(8) * epsilon * (largest(sphere.center) + sphere.radius);
+    const Real slack = Real(8) * epsilon * (largest_part(sphere.center) + sphere.radius);
     return overlaps_within(mesh, grown(bounds(sphere), slack), sphere);
 }
 
@@ -259,8 +259,8 @@ bool overlaps(const MeshTree &mesh, const Aabb &box) {
 bool overlaps(const MeshTree &mesh, const Box &box) {
     check_valid(box);
     // A rotation may be off unit length by 16 epsilon, and a reach, of three parts, with it.
-    const Real slack =
-        Real(256) * epsilon * largest(box.half_extents) + Real(8) * epsilon * largest(box.center);
+    const Real slack = Real(256) * epsilon * largest_part(box.half_extents) +
+                       Real(8) * epsilon * largest_part(box.center);
     return overlaps_within(mesh, grown(bounds(box), slack), box);
 }
 
@@ -296,7 +296,7 @@ bool overlaps(const MeshTree &mesh, const Triangle &triangle) {
 }
 
 Vec3 closest_point(const MeshTree &mesh, const Vec3 &point) {
-    check_point(point);
+    check_point_of_mesh(point);
     PLUMB_CHECK(mesh.tree().size() > 0,
                 "a mesh with " << mesh.tree().size() << " triangles has no closest point");
     Vec3 best{Real(0)};

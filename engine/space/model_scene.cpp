@@ -1,6 +1,7 @@
 #include "engine/space/model_scene.h"
 
 #include "engine/core/check.h"
+#include "engine/math/constants.h"
 #include "engine/math/printed.h"
 
 #include <algorithm>
@@ -12,17 +13,15 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-
-bool is_within_reach(const Vec3 &v) {
+bool can_be_placed(const Vec3 &v) {
     return std::abs(v.x) <= mesh_reach && std::abs(v.y) <= mesh_reach &&
            std::abs(v.z) <= mesh_reach;
 }
 
 void check_placement(const Placement &placement, const char *whose) {
-    PLUMB_CHECK(is_within_reach(placement.position), whose << " position must be finite and within "
-                                                           << mesh_reach << " m, got "
-                                                           << Printed{placement.position});
+    PLUMB_CHECK(can_be_placed(placement.position), whose << " position must be finite and within "
+                                                         << mesh_reach << " m, got "
+                                                         << Printed{placement.position});
     const Quat &q = placement.rotation;
     PLUMB_CHECK(is_unit(glm::dot(q, q)),
                 whose << " rotation must have unit length, got (w, x, y, z) = (" << q.w << ", "

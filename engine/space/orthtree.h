@@ -307,11 +307,11 @@ template <typename Distance>
 auto Orthtree<Dim>::closest(const Point &point, Distance &&distance) const
     -> std::optional<Closest> {
     check_point(point);
-    constexpr Real infinity = std::numeric_limits<Real>::infinity();
+    constexpr Real endless = std::numeric_limits<Real>::infinity();
     // The squares are rounded, each by less than 4 epsilon of itself.
     constexpr Real slack = Real(1) + Real(8) * std::numeric_limits<Real>::epsilon();
-    Closest best{0, infinity};
-    Real bound = infinity; // boxes with a squared distance above it are not closer
+    Closest best{0, endless};
+    Real bound = endless; // boxes with a squared distance above it are not closer
     struct Near {
         Index cell;
         Real squared;
@@ -350,7 +350,7 @@ auto Orthtree<Dim>::closest(const Point &point, Distance &&distance) const
             pending[place] = next;
         }
     }
-    if (best.distance == infinity)
+    if (best.distance == endless)
         return std::nullopt;
     return best;
 }

@@ -18,7 +18,7 @@ namespace {
 // lifts a body of a metre by less than the margin of contact features.
 constexpr Real flat_angle = Real(1e-3);
 
-Vec3 normal_of(const Triangle &t) {
+Vec3 normal_or_zero(const Triangle &t) {
     const Vec3 normal = glm::cross(t.b - t.a, t.c - t.a);
     const Real length = glm::length(normal);
     return length > Real(0) ? normal / length : Vec3{Real(0)};
@@ -34,7 +34,7 @@ struct EdgeUse {
     std::uint32_t edge = 0;
 };
 
-void add(StateHash &hash, const Vec3 &v) {
+void add_vector(StateHash &hash, const Vec3 &v) {
     hash.add(v.x);
     hash.add(v.y);
     hash.add(v.z);
@@ -100,7 +100,7 @@ Triangle TriangleSurface::triangle(std::uint32_t index) const {
 
 Vec3 TriangleSurface::normal_beyond(std::uint32_t index, int edge) const {
     const std::uint32_t other = neighbors_[index][static_cast<std::size_t>(edge)];
-    return normal_of(triangle(other == none ? index : other));
+    return normal_or_zero(triangle(other == none ? index : other));
 }
 
 // Edges that two triangles use in opposite directions join them; one that more than two use, or
@@ -113,7 +113,7 @@ void TriangleSurface::link(const std::vector<std::array<std::uint32_t, 3>> &corn
     for (std::uint32_t i = 0; i < corners.size(); ++i) {
         const Triangle t = triangle(i);
         for (const Vec3 &point : {t.a, t.b, t.c})
-            add(hash, point);
+            add_vector(hash, point);
         for (std::uint32_t edge = 0; edge < 3; ++edge) {
             const std::uint32_t from = corners[i][edge], to = corners[i][(edge + 1) % 3];
             uses.push_back({std::min(from, to), std::max(from, to), i, edge});
@@ -136,7 +136,7 @@ void TriangleSurface::link(const std::vector<std::array<std::uint32_t, 3>> &corn
                 neighbors_[p.triangle][p.edge] = q.triangle;
                 neighbors_[q.triangle][q.edge] = p.triangle;
                 const Triangle t = triangle(p.triangle), u = triangle(q.triangle);
-                const Vec3 n = normal_of(t), m = normal_of(u);
+                const Vec3 n = normal_or_zero(t), m = normal_or_zero(u);
                 // The far corner of the neighbour lies below the face's plane at a ridge.
                 const Vec3 &far = corner(u, static_cast<int>((q.edge + 2) % 3));
                 const bool is_below = glm::dot(n, far - corner(t, static_cast<int>(p.edge))) < 0;

@@ -1,3 +1,4 @@
+#include "engine/math/constants.h"
 #include "engine/space/wide_raycast.h"
 
 #include "engine/geometry/raycast.h"
@@ -41,7 +42,6 @@ WideRay wide_ray(const Ray &ray, const Aabb &bounds) {
     // is off by 1.5 epsilon reach at most. The origins are moved by more than that, whatever is
     // lost in moving them. A component of zero, or nearly, takes the ray less far than its origin
     // is moved: with 2^-60 in its place all that is computed is finite.
-    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
     constexpr Real least = Real(0x1p-60);
     for (std::size_t i = 0; i < 3; ++i) {
         result.origin[i] = origin[i];

@@ -22,9 +22,9 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // Up to six unknowns of a body or particle: changes of velocity along the world's axes, then of
-// spin about them. `none` where nothing changes.
+// spin about them. `no_block` where nothing changes.
 using Unknowns = std::array<int, 6>;
-constexpr int none = -1;
+constexpr int no_block = -1;
 
 // The system of one substep, in double: stiff springs between light particles are told apart.
 class System {
@@ -56,7 +56,7 @@ class System {
         const auto at = [&](const Unknowns &unknowns, std::size_t first) {
             Vec3 sum{Real(0)};
             for (std::size_t axis = 0; axis < 3; ++axis)
-                if (unknowns[first + axis] != none)
+                if (unknowns[first + axis] != no_block)
                     sum[static_cast<int>(axis)] = static_cast<Real>(change[unknowns[first + axis]]);
             return sum;
         };
@@ -69,14 +69,16 @@ class System {
     }
 
   private:
-    static constexpr Unknowns all_none() { return {none, none, none, none, none, none}; }
+    static constexpr Unknowns all_none() {
+        return {no_block, no_block, no_block, no_block, no_block, no_block};
+    }
 
     void add_entry(int row, int column, double value) {
-        if (row != none && column != none)
+        if (row != no_block && column != no_block)
             entries_.emplace_back(row, column, value);
     }
     void add_side(int row, double value) {
-        if (row != none)
+        if (row != no_block)
             side_[row] += value;
     }
 
@@ -158,7 +160,7 @@ class System {
         for (std::size_t one = 0; one < 2; ++one)
             for (std::size_t i = 0; i < 6; ++i) {
                 const int row = ends[one].unknowns[i];
-                if (row == none)
+                if (row == no_block)
                     continue;
                 const glm::dvec3 &effect = ends[one].effects[i];
                 add_side(row, (one == 0 ? -1 : 1) * glm::dot(effect, pull));
@@ -195,7 +197,7 @@ void kick_free_bodies(StepContext &context, const Accelerations &now, Real h) {
     }
 }
 
-void advance(StepContext &context) {
+void advance_backward_euler(StepContext &context) {
     const StepSettings &settings = context.settings;
     const double h = settings.dt / settings.substeps;
     Accelerations &now = context.scratch.accelerations[0];
@@ -220,7 +222,7 @@ Method backward_euler() {
              .springs = true,
              .reads = {},
              .defaults = {.substeps = 1, .iterations = 1}},
-            advance};
+            advance_backward_euler};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -7,7 +7,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void advance(StepContext &context) {
+void advance_explicit_euler(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     Accelerations &start = context.scratch.accelerations[0];
@@ -29,7 +29,7 @@ Method explicit_euler() {
              .springs = true,
              .reads = {},
              .defaults = {.substeps = 1, .iterations = 1}},
-            advance};
+            advance_explicit_euler};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -25,7 +25,7 @@ template <typename Contact> auto points_of(Contact &contact) {
 }
 
 // Points that are apart as the step begins have no mass left (leave_out_what_is_apart).
-bool touches(const ContactPointConstraint &point) {
+bool point_touches(const ContactPointConstraint &point) {
     return point.normal_mass > Real(0);
 }
 
@@ -70,7 +70,7 @@ void project(StepContext &context) {
         SolverBody &b = context.bodies[contact.b];
         Real depth = Real(0);
         for (const ContactPointConstraint &point : points_of(contact))
-            if (touches(point))
+            if (point_touches(point))
                 depth = std::max(depth, -present_separation(contact, point, a, b));
         const Real inverse = a.inv_mass_along(contact.normal) + b.inv_mass_along(contact.normal);
         if (depth <= slop || !(inverse > Real(0)))
@@ -94,15 +94,16 @@ void leave_out_what_is_apart(StepContext &context) {
 // One pass: the impulse of each point is shared out among those of its contact.
 void strike_all(StepContext &context) {
     for (ContactConstraint &contact : context.scratch.contacts) {
-        const auto share = static_cast<Real>(std::ranges::count_if(points_of(contact), touches));
+        const auto share =
+            static_cast<Real>(std::ranges::count_if(points_of(contact), point_touches));
         for (ContactPointConstraint &point : points_of(contact))
-            if (touches(point))
+            if (point_touches(point))
                 strike(contact, point, context.bodies[contact.a], context.bodies[contact.b], share);
     }
     context.report.constraint_passes += context.scratch.contacts.size();
 }
 
-void advance(StepContext &context) {
+void advance_naive_impulses(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Vec3 gravity{settings.gravity};
@@ -131,7 +132,7 @@ Method naive_impulses() {
          .reads = {SettingGroup::speculative, SettingGroup::constraints, SettingGroup::baumgarte,
                    SettingGroup::gyroscopic},
          .defaults = {.substeps = 1, .iterations = 5, .penetration_slop = 0.01, .baumgarte = 0.45}},
-        advance};
+        advance_naive_impulses};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

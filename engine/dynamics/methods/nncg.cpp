@@ -70,7 +70,7 @@ template <typename Pass> void search(StepContext &context, const Pass &pass) {
     }
 }
 
-void advance(StepContext &context) {
+void advance_nncg(StepContext &context) {
     advance_by_impulses(context, [&](const auto &pass) { search(context, pass); });
 }
 
@@ -85,7 +85,7 @@ Method nncg() {
              .springs = true,
              .reads = read_by_impulses(),
              .defaults = {.substeps = 1, .iterations = 50}},
-            advance};
+            advance_nncg};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

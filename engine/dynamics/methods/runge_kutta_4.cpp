@@ -147,7 +147,7 @@ void take_substep(StepContext &context, Real h) {
         context.particles[i] = particles.start(i) + (h / 6) * particles.sum(i);
 }
 
-void advance(StepContext &context) {
+void advance_runge_kutta_4(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     for (int substep = 0; substep < settings.substeps; ++substep)
@@ -165,7 +165,7 @@ Method rk4() {
              .springs = true,
              .reads = {},
              .defaults = {.substeps = 1, .iterations = 1}},
-            advance};
+            advance_runge_kutta_4};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -7,7 +7,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void advance(StepContext &context) {
+void advance_semi_implicit_euler(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -27,7 +27,7 @@ Method semi_implicit_euler() {
              .springs = true,
              .reads = {},
              .defaults = {.substeps = 1, .iterations = 1}},
-            advance};
+            advance_semi_implicit_euler};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -8,7 +8,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void advance(StepContext &context) {
+void advance_sequential_impulses(StepContext &context) {
     advance_by_impulses(context, [&](const auto &pass) {
         for (int i = 0; i < context.settings.iterations; ++i)
             pass();
@@ -26,7 +26,7 @@ Method sequential_impulses() {
              .springs = true,
              .reads = read_by_impulses(),
              .defaults = {.substeps = 1, .iterations = 10}},
-            advance};
+            advance_sequential_impulses};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

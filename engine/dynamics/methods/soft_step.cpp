@@ -18,7 +18,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void advance(StepContext &context) {
+void advance_soft_step(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Real rate = Real(1) / h;
@@ -126,7 +126,7 @@ Method soft_step() {
                           .sleep_after = 0.5,
                           .iterations = 1,
                           .contact_damping_ratio = 1}},
-            advance};
+            advance_soft_step};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

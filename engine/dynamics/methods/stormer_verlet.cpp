@@ -11,7 +11,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void advance(StepContext &context) {
+void advance_stormer_verlet(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     Accelerations &middle = context.scratch.accelerations[0];
@@ -41,7 +41,7 @@ Method stormer_verlet() {
              .springs = true,
              .reads = {},
              .defaults = {.substeps = 1, .iterations = 1}},
-            advance};
+            advance_stormer_verlet};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -7,7 +7,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void advance(StepContext &context) {
+void advance_tgs_soft(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Real rate = Real(1) / h;
@@ -68,7 +68,7 @@ Method tgs_soft() {
              .reads = {SettingGroup::constraints, SettingGroup::speculative, SettingGroup::soft,
                        SettingGroup::push, SettingGroup::threshold, SettingGroup::gyroscopic},
              .defaults = {.substeps = 4, .iterations = 1}},
-            advance};
+            advance_tgs_soft};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -9,7 +9,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-void advance(StepContext &context) {
+void advance_velocity_verlet(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     Accelerations &now = context.scratch.accelerations[0];
@@ -40,7 +40,7 @@ Method velocity_verlet() {
              .springs = true,
              .reads = {},
              .defaults = {.substeps = 1, .iterations = 1}},
-            advance};
+            advance_velocity_verlet};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

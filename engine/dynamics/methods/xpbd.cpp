@@ -205,7 +205,7 @@ void store(StepContext &context, Real h) {
     store_contacts(context);
 }
 
-void advance(StepContext &context) {
+void advance_xpbd(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Vec3 gravity{settings.gravity};
@@ -245,7 +245,7 @@ Method xpbd() {
              .reads = {SettingGroup::constraints, SettingGroup::speculative,
                        SettingGroup::threshold, SettingGroup::gyroscopic},
              .defaults = {.substeps = 20, .iterations = 1}},
-            advance};
+            advance_xpbd};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -18,11 +18,6 @@ struct JointEnd {
     std::optional<glm::dquat> frame_local;
 };
 
-bool is_world(const Table &table, std::string_view key) {
-    const toml::node *node = table.node(key);
-    return node == nullptr || (node->is_string() && node->as_string()->get() == "world");
-}
-
 glm::dvec3 to_local(const SceneDesc &scene, const std::optional<std::size_t> &index,
                     const glm::dvec3 &world) {
     if (!index)

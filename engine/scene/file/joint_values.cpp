@@ -4,8 +4,6 @@
 
 namespace plumb::scene_file {
 
-using Frames = JointTypeInfo::Frames;
-
 Words joint_keys_in_files() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all{
@@ -140,14 +138,14 @@ void refuse_keys_of_others(Report &report, const Table &table, const JointTypeIn
     std::vector<std::string_view> with_axis;
     std::vector<std::string_view> with_frames;
     for (const JointTypeInfo *other : joint_types()) {
-        if (other->frames == Frames::axis)
+        if (other->frames == JointTypeInfo::Frames::axis)
             with_axis.push_back(other->name);
-        if (other->frames != Frames::none)
+        if (other->frames != JointTypeInfo::Frames::none)
             with_frames.push_back(other->name);
     }
-    if (type.frames != Frames::axis)
+    if (type.frames != JointTypeInfo::Frames::axis)
         refuse("axis", with_axis);
-    if (type.frames == Frames::none)
+    if (type.frames == JointTypeInfo::Frames::none)
         for (const std::string_view key : {"frame_a_local", "frame_b_local"})
             refuse(key, with_frames);
     const auto belongs = [](const JointTypeInfo &to, std::string_view key) {

@@ -22,11 +22,6 @@ struct SpringEnd {
     double inv_mass = 0; // 1/kg; 0 for what never moves
 };
 
-bool is_world(const Table &table, std::string_view key) {
-    const toml::node *node = table.node(key);
-    return node == nullptr || (node->is_string() && node->as_string()->get() == "world");
-}
-
 // A cloth's particle, when the name begins with a cloth's. Reports a particle that it has not.
 bool find_cloth_particle(const Reading &reading, const Table &table, std::string_view key,
                          const std::string &name, std::optional<SpringEnd> &end) {

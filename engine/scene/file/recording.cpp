@@ -164,7 +164,7 @@ void read_hashes(Reading &reading, const toml::table &source, Recording &recordi
 
 // ---- writing
 
-struct Lines {
+struct PartLines {
     std::string text;
     std::string tables; // they come after all values
 
@@ -233,7 +233,7 @@ std::string write_recording(const Recording &recording) {
         std::visit(
             [&](const auto &what) {
                 text += "do = \"" + std::string(what.name) + "\"\n";
-                Lines lines;
+                PartLines lines;
                 what.each_field(what, lines);
                 text += lines.text + lines.tables;
             },

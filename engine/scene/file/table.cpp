@@ -351,4 +351,9 @@ glm::dquat read_rotation(Report &report, const Table &table) {
     return orientation;
 }
 
+bool is_world(const Table &table, std::string_view key) {
+    const toml::node *node = table.node(key);
+    return node == nullptr || (node->is_string() && node->as_string()->get() == "world");
+}
+
 } // namespace plumb::scene_file

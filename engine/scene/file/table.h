@@ -178,6 +178,9 @@ void for_each(Report &report, const Table &parent, std::string_view key, Read &&
     }
 }
 
+// Whether what the key names, of a joint or a spring, is the world: so it is without the key.
+bool is_world(const Table &table, std::string_view key);
+
 // rotation_deg, or axis and angle_deg, or orientation: one of them at most; by default none.
 glm::dquat read_rotation(Report &report, const Table &table);
 

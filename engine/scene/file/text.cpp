@@ -46,11 +46,11 @@ std::string string(std::string_view value) {
 }
 
 std::optional<double> exact_degrees(double radians) {
-    constexpr double degree = std::numbers::pi / 180;
-    const double degrees = radians / degree;
+    constexpr double one = std::numbers::pi / 180;
+    const double degrees = radians / one;
     for (const double candidate :
          {std::round(degrees * 1e6) / 1e6, std::round(degrees * 1e12) / 1e12, degrees})
-        if (same_bits(candidate * degree, radians))
+        if (same_bits(candidate * one, radians))
             return candidate;
     return std::nullopt;
 }

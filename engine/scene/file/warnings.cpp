@@ -42,9 +42,9 @@ std::string in_quotes(const std::string &name) {
 }
 
 // The warnings of one kind, cut after the first few.
-class Kind {
+class Group {
   public:
-    explicit Kind(std::string more) : more_(std::move(more)) {}
+    explicit Group(std::string more) : more_(std::move(more)) {}
 
     void add(const FilePosition &at, std::string what, std::string suggestion) {
         ++count_;
@@ -85,8 +85,8 @@ class Checker {
         check_pairs();
         check_dt();
         std::vector<SceneMessage> all;
-        for (Kind *kind : {&overlaps_, &mass_ratios_, &gaps_, &idle_joints_, &idle_springs_,
-                           &stiff_springs_, &fast_, &spinning_, &falling_, &pendulums_})
+        for (Group *kind : {&overlaps_, &mass_ratios_, &gaps_, &idle_joints_, &idle_springs_,
+                            &stiff_springs_, &fast_, &spinning_, &falling_, &pendulums_})
             kind->move_into(all);
         return all;
     }
@@ -337,16 +337,16 @@ class Checker {
     StartOverlaps start_overlaps_;
     std::vector<std::pair<std::size_t, std::size_t>> exempt_; // sorted
 
-    Kind overlaps_{"overlaps"};
-    Kind mass_ratios_{"such pairs"};
-    Kind gaps_{"such joints"};
-    Kind idle_joints_{"such joints"};
-    Kind idle_springs_{"such springs"};
-    Kind stiff_springs_{"such springs"};
-    Kind fast_{"such bodies"};
-    Kind spinning_{"such bodies"};
-    Kind falling_{"such bodies"};
-    Kind pendulums_{"such joints"};
+    Group overlaps_{"overlaps"};
+    Group mass_ratios_{"such pairs"};
+    Group gaps_{"such joints"};
+    Group idle_joints_{"such joints"};
+    Group idle_springs_{"such springs"};
+    Group stiff_springs_{"such springs"};
+    Group fast_{"such bodies"};
+    Group spinning_{"such bodies"};
+    Group falling_{"such bodies"};
+    Group pendulums_{"such joints"};
 };
 
 } // namespace

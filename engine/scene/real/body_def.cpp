@@ -2,6 +2,7 @@
 
 #include "engine/geometry/quickhull.h"
 #include "engine/math/rigid.h"
+#include "engine/scene/real/hull_measures.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -11,8 +12,6 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // No shape of a scene needs more: a smooth hull of so many corners is round to 1 %.
-constexpr int max_hull_vertices = 256;
-
 std::shared_ptr<const HullMesh> make_hull(const HullDesc &desc, const std::string &body) {
     std::vector<Vec3> points;
     for (const glm::dvec3 &point : *desc.points)

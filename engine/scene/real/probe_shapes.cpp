@@ -14,7 +14,6 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr int circle_sides = 64;
 
 Real real(double value) {
@@ -116,7 +115,7 @@ class Drawing {
     void operator()(const Circle &circle) const {
         std::vector<glm::dvec3> corners;
         for (int i = 0; i < circle_sides; ++i) {
-            const double angle = 2 * pi * i / circle_sides;
+            const double angle = 2 * std::numbers::pi * i / circle_sides;
             corners.push_back(wide(circle.center) +
                               static_cast<double>(circle.radius) *
                                   glm::dvec3(std::cos(angle), std::sin(angle), 0));
