@@ -10,13 +10,14 @@ words that are given here. Counted are the files that a person edits or adds, do
 aside. With GCC's words: exit code 77 with another compiler.
 """
 
-import json
 import os
 import re
 import shlex
 import subprocess
 import sys
 import tempfile
+
+from compile_commands import per_file
 
 SKIPPED = 77
 REGISTRY = "engine/dynamics/methods/registry.cpp"
@@ -160,8 +161,7 @@ def check_panels(source, commands, build):
 
 def main():
     source, build = (os.path.abspath(path) for path in sys.argv[1:3])
-    with open(os.path.join(build, "compile_commands.json")) as stream:
-        entries = json.load(stream)
+    entries = per_file(build)
     commands = {}
     for entry in entries:
         commands.setdefault(os.path.relpath(entry["file"], source), entry["command"])

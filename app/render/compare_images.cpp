@@ -160,11 +160,12 @@ struct Sensitivity {
 constexpr Sensitivity achromatic{1, 0.0047, 0, 1e-5};
 constexpr Sensitivity red_green{1, 0.0053, 0, 1e-5};
 constexpr Sensitivity blue_yellow{34.1, 0.04, 13.5, 0.025};
-constexpr double widest = 0.04;
+constexpr double widest_spot = 0.04;
 
 Plane filter_as_seen(const Plane &in, int width, int height, const Sensitivity &s, double ppd) {
     constexpr double pi = std::numbers::pi;
-    const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * ppd));
+    const int radius =
+        static_cast<int>(std::ceil(3 * std::sqrt(widest_spot / (2 * pi * pi)) * ppd));
     const auto gaussian = [&](double b) {
         return sampled(radius, [&](double k) {
             const double x = k / ppd;

@@ -8,6 +8,7 @@
 #include <imgui/imgui.h>
 
 #include "app/render/shader_program.h"
+#include "app/render/vertex_input.h"
 #include "engine/core/check.h"
 
 namespace plumb {
@@ -16,10 +17,6 @@ namespace {
 
 void *texture_id(GLuint name) {
     return reinterpret_cast<void *>(static_cast<std::uintptr_t>(name));
-}
-
-const void *byte_offset(std::size_t bytes) {
-    return reinterpret_cast<const void *>(bytes);
 }
 
 } // namespace

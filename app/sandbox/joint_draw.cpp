@@ -58,8 +58,8 @@ std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3 &axis) {
     return {first, glm::cross(axis, first)};
 }
 
-void add_arrow(DrawList &list, const glm::dvec3 &from, const glm::dvec3 &vector,
-               const glm::vec3 &colour) {
+void add_joint_arrow(DrawList &list, const glm::dvec3 &from, const glm::dvec3 &vector,
+                     const glm::vec3 &colour) {
     const double length = glm::length(vector);
     if (!(length > 1e-6) || !std::isfinite(length))
         return;
@@ -252,9 +252,9 @@ void add_slider(DrawList &list, const Seen &seen) {
                          foot + end * axis + 0.5 * size * way, 3);
     add_line(list, seen.moving_anchor() - aside, seen.moving_anchor() + aside, 4);
     if (seen.joint.motor_speed)
-        add_arrow(list, seen.moving_anchor(),
-                  std::copysign(size, seen.sign() * *seen.joint.motor_speed) * axis,
-                  colours::joint);
+        add_joint_arrow(list, seen.moving_anchor(),
+                        std::copysign(size, seen.sign() * *seen.joint.motor_speed) * axis,
+                        colours::joint);
 }
 
 void add_fixed(DrawList &list, const Seen &seen) {

@@ -61,7 +61,7 @@ const char *text(BodyKind kind) {
 }
 
 // The rotation's angle in degrees, and its axis.
-std::string turn(const glm::dquat &orientation) {
+std::string turn_text(const glm::dquat &orientation) {
     const double angle = glm::degrees(glm::angle(orientation));
     std::array<char, 128> result{};
     if (!(std::abs(angle) > 0.05))
@@ -238,7 +238,7 @@ void inspector_panel(PanelContext &context) {
     }
     ImGui::Separator();
     value_row("Position", triple(state.position) + " m");
-    value_row("Turned", turn(state.orientation));
+    value_row("Turned", turn_text(state.orientation));
     if (info.kind == BodyKind::fixed) {
         joints_of(*simulation, frame, *body);
         return;

@@ -15,8 +15,8 @@ namespace plumb {
 
 namespace {
 
-constexpr float usual_height = 14; // of the map, heights of the text
-constexpr float least_height = 7;
+constexpr float usual_map_height = 14; // of the map, heights of the text
+constexpr float least_map_height = 7;
 
 Colour colour_of(Failing failing) {
     return colour_of_code(info_of(failing).colour);
@@ -182,8 +182,8 @@ void draw_map(PanelContext &context, const MethodStudy &study) {
     const float em = context.fonts.small->FontSize;
     legend(context, map);
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const float height = std::max(room.y, least_height * ImGui::GetFontSize());
-    context.scrolled_height = usual_height * ImGui::GetFontSize() - height;
+    const float height = std::max(room.y, least_map_height * ImGui::GetFontSize());
+    context.scrolled_height = usual_map_height * ImGui::GetFontSize() - height;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton("##map", {room.x, height});
     float left = 0;

@@ -18,7 +18,7 @@ namespace {
 constexpr float usual_height = 15; // of the chart, heights of the text
 constexpr float least_height = 8;
 constexpr float mark_radius = 4.5f; // pixels at a scale of 1
-constexpr float reach = 12;         // of the pointer
+constexpr float pointer_reach = 12; // of the pointer
 
 Colour series_colour(const ChartSeries &series) {
     return curve_colour(series.style);
@@ -185,7 +185,7 @@ void tell(const SceneChart &chart, const ChartRun &run) {
 std::optional<std::size_t> pointed_at(const Placed &placed, float scale) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     std::optional<std::size_t> nearest;
-    float least = reach * scale;
+    float least = pointer_reach * scale;
     for (std::size_t i = 0; i < placed.layout.marks.size(); ++i) {
         const ImVec2 at = placed.at(placed.layout.marks[i]);
         const float distance = std::hypot(at.x - mouse.x, at.y - mouse.y);

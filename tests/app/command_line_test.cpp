@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::set<std::string> files_in(const fs::path &folder) {
+std::set<std::string> names_in(const fs::path &folder) {
     std::set<std::string> names;
     for (const fs::directory_entry &file : fs::directory_iterator(folder))
         names.insert(file.path().filename().string());
@@ -349,7 +349,7 @@ TEST(CommandLine, SnapshotsAreNumberedByStep) {
         const ProgramResult result = run_program(
             "snapshot pendulum --size 64x48 --samples 1 --out " + to + " " + how, folder.path());
         EXPECT_EQ(result.exit_code, 0) << how << '\n' << result.err;
-        return files_in(folder.path() / to);
+        return names_in(folder.path() / to);
     };
     using Names = std::set<std::string>;
     EXPECT_EQ(shoot("", "start"), (Names{"pendulum-00000.png"}));
@@ -419,7 +419,7 @@ TEST(CommandLine, WhatCannotBeWrittenIsOneMessageAndExitCode2) {
         EXPECT_EQ(result.exit_code, 2) << command << '\n' << result.out << result.err;
         EXPECT_TRUE(has(result.err, "file/")) << command << '\n' << result.err;
     }
-    EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"file"}));
+    EXPECT_EQ(names_in(folder.path()), (std::set<std::string>{"file"}));
 }
 
 TEST(CommandLine, NothingIsLeftBesideWhatIsWritten) {
@@ -427,7 +427,7 @@ TEST(CommandLine, NothingIsLeftBesideWhatIsWritten) {
     ASSERT_EQ(run_program("measure pendulum --steps 3 --csv table.csv", folder.path()).exit_code,
               0);
     ASSERT_EQ(run_program("snapshot pendulum --size 64x64 --out .", folder.path()).exit_code, 0);
-    EXPECT_EQ(files_in(folder.path()), (std::set<std::string>{"table.csv", "pendulum-00000.png"}));
+    EXPECT_EQ(names_in(folder.path()), (std::set<std::string>{"table.csv", "pendulum-00000.png"}));
 }
 
 TEST(CommandLine, MeasureWritesARowForEachStep) {

@@ -6,24 +6,24 @@ namespace {
 
 using namespace trial;
 
-constexpr double side = 1;
+constexpr double cube_side = 1;
 
 BodyId add_box(World &world, double mass, const V &position) {
     return world.add_body(
-        with_material(dynamic_body(block(V{0.5 * side}), mass, position), 0.6, 0));
+        with_material(dynamic_body(block(V{0.5 * cube_side}), mass, position), 0.6, 0));
 }
 
 BodyId add_stack(World &world, std::span<const double> masses, double x) {
     BodyId top;
-    double height = 0.5 * side;
+    double height = 0.5 * cube_side;
     for (const double mass : masses) {
         top = add_box(world, mass, V{x, height, 0});
-        height += side;
+        height += cube_side;
     }
     return top;
 }
 
-World floor_world() {
+World bare_floor() {
     World world("soft_step", settings_for("soft_step"));
     world.add_body(ground(0.6, 0));
     return world;
@@ -48,33 +48,35 @@ TEST(Islands, SubstepsAreRoundedToThreeBinaryDigits) {
 // the tolerance, it sinks by a part of a millimetre at each contact.
 TEST(Islands, ATallStackTakesWhatItNeedsAndStands) {
     for (const std::size_t boxes : {10U, 30U, 60U}) {
-        World world = floor_world();
+        World world = bare_floor();
         const std::vector<double> masses(boxes, 1.0);
         const BodyId top = add_stack(world, masses, 0);
         run(world, 60 * 30);
         const double n = double(boxes);
-        EXPECT_GT(double(world.motions()[top.index].position.y), (n - 0.5) * side - 0.01) << boxes;
+        EXPECT_GT(double(world.motions()[top.index].position.y), (n - 0.5) * cube_side - 0.01)
+            << boxes;
         const Measures m = world.measure();
-        EXPECT_LT(m.kinetic_energy, 1e-6 * n * gravity * side * n / 2) << boxes;
-        EXPECT_LT(m.max_penetration, world.settings().substep_tolerance * side) << boxes;
+        EXPECT_LT(m.kinetic_energy, 1e-6 * n * gravity * cube_side * n / 2) << boxes;
+        EXPECT_LT(m.max_penetration, world.settings().substep_tolerance * cube_side) << boxes;
     }
 }
 
 TEST(Islands, ALightBoxBearsAHeavyOne) {
     for (const double ratio : {30.0, 100.0, 300.0, 1000.0, 3000.0}) {
-        World world = floor_world();
+        World world = bare_floor();
         const BodyId heavy = add_stack(world, std::array{1.0, ratio}, 0);
         run(world, 60 * 30);
         // Where the most substeps are too few, the depth grows with the load.
-        const double depth = world.settings().substep_tolerance * side * std::max(1.0, ratio / 400);
+        const double depth =
+            world.settings().substep_tolerance * cube_side * std::max(1.0, ratio / 400);
         EXPECT_LT(world.measure().max_penetration, depth) << ratio;
-        EXPECT_NEAR(double(world.motions()[heavy.index].position.y), 1.5 * side, 2 * depth);
+        EXPECT_NEAR(double(world.motions()[heavy.index].position.y), 1.5 * cube_side, 2 * depth);
     }
 }
 
 // Only those pay who need it, and no longer than they need it.
 TEST(Islands, TakeTheirOwnSubsteps) {
-    World world = floor_world();
+    World world = bare_floor();
     StepSettings settings = world.settings();
     settings.sleep_after = 0; // what sleeps keeps its number
     world.set_settings(settings);
@@ -95,8 +97,8 @@ TEST(Islands, TakeTheirOwnSubsteps) {
 // The budget bounds what islands may cost together, and takes none below the least. The smaller one
 // gets what it asks for first.
 TEST(Islands, KeepToTheBudget) {
-    World alone = floor_world();
-    World world = floor_world();
+    World alone = bare_floor();
+    World world = bare_floor();
     StepSettings settings = world.settings();
     const BodyId only = add_stack(alone, std::vector<double>(10, 1.0), 0);
     const BodyId top = add_stack(world, std::vector<double>(10, 1.0), 0);

@@ -20,7 +20,7 @@ ParticleDef grain_at(const V &position, const V &velocity = V{0}) {
 }
 
 // A flat square of 4 m, of 8 x 8 cells.
-BodyDef flat(bool as_field) {
+BodyDef flat_body(bool as_field) {
     constexpr int n = 8;
     constexpr double cell = 0.5;
     BodyDef def;
@@ -78,8 +78,8 @@ std::vector<Stand> stands() {
         Box{narrow(V{0, 0.2, 0}), identity_rotation, narrow(V{0.2, 0.1, 0.2})};
     all.push_back({"compound", compound, 0.3});
     all.push_back({"half-space", ground(0.5, 0), 0});
-    all.push_back({"mesh", flat(false), 0});
-    all.push_back({"height field", flat(true), 0});
+    all.push_back({"mesh", flat_body(false), 0});
+    all.push_back({"height field", flat_body(true), 0});
     return all;
 }
 
@@ -102,7 +102,7 @@ TEST_P(ParticleContacts, FastOnesDoNotPassAThinWall) {
     for (int trial = 0; trial < 60; ++trial) {
         World world(GetParam(), weightless(settings_for(GetParam())));
         const bool moves = trial % 3 == 2;
-        BodyDef wall = trial % 3 == 0 ? flat(false) : fixed_body(block(V{2, 0.005, 2}));
+        BodyDef wall = trial % 3 == 0 ? flat_body(false) : fixed_body(block(V{2, 0.005, 2}));
         if (moves) {
             wall.kind = BodyKind::kinematic;
             wall.velocity = narrow(V{0, 50, 0});

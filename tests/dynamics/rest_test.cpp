@@ -9,13 +9,13 @@ namespace {
 
 using namespace trial;
 
-constexpr double side = 1;
+constexpr double box_side = 1;
 
 World stack_of(int boxes, const StepSettings &settings) {
     World world("soft_step", settings);
     world.add_body(ground(0.6, 0));
     for (int i = 0; i < boxes; ++i)
-        world.add_body(dynamic_body(block(V{side / 2}), 1, V{0, side * (i + 0.5), 0}));
+        world.add_body(dynamic_body(block(V{box_side / 2}), 1, V{0, box_side * (i + 0.5), 0}));
     return world;
 }
 
@@ -24,9 +24,9 @@ World pyramid_of(int base, const StepSettings &settings) {
     world.add_body(ground(0.6, 0));
     for (int row = 0; row < base; ++row)
         for (int i = 0; i < base - row; ++i)
-            world.add_body(
-                dynamic_body(block(V{side / 2}), 1,
-                             V{1.05 * side * (i - 0.5 * (base - row - 1)), side * (row + 0.5), 0}));
+            world.add_body(dynamic_body(
+                block(V{box_side / 2}), 1,
+                V{1.05 * box_side * (i - 0.5 * (base - row - 1)), box_side * (row + 0.5), 0}));
     return world;
 }
 
@@ -43,9 +43,9 @@ TEST(Rest, ATallStackStandsOnKeptContacts) {
         World world = stack_of(boxes, settings);
         run(world, 60 * 30);
         const auto top = static_cast<std::uint32_t>(boxes);
-        const double sunk = side * (boxes - 0.5) - height_of(world, top);
+        const double sunk = box_side * (boxes - 0.5) - height_of(world, top);
         EXPECT_LT(sunk, 0.04) << boxes;
-        EXPECT_LT(world.measure().kinetic_energy, 1e-6 * boxes * gravity * side * boxes / 2);
+        EXPECT_LT(world.measure().kinetic_energy, 1e-6 * boxes * gravity * box_side * boxes / 2);
     }
     settings.substeps = 4;
     settings.max_substeps = 1;

@@ -22,7 +22,7 @@ namespace {
 // ---- FLIP by its definition: dense kernels, double precision
 // --------------------------------------
 
-double linear(double s) {
+double linear_light(double s) {
     return s > 0.04045 ? std::pow((s + 0.055) / 1.055, 2.4) : s / 12.92;
 }
 
@@ -83,7 +83,7 @@ Oracle oracle_of(const Image &image, double ppd) {
     for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
         glm::dvec3 rgb;
         for (int c = 0; c < 3; ++c)
-            rgb[c] = linear(image.pixels[i + static_cast<std::size_t>(c)] / 255.0);
+            rgb[c] = linear_light(image.pixels[i + static_cast<std::size_t>(c)] / 255.0);
         const glm::dvec3 t = to_xyz * rgb / white;
         channel[0].push_back(116 * t.y - 16);
         channel[1].push_back(500 * (t.x - t.y));
@@ -180,8 +180,8 @@ TEST(CompareImages, FlipOfFlatPicturesIsTheColourErrorAlone) {
     for (const glm::u8vec3 &one : colours) {
         for (const glm::u8vec3 &other : colours) {
             const auto lab = [](const glm::u8vec3 &c) {
-                return lab_of_linear(
-                    {linear(c.x / 255.0), linear(c.y / 255.0), linear(c.z / 255.0)});
+                return lab_of_linear({linear_light(c.x / 255.0), linear_light(c.y / 255.0),
+                                      linear_light(c.z / 255.0)});
             };
             const ImageDifference d = compare_images(Image(40, 30, one), Image(40, 30, other));
             EXPECT_NEAR(d.flip_mean, redistributed(distance_of(lab(one), lab(other))),

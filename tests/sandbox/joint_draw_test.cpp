@@ -14,10 +14,10 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 // A body 2 m to the right of the origin, as large as 1 m.
-const std::array<BodyState, 1> poses{{{glm::dvec3(2, 0, 0), glm::dquat(1, 0, 0, 0)}}};
+const std::array<BodyState, 1> one_pose{{{glm::dvec3(2, 0, 0), glm::dquat(1, 0, 0, 0)}}};
 const std::array<double, 1> reach{1.0};
-const JointSurroundings surroundings{poses, reach, {0, -9.81, 0}};
-constexpr float size = 0.5f; // of signs: half of the body
+const JointSurroundings surroundings{one_pose, reach, {0, -9.81, 0}};
+constexpr float sign_size = 0.5f; // of signs: half of the body
 
 JointView joint(JointType type) {
     JointView view;
@@ -64,13 +64,13 @@ TEST(JointDraw, HingeHasItsAxisAnArcBetweenItsLimitsAndAHand) {
     hinge.position = pi / 6;
     hinge.limits = {-pi / 3, pi / 2};
     const DrawList list = signs(hinge);
-    EXPECT_TRUE(has_line(list, {0, 0, -size}, {0, 0, size})) << "axis";
-    EXPECT_TRUE(has_line(list, {0, 0, 0}, {size, 0, 0})) << "hand, to the body";
+    EXPECT_TRUE(has_line(list, {0, 0, -sign_size}, {0, 0, sign_size})) << "axis";
+    EXPECT_TRUE(has_line(list, {0, 0, 0}, {sign_size, 0, 0})) << "hand, to the body";
     // 30 degrees before the hand is angle 0; the limits' ticks count from there.
     for (const double limit : {-pi / 3, pi / 2}) {
         const double angle = limit - pi / 6;
         EXPECT_TRUE(has_line(list, {0, 0, 0},
-                             1.15 * size * glm::dvec3(std::cos(angle), std::sin(angle), 0)))
+                             1.15 * sign_size * glm::dvec3(std::cos(angle), std::sin(angle), 0)))
             << limit;
     }
 }
@@ -80,7 +80,7 @@ TEST(JointDraw, HingeOfABodyAgainstTheWorldTurnsTheOtherWayRound) {
     std::swap(hinge.body_a, hinge.body_b);
     hinge.frame_a = hinge.frame_b = along_z;
     hinge.limits = {0, pi / 2}; // of the world against the body
-    EXPECT_TRUE(has_line(signs(hinge), {0, 0, 0}, {0, -1.15f * size, 0}));
+    EXPECT_TRUE(has_line(signs(hinge), {0, 0, 0}, {0, -1.15f * sign_size, 0}));
 }
 
 TEST(JointDraw, SliderHasARailBetweenItsLimits) {
@@ -95,8 +95,10 @@ TEST(JointDraw, SliderHasARailBetweenItsLimits) {
 }
 
 TEST(JointDraw, FixedIsACross) {
-    EXPECT_TRUE(has_line(signs(joint(JointType::fixed)), {-size / 2, 0, 0}, {size / 2, 0, 0}));
-    EXPECT_TRUE(has_line(signs(joint(JointType::fixed)), {0, -size / 2, 0}, {0, size / 2, 0}));
+    EXPECT_TRUE(
+        has_line(signs(joint(JointType::fixed)), {-sign_size / 2, 0, 0}, {sign_size / 2, 0, 0}));
+    EXPECT_TRUE(
+        has_line(signs(joint(JointType::fixed)), {0, -sign_size / 2, 0}, {0, sign_size / 2, 0}));
 }
 
 TEST(JointDraw, RodRopeAndSpring) {

@@ -13,7 +13,7 @@
 namespace plumb {
 namespace {
 
-const std::filesystem::path scenes = std::filesystem::path(PLUMB_SOURCE_DIR) / "scenes";
+const std::filesystem::path scenes_folder = std::filesystem::path(PLUMB_SOURCE_DIR) / "scenes";
 
 // A ball and a wall, weightless.
 constexpr const char *bullet_text = R"(
@@ -51,7 +51,7 @@ bool says(const Trouble &trouble, const std::string &part) {
 
 // Explicit Euler multiplies the amplitude of an undamped spring by sqrt(1 + (omega dt)^2) a step.
 TEST(Trouble, AMethodThatGainsEnergyIsToldWithPlaceAndTime) {
-    const SceneDesc scene = load_scene(scenes / "springs/mass_on_spring.toml").scene;
+    const SceneDesc scene = load_scene(scenes_folder / "springs/mass_on_spring.toml").scene;
     const auto grown = trouble_of(scene, "explicit_euler", 600);
     ASSERT_TRUE(grown);
     EXPECT_EQ(grown->failing, Failing::energy_grew);
@@ -65,7 +65,7 @@ TEST(Trouble, IsGoneWhenTheRunIsTakenBackToBeforeIt) {
     options.method = "explicit_euler";
     options.settings.give(&StepSettings::substeps, 1);
     Session session(options);
-    ASSERT_TRUE(session.open(scenes / "springs/mass_on_spring.toml"));
+    ASSERT_TRUE(session.open(scenes_folder / "springs/mass_on_spring.toml"));
     while (!session.trouble() && session.step()) {
     }
     ASSERT_TRUE(session.trouble());
@@ -81,7 +81,7 @@ TEST(Trouble, IsGoneWhenTheRunIsTakenBackToBeforeIt) {
 
 // Struck towards a wall of a centimetre in the middle of a step: README, "Where methods break".
 TEST(Trouble, ABodyThatPassesThroughAWallIsNamed) {
-    SceneDesc scene = load_scene(scenes / "contact/struck_before_wall.toml").scene;
+    SceneDesc scene = load_scene(scenes_folder / "contact/struck_before_wall.toml").scene;
     for (BodyDesc &body : scene.bodies)
         if (body.name == "heavy")
             body.velocity.x = 40;
@@ -232,7 +232,7 @@ TEST(Trouble, WhatIsNotFiniteComesFirst) {
 TEST(Trouble, IsNoneInScenesThatAreFine) {
     for (const char *name : {"stacking/ten_box_stack", "joints/pendulum", "joints/newtons_cradle",
                              "contact/bounce_elastic", "springs/two_masses", "free/free_fall"}) {
-        const SceneDesc scene = load_scene(scenes / (std::string(name) + ".toml")).scene;
+        const SceneDesc scene = load_scene(scenes_folder / (std::string(name) + ".toml")).scene;
         const auto trouble = trouble_of(scene, "", 200);
         EXPECT_FALSE(trouble) << name << ": " << trouble->text;
     }

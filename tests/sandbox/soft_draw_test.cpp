@@ -15,7 +15,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char *scene_text = R"([world]
+constexpr const char *soft_scene = R"([world]
 gravity = [0, 0, 0]
 [camera]
 target = [0, 0, 0]
@@ -48,7 +48,7 @@ pins = [[0, 0]]
 class SoftDraw : public testing::Test {
   protected:
     SoftDraw()
-        : scene(parse_scene(scene_text, "soft.toml").scene),
+        : scene(parse_scene(soft_scene, "soft.toml").scene),
           simulation(Simulation::create(scene, {}, nullptr)), frame(simulation->read()) {}
     SoftView view() const {
         return {simulation->soft_parts(), frame.bodies, frame.particles, frame.torn};

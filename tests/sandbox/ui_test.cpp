@@ -23,7 +23,7 @@ namespace {
 
 const std::filesystem::path source(PLUMB_SOURCE_DIR);
 
-bool overlap(const Rect &a, const Rect &b) {
+bool windows_overlap(const Rect &a, const Rect &b) {
     return a.min.x < b.max().x && b.min.x < a.max().x && a.min.y < b.max().y && b.min.y < a.max().y;
 }
 
@@ -91,7 +91,7 @@ TEST_F(UiTest, PanelsAreDrawnAndNothingOverlaps) {
                 EXPECT_LE(rect.max().x, static_cast<float>(size.x)) << panels[i].name;
                 EXPECT_LE(rect.max().y, static_cast<float>(size.y)) << panels[i].name;
                 for (std::size_t j = i + 1; j < panels.size(); ++j)
-                    EXPECT_FALSE(overlap(rect, panels[j].rect))
+                    EXPECT_FALSE(windows_overlap(rect, panels[j].rect))
                         << panels[i].name << " and " << panels[j].name;
                 // Text is anti-aliased: many shades, and some of them bright.
                 const Look seen = look(image, rect);
@@ -299,7 +299,7 @@ TEST_F(UiTest, ASmallWindowIsUsable) {
             EXPECT_LE(rects[i].max().x, smallest_window.x) << panels[i].name;
             EXPECT_LE(rects[i].max().y, smallest_window.y) << panels[i].name;
             for (std::size_t j = i + 1; j < rects.size(); ++j)
-                EXPECT_FALSE(overlap(rects[i], rects[j]))
+                EXPECT_FALSE(windows_overlap(rects[i], rects[j]))
                     << panels[i].name << " and " << panels[j].name;
         }
         if (opened < panel_count)
@@ -390,7 +390,8 @@ TEST_F(UiTest, TheLabPlotsWhatWasChosen) {
         const auto lab = std::ranges::find(ui.panels(), PanelId::lab, &Ui::Panel::id);
         EXPECT_NE(lab, ui.panels().end());
         for (const Ui::Panel &panel : ui.panels())
-            EXPECT_TRUE(panel.id == PanelId::lab || !overlap(lab->rect, panel.rect)) << panel.name;
+            EXPECT_TRUE(panel.id == PanelId::lab || !windows_overlap(lab->rect, panel.rect))
+                << panel.name;
         // Less its sign in the legend.
         return std::array{area_of(*data, {0.42f, 0.68f, 0.90f, 1}, "lab") - 90,
                           area_of(*data, {0.90f, 0.64f, 0.42f, 1}, "lab") - 90};

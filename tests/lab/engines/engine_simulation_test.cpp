@@ -12,7 +12,7 @@
 namespace plumb {
 namespace {
 
-constexpr double g = 9.81;
+constexpr double gravity = 9.81;
 
 // Falls as it should, but for an error that an iteration each halves.
 class FallingEngine final : public Engine {
@@ -25,8 +25,8 @@ class FallingEngine final : public Engine {
         std::vector<BodyState> states;
         for (const BodyDesc &body : scene_.desc.bodies)
             states.push_back({body.position, body.orientation, body.velocity});
-        states[1].position.y -= 0.5 * g * t * t * (1 + std::pow(0.5, scene_.iterations()));
-        states[1].velocity.y = -g * t;
+        states[1].position.y -= 0.5 * gravity * t * t * (1 + std::pow(0.5, scene_.iterations()));
+        states[1].velocity.y = -gravity * t;
         return states;
     }
 
@@ -64,7 +64,7 @@ SceneDesc ball_above_floor() {
     expect.quantity = "position.y";
     expect.body = "ball";
     expect.to = 1;
-    expect.value = 5.2 - 0.5 * g;
+    expect.value = 5.2 - 0.5 * gravity;
     expect.tolerance = 0.1;
     scene.expects = {expect};
     return scene;
@@ -83,12 +83,12 @@ TEST(EngineSimulation, IsMeasuredByItsPosesAndVelocities) {
     for (int i = 0; i < 60; ++i)
         simulation->step();
     EXPECT_NEAR(simulation->time(), 1, 1e-12);
-    EXPECT_NEAR(simulation->read().bodies.at(1).position.y, 5.2 - 0.5 * g, 1e-9);
+    EXPECT_NEAR(simulation->read().bodies.at(1).position.y, 5.2 - 0.5 * gravity, 1e-9);
     const Measures now = simulation->measure();
-    EXPECT_NEAR(now.kinetic_energy, 0.5 * 2 * g * g, 1e-9);
-    EXPECT_NEAR(now.potential_energy, 2 * g * (5.2 - 0.5 * g), 1e-9);
-    EXPECT_NEAR(now.linear_momentum.y, -2 * g, 1e-9);
-    EXPECT_NEAR(now.max_penetration, 0.5 - (5.2 - 0.5 * g), 1e-9); // the ball's, in the plane
+    EXPECT_NEAR(now.kinetic_energy, 0.5 * 2 * gravity * gravity, 1e-9);
+    EXPECT_NEAR(now.potential_energy, 2 * gravity * (5.2 - 0.5 * gravity), 1e-9);
+    EXPECT_NEAR(now.linear_momentum.y, -2 * gravity, 1e-9);
+    EXPECT_NEAR(now.max_penetration, 0.5 - (5.2 - 0.5 * gravity), 1e-9); // the ball's, in the plane
     EXPECT_EQ(simulation->report().constraint_passes, 4U * 5);
     EXPECT_TRUE(simulation->report().finite);
     simulation->restore(*start);
@@ -112,7 +112,7 @@ TEST(EngineSimulation, StandsOnTheChartBesideTheMethods) {
         }
     ASSERT_EQ(errors.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_NEAR(errors[i], 0.5 * g * std::pow(0.5, std::array{1, 2, 8}[i]), 1e-9);
+        EXPECT_NEAR(errors[i], 0.5 * gravity * std::pow(0.5, std::array{1, 2, 8}[i]), 1e-9);
     EXPECT_EQ(chart_content(chart, "").series.back().name, "Pretended, double");
 }
 

@@ -31,7 +31,7 @@ ExpectOutcome missed(const char *name, const char *quantity, ExpectDesc::Relatio
     return outcome;
 }
 
-using Relation = ExpectDesc::Relation;
+using Is = ExpectDesc::Relation;
 
 RunFailing with_outcome(const ExpectOutcome &outcome) {
     SceneDesc scene = scene_of_a_ball();
@@ -85,29 +85,27 @@ TEST(Failing, BeginsBeyondWhatIsTolerated) {
 }
 
 TEST(Failing, GoesByTheQuantityThatWasMissed) {
-    EXPECT_EQ(with_outcome(missed("e", "energy_error", Relation::equals, 0, 1)),
+    EXPECT_EQ(with_outcome(missed("e", "energy_error", Is::equals, 0, 1)),
               (RunFailing{Failing::energy_grew, "e"}));
-    EXPECT_EQ(with_outcome(missed("e", "energy_error", Relation::equals, 0, -1)),
+    EXPECT_EQ(with_outcome(missed("e", "energy_error", Is::equals, 0, -1)),
               (RunFailing{Failing::missed, "e"}));
-    EXPECT_EQ(with_outcome(missed("p", "penetration", Relation::at_most, 0.1, 1)).failing,
+    EXPECT_EQ(with_outcome(missed("p", "penetration", Is::at_most, 0.1, 1)).failing,
               Failing::penetration);
-    EXPECT_EQ(with_outcome(missed("d", "joint_drift", Relation::at_most, 0.1, 1)).failing,
+    EXPECT_EQ(with_outcome(missed("d", "joint_drift", Is::at_most, 0.1, 1)).failing,
               Failing::drift);
-    EXPECT_EQ(with_outcome(missed("f", "position.y", Relation::at_least, 2, 1)).failing,
-              Failing::fell);
-    EXPECT_EQ(with_outcome(missed("f", "tilt", Relation::at_most, 0.1, 1)).failing, Failing::fell);
-    EXPECT_EQ(with_outcome(missed("h", "position.y", Relation::equals, 2, 1)).failing,
-              Failing::missed);
-    EXPECT_EQ(with_outcome(missed("r", "speed", Relation::at_most, 0.1, 1)).failing,
+    EXPECT_EQ(with_outcome(missed("f", "position.y", Is::at_least, 2, 1)).failing, Failing::fell);
+    EXPECT_EQ(with_outcome(missed("f", "tilt", Is::at_most, 0.1, 1)).failing, Failing::fell);
+    EXPECT_EQ(with_outcome(missed("h", "position.y", Is::equals, 2, 1)).failing, Failing::missed);
+    EXPECT_EQ(with_outcome(missed("r", "speed", Is::at_most, 0.1, 1)).failing,
               Failing::never_rests);
-    EXPECT_EQ(with_outcome(missed("r", "kinetic_energy", Relation::at_most, 0.1, 1)).failing,
+    EXPECT_EQ(with_outcome(missed("r", "kinetic_energy", Is::at_most, 0.1, 1)).failing,
               Failing::never_rests);
 }
 
 TEST(Failing, AsksNothingOfItsOwnWhereTheSceneDoes) {
     SceneDesc scene = scene_of_a_ball();
-    scene.expects.push_back(missed("p", "penetration", Relation::at_most, 2, 1).desc);
-    scene.expects.push_back(missed("e", "energy", Relation::at_most, 2, 1).desc);
+    scene.expects.push_back(missed("p", "penetration", Is::at_most, 2, 1).desc);
+    scene.expects.push_back(missed("e", "energy", Is::at_most, 2, 1).desc);
     JudgedRun run;
     run.end_penetration = 1;
     run.max_energy_gain = 1;

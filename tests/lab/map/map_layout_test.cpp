@@ -7,7 +7,7 @@
 namespace plumb {
 namespace {
 
-glm::vec2 text_size(std::string_view text, float font_size) {
+glm::vec2 size_of_text(std::string_view text, float font_size) {
     return {0.5f * font_size * static_cast<float>(text.size()), font_size};
 }
 
@@ -44,7 +44,7 @@ TEST(MapLayout, NoTextMeetsAnotherOrLeavesThePicture) {
     for (int trial = 0; trial < 60; ++trial) {
         const StabilityMap map = any_map(random, 1 + random.next_index(6));
         const MapLayout layout = lay_out(
-            map, {}, {"plumb map a --x b=1..2", std::string(300, 'f') + " and more"}, text_size);
+            map, {}, {"plumb map a --x b=1..2", std::string(300, 'f') + " and more"}, size_of_text);
         std::vector<MapText> texts{layout.title, layout.subtitle, layout.x_title, layout.y_title};
         for (const MapPanel &panel : layout.panels) {
             texts.push_back(panel.title);
@@ -85,7 +85,7 @@ TEST(MapLayout, PutsTheFirstCellAtTheLowerLeft) {
     map.methods[0].cells.assign(6, MapRun{});
     map.methods[0].cells[0]->failing.failing = Failing::drift;
     map.methods[0].limits = {{20, 1, 2, true, {}}};
-    const MapLayout layout = lay_out(map, {}, {}, text_size);
+    const MapLayout layout = lay_out(map, {}, {}, size_of_text);
     const MapPanel &panel = layout.panels[0];
     ASSERT_EQ(panel.cells.size(), 6U);
     EXPECT_EQ(panel.cells[0].failing, Failing::drift);

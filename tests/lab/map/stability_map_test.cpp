@@ -48,7 +48,7 @@ velocity = [20, 0, 0]
 )";
 
 // Falls from rest for a second; by s = g t^2 / 2 it comes to 5.095 m, whatever the step.
-constexpr const char *falling = R"(
+constexpr const char *falling_ball = R"(
 [world]
 dt = "1/60"
 [[body]]
@@ -174,7 +174,7 @@ TEST(StabilityMap, TheoryIsReadFromTheScene) {
 // Semi-implicit Euler falls by g t (t + dt) / 2: 5.085 m, the least that is true enough, it comes
 // to with 1 + dt = 2 (10 - 5.085) / g. RK4 makes no error in free fall.
 TEST(StabilityMap, FindsTheStepUpToWhichAnIntegratorIsTrueEnough) {
-    const StabilityMap map = map_of(falling, "dt=1/2000..1/25:5log", "gravity.y=-9.81,-9.8",
+    const StabilityMap map = map_of(falling_ball, "dt=1/2000..1/25:5log", "gravity.y=-9.81,-9.8",
                                     {"semi_implicit_euler", "rk4"});
     ASSERT_EQ(map.methods.size(), 2U);
     for (const MethodMap &of_method : map.methods) {
@@ -207,7 +207,7 @@ TEST(StabilityMap, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(StabilityMap, OfACountGoesThroughWholeNumbers) {
-    const std::string stack = std::string(falling) + R"(
+    const std::string stack = std::string(falling_ball) + R"(
 [[body]]
 name = "box"
 shape = "box"
@@ -223,18 +223,19 @@ repeat = { kind = "stack", count = 2 }
 }
 
 TEST(StabilityMap, SaysWhatIsWrongWithAnAxis) {
-    EXPECT_NE(complaint(falling, "body.bal.mass=1..2", "dt=0.1,0.2").find("\"ball\"?"),
+    EXPECT_NE(complaint(falling_ball, "body.bal.mass=1..2", "dt=0.1,0.2").find("\"ball\"?"),
               std::string::npos);
-    EXPECT_NE(complaint(falling, "body.ball.radius=-1..2", "dt=0.1,0.2").find("radius"),
+    EXPECT_NE(complaint(falling_ball, "body.ball.radius=-1..2", "dt=0.1,0.2").find("radius"),
               std::string::npos);
-    EXPECT_NE(complaint(falling, "body.ball.rdius=1..2", "dt=0.1,0.2").find("\"radius\"?"),
+    EXPECT_NE(complaint(falling_ball, "body.ball.rdius=1..2", "dt=0.1,0.2").find("\"radius\"?"),
               std::string::npos);
-    EXPECT_NE(complaint(falling, "world.substeps=1..2", "dt=0.1,0.2").find("write substeps"),
+    EXPECT_NE(complaint(falling_ball, "world.substeps=1..2", "dt=0.1,0.2").find("write substeps"),
               std::string::npos);
-    EXPECT_NE(complaint(falling, "dt=0.1,0.2", "dt=0.1,0.2").find("both axes"), std::string::npos);
+    EXPECT_NE(complaint(falling_ball, "dt=0.1,0.2", "dt=0.1,0.2").find("both axes"),
+              std::string::npos);
     MapOptions options;
     options.duration = 3;
-    EXPECT_THROW((void)map_scene({"scene.toml", falling}, parse_map_axis("dt=0.1,0.2"),
+    EXPECT_THROW((void)map_scene({"scene.toml", falling_ball}, parse_map_axis("dt=0.1,0.2"),
                                  parse_map_axis("substeps=1,2"), options),
                  std::invalid_argument);
 }
@@ -283,7 +284,7 @@ TEST(StabilityMap, GoesOnFromNothingElse) {
     EXPECT_NE(own, map_fingerprint(scene, x, y, longer));
     EXPECT_NE(own, map_fingerprint(scene, x, y, other));
     EXPECT_NE(own, map_fingerprint(scene, y, x, options));
-    EXPECT_NE(own, map_fingerprint({"scene.toml", falling}, x, y, options));
+    EXPECT_NE(own, map_fingerprint({"scene.toml", falling_ball}, x, y, options));
 }
 
 TEST(StabilityMap, StopsWhenToldAndKeepsWhatWasDone) {
@@ -291,7 +292,7 @@ TEST(StabilityMap, StopsWhenToldAndKeepsWhatWasDone) {
     options.methods = {"rk4"};
     int asked = 0;
     options.stop = [&] { return ++asked > 40; };
-    const StabilityMap map = map_scene({"scene.toml", falling}, parse_map_axis("dt=0.05,0.1"),
+    const StabilityMap map = map_scene({"scene.toml", falling_ball}, parse_map_axis("dt=0.05,0.1"),
                                        parse_map_axis("substeps=1,2,4,8"), options);
     EXPECT_TRUE(map.interrupted);
     EXPECT_TRUE(map.methods[0].cells.front());

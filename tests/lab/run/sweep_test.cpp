@@ -8,7 +8,7 @@
 namespace plumb {
 namespace {
 
-std::string complaint(const std::string &text) {
+std::string sweep_complaint(const std::string &text) {
     try {
         (void)parse_sweep(text);
     } catch (const std::invalid_argument &error) {
@@ -41,22 +41,25 @@ TEST(Sweep, ListsAreSortedAndDistinct) {
 }
 
 TEST(Sweep, MistakesAreExplained) {
-    EXPECT_NE(complaint("substeps").find("SETTING=VALUES"), std::string::npos);
-    EXPECT_NE(complaint("substep=1..4").find("did you mean \"substeps\"?"), std::string::npos);
-    EXPECT_NE(complaint("substeps=").find("no values"), std::string::npos);
-    EXPECT_NE(complaint("substeps=1..x").find("\"x\" is not a number"), std::string::npos);
-    EXPECT_NE(complaint("substeps=1..4..8").find("\"4..8\" is not a number"), std::string::npos);
-    EXPECT_NE(complaint("substeps=1,,2").find("\"\" is not a number"), std::string::npos);
-    EXPECT_NE(complaint("substeps=8..2").find("ascend"), std::string::npos);
-    EXPECT_NE(
-        complaint("substeps=0..4").find("substeps must be a whole number from 1 to 10000, got 0"),
-        std::string::npos);
-    EXPECT_NE(complaint("substeps=1.5").find("whole"), std::string::npos);
-    EXPECT_NE(complaint("iterations=20000").find("1 to 10000"), std::string::npos);
-    EXPECT_NE(complaint("dt=1/0").find("division by zero"), std::string::npos);
-    EXPECT_NE(complaint("dt=0..1").find("a number from 1e-9 to 1 s, got 0"), std::string::npos);
-    EXPECT_NE(complaint("gravity=1..2").find("gravity.y"), std::string::npos);
-    EXPECT_NE(complaint("dt=nan").find("not a number"), std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps").find("SETTING=VALUES"), std::string::npos);
+    EXPECT_NE(sweep_complaint("substep=1..4").find("did you mean \"substeps\"?"),
+              std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps=").find("no values"), std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps=1..x").find("\"x\" is not a number"), std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps=1..4..8").find("\"4..8\" is not a number"),
+              std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps=1,,2").find("\"\" is not a number"), std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps=8..2").find("ascend"), std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps=0..4")
+                  .find("substeps must be a whole number from 1 to 10000, got 0"),
+              std::string::npos);
+    EXPECT_NE(sweep_complaint("substeps=1.5").find("whole"), std::string::npos);
+    EXPECT_NE(sweep_complaint("iterations=20000").find("1 to 10000"), std::string::npos);
+    EXPECT_NE(sweep_complaint("dt=1/0").find("division by zero"), std::string::npos);
+    EXPECT_NE(sweep_complaint("dt=0..1").find("a number from 1e-9 to 1 s, got 0"),
+              std::string::npos);
+    EXPECT_NE(sweep_complaint("gravity=1..2").find("gravity.y"), std::string::npos);
+    EXPECT_NE(sweep_complaint("dt=nan").find("not a number"), std::string::npos);
 }
 
 TEST(Sweep, CombinationsAreAllThereOnceFirstAxisFastest) {

@@ -16,7 +16,7 @@ namespace plumb {
 namespace {
 
 // With semi-implicit Euler it falls g h t / 2 too far in t = 1 s, h the substep.
-constexpr const char *falling = R"(
+constexpr const char *falling_box = R"(
 [world]
 dt = "1/60"
 method = "semi_implicit_euler"
@@ -69,7 +69,7 @@ TEST(Tune, FindsTheFewestSubstepsThatTheMarginAllows) {
     for (const double tolerance : {1.0, 0.8, 0.3}) {
         TuneOptions options = quick({"semi_implicit_euler"}, {"dt=1/60"});
         options.tolerance = tolerance;
-        const Tuning tuning = tune_scene({"fall.toml", falling}, options);
+        const Tuning tuning = tune_scene({"fall.toml", falling_box}, options);
         ASSERT_TRUE(tuning.found()) << printed(tuning);
         const TunedRun &chosen = tuning.runs[*tuning.chosen];
         const int n = chosen.resolved.settings.substeps;
@@ -92,7 +92,8 @@ TEST(Tune, FindsTheFewestSubstepsThatTheMarginAllows) {
 }
 
 TEST(Tune, NothingThatIsMoreWorkThanWhatMetIsRun) {
-    const Tuning tuning = tune_scene({"fall.toml", falling}, quick({"semi_implicit_euler"}, {}));
+    const Tuning tuning =
+        tune_scene({"fall.toml", falling_box}, quick({"semi_implicit_euler"}, {}));
     ASSERT_TRUE(tuning.found()) << printed(tuning);
     const std::vector<TunedRun> &runs = tuning.runs;
     for (std::size_t i = 1; i < runs.size(); ++i)
@@ -107,7 +108,7 @@ TEST(Tune, NothingThatIsMoreWorkThanWhatMetIsRun) {
 
 TEST(Tune, WhatIsGivenStays) {
     TuneOptions options = quick({"semi_implicit_euler", "rk4"}, {"dt=1/120", "substeps=9"});
-    const Tuning tuning = tune_scene({"fall.toml", falling}, options);
+    const Tuning tuning = tune_scene({"fall.toml", falling_box}, options);
     for (const TunedRun &run : tuning.runs) {
         EXPECT_EQ(run.resolved.settings.substeps, 9);
         EXPECT_EQ(run.resolved.settings.dt, 1.0 / 120);
@@ -119,7 +120,7 @@ TEST(Tune, WhatIsGivenStays) {
 
 TEST(Tune, WhatNothingMeetsIsSaidWithWhatComesNearest) {
     TuneOptions options = quick({"semi_implicit_euler"}, {"dt=1/60", "substeps=4"});
-    const Tuning tuning = tune_scene({"fall.toml", falling}, options);
+    const Tuning tuning = tune_scene({"fall.toml", falling_box}, options);
     EXPECT_FALSE(tuning.chosen);
     EXPECT_FALSE(tuning.found());
     const std::string said = printed(tuning);
@@ -132,7 +133,7 @@ TEST(Tune, WhatNothingMeetsIsSaidWithWhatComesNearest) {
 TEST(Tune, ABudgetThatIsTooSmallIsNotMet) {
     TuneOptions options = quick({"rk4"}, {"dt=1/60"});
     options.budget = 1e-15;
-    const Tuning tuning = tune_scene({"fall.toml", falling}, options);
+    const Tuning tuning = tune_scene({"fall.toml", falling_box}, options);
     EXPECT_TRUE(tuning.chosen);
     EXPECT_FALSE(tuning.found());
     EXPECT_NE(printed(tuning).find("beyond the budget"), std::string::npos);
@@ -147,24 +148,24 @@ TEST(Tune, OneStopKeepsWhatIsDone) {
     TuneOptions options = quick({"semi_implicit_euler"}, {"dt=1/60"});
     int asked = 0;
     options.stop = [&] { return ++asked > 400; };
-    const Tuning tuning = tune_scene({"fall.toml", falling}, options);
+    const Tuning tuning = tune_scene({"fall.toml", falling_box}, options);
     EXPECT_TRUE(tuning.interrupted);
     ASSERT_TRUE(tuning.chosen) << printed(tuning); // the scene's own, at least
     EXPECT_NE(printed(tuning).find("the cheapest so far"), std::string::npos);
 }
 
 TEST(Tune, ASceneThatIsHeldToNothingIsRefused) {
-    const std::string text = falling;
+    const std::string text = falling_box;
     const std::string silent = text.substr(0, text.find("[[expect]]"));
     EXPECT_THROW((void)tune_scene({"fall.toml", silent}, quick({"rk4"}, {})),
                  std::invalid_argument);
     EXPECT_THROW((void)tune_scene(shipped("geometry/points.toml"), quick({}, {})),
                  std::invalid_argument);
     TuneOptions options = quick({"rk5"}, {});
-    EXPECT_THROW((void)tune_scene({"fall.toml", falling}, options), std::invalid_argument);
+    EXPECT_THROW((void)tune_scene({"fall.toml", falling_box}, options), std::invalid_argument);
     options = quick({"rk4"}, {});
     options.tolerance = 0;
-    EXPECT_THROW((void)tune_scene({"fall.toml", falling}, options), std::invalid_argument);
+    EXPECT_THROW((void)tune_scene({"fall.toml", falling_box}, options), std::invalid_argument);
 }
 
 // Against every combination one by one: no other that meets the scene is less work.
