@@ -129,7 +129,7 @@ double ExpectationWatch::measured(const Followed &expect, std::size_t samples) c
     const bool last = expect.reduction->reduction == Reduction::last;
     const double from = last ? std::min(expect.desc.to, times.back()) : expect.desc.from;
     const Samples part = window(times, values, from, expect.desc.to, slack_);
-    return reduce(part.times, part.values, expect.reduction->reduction, expect.desc.level);
+    return plumb::reduce(part.times, part.values, expect.reduction->reduction, expect.desc.level);
 }
 
 ExpectOutcome ExpectationWatch::outcome(std::size_t expectation, std::size_t samples) const {
