@@ -15,8 +15,8 @@ namespace plumb {
 
 namespace {
 
-constexpr float widest = 16.0f / 9;
-constexpr float air = 1.1f;
+constexpr float widest_view = 16.0f / 9;
+constexpr float air_around = 1.1f;
 // A shape that reaches this many camera distances from its centre is a floor or a wall.
 constexpr float wide = 0.8f;
 
@@ -55,11 +55,11 @@ float aspect_needed(const DrawList &list) {
     }
     for (const DrawPoint &point : list.points)
         add(point.position, 0);
-    return std::clamp(air * half_width, 1.0f, widest);
+    return std::clamp(air_around * half_width, 1.0f, widest_view);
 }
 
 glm::vec3 shift_to_see(const Camera &camera, float aspect, std::span<const glm::vec3> places) {
-    const float up = std::tan(0.5f * camera.fov) / air; // half a picture, at unit depth
+    const float up = std::tan(0.5f * camera.fov) / air_around; // half a picture, at unit depth
     const float aside = up * aspect;
     glm::vec3 least(0);
     float least_length = std::numeric_limits<float>::max();

@@ -9,9 +9,9 @@ namespace plumb {
 
 namespace {
 
-constexpr std::size_t most_values = 64; // on one axis
+constexpr std::size_t most_swept = 64; // on one axis
 
-[[noreturn]] void refuse(std::string_view text, const std::string &why) {
+[[noreturn]] void refuse_values(std::string_view text, const std::string &why) {
     throw std::invalid_argument("sweep \"" + std::string(text) + "\": " + why);
 }
 
@@ -20,10 +20,10 @@ double parse_value(std::string_view whole, SettingNumber setting, std::string_vi
     try {
         value = parse_number(text);
     } catch (const std::invalid_argument &error) {
-        refuse(whole, error.what());
+        refuse_values(whole, error.what());
     }
     if (const std::string why = why_refused(setting, value); !why.empty())
-        refuse(whole, why);
+        refuse_values(whole, why);
     return value;
 }
 
@@ -32,11 +32,11 @@ SettingNumber parse_name(std::string_view whole, std::string_view name) {
     try {
         numbers = find_setting_numbers(name);
     } catch (const std::invalid_argument &error) {
-        refuse(whole, error.what());
+        refuse_values(whole, error.what());
     }
     if (numbers.size() > 1)
-        refuse(whole, std::string(name) + " is three numbers; sweep one of them, as in " +
-                          setting_name(numbers[1]) + "=-20..-1");
+        refuse_values(whole, std::string(name) + " is three numbers; sweep one of them, as in " +
+                                 setting_name(numbers[1]) + "=-20..-1");
     return numbers.front();
 }
 
@@ -78,19 +78,19 @@ std::string whole_first(const std::vector<SweepAxis> &axes, const char *times, c
 SweepAxis parse_sweep(std::string_view text) {
     const auto equals = text.find('=');
     if (equals == std::string_view::npos)
-        refuse(text, "write SETTING=VALUES, for example substeps=1..16");
+        refuse_values(text, "write SETTING=VALUES, for example substeps=1..16");
     const std::string_view name = text.substr(0, equals);
     const std::string_view range = text.substr(equals + 1);
     SweepAxis axis;
     axis.setting = parse_name(text, name);
     if (range.empty())
-        refuse(text, "no values; for example substeps=1..16 or dt=1/240..1/30");
+        refuse_values(text, "no values; for example substeps=1..16 or dt=1/240..1/30");
 
     if (const auto dots = range.find(".."); dots != std::string_view::npos) {
         const double low = parse_value(text, axis.setting, range.substr(0, dots));
         const double high = parse_value(text, axis.setting, range.substr(dots + 2));
         if (low > high)
-            refuse(text, "the range must ascend");
+            refuse_values(text, "the range must ascend");
         axis.values = values_between(axis.setting, low, high);
     } else {
         std::string_view rest = range;
@@ -104,8 +104,8 @@ SweepAxis parse_sweep(std::string_view text) {
     }
     std::sort(axis.values.begin(), axis.values.end());
     axis.values.erase(std::unique(axis.values.begin(), axis.values.end()), axis.values.end());
-    if (axis.values.size() > most_values)
-        refuse(text, "at most 64 values");
+    if (axis.values.size() > most_swept)
+        refuse_values(text, "at most 64 values");
     return axis;
 }
 
