@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 namespace plumb {
 
@@ -89,6 +90,85 @@ double rod(const EngineKind &kind) {
     return passed;
 }
 
+// Two balls of 0.1 m and 1 kg, one of them at rest, struck at 20 m/s at `offset` of their diameter
+// aside; the step begins `phase` of its length before.
+Trial collision(const EngineKind &kind, double friction, double restitution, double offset,
+                double phase) {
+    SceneDesc scene = weightless();
+    set_material(scene, friction, restitution);
+    add(scene, "resting", SphereDesc{0.1}, {0, 0, 0}).mass = 1;
+    const double before = 0.2 * std::sqrt(1 - offset * offset) + 20 * (3 + phase) / 60;
+    BodyDesc &striker = add(scene, "striker", SphereDesc{0.1}, {-before, 0.2 * offset, 0});
+    striker.mass = 1;
+    striker.velocity = {20, 0, 0};
+    Trial trial(kind, scene);
+    trial.go(0.2);
+    return trial;
+}
+
+constexpr int phases = 12;
+
+template <typename Error> double worst_collision(const Error &error) {
+    double worst = 0;
+    for (const double offset : {0.1, 0.3, 0.5, 0.7, 0.9})
+        for (int i = 0; i < phases; ++i)
+            worst = std::max(worst, error(offset, static_cast<double>(i) / phases));
+    return worst;
+}
+
+// Smooth and elastic: the struck ball leaves along the line of centres, the other square to it. The
+// larger of the two angles by which they are off, in degrees.
+double oblique(const EngineKind &kind) {
+    return worst_collision([&](double offset, double phase) {
+        const Trial trial = collision(kind, 0, 1, offset, phase);
+        const double along = std::asin(offset);
+        const auto off = [&](std::size_t body, double truth) {
+            const glm::dvec3 &v = trial.body(body).velocity;
+            return std::abs(std::remainder(std::atan2(v.y, v.x) - truth, 2 * std::numbers::pi));
+        };
+        return std::max(off(0, -along), off(1, 0.5 * std::numbers::pi - along)) * 180 /
+               std::numbers::pi;
+    });
+}
+
+// Rough ones, that bounce at 0.5: angular momentum, against that before, m v times half the
+// offset about their common centre.
+double oblique_momentum(const EngineKind &kind) {
+    return 100 * worst_collision([&](double offset, double phase) {
+               const Trial trial = collision(kind, 0.5, 0.5, offset, phase);
+               const double before =
+                   -20 * 0.2 * offset; // about the resting ball, as about the origin
+               return std::abs(trial.angular_momentum().z / before - 1);
+           });
+}
+
+// 36 elastic boxes without friction in a room of 4 m, with neither gravity nor losses.
+double gas(const EngineKind &kind) {
+    SceneDesc scene = weightless();
+    set_material(scene, 0, 1);
+    for (int side = 0; side < 6; ++side) {
+        glm::dvec3 away(0), half(3);
+        away[side / 2] = side % 2 == 0 ? 2.5 : -2.5;
+        half[side / 2] = 0.5;
+        add(scene, "wall", BoxDesc{half}, away).kind = BodyKind::fixed;
+    }
+    std::mt19937 bits(11);
+    const auto any = [&] { return 6 * (static_cast<double>(bits()) / 4294967295.0) - 3; };
+    for (int i = 0; i < 36; ++i) {
+        BodyDesc &box =
+            add(scene, "box", BoxDesc{{0.15, 0.1, 0.2}},
+                {-1.2 + 0.8 * (i % 4), -0.8 + 0.8 * (i / 4 % 3), -0.8 + 0.8 * (i / 12)});
+        box.mass = 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            box.velocity[axis] = any();
+            box.angular_velocity[axis] = any();
+        }
+    }
+    Trial trial(kind, scene);
+    const double before = trial.energy();
+    return 100 * trial.worst(60, [&] { return std::abs(trial.energy() / before - 1); });
+}
+
 } // namespace
 
 std::vector<Problem> fast_problems() {
@@ -97,6 +177,11 @@ std::vector<Problem> fast_problems() {
         {"struck", "of 40 balls struck at 20 m/s, through a wall of 1 cm", "", 0, struck},
         {"rod", "of 20 posts, passed by a rod that turns 90 degrees a step", "", 0, rod},
         {"passing", "speed of what is passed by with 2 cm to spare", "m/s", 1e-6, passing},
+        {"oblique", "directions of smooth elastic balls after 20 m/s, worst of 60", "deg", 0.1,
+         oblique},
+        {"oblique_momentum", "angular momentum of rough balls after 20 m/s", "%", 0.1,
+         oblique_momentum},
+        {"gas", "worst energy in 60 s of 36 elastic boxes", "%", 0.1, gas},
     };
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numbers>
 
 namespace plumb {
 
@@ -96,6 +98,49 @@ double card_house(const EngineKind &kind) {
     return 1e3 * worst;
 }
 
+// Thirteen stones of a half circle, from 2 to 2.6 m: how far any went in 10 s. It stands by its
+// shape alone, as long as it is thicker than 0.107 of its radius (Milankovitch 1907), with friction
+// enough at its feet.
+double arch(const EngineKind &kind) {
+    SceneDesc scene = on_ground();
+    set_material(scene, 0.7, 0);
+    constexpr int stones = 13;
+    constexpr double inner = 2, outer = 2.6, deep = 0.3;
+    const double half = 0.5 * std::numbers::pi / stones;
+    const auto width = [&](double radius) { return 2 * radius * std::sin(half); };
+    // A trapezium's centre; y points away from the arch's middle.
+    const double tall = (outer - inner) * std::cos(half);
+    const double centre =
+        tall / 3 * (width(inner) + 2 * width(outer)) / (width(inner) + width(outer));
+    auto points = std::make_shared<std::vector<glm::dvec3>>();
+    for (const double z : {-deep, deep})
+        for (const double side : {-0.5, 0.5}) {
+            points->emplace_back(side * width(inner), -centre, z);
+            points->emplace_back(side * width(outer), tall - centre, z);
+        }
+    for (int i = 0; i < stones; ++i) {
+        const double angle = (2 * i + 1) * half;
+        const glm::dvec3 out(std::cos(angle), std::sin(angle), 0);
+        BodyDesc &stone =
+            add(scene, "stone", HullDesc{points, {}}, (inner * std::cos(half) + centre) * out);
+        stone.orientation = from_y_to(out);
+    }
+    Trial trial(kind, scene);
+    trial.go(10);
+    double worst = 0;
+    for (std::size_t i = 0; i < trial.states().size(); ++i)
+        worst = std::max(worst, glm::distance(trial.body(i).position, scene.bodies[i].position));
+    return 1e3 * worst;
+}
+
+// How far the top of a stack of small cubes is from its place after 30 s, in per cent of its side.
+double small_stack(const EngineKind &kind, int count, double side) {
+    SceneDesc scene = on_ground();
+    for (int i = 0; i < count; ++i)
+        add(scene, "cube", BoxDesc{glm::dvec3(0.5 * side)}, {0, (0.5 + i) * side, 0});
+    return 0.1 * top(kind, std::move(scene)) / side;
+}
+
 } // namespace
 
 std::vector<Problem> standing_problems() {
@@ -113,6 +158,12 @@ std::vector<Problem> standing_problems() {
     problems.push_back({"pyramid_20_rest", "kinetic against potential energy after 30 s", "", 1e-6,
                         [](const EngineKind &kind) { return unrest(kind, pyramid(20)); }});
     problems.push_back({"card_house", "how far any card went in 10 s", "mm", 0.5, card_house});
+    problems.push_back({"arch", "how far any of its 13 stones went in 10 s", "mm", 0.5, arch});
+    for (const auto &[side, count] : {std::pair(2, 3), {2, 10}, {20, 3}, {20, 10}})
+        problems.push_back(
+            {"cubes_" + std::to_string(side) + "mm_" + std::to_string(count),
+             "how far the top of so many is from its place after 30 s", "%", 1,
+             [=](const EngineKind &kind) { return small_stack(kind, count, 1e-3 * side); }});
     for (const auto &[ratio, aim] : {std::pair(30, 1.0), {100, 1.0}, {1000, 5.0}, {3000, 500.0}})
         problems.push_back({"on_one_" + std::to_string(ratio),
                             "depth of a box so many times as heavy on one", "mm", aim,
