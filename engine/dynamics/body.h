@@ -136,6 +136,7 @@ struct SolverBody : Motion {
     Mat3 inv_inertia{Real(0)}; // world; follows the rotation
     Vec3 moved{Real(0)};       // since the step began (m)
     Vec3 turned{Real(0)};      // likewise, as a rotation vector (rad, world)
+    Vec3 rounded_off{Real(0)}; // what `moved` has and the position, too coarse for it, has not (m)
     bool has_locked_translation = false;
 
     Vec3 velocity_at(const Vec3 &r) const { return velocity + glm::cross(angular_velocity, r); }

@@ -239,6 +239,15 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
 
 namespace {
 
+// Adds a way, and what rounding left out of those before it (Kahan 1965): far from the origin, or
+// in many substeps, a body would else stand still at a speed that its contacts see, and never rest.
+void go(SolverBody &motion, const Vec3 &way) {
+    const Vec3 whole = way + motion.rounded_off;
+    const Vec3 to = motion.position + whole;
+    motion.rounded_off = whole - (to - motion.position);
+    motion.position = to;
+}
+
 // Where joints hold a body between two halves of a kick (`is_held`), the gyroscopic torque is that
 // of the spin that the solver left, or tops sink.
 void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
@@ -253,7 +262,7 @@ void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
         motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
     }
     const Vec3 way = h * (flight.free ? flight.mean_velocity : motion.velocity);
-    motion.position += way;
+    go(motion, way);
     motion.moved += way;
     motion.turned += h * motion.angular_velocity;
     if (is_gyroscopic && flight.free)
