@@ -132,6 +132,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
         set(point.r_b, lane, contact.anchors[k].arm_b);
         point.separation.lanes[lane] = contact.manifold.points[k].separation;
         set(point.impulse, lane, contact.impulses[k]);
+        set(point.remembered, lane, contact.impulses[k]);
     }
 }
 
@@ -207,6 +208,13 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
         const Vec3 cores = get(arms.points[k].core_b, lane) - get(arms.points[k].core_a, lane);
         block.points[k].separation.lanes[lane] = glm::dot(offset + cores, n) - rounding;
     }
+}
+
+// As the kernels have it between substeps (recall_impl).
+Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane) {
+    Vec3 impulse = get(point.impulse, lane);
+    impulse.x = std::max(Real(2) * impulse.x - point.remembered.x.lanes[lane], Real(0));
+    return impulse;
 }
 
 // Impulses along a normal and tangents that turned with the contact, as those of the manifold that
@@ -319,7 +327,7 @@ void store_contact_columns(StepContext &context) {
             for (std::size_t lane = 0; lane < block.used; ++lane) {
                 Contact &contact = context.contacts[block.contacts[lane]];
                 for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
-                    contact.impulses[k] = get(block.points[k].impulse, lane);
+                    contact.impulses[k] = next_impulse(block.points[k], lane);
                 if (contact.moment == Moment::turning)
                     express_anew(contact, get(block.normal, lane), get(block.t1, lane));
             }

@@ -35,7 +35,8 @@ struct ContactBlock {
         Column normal_mass;  // 1 / (n^T K n); 0 where a lane has no such point
         Column tangent_mass; // ContactPointConstraint::tangent_mass
         Columns3 impulse;    // accumulated in this substep: normal, t1, t2 (N s)
-        Columns3 remembered; // of the substep before
+        // Of the substep before; after the move: as it was before the relaxing pass.
+        Columns3 remembered;
     };
     // Of each body, as an index of a Real from the first one of the array of bodies; and whether it
     // is dynamic: others are never written.

@@ -202,6 +202,9 @@ HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, Indices in
     store(third.y, to.yz, lane);
 }
 
+// What the relaxing pass adds to a load lacks in both halves of a substep, and it was found in the
+// second one alone: the next substep begins with twice as much of it (ContactBlock::Point). Else a
+// tall stack, whose loads one pass does not balance, sways for minutes.
 void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool remember_first) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         if (block.inertia_turns) {
@@ -218,12 +221,16 @@ void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool 
             Vector before = load(point.impulse, lane);
             Vector recalled;
             if (remember_first) {
+                const Lanes unrelaxed = load(point.remembered.x, lane);
+                before.x = max(hn::Sub(hn::Add(before.x, before.x), unrelaxed), hn::Zero(tag));
                 store(before, point.remembered, lane);
                 recalled = times(all(share), before);
                 store(recalled, point.impulse, lane);
             } else {
                 recalled = times(all(share), load(point.remembered, lane));
-                store(plus(before, recalled), point.impulse, lane);
+                const Vector sum = plus(before, recalled);
+                store(sum, point.impulse, lane);
+                store(sum, point.remembered, lane);
             }
             const Vector impulse =
                 plus(plus(times(recalled.x, n), times(recalled.y, t1)), times(recalled.z, t2));
