@@ -41,8 +41,8 @@ struct SolverScratch {
     std::vector<Real> changes;                   // of all impulses by one pass
     std::vector<SpringConstraint> springs;
     std::vector<ParticleContactConstraint> particle_contacts;
-    // Of each particle, of all its springs: stiffness and damping (N/m, N s/m).
-    std::vector<Vec2> particle_stiffness;
+    std::vector<Mat3> particle_stiffness;       // of each particle, of all its springs (N/m)
+    std::vector<Vec2> spring_rates;             // see find_spring_rates
     std::array<Accelerations, 4> accelerations; // of smooth methods
     std::vector<Motion> motions;                // likewise, where the step began
     std::vector<ParticleMotion> particle_motions;

@@ -71,49 +71,70 @@ Real align(const StepContext &context, SpringConstraint &row) {
     return length;
 }
 
-// Stiffness and damping of all springs at an end, as if along one line, per mass: 1/s^2 and 1/s.
-Vec2 rates_at(const StepContext &context, const SpringEnd &end, const Vec3 &arm,
-              const Spring &spring, const Vec3 &axis) {
-    const Vec2 sum = end.kind == SpringEnd::Kind::particle
-                         ? context.scratch.particle_stiffness[end.index]
-                         : Vec2{spring.stiffness, spring.damping};
-    return EndMass{context, end, arm}.inverse_along(axis) * sum;
+Vec2 rates_at(const StepContext &context, const SpringEnd &end) {
+    switch (end.kind) {
+    case SpringEnd::Kind::world:
+        break;
+    case SpringEnd::Kind::particle:
+        return context.scratch.spring_rates[context.bodies.size() + end.index];
+    case SpringEnd::Kind::body:
+        return context.scratch.spring_rates[end.index];
+    }
+    return Vec2{Real(0)};
 }
 
 // The larger of the two ends: none swings or slows down faster than twice that.
 Vec2 rates_of(const StepContext &context, const SpringConstraint &row) {
     const Spring &spring = context.model.springs[row.spring];
-    return Real(2) * glm::max(rates_at(context, spring.a, row.r_a, spring, row.axis),
-                              rates_at(context, spring.b, row.r_b, spring, row.axis));
+    return Real(2) * glm::max(rates_at(context, spring.a), rates_at(context, spring.b));
+}
+
+// The largest rate times substep that is left to the lengths before and after the move, short of
+// the 2 at which that gains energy without bound.
+constexpr Real followed_turn = Real(1.5);
+
+Real pull_of(const Spring &spring, Real length) {
+    return spring.stiffness * (length - spring.rest_length);
 }
 
 // A spring's row for a substep: k and c as softness over its share of h (Catto 2011, "Soft
 // Constraints": gamma = 1 / (h (c + h k)), beta / h = k / (c + h k)).
 //
-// It begins with the impulse of the explicit force at the middle or end of the substep, as far as
-// that is stable: where the substep follows all springs, the passes have little left to do, and
-// what hangs at rest hangs where the springs hold it, however few they are.
+// What h follows gets its pull by itself, and the row is of the damping alone, which takes energy
+// out however few the passes are. Stiffer ones begin with the impulse of the explicit force at the
+// middle or end of the substep, as far as that is stable.
 void refresh(StepContext &context, SpringConstraint &row, Real h, SpringRule rule) {
     const Spring &spring = context.model.springs[row.spring];
     const Real length = align(context, row);
     row.impulse = Real(0);
     row.mass = Real(0);
     row.share = Real(1);
+    row.bias = Real(0);
+    row.is_followed = false;
     if (row.axis == Vec3{Real(0)})
         return;
     const Vec2 rates = rates_of(context, row);
-    const Real turn = h * std::max(std::sqrt(rates.x), rates.y);
+    row.is_followed =
+        rule == SpringRule::midpoint && h * h * rates.x <= followed_turn * followed_turn;
+    const Real turn = h * std::max(row.is_followed ? Real(0) : std::sqrt(rates.x), rates.y);
     if (rule == SpringRule::midpoint)
         row.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
     const Real time = row.share * h;
-    const Real pull = spring.damping + time * spring.stiffness;
+    const Real pull = spring.damping + (row.is_followed ? Real(0) : time * spring.stiffness);
     if (!(pull > Real(0)))
         return;
     const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
                          EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
     row.softness = Real(1) / (time * pull);
-    row.bias = spring.stiffness * (length - spring.rest_length) / pull;
+    if (!row.is_followed)
+        row.bias = pull_of(spring, length) / pull;
     row.mass = inverse > Real(0) ? Real(1) / (inverse + row.softness) : Real(0);
+}
+
+// Half of a substep of the pull of a spring that it follows; 0 of others.
+Real half_pull(const StepContext &context, const SpringConstraint &row, Real length, Real h) {
+    return row.is_followed ? Real(-0.5) * h * pull_of(context.model.springs[row.spring], length)
+                           : Real(0);
 }
 
 // The guess is made for all springs from the same velocities.
@@ -122,7 +143,8 @@ void guess(const StepContext &context, SpringConstraint &row, Real h) {
         return;
     const Vec2 rates = rates_of(context, row);
     const Real time = row.share * h;
-    const Real followed = Real(1) / std::max(Real(1), time * (time * rates.x + rates.y));
+    const Real stiff = row.is_followed ? Real(0) : time * rates.x;
+    const Real followed = Real(1) / std::max(Real(1), time * (stiff + rates.y));
     row.impulse = -followed * (row.bias + speed_of(context, row)) / row.softness;
 }
 
@@ -195,21 +217,64 @@ void solve_friction(StepContext &context, const ParticleContact &contact,
 
 } // namespace
 
+void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
+                       std::span<const ParticleMotion> particles,
+                       std::span<const std::uint8_t> torn, std::vector<Mat3> &stiffness,
+                       std::vector<Vec2> &rates) {
+    stiffness.assign(particles.size(), Mat3{Real(0)});
+    rates.assign(bodies.size() + particles.size(), Vec2{Real(0)});
+    for (std::size_t i = 0; i < model.springs.size(); ++i) {
+        if (torn[i] != 0)
+            continue;
+        const Spring &spring = model.springs[i];
+        const SpringPoint a = spring_point(spring.a, bodies, particles);
+        const SpringPoint b = spring_point(spring.b, bodies, particles);
+        const Vec3 line = b.position - a.position;
+        const Real length = glm::length(line);
+        // Along the line as the spring is, across it as what it bears makes it.
+        const Real across =
+            length > spring.rest_length ? Real(1) - spring.rest_length / length : Real(0);
+        const Vec3 axis = length > Real(0) ? line / length : Vec3{Real(0)};
+        for (const auto &[end, arm] : {std::pair{&spring.a, a.arm}, std::pair{&spring.b, b.arm}}) {
+            if (end->kind == SpringEnd::Kind::particle) {
+                const Real along = length > Real(0) ? Real(1) - across : Real(0);
+                stiffness[end->index] += spring.stiffness * (across * Mat3{Real(1)} +
+                                                             along * glm::outerProduct(axis, axis));
+                rates[bodies.size() + end->index].y +=
+                    spring.damping * model.particles[end->index].inv_mass;
+            } else if (end->kind == SpringEnd::Kind::body) {
+                const SolverBody &body = bodies[end->index];
+                const Mat3 &inverse = body.inv_inertia;
+                const Vec3 turn = glm::cross(arm, axis);
+                const Real along = body.inv_mass_along(axis) + glm::dot(inverse * turn, turn);
+                const Real least = inverse[0][0] + inverse[1][1] + inverse[2][2];
+                const Real any = body.inv_mass.x + glm::dot(arm, arm) * least;
+                rates[end->index] +=
+                    Vec2{spring.stiffness * (along + across * any), spring.damping * along};
+            }
+        }
+    }
+    for (std::size_t p = 0; p < particles.size(); ++p) {
+        const Mat3 &k = stiffness[p];
+        Real most = Real(0);
+        for (int row = 0; row < 3; ++row)
+            most = std::max(most, std::abs(k[row].x) + std::abs(k[row].y) + std::abs(k[row].z));
+        rates[bodies.size() + p].x = most * model.particles[p].inv_mass;
+    }
+}
+
 void prepare_particles(StepContext &context) {
     SolverScratch &s = context.scratch;
     s.springs.clear();
     s.particle_contacts.clear();
     if (!context.active.has_particles)
         return;
-    s.particle_stiffness.assign(context.particles.size(), Vec2{Real(0)});
+    find_spring_rates(context.model, context.bodies, context.particles, context.torn,
+                      s.particle_stiffness, s.spring_rates);
     for (std::uint32_t i = 0; i < context.model.springs.size(); ++i) {
         if (context.torn[i] != 0)
             continue;
         s.springs.emplace_back().spring = i;
-        const Spring &spring = context.model.springs[i];
-        for (const SpringEnd &end : {spring.a, spring.b})
-            if (end.kind == SpringEnd::Kind::particle)
-                s.particle_stiffness[end.index] += Vec2{spring.stiffness, spring.damping};
     }
     for (std::uint32_t i = 0; i < context.particle_contacts.size(); ++i) {
         ParticleContactConstraint &row = s.particle_contacts.emplace_back();
@@ -257,8 +322,12 @@ void refresh_particles(StepContext &context, Real h, SpringRule rule) {
     }
     for (ParticleContactConstraint &row : s.particle_contacts)
         refresh(context, row);
-    for (const SpringConstraint &row : s.springs)
-        apply(context, row, row.impulse);
+    for (const SpringConstraint &row : s.springs) {
+        const Spring &spring = context.model.springs[row.spring];
+        const Vec3 line = spring_point(spring.b, context.bodies, context.particles).position -
+                          spring_point(spring.a, context.bodies, context.particles).position;
+        apply(context, row, row.impulse + half_pull(context, row, glm::dot(line, row.axis), h));
+    }
 }
 
 void solve_springs(StepContext &context) {
@@ -318,12 +387,13 @@ void drift_particles(StepContext &context, Real h) {
     context.report.body_passes += context.particles.size();
 }
 
-void repeat_particle_springs(StepContext &context) {
+void repeat_particle_springs(StepContext &context, Real h) {
     for (SpringConstraint &row : context.scratch.springs) {
-        if (row.share == Real(1))
+        if (row.share == Real(1) && !row.is_followed)
             continue;
-        align(context, row);
-        apply(context, row, (Real(1) / row.share - Real(1)) * row.impulse);
+        const Real length = align(context, row);
+        apply(context, row,
+              (Real(1) / row.share - Real(1)) * row.impulse + half_pull(context, row, length, h));
     }
 }
 

@@ -5,8 +5,12 @@
 #include "engine/dynamics/particles.h"
 #include "engine/math/basis.h"
 
+#include <span>
+#include <vector>
+
 namespace plumb::inline PLUMB_PRECISION {
 
+struct Model;
 struct StepContext;
 
 // A spring as a soft row (Catto 2011, "Soft Constraints").
@@ -21,6 +25,8 @@ struct SpringConstraint {
     Real bias = Real(0);     // beta / h times the error, m/s
     Real mass = Real(0);     // 1 / (K + gamma)
     Real impulse = Real(0);  // accumulated, along the axis on b (N s)
+    bool is_followed = false; // its pull is that of its length, half before the move and half after
+                              // it; the row is of its damping alone
     Real remembered = Real(0); // for recall_particles
 };
 
@@ -46,10 +52,20 @@ struct ParticlePush {
     bool loaded_only = false; // contacts that are open and bear nothing are left alone
 };
 
-// How springs follow the time of a substep. midpoint: for springs that h follows, the midpoint
-// rule, which keeps the energy, and for stiffer ones less and less of it, down to implicit Euler.
+// How springs follow the time of a substep. midpoint: springs that h follows pull by their lengths
+// before and after the move (Stoermer and Verlet), so that what hangs at rest hangs where they hold
+// it, and energy is kept, however few the passes; stiffer ones by the midpoint rule, and less and
+// less of it, down to implicit Euler.
 enum class SpringRule { implicit_euler, midpoint };
 
+// How fast all springs at a body (first) or particle (behind them) swing it and slow it down, at
+// the most: sums of stiffness and of damping over its mass (1/s^2, 1/s). With K <= 2 diag(K_ii) for
+// a net of springs no mode swings faster than sqrt(2 x), nor slows down faster than 2 y, x and y
+// the largest of all. `stiffness`: memory for what is summed.
+void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
+                       std::span<const ParticleMotion> particles,
+                       std::span<const std::uint8_t> torn, std::vector<Mat3> &stiffness,
+                       std::vector<Vec2> &rates);
 void prepare_particles(StepContext &context);
 void kick_particles(StepContext &context, const Vec3 &gravity, Real h);
 // The hand's spring on the particle that it holds, if it holds one; never stronger than max_force.
@@ -62,9 +78,8 @@ void solve_particle_contacts(StepContext &context, const ParticlePush &push, Rea
 // Adds a share of what springs and contacts remember to their impulses, and applies it.
 void recall_particles(StepContext &context, Real share);
 void drift_particles(StepContext &context, Real h);
-// After the move, the rest of the springs' substep: the same forces along the lines as they are
-// now.
-void repeat_particle_springs(StepContext &context);
+// After the move, the rest of the springs' substep, along the lines as they are now.
+void repeat_particle_springs(StepContext &context, Real h);
 // Particles that struck a body in this substep leave it at the restitution's share of the speed.
 void restitute_particles(StepContext &context, Real threshold);
 

@@ -17,6 +17,10 @@ namespace {
 // What moves slower is at rest: a share of what gravity adds in a step.
 constexpr double particle_rest_share = 4e-3;
 
+// Rate of the fastest springs times the substep that is asked for, some short of what they can be
+// followed to (particle_constraint.cpp): they turn and tighten within the step.
+constexpr double followed_springs = 1.25;
+
 void check_positive(const char *name, Real value) {
     PLUMB_CHECK(std::isfinite(value) && value > Real(0),
                 name << " must be finite and positive, got " << value);
@@ -195,34 +199,14 @@ void World::join_particles() {
                 s.islands.join(end.index, particles);
 }
 
-// The fastest rate (1/s) at which springs swing what they are fastened to: for a particle or body
-// of mass m at most sqrt(2 sum k / m).
+// The fastest rate at which springs swing what they are fastened to (1/s).
 double World::spring_rate() const {
     Scratch &s = scratch_;
-    const std::size_t bodies = model_->bodies.size();
-    std::vector<double> &sums = s.particle_rates;
-    sums.assign(bodies + model_->particles.size(), 0.0);
-    for (std::size_t i = 0; i < model_->springs.size(); ++i) {
-        const Spring &spring = model_->springs[i];
-        if (s.torn[i] != 0)
-            continue;
-        for (const SpringEnd &end : {spring.a, spring.b}) {
-            const auto k = static_cast<double>(spring.stiffness);
-            if (is(end, SpringEnd::Kind::particle)) {
-                sums[bodies + end.index] +=
-                    k * static_cast<double>(model_->particles[end.index].inv_mass);
-            } else if (is(end, SpringEnd::Kind::body) &&
-                       model_->bodies[end.index].kind == BodyKind::dynamic) {
-                const Body &body = model_->bodies[end.index];
-                const double arm = static_cast<double>(glm::length(end.anchor));
-                const double least =
-                    static_cast<double>(std::min({body.inertia.x, body.inertia.y, body.inertia.z}));
-                sums[end.index] += k * (1 / static_cast<double>(body.mass) + arm * arm / least);
-            }
-        }
-    }
-    const auto most = std::ranges::max_element(sums);
-    return most == sums.end() ? 0 : std::sqrt(2 * *most);
+    find_spring_rates(*model_, s.bodies, s.particles, s.torn, s.particle_stiffness, s.spring_rates);
+    double most = 0;
+    for (const Vec2 &rates : s.spring_rates)
+        most = std::max(most, static_cast<double>(rates.x));
+    return std::sqrt(2 * most);
 }
 
 // A spring or a contact of a particle is about an eighth of the work of a joint or contact.

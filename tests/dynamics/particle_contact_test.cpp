@@ -281,6 +281,44 @@ TEST_P(ParticleContacts, ANetBearsABall) {
     }
 }
 
+// A ball that bounces on a net, and on stiffer, lighter, and longer steps: the net takes as many
+// substeps as its springs ask for, and nothing gains energy.
+TEST(SoftStepNet, GainsNoEnergy) {
+    struct Net {
+        double stiffness, mass, dt;
+    };
+    constexpr int n = 9;
+    constexpr double cell = 0.25, ball_mass = 3, drop = 0.7;
+    for (const Net &net :
+         {Net{500, 0.5, 1.0 / 60}, Net{500, 0.05, 1.0 / 60}, Net{5000, 0.5, 1.0 / 60},
+          Net{500, 0.5, 1.0 / 30}, Net{2000, 0.1, 1.0 / 120}}) {
+        StepSettings settings = settings_for("soft_step");
+        settings.dt = net.dt;
+        World world("soft_step", settings);
+        const auto at = [&](int i, int j) { return std::uint32_t(i * n + j); };
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                world.add_particle(particle_at(V{(i - n / 2) * cell, 0, (j - n / 2) * cell},
+                                               net.mass / (n * n),
+                                               i % (n - 1) == 0 || j % (n - 1) == 0));
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                for (const auto &[to_i, to_j] : {std::pair{i + 1, j}, std::pair{i, j + 1}})
+                    if (to_i < n && to_j < n)
+                        world.add_spring(spring(of_particle(at(i, j)), of_particle(at(to_i, to_j)),
+                                                cell, net.stiffness, 0.1));
+        world.add_body(dynamic_body(ball(0.3), ball_mass, V{0, 0.3 + drop, 0}));
+        const double before = world.energy();
+        double most = before;
+        for (int i = 0; i < int(3 / net.dt); ++i) {
+            run(world, 1);
+            most = std::max(most, world.energy());
+        }
+        EXPECT_LT(most - before, 1e-3 * ball_mass * gravity * drop)
+            << net.stiffness << ' ' << net.mass << ' ' << net.dt;
+    }
+}
+
 TEST_P(ParticleContacts, SameBitsSavedRestoredAndWithThreads) {
     World alone = trampoline(GetParam(), 4, 1), shared = trampoline(GetParam(), 4, 1);
     TaskPool tasks(4);

@@ -68,6 +68,23 @@ TEST(Sleep, WhatRestsIsNotSteppedAnyMore) {
     EXPECT_EQ(world.measure().kinetic_energy, 0);
 }
 
+// Tall ones too: what sways is stopped by its contacts, though one pass does not balance all loads.
+TEST(Sleep, TallStacksAndPyramidsComeToRest) {
+    for (const int boxes : {5, 10, 15, 20, 25, 30}) {
+        World world = floor_world();
+        add_stack(world, boxes, 0);
+        EXPECT_TRUE(run_until_all_sleep(world, 10)) << boxes;
+        EXPECT_LT(world.measure().max_penetration, world.settings().substep_tolerance) << boxes;
+    }
+    for (const int base : {10, 20}) {
+        World world = floor_world();
+        for (int row = 0; row < base; ++row)
+            for (int i = 0; i < base - row; ++i)
+                add_box(world, V{1.05 * (i - 0.5 * (base - row - 1)), 0.5 + row, 0});
+        EXPECT_TRUE(run_until_all_sleep(world, 6)) << base;
+    }
+}
+
 // Nobody loses a tenth of a millimetre by sleeping.
 TEST(Sleep, ChangesNothingThatCanBeSeen) {
     StepSettings settings = settings_for("soft_step");

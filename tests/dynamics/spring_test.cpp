@@ -81,6 +81,47 @@ TEST_P(Springs, TwoMassesHaveTheirModes) {
     }
 }
 
+// A ball on a rope of springs that is put where they hold it, each stretched by g / k times what
+// hangs below it, stays there: soft or stiff, damped or not, light or heavy, at any step.
+TEST(SoftStepSprings, HoldWhatHangsWhereTheyShould) {
+    struct Rope {
+        double stiffness, damping, particle, ball, dt;
+    };
+    constexpr int links = 16;
+    for (const Rope &rope :
+         {Rope{400, 20, 0.05, 1, 1.0 / 120}, Rope{400, 0, 0.05, 1, 1.0 / 60},
+          Rope{400, 200, 0.05, 1, 1.0 / 60}, Rope{100, 5, 0.01, 0.5, 1.0 / 60},
+          Rope{5000, 20, 0.05, 10, 1.0 / 60}, Rope{40000, 1, 0.05, 100, 1.0 / 60},
+          Rope{400, 20, 0.05, 1, 1.0 / 30}}) {
+        StepSettings settings = settings_for("soft_step");
+        settings.dt = rope.dt;
+        World world("soft_step", settings);
+        double y = 0;
+        SpringEnd above = of_world(V{0});
+        for (int i = 0; i < links; ++i) {
+            const int below = links - 1 - i;
+            const double load = (below * rope.particle + rope.ball) * gravity;
+            y -= 0.1 + load / rope.stiffness;
+            SpringEnd next;
+            if (below == 0)
+                next = of_body(world.add_body(dynamic_body(ball(0.1), rope.ball, V{0, y - 0.1, 0})),
+                               V{0, 0.1, 0});
+            else
+                next = of_particle(world.add_particle(particle_at(V{0, y, 0}, rope.particle)));
+            world.add_spring(spring(above, next, 0.1, rope.stiffness, rope.damping));
+            above = next;
+        }
+        const double stretch = -y - 0.1 * links, at = y - 0.1;
+        double off = 0;
+        for (int i = 0; i < int(4 / rope.dt); ++i) {
+            run(world, 1);
+            off = std::max(off, std::abs(position_of(world, world.body_id(0)).y - at));
+        }
+        EXPECT_LT(off, 1e-3 * stretch + 1e-5)
+            << rope.stiffness << ' ' << rope.damping << ' ' << rope.ball << ' ' << rope.dt;
+    }
+}
+
 // Particles and bodies that springs tie together, and nothing else holds.
 World floating(const std::string &method) {
     World world(method, weightless(settings_for(method)));

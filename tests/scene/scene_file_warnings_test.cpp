@@ -87,9 +87,28 @@ TEST(SceneWarnings, TouchingStacksAndTurnedBoxesAreFine) {
                        body("b", box + "rotation_deg = [0, 45, 0]\nposition = [0.8, 0, 0.8]")),
               None{});
     // Far away, where float cannot tell millimetres.
-    EXPECT_EQ(warnings(body("a", box + "position = [1e8, 0, 0]") +
+    EXPECT_EQ(warnings("[world]\nprecision = \"double\"\n" +
+                       body("a", box + "position = [1e8, 0, 0]") +
                        body("b", box + "position = [100000001, 0, 0]")),
               None{});
+}
+
+TEST(SceneWarnings, FarAwayFloatIsTooCoarse) {
+    const auto at = [](const std::string &x) {
+        return body("near", sphere) + body("far", sphere + "position = [" + x + ", 0, 0]");
+    };
+    EXPECT_EQ(warnings(at("1e5")),
+              (None{"s.toml:5:1: warning: \"far\" is 1e+05 m from the origin, where places in "
+                    "float are 0.00781 m apart: too coarse to follow how it moves; "
+                    "world.precision = \"double\", or all of it nearer to the origin"}));
+    EXPECT_EQ(warnings(at("1000")), None{});
+    EXPECT_EQ(warnings("[world]\nprecision = \"double\"\n" + at("1e5")), None{});
+    // What is small suffers first, and of many one speaks for all.
+    EXPECT_EQ(warnings(body("a", "shape = \"sphere\"\nradius = 0.005\nposition = [1000, 0, 0]\n"
+                                 "repeat = { kind = \"line\", count = 30, step = [0.1, 0, 0] }"))
+                  .size(),
+              1U);
+    EXPECT_EQ(warnings(body("a", sphere + "kind = \"static\"\nposition = [1e5, 0, 0]")), None{});
 }
 
 TEST(SceneWarnings, BodiesThatDoNotCollideMayOverlap) {

@@ -91,7 +91,7 @@ void advance_soft_step(StepContext &context) {
         recall_contact_columns(context, Real(0.5), false);
         repeat_springs(context);
         if (has_particles) {
-            repeat_particle_springs(context);
+            repeat_particle_springs(context, h);
             kick_particles(context, gravity, Real(0.5) * h);
         }
         for (int i = 0; i < settings.iterations; ++i) {

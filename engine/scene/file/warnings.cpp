@@ -28,6 +28,9 @@ namespace {
 constexpr double overlap_limit = 0.01;   // of the smaller width
 constexpr double anchor_gap_limit = 0.1; // of the smaller width
 constexpr double mass_ratio_limit = 100;
+// How far apart float's places may be, of a body's width: where a contact may not be deeper than so
+// (substep_tolerance), and a pendulum's energy is 1 % off after a minute at three times as much.
+constexpr double coarseness_limit = 3e-4;
 constexpr std::size_t listed_of_a_kind = 10;
 
 // Three digits are enough to see what is the matter.
@@ -84,9 +87,11 @@ class Checker {
         check_springs();
         check_pairs();
         check_dt();
+        check_places();
         std::vector<SceneMessage> all;
-        for (Group *kind : {&overlaps_, &mass_ratios_, &gaps_, &idle_joints_, &idle_springs_,
-                            &stiff_springs_, &fast_, &spinning_, &falling_, &pendulums_})
+        for (Group *kind :
+             {&far_away_, &overlaps_, &mass_ratios_, &gaps_, &idle_joints_, &idle_springs_,
+              &stiff_springs_, &fast_, &spinning_, &falling_, &pendulums_})
             kind->move_into(all);
         return all;
     }
@@ -328,6 +333,39 @@ class Checker {
         }
     }
 
+    // How far apart the places are that float has there, as a share of the body's width.
+    double coarseness(std::size_t i) const {
+        const glm::dvec3 at = glm::abs(scene_.bodies[i].position);
+        const auto far = static_cast<float>(std::max({at.x, at.y, at.z}));
+        const float next = std::nextafter(far, std::numeric_limits<float>::infinity());
+        return static_cast<double>(next - far) / widths_[i];
+    }
+
+    // Of many the one that suffers most.
+    void check_places() {
+        if (scene_.world.precision != Precision::single)
+            return;
+        std::size_t worst = 0;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+            if (!is_dynamic(i) || coarseness(i) <= coarseness_limit)
+                continue;
+            if (count++ == 0 || coarseness(i) > coarseness(worst))
+                worst = i;
+        }
+        if (count == 0)
+            return;
+        const double distance = glm::length(scene_.bodies[worst].position);
+        const double apart = coarseness(worst) * widths_[worst];
+        const std::string others =
+            count == 1 ? "" : " (and " + std::to_string(count - 1) + " more such bodies)";
+        far_away_.add(positions_.bodies[worst],
+                      in_quotes(scene_.bodies[worst].name) + " is " + rounded(distance) +
+                          " m from the origin, where places in float are " + rounded(apart) +
+                          " m apart: too coarse to follow how it moves" + others,
+                      "world.precision = \"double\", or all of it nearer to the origin");
+    }
+
     const SceneDesc &scene_;
     const ScenePositions &positions_;
     std::map<std::string, std::size_t> indices_;
@@ -337,6 +375,7 @@ class Checker {
     StartOverlaps start_overlaps_;
     std::vector<std::pair<std::size_t, std::size_t>> exempt_; // sorted
 
+    Group far_away_{"such bodies"};
     Group overlaps_{"overlaps"};
     Group mass_ratios_{"such pairs"};
     Group gaps_{"such joints"};

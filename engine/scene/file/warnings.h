@@ -31,6 +31,7 @@ struct ScenePositions {
 // - the anchors of a ball joint are apart by more than 10 % of the smaller body's width;
 // - a joint or a spring moves nothing, as neither of its ends is dynamic;
 // - a spring is too stiff for an explicit method's step;
+// - a body is so far away that float cannot follow it;
 // - dt is too long: see the messages for the formulas.
 // No more than ten of a kind are listed, the last of them saying how many more there are.
 std::vector<SceneMessage> scene_warnings(const SceneDesc &scene, const ScenePositions &positions);
