@@ -97,38 +97,52 @@ Real pull_of(const Spring &spring, Real length) {
     return spring.stiffness * (length - spring.rest_length);
 }
 
+void set_mass(const StepContext &context, SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
+                         EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+    row.mass = inverse > Real(0) ? Real(1) / (inverse + row.softness) : Real(0);
+}
+
+void solve(StepContext &context, SpringConstraint &row) {
+    if (row.mass == Real(0))
+        return;
+    const Real change =
+        -row.mass * (speed_of(context, row) + row.bias + row.softness * row.impulse);
+    row.impulse += change;
+    apply(context, row, change);
+}
+
 // A spring's row for a substep: k and c as softness over its share of h (Catto 2011, "Soft
 // Constraints": gamma = 1 / (h (c + h k)), beta / h = k / (c + h k)).
 //
-// What h follows gets its pull by itself, and the row is of the damping alone, which takes energy
-// out however few the passes are. Stiffer ones begin with the impulse of the explicit force at the
-// middle or end of the substep, as far as that is stable.
+// What h follows has no row here: its pull comes by itself, and its damping at the substep's end
+// (damp). Stiffer ones begin with the impulse of the explicit force at the middle or end of the
+// substep, as far as that is stable.
 void refresh(StepContext &context, SpringConstraint &row, Real h, SpringRule rule) {
     const Spring &spring = context.model.springs[row.spring];
     const Real length = align(context, row);
     row.impulse = Real(0);
     row.mass = Real(0);
     row.share = Real(1);
-    row.bias = Real(0);
     row.is_followed = false;
     if (row.axis == Vec3{Real(0)})
         return;
     const Vec2 rates = rates_of(context, row);
     row.is_followed =
         rule == SpringRule::midpoint && h * h * rates.x <= followed_turn * followed_turn;
-    const Real turn = h * std::max(row.is_followed ? Real(0) : std::sqrt(rates.x), rates.y);
+    if (row.is_followed)
+        return;
+    const Real turn = h * std::max(std::sqrt(rates.x), rates.y);
     if (rule == SpringRule::midpoint)
         row.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
     const Real time = row.share * h;
-    const Real pull = spring.damping + (row.is_followed ? Real(0) : time * spring.stiffness);
+    const Real pull = spring.damping + time * spring.stiffness;
     if (!(pull > Real(0)))
         return;
-    const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
-                         EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
     row.softness = Real(1) / (time * pull);
-    if (!row.is_followed)
-        row.bias = pull_of(spring, length) / pull;
-    row.mass = inverse > Real(0) ? Real(1) / (inverse + row.softness) : Real(0);
+    row.bias = pull_of(spring, length) / pull;
+    set_mass(context, row);
 }
 
 // Half of a substep of the pull of a spring that it follows; 0 of others.
@@ -143,18 +157,29 @@ void guess(const StepContext &context, SpringConstraint &row, Real h) {
         return;
     const Vec2 rates = rates_of(context, row);
     const Real time = row.share * h;
-    const Real stiff = row.is_followed ? Real(0) : time * rates.x;
-    const Real followed = Real(1) / std::max(Real(1), time * (stiff + rates.y));
+    const Real swing = row.is_followed ? Real(0) : time * rates.x;
+    const Real followed = Real(1) / std::max(Real(1), time * (swing + rates.y));
     row.impulse = -followed * (row.bias + speed_of(context, row)) / row.softness;
 }
 
-void solve(StepContext &context, SpringConstraint &row) {
-    if (row.mass == Real(0))
-        return;
-    const Real change =
-        -row.mass * (speed_of(context, row) + row.bias + row.softness * row.impulse);
-    row.impulse += change;
-    apply(context, row, change);
+// The damping of springs that h follows, over all of it: of the velocities that the forces before
+// and after the move have left, which are 0 where these balance. It takes energy out however few
+// the passes are; within the move it would take away what the pulls hand on.
+void damp(StepContext &context, Real h) {
+    const auto for_damped = [&](auto &&use) {
+        for (SpringConstraint &row : context.scratch.springs)
+            if (row.is_followed && context.model.springs[row.spring].damping > Real(0))
+                use(row);
+    };
+    for_damped([&](SpringConstraint &row) {
+        row.softness = Real(1) / (h * context.model.springs[row.spring].damping);
+        row.bias = Real(0);
+        set_mass(context, row);
+        guess(context, row, h);
+    });
+    for_damped([&](SpringConstraint &row) { apply(context, row, row.impulse); });
+    for (int i = 0; i < context.settings.iterations; ++i)
+        for_damped([&](SpringConstraint &row) { solve(context, row); });
 }
 
 Vec3 relative_velocity(const StepContext &context, const ParticleContact &contact,
@@ -318,7 +343,7 @@ void refresh_particles(StepContext &context, Real h, SpringRule rule) {
     SolverScratch &s = context.scratch;
     for (SpringConstraint &row : s.springs) {
         refresh(context, row, h, rule);
-        guess(context, row, h);
+        guess(context, row, h); // nothing for those that h follows, whose mass is 0 here
     }
     for (ParticleContactConstraint &row : s.particle_contacts)
         refresh(context, row);
@@ -395,6 +420,7 @@ void repeat_particle_springs(StepContext &context, Real h) {
         apply(context, row,
               (Real(1) / row.share - Real(1)) * row.impulse + half_pull(context, row, length, h));
     }
+    damp(context, h);
 }
 
 void restitute_particles(StepContext &context, Real threshold) {

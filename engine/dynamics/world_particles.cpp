@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -18,8 +19,11 @@ namespace {
 constexpr double particle_rest_share = 4e-3;
 
 // Rate of the fastest springs times the substep that is asked for, some short of what they can be
-// followed to (particle_constraint.cpp): they turn and tighten within the step.
-constexpr double followed_springs = 1.25;
+// followed to (particle_constraint.cpp): they turn and tighten within the step. And how fast they
+// may slow down what they hold, likewise: one pass over strong dampers on light particles loses
+// what these should hand on.
+constexpr double followed_swing = 1.25;
+constexpr double followed_damping = 16;
 
 void check_positive(const char *name, Real value) {
     PLUMB_CHECK(std::isfinite(value) && value > Real(0),
@@ -199,14 +203,15 @@ void World::join_particles() {
                 s.islands.join(end.index, particles);
 }
 
-// The fastest rate at which springs swing what they are fastened to (1/s).
+// How many substeps a second springs ask for.
 double World::spring_rate() const {
     Scratch &s = scratch_;
     find_spring_rates(*model_, s.bodies, s.particles, s.torn, s.particle_stiffness, s.spring_rates);
-    double most = 0;
+    Vec2 most{Real(0)};
     for (const Vec2 &rates : s.spring_rates)
-        most = std::max(most, static_cast<double>(rates.x));
-    return std::sqrt(2 * most);
+        most = glm::max(most, rates);
+    return std::max(std::sqrt(2 * static_cast<double>(most.x)) / followed_swing,
+                    2 * static_cast<double>(most.y) / followed_damping);
 }
 
 // A spring or a contact of a particle is about an eighth of the work of a joint or contact.

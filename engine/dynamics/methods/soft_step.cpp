@@ -91,8 +91,8 @@ void advance_soft_step(StepContext &context) {
         recall_contact_columns(context, Real(0.5), false);
         repeat_springs(context);
         if (has_particles) {
-            repeat_particle_springs(context, h);
             kick_particles(context, gravity, Real(0.5) * h);
+            repeat_particle_springs(context, h);
         }
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, relaxing);
