@@ -111,13 +111,13 @@ TEST(SoftStepSprings, HoldWhatHangsWhereTheyShould) {
             world.add_spring(spring(above, next, 0.1, rope.stiffness, rope.damping));
             above = next;
         }
-        const double stretch = -y - 0.1 * links, at = y - 0.1;
+        const double longer = -y - 0.1 * links, at = y - 0.1;
         double off = 0;
         for (int i = 0; i < int(4 / rope.dt); ++i) {
             run(world, 1);
             off = std::max(off, std::abs(position_of(world, world.body_id(0)).y - at));
         }
-        EXPECT_LT(off, 1e-3 * stretch + 1e-5)
+        EXPECT_LT(off, 1e-3 * longer + 1e-5)
             << rope.stiffness << ' ' << rope.damping << ' ' << rope.ball << ' ' << rope.dt;
     }
 }
