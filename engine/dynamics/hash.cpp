@@ -105,6 +105,14 @@ void add(StateHash &hash, const Joint &joint) {
     hash.add(std::uint64_t{joint.collide_connected});
 }
 
+// None at all are as good as zeros.
+template <std::size_t count>
+void add_penalties(StateHash &hash, const std::array<Real, count> &penalties) {
+    if (penalties != std::array<Real, count>{})
+        for (const Real penalty : penalties)
+            hash.add(penalty);
+}
+
 } // namespace
 
 std::uint64_t World::hash() const {
@@ -142,6 +150,8 @@ std::uint64_t World::hash() const {
         for (const Real impulse : state_.joints[i].impulses)
             hash.add(impulse);
         hash.add(std::uint64_t{state_.joints[i].broken});
+        if (i < state_.penalties.joints.size())
+            add_penalties(hash, state_.penalties.joints[i]);
     }
     for (const ContactMemory &memory : state_.contacts) {
         hash.add(rank[memory.key.a] << 32 | rank[memory.key.b]);
@@ -157,6 +167,11 @@ std::uint64_t World::hash() const {
             add(hash, point.impulse);
             add(hash, point.core_a);
             add(hash, point.core_b);
+            if (!state_.penalties.points.empty()) {
+                const PointPenalty &penalty = state_.penalties.points[memory.first_point + k];
+                add_penalties(hash, std::array{penalty.normal, penalty.tangential, penalty.slip.x,
+                                               penalty.slip.y});
+            }
         }
     }
     for (std::size_t i = 0; i < model_->particles.size(); ++i) {

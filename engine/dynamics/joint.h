@@ -31,6 +31,10 @@ struct JointMemory {
     bool broken = false; // holds nothing any more
 };
 
+// How stiff the same rows have become, under a method of augmented Lagrangians (penalty.h; N/m, N
+// m/rad).
+using JointPenalty = std::array<Real, joint_row_count>;
+
 struct JointDef {
     JointType type = JointType::ball;
     BodyId a; // a default BodyId is the world itself; its anchor and frame are in world coordinates
@@ -51,6 +55,7 @@ struct JointDef {
     Real break_force = Real(0); // N, of the rows that hold the anchors; 0: never
     bool collide_connected = false;
     JointMemory memory;
+    JointPenalty penalty{};
 };
 
 // As it is in the model. Anchors and frames are in the mass frames (Body).

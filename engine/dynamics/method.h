@@ -4,6 +4,7 @@
 #include "engine/core/task_pool.h"
 #include "engine/dynamics/contact_columns.h"
 #include "engine/dynamics/contact_constraint.h"
+#include "engine/dynamics/descent.h"
 #include "engine/dynamics/events.h"
 #include "engine/dynamics/joint_constraint.h"
 #include "engine/dynamics/joint_system.h"
@@ -46,6 +47,7 @@ struct SolverScratch {
     std::array<Accelerations, 4> accelerations; // of smooth methods
     std::vector<Motion> motions;                // likewise, where the step began
     std::vector<ParticleMotion> particle_motions;
+    Descent descent;
 };
 
 // What a method is given: the world at the start of a step, to be advanced by settings.dt. Contacts
@@ -70,7 +72,10 @@ struct StepContext {
     std::span<const std::uint8_t> torn;  // one for each spring of the model
     std::span<const ParticleContact> particle_contacts;
     std::span<const ContactEnds> ends; // of each contact
-    TaskPool *tasks = nullptr;         // null: one thread; with more the bits are the same
+    // Of each contact's points and of each joint; empty unless the method keeps_penalties.
+    std::span<std::array<PointPenalty, 4>> point_penalties;
+    std::span<JointPenalty> joint_penalties;
+    TaskPool *tasks = nullptr; // null: one thread; with more the bits are the same
 
     std::span<const std::uint32_t> moving() const { return active.moving; }
     SolverBody &body(std::uint32_t index) {

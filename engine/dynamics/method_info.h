@@ -25,6 +25,10 @@ struct MethodInfo {
     bool chooses_substeps() const {
         return std::ranges::find(reads, SettingGroup::chosen) != reads.end();
     }
+    // Whether it remembers how stiff each row has become.
+    bool keeps_penalties() const {
+        return std::ranges::find(reads, SettingGroup::penalty) != reads.end();
+    }
     // What it runs with where nothing else is said.
     StepSettings defaults{.substeps = 1, .iterations = 1};
 };

@@ -16,6 +16,18 @@ Real multiplier(Real error, Real change, Real lambda, Real inverse_mass,
     return -(k * error + c * change + lambda) / ((k + c) * inverse_mass + Real(1));
 }
 
+Vec3 along(const RowBlock &rows, const Vec3 &row) {
+    if (rows.kind == RowKind::point)
+        return row;
+    return row.x * rows.axes[0] + row.y * rows.axes[1] + row.z * rows.axes[2];
+}
+
+Real inverse_effective_mass(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                            const Vec3 &n) {
+    return rows.kind == RowKind::angular ? glm::dot(n, (a.inv_inertia + b.inv_inertia) * n)
+                                         : inverse_effective_mass(a, b, rows.r_a, rows.r_b, n);
+}
+
 // q += 1/2 [angle, 0] q, normalised: eqs. (8) and (9), and algorithm 2's prediction.
 void turn_pose(SolverBody &body, const Vec3 &angle) {
     if (angle == Vec3{Real(0)})

@@ -11,6 +11,7 @@
 
 #include "engine/dynamics/body.h"
 #include "engine/dynamics/contact_constraint.h"
+#include "engine/dynamics/joint_rows.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -28,6 +29,12 @@ struct Compliance {
 // with `inverse_mass`.
 Real multiplier(Real error, Real change, Real lambda, Real inverse_mass,
                 const Compliance &compliance);
+
+// A vector of a joint's rows, in the world.
+Vec3 along(const RowBlock &rows, const Vec3 &row);
+// 1 / the mass (or moment) that a row along (or about) n moves.
+Real inverse_effective_mass(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                            const Vec3 &n);
 
 // q += 1/2 [angle, 0] q, normalised: eqs. (8) and (9) of Mueller et al., and their prediction.
 void turn_pose(SolverBody &body, const Vec3 &angle);

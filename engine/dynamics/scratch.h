@@ -56,6 +56,7 @@ struct Scratch {
     std::vector<std::vector<std::uint32_t>> triangles; // near what a part of the loop looks at
     std::vector<ContactMemory> next_memory;
     std::vector<PointMemory> next_points;
+    std::vector<PointPenalty> next_penalties;
     // Of each contact: how many of its points are remembered; then its place in next_memory.
     std::vector<std::uint32_t> remembered;
     // Of those between bodies that were still: where they were and where they are now.
@@ -71,6 +72,8 @@ struct Scratch {
     std::vector<SolverBody> bodies;
     std::vector<std::uint32_t> moving;
     std::vector<JointMemory> joints;
+    std::vector<JointPenalty> joint_penalties;
+    std::vector<std::array<PointPenalty, 4>> point_penalties; // of each contact
     Grab grab;
     SolverBody world_frame;
     SolverScratch solver;

@@ -42,6 +42,11 @@ struct StepSettings {
     int impact_sweeps = 32;
     int impact_passes = 16;
     int gyroscopic_iterations = 3;
+    double penalty_start = 1;
+    double penalty_growth = 100;
+    double penalty_limit = 1e6;
+    double penalty_kept = 0.99;
+    double error_kept = 0.95;
 };
 
 // Settings that are read together: a method's row in the registry names the groups that it reads.
@@ -59,7 +64,8 @@ enum class SettingGroup {
     push,        // overlap taken back no faster than so
     threshold,   // what is too slow to bounce
     impacts,     // bounces, with each impact handed on
-    gyroscopic   // an implicit gyroscopic term
+    gyroscopic,  // an implicit gyroscopic term
+    penalty      // rows that stiffen while they err
 };
 
 using SettingMember =
@@ -142,6 +148,19 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      SettingGroup::gyroscopic,
      "Newton steps for the implicit gyroscopic term; three reach rounding up to a third of a "
      "radian a substep."},
+    {"penalty_start", &StepSettings::penalty_start, "", 1e-6, 1e6, SettingGroup::penalty,
+     "The least stiffness of a contact or joint, as a share of the mass that it moves over the "
+     "square of the substep: with 1 a pass takes back half of an error."},
+    {"penalty_growth", &StepSettings::penalty_growth, "1/m", 0, 1e9, SettingGroup::penalty,
+     "How much stiffer, in the same unit, a pass makes what is off by a metre or a radian: beta of "
+     "Giles, Diaz and Yuksel 2025."},
+    {"penalty_limit", &StepSettings::penalty_limit, "", 1e-6, 1e9, SettingGroup::penalty,
+     "The greatest stiffness, in the same unit."},
+    {"penalty_kept", &StepSettings::penalty_kept, "", 0, 1, SettingGroup::penalty,
+     "The share of stiffness and load that is kept from substep to substep: their gamma."},
+    {"error_kept", &StepSettings::error_kept, "", 0, 1, SettingGroup::penalty,
+     "The share of an overlap, or of a joint's drift, that a substep leaves as it found it: their "
+     "alpha, of which the load, too, is kept no more."},
 });
 
 namespace settings_detail {

@@ -6,6 +6,7 @@
 #include "engine/dynamics/islands.h"
 #include "engine/dynamics/joint.h"
 #include "engine/dynamics/particles.h"
+#include "engine/dynamics/penalty.h"
 
 #include <vector>
 
@@ -25,6 +26,7 @@ struct State {
     std::vector<JointMemory> joints;     // one for each joint of the model
     std::vector<ContactMemory> contacts; // ascending by key
     std::vector<PointMemory> points;
+    Penalties penalties;
     std::vector<ParticleMotion> particles; // one for each particle of the model
     std::vector<std::uint8_t> torn;        // one for each spring of the model
     Grab grab;

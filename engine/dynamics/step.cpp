@@ -94,6 +94,7 @@ void World::step(TaskPool *tasks, StepTimes *times) {
         {
             const PhaseTimer timer(times ? &times->finish : nullptr);
             gather_memory();
+            gather_penalties();
             fall_asleep();
             finish();
         }
@@ -153,6 +154,7 @@ void World::load_bodies() {
     s.world_frame = SolverBody{};
     if (model_->has_particles())
         load_particles();
+    load_penalties();
 }
 
 void World::note_ends() {
@@ -175,10 +177,25 @@ void World::advance() {
     for (std::size_t i = 0; i < s.group_count; ++i) {
         StepSettings settings = settings_;
         settings.substeps = s.groups[i].substeps;
-        StepContext context{*model_,    settings,  s.bodies,    state_.motions, s.groups[i],
-                            s.contacts, s.joints,  s.grab,      s.world_frame,  s.solver,
-                            report_,    s.impacts, s.particles, s.torn,         s.particle_contacts,
-                            s.ends,     s.tasks};
+        StepContext context{*model_,
+                            settings,
+                            s.bodies,
+                            state_.motions,
+                            s.groups[i],
+                            s.contacts,
+                            s.joints,
+                            s.grab,
+                            s.world_frame,
+                            s.solver,
+                            report_,
+                            s.impacts,
+                            s.particles,
+                            s.torn,
+                            s.particle_contacts,
+                            s.ends,
+                            s.point_penalties,
+                            s.joint_penalties,
+                            s.tasks};
         const bool has_joints = !s.groups[i].joints.empty();
         if (has_joints)
             std::swap(s.solver.joint_system, s.joint_systems[i]);
@@ -300,6 +317,8 @@ void World::finish() {
     std::swap(state_.contacts, s.next_memory);
     std::swap(state_.points, s.next_points);
     std::swap(state_.joints, s.joints);
+    std::swap(state_.penalties.points, s.next_penalties);
+    std::swap(state_.penalties.joints, s.joint_penalties);
     std::swap(state_.paces, s.paces);
     state_.grab = s.grab;
     if (model_->has_particles()) {

@@ -310,6 +310,7 @@ JointId World::add_joint(const JointDef &def) {
     const std::uint32_t slot = take_slot(model.joints, model.free_joints);
     state_.joints.resize(model.joints.size());
     state_.joints[slot] = def.memory;
+    remember_penalty(slot, def.penalty);
     Joint &joint = model.joints[slot];
     joint = Joint{.type = def.type,
                   .a = a,
@@ -362,6 +363,7 @@ void World::remove_joint(JointId id) {
     joint.generation = next_generation;
     --model.alive_joints;
     state_.joints[id.index] = JointMemory{};
+    remember_penalty(id.index, {});
     model.free_joints.push_back(id.index);
 }
 
@@ -463,7 +465,8 @@ void World::set_step_count(std::uint64_t count) {
 }
 
 void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
-                             std::span<const PointMemory> points) {
+                             std::span<const PointMemory> points,
+                             std::span<const PointPenalty> penalties) {
     PLUMB_CHECK(key.a < key.b && key.b < bodies().size() && bodies()[key.a].alive &&
                     bodies()[key.b].alive,
                 "a remembered contact names a body that is not alive");
@@ -472,6 +475,7 @@ void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
     const ContactMemory memory{key, static_cast<std::uint32_t>(state_.points.size()),
                                static_cast<std::uint32_t>(points.size()), origin};
     state_.points.insert(state_.points.end(), points.begin(), points.end());
+    remember_penalties(penalties, points.size());
     const auto place = std::ranges::lower_bound(state_.contacts, key, {}, &ContactMemory::key);
     if (place != state_.contacts.end() && place->key == key)
         *place = memory;

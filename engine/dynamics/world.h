@@ -93,7 +93,8 @@ class World {
     // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
     // are known by feature; a contact that the next step does not find again is forgotten.
     void remember_contact(const ContactKey &key, const ContactOrigin &origin,
-                          std::span<const PointMemory> points);
+                          std::span<const PointMemory> points,
+                          std::span<const PointPenalty> penalties = {});
 
     // Advances by settings().dt. `tasks` may be null: one thread. Same bits for any thread count. A
     // step that throws leaves the state as it was. `times`, when not null, gets the phases' times.
@@ -155,6 +156,10 @@ class World {
     std::uint32_t remembered_points(const Contact &contact) const;
     void remember(const Contact &contact, ContactMemory &memory);
     void gather_memory();
+    void load_penalties();
+    void gather_penalties();
+    void remember_penalties(std::span<const PointPenalty> penalties, std::size_t point_count);
+    void remember_penalty(std::uint32_t joint, const JointPenalty &penalty);
     void finish();
 
     // Islands and their substeps (islands.cpp).

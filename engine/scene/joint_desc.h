@@ -44,6 +44,9 @@ struct JointDesc {
     bool collide_connected = false; // whether the two bodies also collide with each other
     // State: what the solver remembers (N s, of angular rows N m s), in the order of the rows.
     std::array<double, max_joint_rows> impulses{};
+    // State: how stiff the same rows have become (N/m, N m/rad), under a method that keeps
+    // penalties.
+    std::array<double, max_joint_rows> penalties{};
     bool broken = false; // state: holds nothing any more
 };
 

@@ -132,6 +132,9 @@ struct ContactStateDesc {
         glm::dvec3 impulse{0}; // normal, two tangential (N s)
         glm::dvec3 core_a{0};  // where the point is on either body, in its mass frame (m)
         glm::dvec3 core_b{0};
+        // Stiffness along and across (N/m), slip (m) along the two tangents: of a method that keeps
+        // penalties.
+        std::array<double, 4> penalty{};
     };
     // How the bodies lay when it was found.
     glm::dvec3 normal{0, 1, 0};

@@ -12,6 +12,7 @@
     METHOD(sequential_impulses)                                                                    \
     METHOD(nncg)                                                                                   \
     METHOD(xpbd)                                                                                   \
+    METHOD(avbd)                                                                                   \
     METHOD(naive_impulses)                                                                         \
     METHOD(explicit_euler)                                                                         \
     METHOD(semi_implicit_euler)                                                                    \

@@ -51,17 +51,6 @@ void derive_spins(StepContext &context, Real h) {
     context.report.body_passes += context.moving().size();
 }
 
-Vec3 along(const RowBlock &rows, const Vec3 &row) {
-    if (rows.kind == RowKind::point)
-        return row;
-    return row.x * rows.axes[0] + row.y * rows.axes[1] + row.z * rows.axes[2];
-}
-
-Real inverse_mass(const RowBlock &rows, const SolverBody &a, const SolverBody &b, const Vec3 &n) {
-    return rows.kind == RowKind::angular ? glm::dot(n, (a.inv_inertia + b.inv_inertia) * n)
-                                         : inverse_effective_mass(a, b, rows.r_a, rows.r_b, n);
-}
-
 void correct(const RowBlock &rows, SolverBody &a, SolverBody &b, const Vec3 &p, Real h) {
     if (rows.kind == RowKind::angular) {
         turn_pose(a, -(a.inv_inertia * p));
@@ -81,7 +70,7 @@ void solve_rigid(JointConstraint &joint, SolverBody &a, SolverBody &b, Real h) {
     const Real size = glm::length(error);
     if (size == Real(0))
         return;
-    const Real inverse = inverse_mass(joint.rows, a, b, along(joint.rows, error / size));
+    const Real inverse = inverse_effective_mass(joint.rows, a, b, along(joint.rows, error / size));
     if (!(inverse > Real(0)))
         return;
     const Vec3 change = error / -inverse;
@@ -99,7 +88,7 @@ void solve_spring(JointConstraint &joint, SolverBody &a, SolverBody &b, int row,
     Vec3 unit{Real(0)};
     unit[row] = Real(1);
     const Vec3 n = along(rows, unit);
-    const Real inverse = inverse_mass(rows, a, b, n);
+    const Real inverse = inverse_effective_mass(rows, a, b, n);
     if (!(inverse > Real(0)))
         return;
     const Real turn = Real(2) * std::numbers::pi_v<Real> * rows.frequency * h;
@@ -168,7 +157,7 @@ void solve_motors(StepContext &context, Real h) {
         const RowBlock &rows = joint.rows;
         const Vec3 &n = rows.axes[0];
         const bool is_angular = rows.kind == RowKind::angular;
-        const Real inverse = inverse_mass(rows, a, b, n);
+        const Real inverse = inverse_effective_mass(rows, a, b, n);
         if (!(inverse > Real(0)))
             return;
         const Vec3 speed = is_angular ? b.angular_velocity - a.angular_velocity

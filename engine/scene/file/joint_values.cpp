@@ -9,7 +9,7 @@ Words joint_keys_in_files() {
         std::vector<std::string> all{
             "name",          "type",          "body_a",         "body_b",         "anchor",
             "anchor_a",      "anchor_b",      "anchor_a_local", "anchor_b_local", "axis",
-            "frame_a_local", "frame_b_local", "impulses",       "chain"};
+            "frame_a_local", "frame_b_local", "impulses",       "penalties",      "chain"};
         const auto add = [&all](const JointKey &key) {
             for (const std::string &name : {std::string(key.name), std::string(key.name) + "_deg"})
                 if ((name == key.name || key.is_angle()) &&
@@ -177,24 +177,25 @@ void read_lengths(JointTable &source) {
 }
 
 // As many as the type has rows.
-void read_impulses(JointTable &source) {
-    const toml::node *node = source.table.node("impulses");
+void read_rows(JointTable &source, const std::string &key,
+               std::array<double, max_joint_rows> &rows) {
+    const toml::node *node = source.table.node(key);
     if (node == nullptr)
         return;
     const std::size_t count = source.type.rows.size();
     const toml::array *elements = node->as_array();
     if (elements == nullptr || elements->size() != count) {
         source.table.error(
-            "impulses",
-            elements == nullptr ? "impulses is " + std::string(type_name(*node))
-                                : "impulses has " + std::to_string(elements->size()) + " elements",
+            key,
+            key + (elements == nullptr ? " is " + std::string(type_name(*node))
+                                       : " has " + std::to_string(elements->size()) + " elements"),
             "of a " + std::string(source.type.name) + " joint it must be an array of " +
                 std::to_string(count) + " numbers");
         return;
     }
     for (std::size_t i = 0; i < count; ++i)
-        source.joint.impulses[i] =
-            source.table.number(*elements->get(i), "impulses[" + std::to_string(i) + "]", finite)
+        rows[i] =
+            source.table.number(*elements->get(i), key + "[" + std::to_string(i) + "]", finite)
                 .value_or(0);
 }
 
@@ -214,7 +215,8 @@ void read_joint_values(Report &report, JointTable &source) {
     read_keys(source.table, source.type.keys, source.joint);
     read_keys(source.table, common_joint_keys(), source.joint);
     read_lengths(source);
-    read_impulses(source);
+    read_rows(source, "impulses", source.joint.impulses);
+    read_rows(source, "penalties", source.joint.penalties);
 }
 
 } // namespace plumb::scene_file

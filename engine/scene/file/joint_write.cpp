@@ -82,13 +82,18 @@ std::string joint_text(const JointDesc &joint) {
         text += line("frame_a_local", rotation(joint.frame_a_local)) +
                 line("frame_b_local", rotation(joint.frame_b_local));
     text += lines_of(type.keys, joint) + lines_of(common_joint_keys(), joint);
-    const auto impulses = std::span(joint.impulses).first(type.rows.size());
-    if (std::ranges::all_of(impulses, [](double impulse) { return same_bits(impulse, 0); }))
-        return text;
-    std::string list;
-    for (const double impulse : impulses)
-        list += (list.empty() ? "" : ", ") + shortest(impulse);
-    return text + line("impulses", "[" + list + "]");
+    const auto write_rows = [&](const std::string &key, std::span<const double> rows) {
+        rows = rows.first(type.rows.size());
+        if (std::ranges::all_of(rows, [](double value) { return same_bits(value, 0); }))
+            return;
+        std::string list;
+        for (const double value : rows)
+            list += (list.empty() ? "" : ", ") + shortest(value);
+        text += line(key, "[" + list + "]");
+    };
+    write_rows("impulses", joint.impulses);
+    write_rows("penalties", joint.penalties);
+    return text;
 }
 
 } // namespace plumb::scene_file

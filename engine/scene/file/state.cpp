@@ -16,9 +16,9 @@ const toml::array *array_at(const Table &table, std::string_view key) {
 }
 
 void read_contact(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 13> keys{
-        "body_a",  "body_b",  "child_a", "child_b", "triangle",   "features",  "impulses",
-        "cores_a", "cores_b", "normal",  "offset",  "rotation_a", "rotation_b"};
+    static constexpr std::array<std::string_view, 14> keys{
+        "body_a",  "body_b",  "child_a", "child_b", "triangle",   "features",   "impulses",
+        "cores_a", "cores_b", "normal",  "offset",  "rotation_a", "rotation_b", "penalties"};
     const Table table(reading.report, source, "[[state.contact]]", keys);
     ContactStateDesc contact;
     for (const auto &[key, name] :
@@ -49,16 +49,28 @@ void read_contact(Reading &reading, const toml::table &source) {
             if (!arrays[i])
                 return;
         }
+    const toml::array *penalties = nullptr;
+    if (table.has("penalties")) {
+        penalties = array_at(table, "penalties");
+        if (!penalties)
+            return;
+    }
     if (!features)
         return;
+    const auto is_as_many = [&](std::string_view key, const toml::array *array) {
+        if (array == nullptr || array->size() == features->size())
+            return true;
+        table.error(key,
+                    "there are " + std::to_string(features->size()) + " features and " +
+                        std::to_string(array->size()) + " " + std::string(key),
+                    "there must be as many of one as of the other");
+        return false;
+    };
     for (std::size_t i = 0; i < vectors.size(); ++i)
-        if (arrays[i] && arrays[i]->size() != features->size()) {
-            table.error(vectors[i],
-                        "there are " + std::to_string(features->size()) + " features and " +
-                            std::to_string(arrays[i]->size()) + " " + std::string(vectors[i]),
-                        "there must be as many of one as of the other");
+        if (!is_as_many(vectors[i], arrays[i]))
             return;
-        }
+    if (!is_as_many("penalties", penalties))
+        return;
     for (std::size_t i = 0; i < features->size(); ++i) {
         const std::string index = "[" + std::to_string(i) + "]";
         const std::optional<std::int64_t> feature = table.integer(
@@ -73,6 +85,12 @@ void read_contact(Reading &reading, const toml::table &source) {
             if (const auto read =
                     table.numbers<3>(*arrays[k]->get(i), std::string(vectors[k]) + index, finite))
                 *members[k] = {(*read)[0], (*read)[1], (*read)[2]};
+            else
+                is_read = false;
+        }
+        if (penalties) {
+            if (const auto read = table.numbers<4>(*penalties->get(i), "penalties" + index, finite))
+                point.penalty = *read;
             else
                 is_read = false;
         }

@@ -326,11 +326,19 @@ class SceneWriter {
             std::string impulses;
             std::string cores_a;
             std::string cores_b;
+            std::string penalties;
+            bool has_penalties = false;
             for (const ContactStateDesc::Point &point : contact.points) {
                 features += (features.empty() ? "" : ", ") + std::to_string(point.feature);
                 impulses += (impulses.empty() ? "" : ", ") + array3(point.impulse);
                 cores_a += (cores_a.empty() ? "" : ", ") + array3(point.core_a);
                 cores_b += (cores_b.empty() ? "" : ", ") + array3(point.core_b);
+                std::string penalty;
+                for (const double value : point.penalty) {
+                    penalty += (penalty.empty() ? "[" : ", ") + shortest(value);
+                    has_penalties = has_penalties || !same_bits(value, 0);
+                }
+                penalties += (penalties.empty() ? "" : ", ") + penalty + "]";
             }
             header("[[state.contact]]");
             line("body_a", string(contact.body_a));
@@ -345,6 +353,8 @@ class SceneWriter {
             line("impulses", "[" + impulses + "]");
             line("cores_a", "[" + cores_a + "]");
             line("cores_b", "[" + cores_b + "]");
+            if (has_penalties)
+                line("penalties", "[" + penalties + "]");
             line("normal", array3(contact.normal));
             line("offset", array3(contact.offset));
             line("rotation_a", rotation(contact.rotation_a));

@@ -276,8 +276,10 @@ void WorldSimulation::insert(const JointDesc &desc) {
     def.damping_ratio = static_cast<Real>(desc.damping_ratio);
     def.break_force = static_cast<Real>(desc.break_force);
     def.collide_connected = desc.collide_connected;
-    for (std::size_t i = 0; i < joint_row_count; ++i)
+    for (std::size_t i = 0; i < joint_row_count; ++i) {
         def.memory.impulses[i] = static_cast<Real>(desc.impulses[i]);
+        def.penalty[i] = static_cast<Real>(desc.penalties[i]);
+    }
     def.memory.broken = desc.broken;
     world_.add_joint(def);
     edit().scene.joints.push_back(desc);
@@ -326,9 +328,21 @@ void WorldSimulation::insert(const SpringInfo &info) {
 
 void WorldSimulation::remember(const ContactStateDesc &desc) {
     std::vector<PointMemory> points;
-    for (const ContactStateDesc::Point &point : desc.points)
+    std::vector<PointPenalty> penalties;
+    for (const ContactStateDesc::Point &point : desc.points) {
         points.push_back(
             {point.feature, Vec3{point.impulse}, Vec3{point.core_a}, Vec3{point.core_b}});
+        const glm::dvec4 penalty{point.penalty[0], point.penalty[1], point.penalty[2],
+                                 point.penalty[3]};
+        if (penalty != glm::dvec4{0})
+            penalties.resize(points.size());
+        if (!penalties.empty()) {
+            penalties.resize(points.size());
+            penalties.back() = {static_cast<Real>(penalty.x),
+                                static_cast<Real>(penalty.y),
+                                {static_cast<Real>(penalty.z), static_cast<Real>(penalty.w)}};
+        }
+    }
     ContactKey key{id_of(desc.body_a).index, id_of(desc.body_b).index,
                    static_cast<std::uint16_t>(desc.child_a),
                    static_cast<std::uint16_t>(desc.child_b),
@@ -342,7 +356,7 @@ void WorldSimulation::remember(const ContactStateDesc &desc) {
         for (PointMemory &point : points)
             std::swap(point.core_a, point.core_b);
     }
-    world_.remember_contact(key, origin, points);
+    world_.remember_contact(key, origin, points, penalties);
 }
 
 SceneDesc WorldSimulation::describe() const {
@@ -382,6 +396,9 @@ SceneDesc WorldSimulation::describe() const {
         const JointMemory &memory = world.state().joints[i];
         for (std::size_t row = 0; row < joint_row_count; ++row)
             joint.impulses[row] = static_cast<double>(memory.impulses[row]);
+        const std::vector<JointPenalty> &penalties = world.state().penalties.joints;
+        for (std::size_t row = 0; row < joint_row_count && i < penalties.size(); ++row)
+            joint.penalties[row] = static_cast<double>(penalties[i][row]);
         joint.broken = memory.broken;
         out.joints.push_back(std::move(joint));
     }
@@ -399,8 +416,16 @@ SceneDesc WorldSimulation::describe() const {
             state.triangle = memory.key.triangle;
         for (std::uint32_t k = 0; k < memory.point_count; ++k) {
             const PointMemory &point = world.state().points[memory.first_point + k];
-            state.points.push_back({point.feature, glm::dvec3{point.impulse},
-                                    glm::dvec3{point.core_a}, glm::dvec3{point.core_b}});
+            ContactStateDesc::Point &out_point = state.points.emplace_back(
+                ContactStateDesc::Point{point.feature, glm::dvec3{point.impulse},
+                                        glm::dvec3{point.core_a}, glm::dvec3{point.core_b}});
+            if (!world.state().penalties.points.empty()) {
+                const PointPenalty &penalty =
+                    world.state().penalties.points[memory.first_point + k];
+                out_point.penalty = {
+                    static_cast<double>(penalty.normal), static_cast<double>(penalty.tangential),
+                    static_cast<double>(penalty.slip.x), static_cast<double>(penalty.slip.y)};
+            }
         }
         out.contacts.push_back(std::move(state));
     }

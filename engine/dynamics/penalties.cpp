@@ -1,0 +1,74 @@
+// What a world remembers of how stiff its rows have become (penalty.h).
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Of the points that a contact had before, known by feature.
+void World::load_penalties() {
+    Scratch &s = scratch_;
+    s.point_penalties.clear();
+    s.joint_penalties.clear();
+    if (!method_->info.keeps_penalties())
+        return;
+    s.joint_penalties = state_.penalties.joints;
+    s.joint_penalties.resize(joints().size());
+    s.point_penalties.resize(s.contacts.size());
+    if (state_.penalties.points.empty())
+        return;
+    auto memory = state_.contacts.begin();
+    for (std::size_t i = 0; i < s.contacts.size(); ++i) {
+        const Contact &contact = s.contacts[i];
+        while (memory != state_.contacts.end() && memory->key < contact.key)
+            ++memory;
+        if (memory == state_.contacts.end() || memory->key != contact.key)
+            continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
+            for (std::size_t j = memory->first_point; j < memory->first_point + memory->point_count;
+                 ++j)
+                if (state_.points[j].feature == contact.manifold.points[k].feature)
+                    s.point_penalties[i][k] = state_.penalties.points[j];
+    }
+}
+
+// After gather_memory, which has found the places.
+void World::gather_penalties() {
+    Scratch &s = scratch_;
+    s.next_penalties.clear();
+    if (!method_->info.keeps_penalties())
+        return;
+    s.next_penalties.resize(s.next_points.size());
+    for (std::size_t i = 0; i < s.contacts.size(); ++i)
+        if (s.remembered[i] != UINT32_MAX) {
+            const ContactMemory &to = s.next_memory[s.remembered[i]];
+            std::copy_n(s.point_penalties[i].begin(), to.point_count,
+                        s.next_penalties.begin() + to.first_point);
+        }
+    if (state_.penalties.points.empty())
+        return;
+    for (const auto &[from, to] : s.kept_memory)
+        std::copy_n(state_.penalties.points.begin() + state_.contacts[from].first_point,
+                    s.next_memory[to].point_count,
+                    s.next_penalties.begin() + s.next_memory[to].first_point);
+}
+
+// As remember_contact: the points are the last of State::points.
+void World::remember_penalties(std::span<const PointPenalty> penalties, std::size_t point_count) {
+    std::vector<PointPenalty> &all = state_.penalties.points;
+    if (penalties.empty() && all.empty())
+        return;
+    all.resize(state_.points.size());
+    std::ranges::copy(penalties.first(std::min(penalties.size(), point_count)),
+                      all.end() - static_cast<std::ptrdiff_t>(point_count));
+}
+
+void World::remember_penalty(std::uint32_t joint, const JointPenalty &penalty) {
+    std::vector<JointPenalty> &all = state_.penalties.joints;
+    if (all.empty() && penalty == JointPenalty{})
+        return;
+    all.resize(joints().size());
+    all[joint] = penalty;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION
