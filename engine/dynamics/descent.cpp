@@ -1,5 +1,6 @@
 #include "engine/dynamics/descent.h"
 
+#include "engine/core/renew.h"
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 #include "engine/dynamics/pose_correction.h"
@@ -90,7 +91,7 @@ void for_each_use(StepContext &context, OfBody &&of_body, OfParticle &&of_partic
 void gather_uses(StepContext &context) {
     Descent &d = context.scratch.descent;
     d.bodies.clear();
-    d.place.assign(context.model.bodies.size(), nowhere);
+    renew(d.place, context.model.bodies.size(), nowhere);
     for (const std::uint32_t i : context.moving())
         if (context.model.bodies[i].kind == BodyKind::dynamic) {
             d.place[i] = static_cast<std::uint32_t>(d.bodies.size());
@@ -100,8 +101,8 @@ void gather_uses(StepContext &context) {
         return body == Joint::world ? nowhere : d.place[body];
     };
     const std::size_t particles = context.active.has_particles ? context.particles.size() : 0;
-    d.body_uses.first.assign(d.bodies.size() + 1, 0);
-    d.particle_uses.first.assign(particles + 1, 0);
+    renew(d.body_uses.first, d.bodies.size() + 1, std::uint32_t{0});
+    renew(d.particle_uses.first, particles + 1, std::uint32_t{0});
     for_each_use(
         context,
         [&](std::uint32_t body, const DescentUse &) {

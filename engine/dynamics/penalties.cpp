@@ -1,4 +1,5 @@
 // What a world remembers of how stiff its rows have become (penalty.h).
+#include "engine/core/renew.h"
 #include "engine/dynamics/world.h"
 
 #include <algorithm>
@@ -8,13 +9,14 @@ namespace plumb::inline PLUMB_PRECISION {
 // Of the points that a contact had before, known by feature.
 void World::load_penalties() {
     Scratch &s = scratch_;
-    s.point_penalties.clear();
-    s.joint_penalties.clear();
-    if (!method_->info.keeps_penalties())
+    if (!method_->info.keeps_penalties()) {
+        s.point_penalties.clear();
+        s.joint_penalties.clear();
         return;
+    }
     s.joint_penalties = state_.penalties.joints;
     s.joint_penalties.resize(joints().size());
-    s.point_penalties.resize(s.contacts.size());
+    renew(s.point_penalties, s.contacts.size());
     if (state_.penalties.points.empty())
         return;
     auto memory = state_.contacts.begin();
@@ -35,10 +37,11 @@ void World::load_penalties() {
 // After gather_memory, which has found the places.
 void World::gather_penalties() {
     Scratch &s = scratch_;
-    s.next_penalties.clear();
-    if (!method_->info.keeps_penalties())
+    if (!method_->info.keeps_penalties()) {
+        s.next_penalties.clear();
         return;
-    s.next_penalties.resize(s.next_points.size());
+    }
+    renew(s.next_penalties, s.next_points.size());
     for (std::size_t i = 0; i < s.contacts.size(); ++i)
         if (s.remembered[i] != UINT32_MAX) {
             const ContactMemory &to = s.next_memory[s.remembered[i]];

@@ -14,6 +14,8 @@ template <typename Visit, typename... States> void for_columns(Visit visit, Stat
     visit(states.joints...);
     visit(states.contacts...);
     visit(states.points...);
+    visit(states.penalties.points...);
+    visit(states.penalties.joints...);
     visit(states.particles...);
     visit(states.torn...);
 }

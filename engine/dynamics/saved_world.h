@@ -50,12 +50,18 @@ template <typename Item> class SavedColumn {
     std::shared_ptr<std::vector<Item>> items_; // null: none
 };
 
+struct SavedPenalties {
+    SavedColumn<PointPenalty> points;
+    SavedColumn<JointPenalty> joints;
+};
+
 struct SavedState {
     SavedColumn<Motion> motions;
     SavedColumn<Pace> paces;
     SavedColumn<JointMemory> joints;
     SavedColumn<ContactMemory> contacts;
     SavedColumn<PointMemory> points;
+    SavedPenalties penalties;
     SavedColumn<ParticleMotion> particles;
     SavedColumn<std::uint8_t> torn;
     StateClock clock;

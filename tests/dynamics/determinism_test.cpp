@@ -122,16 +122,22 @@ World loaded(const World &from) {
         def.min_length = joint.min_length;
         def.max_length = joint.max_length;
         def.collide_connected = joint.collide_connected;
-        def.memory = from.state().joints[std::size_t(&joint - from.joints().data())];
+        const auto index = std::size_t(&joint - from.joints().data());
+        def.memory = from.state().joints[index];
+        if (!from.state().penalties.joints.empty())
+            def.penalty = from.state().penalties.joints[index];
         world.add_joint(def);
     }
     for (const ContactMemory &memory : from.state().contacts) {
         ContactKey key = memory.key;
         key.a = ids[key.a].index;
         key.b = ids[key.b].index;
+        const std::span penalties(from.state().penalties.points);
         world.remember_contact(
             key, memory.origin,
-            std::span(from.state().points).subspan(memory.first_point, memory.point_count));
+            std::span(from.state().points).subspan(memory.first_point, memory.point_count),
+            penalties.empty() ? penalties
+                              : penalties.subspan(memory.first_point, memory.point_count));
     }
     for (std::size_t i = 0; i < ids.size(); ++i)
         if (from.bodies()[i].alive)
@@ -298,6 +304,42 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
     changed = before;
     changed.set_method("sequential_impulses");
     EXPECT_NE(changed.hash(), before.hash());
+}
+
+// What only a method of augmented Lagrangians remembers, and forgets when another has stepped.
+TEST(Hash, ChangesWithEveryPenalty) {
+    World world = random_world("avbd", 5);
+    run(world, 120);
+    const World before = world;
+    const Penalties &penalties = before.state().penalties;
+    ASSERT_EQ(penalties.points.size(), before.state().points.size());
+    int known = 0;
+    for (const ContactMemory &memory : before.state().contacts) {
+        const auto points =
+            std::span(before.state().points).subspan(memory.first_point, memory.point_count);
+        const auto own = std::span(penalties.points).subspan(memory.first_point, points.size());
+        for (std::size_t k = 0; k < own.size(); ++k) {
+            known += own[k].normal > 0 && own[k].tangential > 0 ? 1 : 0;
+            for (int part = 0; part < 4; ++part) {
+                std::vector<PointPenalty> other(own.begin(), own.end());
+                Real &value = part == 0   ? other[k].normal
+                              : part == 1 ? other[k].tangential
+                                          : other[k].slip[part - 2];
+                value = std::nextafter(value, std::numeric_limits<Real>::infinity());
+                World changed = before;
+                changed.remember_contact(memory.key, memory.origin, points, other);
+                EXPECT_NE(changed.hash(), before.hash());
+            }
+        }
+    }
+    EXPECT_GT(known, 30);
+    ASSERT_EQ(penalties.joints.size(), before.joints().size());
+    for (const JointPenalty &penalty : penalties.joints)
+        EXPECT_GT(penalty[0], 0);
+    world.set_method("soft_step");
+    world.step(nullptr);
+    EXPECT_TRUE(world.state().penalties.points.empty());
+    EXPECT_TRUE(world.state().penalties.joints.empty());
 }
 
 TEST(Hash, ChangesWithEverySetting) {

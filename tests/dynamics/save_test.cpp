@@ -294,7 +294,9 @@ TEST(Saves, AreSmall) {
     const State &state = world.state();
     const std::size_t bytes =
         state.motions.size() * sizeof(Motion) + state.contacts.size() * sizeof(ContactMemory) +
-        state.points.size() * sizeof(PointMemory) + state.joints.size() * sizeof(JointMemory);
+        state.points.size() * sizeof(PointMemory) + state.joints.size() * sizeof(JointMemory) +
+        state.penalties.points.size() * sizeof(PointPenalty) +
+        state.penalties.joints.size() * sizeof(JointPenalty);
     EXPECT_GE(state.contacts.size(), 1000U);
     EXPECT_LE(bytes, 1000U * (is_double ? 600U : 300U));
 }

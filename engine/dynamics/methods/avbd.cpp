@@ -15,6 +15,7 @@
 // body fell, for the first guess, is what gravity and the remembered loads make; bounces, which the
 // paper has none of, are TGS Soft's; spin is gyroscopic by the implicit rule that all methods
 // share.
+#include "engine/core/renew.h"
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 #include "engine/dynamics/pose_correction.h"
@@ -56,7 +57,7 @@ void stiffen(StepContext &context, const Stiffening &stiffening) {
 void recall(StepContext &context, Real h) {
     SolverScratch &s = context.scratch;
     Descent &d = s.descent;
-    d.blocks.assign(s.joints.size(), {});
+    renew(d.blocks, s.joints.size());
     for (JointConstraint &joint : s.joints) {
         AugmentedBlock &block = augmented(context, joint);
         joint.impulse /= h;
@@ -67,7 +68,7 @@ void recall(StepContext &context, Real h) {
                     context.joint_penalties[joint.joint]
                                            [joint.rows.first_memory + static_cast<std::size_t>(i)];
     }
-    d.contacts.assign(s.contacts.size(), {});
+    renew(d.contacts, s.contacts.size());
     for (std::size_t i = 0; i < s.contacts.size(); ++i)
         for (std::size_t k = 0; k < static_cast<std::size_t>(s.contacts[i].count); ++k) {
             const ContactPointConstraint &from = s.contacts[i].points[k];
@@ -82,7 +83,7 @@ void recall(StepContext &context, Real h) {
 // The acceleration that the loads make, of each body.
 void accelerate(StepContext &context, std::vector<Vec3> &accelerations) {
     SolverScratch &s = context.scratch;
-    accelerations.assign(context.bodies.size(), Vec3{Real(0)});
+    renew(accelerations, context.bodies.size(), Vec3{Real(0)});
     const auto push = [&](std::uint32_t body, const Vec3 &force) {
         if (body != Joint::world)
             accelerations[body] += context.bodies[body].inv_mass * force;
