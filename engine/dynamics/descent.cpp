@@ -210,7 +210,7 @@ struct SpringPull {
     Vec3 arm_b{Real(0)};
     Real force = Real(0); // N, along the axis on b
     Real stiffness = Real(0);
-    Vec3 aside{Real(0)}; // |f| / length, as turn_stiffness
+    Real aside = Real(0); // |f| / length: that of its second derivative, 1 - n n^T
 };
 
 // The lengths of the columns of 1 - n n^T.
@@ -231,7 +231,7 @@ SpringPull pull_of(const StepContext &context, std::size_t i, Real h) {
     pull.force = -spring.stiffness * (length - spring.rest_length) -
                  damping * (length - context.scratch.descent.start_lengths[i]);
     pull.stiffness = spring.stiffness + damping;
-    pull.aside = std::abs(pull.force) / length * aside_of(pull.axis);
+    pull.aside = std::abs(pull.force) / length;
     return pull;
 }
 
@@ -294,12 +294,12 @@ void add_spring(const StepContext &context, RigidBlock &block, const DescentUse 
     const SpringPull pull = pull_of(context, use.index, h);
     const Vec3 row = use.is_b ? pull.axis : -pull.axis;
     const Vec3 &arm = use.is_b ? pull.arm_b : pull.arm_a;
-    block.add_row(row, glm::cross(arm, row), pull.stiffness, pull.force);
+    block.add_row(row, glm::cross(arm, row), pull.stiffness - pull.aside, pull.force);
     block.add_turn_stiffness(turn_stiffness(pull.force * row, arm));
     for (int i = 0; i < 3; ++i) {
         Vec3 axis{Real(0)};
         axis[i] = Real(1);
-        block.add_row(axis, glm::cross(arm, axis), pull.aside[i], Real(0));
+        block.add_row(axis, glm::cross(arm, axis), pull.aside, Real(0));
     }
 }
 
@@ -366,9 +366,9 @@ void solve_particle(StepContext &context, std::uint32_t i, Real h) {
     for (const DescentUse &use : uses)
         if (use.kind == DescentUse::Kind::spring) {
             const SpringPull pull = pull_of(context, use.index, h);
-            add(use.is_b ? pull.axis : -pull.axis, pull.stiffness, pull.force);
+            add(use.is_b ? pull.axis : -pull.axis, pull.stiffness - pull.aside, pull.force);
             for (int j = 0; j < 3; ++j)
-                stiffness[j][j] += pull.aside[j];
+                stiffness[j][j] += pull.aside;
         } else {
             const ParticleContactConstraint &row = context.scratch.particle_contacts[use.index];
             const ParticleContact &contact = context.particle_contacts[row.contact];
