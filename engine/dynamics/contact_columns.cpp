@@ -213,7 +213,9 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
 // As the kernels have it between substeps (recall_impl).
 Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane) {
     Vec3 impulse = get(point.impulse, lane);
-    impulse.x = std::max(Real(2) * impulse.x - point.remembered.x.lanes[lane], Real(0));
+    const Real relaxed = impulse.x - point.remembered.x.lanes[lane];
+    const Real most = relaxed_share * impulse.x;
+    impulse.x += std::max(std::min(relaxed, most), -most);
     return impulse;
 }
 

@@ -14,6 +14,9 @@ namespace plumb::inline PLUMB_PRECISION {
 
 inline constexpr std::size_t column_lanes = 16;
 
+// Of a contact's load: how much more of what the relaxing pass added is remembered, at the most.
+inline constexpr Real relaxed_share = Real(1) / Real(16);
+
 struct alignas(64) Column {
     Real lanes[column_lanes]; // NOLINT(modernize-avoid-c-arrays): what vectors load from
 };

@@ -204,7 +204,8 @@ HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, Indices in
 
 // What the relaxing pass adds to a load lacks in both halves of a substep, and it was found in the
 // second one alone: the next substep begins with twice as much of it (ContactBlock::Point). Else a
-// tall stack, whose loads one pass does not balance, sways for minutes.
+// tall stack, whose loads one pass does not balance, sways for minutes. But no more of it than a
+// share of the load: what strikes is no load of the next substep.
 void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool remember_first) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         if (block.inertia_turns) {
@@ -221,8 +222,9 @@ void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool 
             Vector before = load(point.impulse, lane);
             Vector recalled;
             if (remember_first) {
-                const Lanes unrelaxed = load(point.remembered.x, lane);
-                before.x = max(hn::Sub(hn::Add(before.x, before.x), unrelaxed), hn::Zero(tag));
+                const Lanes relaxed = hn::Sub(before.x, load(point.remembered.x, lane));
+                const Lanes most = hn::Mul(all(relaxed_share), before.x);
+                before.x = hn::Add(before.x, max(min(relaxed, most), hn::Neg(most)));
                 store(before, point.remembered, lane);
                 recalled = times(all(share), before);
                 store(recalled, point.impulse, lane);
