@@ -1,6 +1,7 @@
 // What can be read off a world: energies, momenta, errors, loads.
 #include "engine/dynamics/surface_contact.h"
 #include "engine/dynamics/world.h"
+#include "engine/math/basis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,35 @@ BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 
     return {0.5 * mass * glm::dot(v, v) + 0.5 * glm::dot(spin_momentum, spin),
             -mass * static_cast<double>(body.gravity_scale) * glm::dot(gravity, x), mass * v,
             mass * glm::cross(x, v) + rotation * spin_momentum};
+}
+
+Vec3 velocity_at(const Motion &motion, const Vec3 &arm) {
+    return motion.velocity + glm::cross(motion.angular_velocity, arm);
+}
+
+// See Measures. `rate`: substeps a second, by which impulses become forces.
+void add_residuals(const Contact &contact, const Motion &a, const Motion &b, double rate,
+                   Measures &m) {
+    const glm::dvec3 normal{contact.manifold.normal};
+    const TangentBasis basis = tangent_basis(contact.manifold.normal);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        const Vec3 &impulse = contact.impulses[k];
+        if (impulse == Vec3{Real(0)})
+            continue;
+        const double push = rate * static_cast<double>(impulse.x);
+        const glm::dvec3 friction = rate * glm::dvec3{impulse.y * basis.t1 + impulse.z * basis.t2};
+        const ContactAnchor &anchor = contact.anchors[k];
+        const glm::dvec3 velocity{velocity_at(b, anchor.arm_b) - velocity_at(a, anchor.arm_a)};
+        const double separating = glm::dot(velocity, normal);
+        const glm::dvec3 sliding = velocity - separating * normal;
+        const double most = static_cast<double>(contact.friction) * push;
+        const double rubbing = glm::dot(friction, sliding);
+        m.signorini_residual = std::max(m.signorini_residual, std::abs(push * separating));
+        m.cone_residual = std::max(m.cone_residual, glm::length(friction) - most);
+        m.dissipation_residual =
+            std::max(m.dissipation_residual, most * glm::length(sliding) + rubbing);
+        m.contact_power += push * separating + rubbing;
+    }
 }
 
 } // namespace
@@ -88,6 +118,8 @@ Measures World::measure() const {
             if (contact.sensor || has_diverged(state_.motions[contact.key.a]) ||
                 has_diverged(state_.motions[contact.key.b]))
                 continue;
+            add_residuals(contact, state_.motions[contact.key.a], state_.motions[contact.key.b],
+                          substeps_of(island_body(contact.key.a, contact.key.b)) / settings_.dt, m);
             const Manifold manifold = present_manifold(contact);
             for (int k = 0; k < manifold.count; ++k) {
                 const double depth =

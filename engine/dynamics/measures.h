@@ -16,6 +16,14 @@ struct Measures {
     double max_joint_drift = 0;     // m, the worst joint error
     double mean_joint_drift = 0;    // m
     double max_strain = 0;          // |length / rest length - 1|, the largest of springs not torn
+    // How far the contacts of bodies are from the laws of contact, by the forces of the last
+    // substep and the velocities after it (Le Lidec et al. 2024, "Contact Models in Robotics: a
+    // Comparative Analysis"). With the force (n, t) on b, normal and tangential, and the velocity
+    // (v, w) of b against a at the point:
+    double signorini_residual = 0;   // W, the largest |n v|: what separates is not pushed
+    double cone_residual = 0;        // N, the largest |t| - mu n: friction stays in Coulomb's cone
+    double dissipation_residual = 0; // W, the largest mu n |w| + t.w: what slides is slowed in full
+    double contact_power = 0;        // W, sum of n v + t.w: contacts give no energy
     double energy() const { return kinetic_energy + potential_energy; }
 };
 

@@ -136,6 +136,23 @@ constexpr std::array all_quantities{
         [](const Measures &now, const SceneStart &) { return now.max_joint_drift; },
         "largest error of any joint: distance between the anchors (of a slider: across its axis), "
         "or how far it is beyond its least or greatest length (distance)"},
+    QuantityInfo{
+        "signorini_residual", "W",
+        [](const Measures &now, const SceneStart &) { return now.signorini_residual; },
+        "of the law of Signorini: the largest |n v| of a contact point's normal force and the "
+        "velocity along it, 0 where what separates is not pushed"},
+    QuantityInfo{"cone_residual", "N",
+                 [](const Measures &now, const SceneStart &) { return now.cone_residual; },
+                 "of Coulomb's cone: the largest |t| - mu n by which friction is beyond it"},
+    QuantityInfo{
+        "dissipation_residual", "W",
+        [](const Measures &now, const SceneStart &) { return now.dissipation_residual; },
+        "of maximal dissipation: the largest mu n |w| + t.w of a point's friction t and sliding w, "
+        "0 where friction slows what slides in full"},
+    QuantityInfo{"contact_power", "W",
+                 [](const Measures &now, const SceneStart &) { return now.contact_power; },
+                 "sum of n v + t.w over all contact points: what friction takes is below 0; above "
+                 "it contacts give energy"},
     QuantityInfo{"max_strain", "1",
                  [](const Measures &now, const SceneStart &) { return now.max_strain; },
                  "largest |length / rest_length - 1| of all springs that are not torn, those of "

@@ -3,6 +3,7 @@
 #include "app/lab/engines/pose_measures.h"
 #include "engine/core/hash.h"
 
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -57,6 +58,9 @@ class EngineSimulation final : public Simulation {
     Measures measure() const override {
         Measures m;
         m.time = time();
+        // Forces, which are not told.
+        m.signorini_residual = m.cone_residual = std::numeric_limits<double>::quiet_NaN();
+        m.dissipation_residual = m.contact_power = std::numeric_limits<double>::quiet_NaN();
         const std::vector<BodyState> states = engine_->states();
         for (std::size_t i = 0; i < states.size(); ++i) {
             const auto &[mass, inertia] = scene_.masses[i];
