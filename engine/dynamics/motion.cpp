@@ -301,7 +301,7 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
 namespace {
 
 // Some microseconds of work.
-constexpr std::size_t flights_a_part = 64;
+constexpr std::size_t bodies_a_part = 64;
 
 } // namespace
 
@@ -315,7 +315,7 @@ void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick)
                                       kick, context.settings.gyroscopic_iterations);
         }
     };
-    for_parts(context.tasks, flights.size(), flights_a_part, begin_part);
+    for_parts(context.tasks, flights.size(), bodies_a_part, begin_part);
     context.report.body_passes += flights.size();
 }
 
@@ -335,7 +335,7 @@ void end_flights(StepContext &context, Real h, Kick kick) {
             end_flight(motion, context.model.bodies[body], flights[i], kick);
         }
     };
-    for_parts(context.tasks, flights.size(), flights_a_part, end_part);
+    for_parts(context.tasks, flights.size(), bodies_a_part, end_part);
     context.report.body_passes += flights.size();
 }
 

@@ -13,7 +13,7 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // Some microseconds of work.
-constexpr std::size_t bodies_a_part = 256;
+constexpr std::size_t loads_a_part = 256;
 constexpr std::size_t contacts_a_part = 256;
 
 // Adds the time until it goes to a phase, if anybody asks.
@@ -145,7 +145,7 @@ void World::load_bodies() {
     for (std::uint32_t i = 0; i < s.bodies.size(); ++i)
         if (!s.paces[i].is_asleep() && s.still[i] == 0)
             s.moving.push_back(i);
-    for_parts(s.tasks, s.bodies.size(), bodies_a_part, [&](std::size_t begin, std::size_t end) {
+    for_parts(s.tasks, s.bodies.size(), loads_a_part, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             load_body(i);
     });
