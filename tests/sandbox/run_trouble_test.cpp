@@ -136,7 +136,7 @@ position = [0, 1.5, 0]
 }
 
 TEST(Trouble, AJointThatStaysApartIsNamed) {
-    SceneDesc scene = load_scene(scenes / "joints/heavy_chain.toml").scene;
+    SceneDesc scene = load_scene(scenes_folder / "joints/heavy_chain.toml").scene;
     scene.expects.clear(); // which say how far it may be
     for (BodyDesc &body : scene.bodies)
         if (body.name == "weight")
@@ -202,7 +202,7 @@ TEST(Trouble, InAReplayTheLightsAreThoseOfTheRun) {
     options.settings.give(&StepSettings::substeps, 1);
     Session grown(options);
     const auto told = record(grown, [&] {
-        ASSERT_TRUE(grown.open(scenes / "springs/mass_on_spring.toml"));
+        ASSERT_TRUE(grown.open(scenes_folder / "springs/mass_on_spring.toml"));
         for (int i = 0; i < 300; ++i)
             ASSERT_TRUE(grown.step());
     });

@@ -98,7 +98,7 @@ TEST(SceneWarnings, FarAwayFloatIsTooCoarse) {
         return body("near", sphere) + body("far", sphere + "position = [" + x + ", 0, 0]");
     };
     EXPECT_EQ(warnings(at("1e5")),
-              (None{"s.toml:5:1: warning: \"far\" is 1e+05 m from the origin, where places in "
+              (None{"s.toml:6:1: warning: \"far\" is 1e+05 m from the origin, where places in "
                     "float are 0.00781 m apart: too coarse to follow how it moves; "
                     "world.precision = \"double\", or all of it nearer to the origin"}));
     EXPECT_EQ(warnings(at("1000")), None{});
