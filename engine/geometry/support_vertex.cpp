@@ -3,6 +3,7 @@
 #include "engine/geometry/hull_queries.h"
 
 #include "engine/core/check.h"
+#include "engine/math/printed.h"
 
 #include <algorithm>
 #include <limits>

@@ -92,8 +92,10 @@ double rod(const EngineKind &kind) {
 
 // Two balls of 0.1 m and 1 kg, one of them at rest, struck at 20 m/s at `offset` of their diameter
 // aside; the step begins `phase` of its length before.
-Trial collision(const EngineKind &kind, double friction, double restitution, double offset,
-                double phase) {
+// What `measure` makes of it afterwards.
+template <typename Measure>
+double after_collision(const EngineKind &kind, double friction, double restitution, double offset,
+                       double phase, const Measure &measure) {
     SceneDesc scene = weightless();
     set_material(scene, friction, restitution);
     add(scene, "resting", SphereDesc{0.1}, {0, 0, 0}).mass = 1;
@@ -103,7 +105,7 @@ Trial collision(const EngineKind &kind, double friction, double restitution, dou
     striker.velocity = {20, 0, 0};
     Trial trial(kind, scene);
     trial.go(0.2);
-    return trial;
+    return measure(trial);
 }
 
 constexpr int phases = 12;
@@ -120,14 +122,15 @@ template <typename Error> double worst_collision(const Error &error) {
 // larger of the two angles by which they are off, in degrees.
 double oblique(const EngineKind &kind) {
     return worst_collision([&](double offset, double phase) {
-        const Trial trial = collision(kind, 0, 1, offset, phase);
-        const double along = std::asin(offset);
-        const auto off = [&](std::size_t body, double truth) {
-            const glm::dvec3 &v = trial.body(body).velocity;
-            return std::abs(std::remainder(std::atan2(v.y, v.x) - truth, 2 * std::numbers::pi));
-        };
-        return std::max(off(0, -along), off(1, 0.5 * std::numbers::pi - along)) * 180 /
-               std::numbers::pi;
+        return after_collision(kind, 0, 1, offset, phase, [&](const Trial &trial) {
+            const double along = std::asin(offset);
+            const auto off = [&](std::size_t body, double truth) {
+                const glm::dvec3 &v = trial.body(body).velocity;
+                return std::abs(std::remainder(std::atan2(v.y, v.x) - truth, 2 * std::numbers::pi));
+            };
+            return std::max(off(0, -along), off(1, 0.5 * std::numbers::pi - along)) * 180 /
+                   std::numbers::pi;
+        });
     });
 }
 
@@ -135,10 +138,11 @@ double oblique(const EngineKind &kind) {
 // offset about their common centre.
 double oblique_momentum(const EngineKind &kind) {
     return 100 * worst_collision([&](double offset, double phase) {
-               const Trial trial = collision(kind, 0.5, 0.5, offset, phase);
-               const double before =
-                   -20 * 0.2 * offset; // about the resting ball, as about the origin
-               return std::abs(trial.angular_momentum().z / before - 1);
+               return after_collision(kind, 0.5, 0.5, offset, phase, [&](const Trial &trial) {
+                   // About the resting ball, as about the origin.
+                   const double before = -20 * 0.2 * offset;
+                   return std::abs(trial.angular_momentum().z / before - 1);
+               });
            });
 }
 
