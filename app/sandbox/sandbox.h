@@ -33,7 +33,7 @@ class Sandbox {
                      std::filesystem::path out_dir = "out");
     ~Sandbox();
     Sandbox(Sandbox &&) = default;
-    Sandbox &operator=(Sandbox &&) = default;
+    Sandbox &operator=(Sandbox &&) = delete;
     Sandbox(const Sandbox &) = delete;
     Sandbox &operator=(const Sandbox &) = delete;
 

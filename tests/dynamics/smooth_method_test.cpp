@@ -122,11 +122,11 @@ TEST(Stability, LimitsAreThoseOfTheory) {
 }
 
 TEST(Energy, ExplicitGainsSymplecticIsBoundedImplicitLoses) {
-    const auto drift = [](const std::string &method) {
+    const auto drift = [](const std::string &method, int steps = 20000) {
         World world = swinging(method, 1.0 / 200, false);
         const double before = world.energy();
         double most = 0, last = 0;
-        for (int i = 0; i < 20000; ++i) {
+        for (int i = 0; i < steps; ++i) {
             run(world, 1);
             last = world.energy() - before;
             most = std::max(most, std::abs(last));
@@ -135,8 +135,9 @@ TEST(Energy, ExplicitGainsSymplecticIsBoundedImplicitLoses) {
     };
     EXPECT_GT(drift("explicit_euler").second, 10);
     EXPECT_LT(drift("semi_implicit_euler").first, 1.0);
-    for (const char *method : {"stormer_verlet", "velocity_verlet", "soft_step"})
+    for (const char *method : {"stormer_verlet", "velocity_verlet"})
         EXPECT_LT(drift(method).first, 0.1) << method;
+    EXPECT_LT(drift("soft_step", 4000).first, 0.02); // later a particle strikes the ball
     EXPECT_LT(drift("backward_euler").second, -1);
 }
 
