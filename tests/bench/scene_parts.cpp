@@ -22,6 +22,7 @@ SceneDesc on_ground() {
 }
 
 void set_material(SceneDesc &scene, double friction, double restitution) {
+    scene.materials.clear(); // what was said before
     MaterialDesc &material = scene.materials.emplace_back();
     material.name = "all";
     material.friction = friction;
