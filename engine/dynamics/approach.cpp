@@ -132,7 +132,7 @@ template <typename Solid> struct TurningReach {
 // For how long two solids stay apart along the normal of their gap at t, at the
 // least: what the bound above leaves of their distance is concave in time, so a
 // chord of it never says too much. `left` when they do not come as near as
-// `least` until then; `stays` is set when they stay out of `margin` as well.
+// `least` until then; `stays` is set when they stay `enough` apart as well.
 template <typename B>
 Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real extent_a,
                 const B &b, const Motion &motion_b, Real extent_b, Real t, Real left, Real least,

@@ -21,9 +21,10 @@ struct Approach {
 };
 
 // The first touch of two solids within `duration` (s), both going on at their present velocities,
-// spin included; when they do not touch, where they are closest, and when they are farther apart
-// than `margin` (m) all the time, some place where they are. Solids that overlap at the start touch
-// at time 0.
+// spin included; when they do not touch, where they are closest or, along the normal there, come
+// no nearer than half of their distance; and when they are farther apart than `margin` (m) all the
+// time, some place where they are. Solids that overlap at the start touch at time 0, and those that
+// slide or roll along each other within a twentieth of the margin touch.
 //
 // By conservative advancement (shape_cast.h), with what the spins may add to the speed of approach
 // (Mirtich 1996, 2.3), so nothing is passed through. Two half-spaces are never near each other.

@@ -122,6 +122,9 @@ struct Motion {
     Quat rotation = identity_rotation; // of the principal axes
     Vec3 velocity{Real(0)};            // of the centre of mass
     Vec3 angular_velocity{Real(0)};    // world
+
+    // Of a point at r from the centre of mass (world).
+    Vec3 velocity_at(const Vec3 &r) const { return velocity + glm::cross(angular_velocity, r); }
 };
 
 // Where a collider's surface is in the world.
@@ -139,7 +142,6 @@ struct SolverBody : Motion {
     Vec3 rounded_off{Real(0)}; // what `moved` has and the position, too coarse for it, has not (m)
     bool has_locked_translation = false;
 
-    Vec3 velocity_at(const Vec3 &r) const { return velocity + glm::cross(angular_velocity, r); }
     // `impulse` (N s) acts at `r` from the centre of mass, all in world axes.
     void apply_impulse(const Vec3 &impulse, const Vec3 &r) {
         velocity += inv_mass * impulse;

@@ -22,11 +22,6 @@ namespace {
 
 constexpr std::uint32_t nowhere = UINT32_MAX;
 
-Vec3 rotation_vector(const Quat &turn) {
-    const AxisAngle about = axis_angle(turn);
-    return about.angle * about.axis;
-}
-
 // Of all vectors of the turn the one next to that of free flight.
 Vec3 turned_since_start(const DescentBody &own, Real h) {
     const AxisAngle about = axis_angle(own.turn);

@@ -32,10 +32,6 @@ BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 
             mass * glm::cross(x, v) + rotation * spin_momentum};
 }
 
-Vec3 velocity_at(const Motion &motion, const Vec3 &arm) {
-    return motion.velocity + glm::cross(motion.angular_velocity, arm);
-}
-
 // See Measures. `rate`: substeps a second, by which impulses become forces.
 void add_residuals(const Contact &contact, const Motion &a, const Motion &b, double rate,
                    Measures &m) {
@@ -48,7 +44,7 @@ void add_residuals(const Contact &contact, const Motion &a, const Motion &b, dou
         const double push = rate * static_cast<double>(impulse.x);
         const glm::dvec3 friction = rate * glm::dvec3{impulse.y * basis.t1 + impulse.z * basis.t2};
         const ContactAnchor &anchor = contact.anchors[k];
-        const glm::dvec3 velocity{velocity_at(b, anchor.arm_b) - velocity_at(a, anchor.arm_a)};
+        const glm::dvec3 velocity{b.velocity_at(anchor.arm_b) - a.velocity_at(anchor.arm_a)};
         const double separating = glm::dot(velocity, normal);
         const glm::dvec3 sliding = velocity - separating * normal;
         const double most = static_cast<double>(contact.friction) * push;

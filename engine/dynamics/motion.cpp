@@ -53,6 +53,11 @@ Vec3 spin_momentum(const Quat &rotation, const Vec3 &inertia, const Vec3 &angula
     return rotation * (inertia * (glm::conjugate(rotation) * angular_velocity));
 }
 
+Vec3 rotation_vector(const Quat &rotation) {
+    const AxisAngle about = axis_angle(rotation);
+    return about.angle * about.axis;
+}
+
 Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h) {
     const Real squared = glm::dot(angular_velocity, angular_velocity) * (h * h);
     if (squared == Real(0))
@@ -271,14 +276,6 @@ void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
         motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
     if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
         motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
-}
-
-// The rotation vector of a turn by no more than half of one.
-Vec3 rotation_vector(const Quat &turn) {
-    const Real sign = turn.w < Real(0) ? Real(-1) : Real(1);
-    const Vec3 axis{sign * turn.x, sign * turn.y, sign * turn.z};
-    const Real length = glm::length(axis);
-    return length > Real(0) ? Real(2) * std::atan2(length, sign * turn.w) / length * axis : axis;
 }
 
 } // namespace

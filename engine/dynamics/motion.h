@@ -15,6 +15,9 @@ Vec3 spin_momentum(const Quat &rotation, const Vec3 &inertia, const Vec3 &angula
 // (exponential map).
 Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h);
 
+// The shorter way round of a rotation: its axis times its angle (rad, at most pi).
+Vec3 rotation_vector(const Quat &rotation);
+
 // Whether a turn (a rotation vector, rad) is too far for what keeps it to second order: its error
 // is of the third, a millionth of the arm here.
 inline bool has_turned_far(const Vec3 &turn) {

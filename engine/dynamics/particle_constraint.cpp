@@ -162,6 +162,18 @@ void guess(const StepContext &context, SpringConstraint &row, Real h) {
     row.impulse = -followed * (row.bias + speed_of(context, row)) / row.softness;
 }
 
+// So soft that of a speed along the row e^-x is left, x = damping / mass: exact over any substep
+// where the row is alone. (Softness 1 / damping leaves 1 / (1 + x), as implicit Euler does.)
+void soften_to_decay(const StepContext &context, SpringConstraint &row, Real damping) {
+    row.softness = Real(0);
+    set_mass(context, row);
+    if (row.mass == Real(0))
+        return;
+    constexpr Real none_left = Real(40); // e^-x is far below rounding
+    row.softness = Real(1) / (row.mass * std::expm1(std::min(damping / row.mass, none_left)));
+    set_mass(context, row);
+}
+
 // The damping of springs that h follows, over all of it: of the velocities that the forces before
 // and after the move have left, which are 0 where these balance. It takes energy out however few
 // the passes are; within the move it would take away what the pulls hand on.
@@ -172,10 +184,11 @@ void damp(StepContext &context, Real h) {
                 use(row);
     };
     for_damped([&](SpringConstraint &row) {
-        row.softness = Real(1) / (h * context.model.springs[row.spring].damping);
+        const Real damping = h * context.model.springs[row.spring].damping;
         row.bias = Real(0);
-        set_mass(context, row);
+        row.softness = Real(1) / damping;
         guess(context, row, h);
+        soften_to_decay(context, row, damping);
     });
     for_damped([&](SpringConstraint &row) { apply(context, row, row.impulse); });
     for (int i = 0; i < context.settings.iterations; ++i)

@@ -92,8 +92,6 @@ struct Scratch {
     FoundParts<ParticleContact> particle_contact_parts;
     std::vector<std::vector<std::uint32_t>> near_particle; // colliders, in each part of the loop
     std::vector<std::vector<std::uint32_t>> near_triangles;
-    std::vector<Mat3> particle_stiffness; // see find_spring_rates
-    std::vector<Vec2> spring_rates;
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -254,6 +254,7 @@ void World::gather_memory() {
     if (count == 0 && state_.contacts.empty()) {
         s.next_memory.clear();
         s.next_points.clear();
+        s.kept_memory.clear();
         return;
     }
     s.remembered.resize(count);

@@ -206,9 +206,10 @@ void World::join_particles() {
 // How many substeps a second springs ask for.
 double World::spring_rate() const {
     Scratch &s = scratch_;
-    find_spring_rates(*model_, s.bodies, s.particles, s.torn, s.particle_stiffness, s.spring_rates);
+    find_spring_rates(*model_, s.bodies, s.particles, s.torn, s.solver.particle_stiffness,
+                      s.solver.spring_rates);
     Vec2 most{Real(0)};
-    for (const Vec2 &rates : s.spring_rates)
+    for (const Vec2 &rates : s.solver.spring_rates)
         most = glm::max(most, rates);
     return std::max(std::sqrt(2 * static_cast<double>(most.x)) / followed_swing,
                     2 * static_cast<double>(most.y) / followed_damping);

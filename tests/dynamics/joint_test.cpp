@@ -278,10 +278,9 @@ TEST(SequentialImpulses, AHeavyEndTearsAChain) {
     StepSettings settings = settings_for("sequential_impulses");
     const Shape link = block(V{0.25, 0.05, 0.05});
     EXPECT_LT(chain_drift("sequential_impulses", settings, link, 1), 0.15);
-    const double torn = chain_drift("sequential_impulses", settings, link, 100);
-    EXPECT_GT(torn, 1);
+    EXPECT_GT(chain_drift("sequential_impulses", settings, link, 100), 1);
     settings.substeps = 4;
-    EXPECT_LT(chain_drift("sequential_impulses", settings, link, 100), 0.5 * torn);
+    EXPECT_LT(chain_drift("sequential_impulses", settings, link, 100), 0.3);
 }
 
 } // namespace

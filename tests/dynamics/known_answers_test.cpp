@@ -110,8 +110,8 @@ double pendulum_energy(const std::string &method) {
     return std::abs(world.measure().energy() - before) / (gravity * (1 - std::cos(pi / 3)));
 }
 
-// Ten balls on rods, the last a hundred times as heavy, hung straight: the worst joint (m).
-double torn_chain(const std::string &method) {
+// Ten balls on rods, the last a hundred times as heavy, hung straight.
+World heavy_chain(const std::string &method) {
     World world(method, settings_for(method));
     BodyId above;
     for (int i = 0; i < 10; ++i) {
@@ -123,6 +123,12 @@ double torn_chain(const std::string &method) {
         world.add_joint(rod);
         above = rod.b;
     }
+    return world;
+}
+
+// The worst of its joints after five seconds (m).
+double torn_chain(const std::string &method) {
+    World world = heavy_chain(method);
     run(world, 300);
     return world.measure().max_joint_drift;
 }
@@ -267,6 +273,17 @@ TEST_P(KnownAnswers, AreMetWithinTheMethodsBound) {
         EXPECT_LE(error, bound->second.most) << info.name;
         EXPECT_GE(error, bound->second.least) << info.name;
     }
+}
+
+// Torn, it whips about: what it has come to at the end says little of what it went through.
+TEST(KnownFailings, SequentialImpulsesTearAChainByMetres) {
+    World world = heavy_chain("sequential_impulses");
+    double worst = 0;
+    for (int i = 0; i < 300; ++i) {
+        run(world, 1);
+        worst = std::max(worst, world.measure().max_joint_drift);
+    }
+    EXPECT_GT(worst, is_double ? 3 : 1);
 }
 
 } // namespace

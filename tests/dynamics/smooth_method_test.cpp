@@ -37,6 +37,8 @@ World swinging(const std::string &method, double dt, bool damped = true) {
     world.add_particle(moving_particle(V{1.5, 1, 0}, V{0, -0.5, 0.3}, 0.8));
     BodyDef def = dynamic_body(ball(0.3), 2, V{2.5, 0, 0}, V{0, 0.2, -0.4});
     def.angular_velocity = narrow(V{0.3, 1, -0.5});
+    def.colliders.front().sensor = true; // nothing strikes it
+    def.inertia = Vec3{Real(0.4 * 2 * 0.3 * 0.3)};
     if (damped) {
         def.linear_damping = Real(0.3);
         def.angular_damping = Real(0.2);
@@ -122,11 +124,11 @@ TEST(Stability, LimitsAreThoseOfTheory) {
 }
 
 TEST(Energy, ExplicitGainsSymplecticIsBoundedImplicitLoses) {
-    const auto drift = [](const std::string &method, int steps = 20000) {
+    const auto drift = [](const std::string &method) {
         World world = swinging(method, 1.0 / 200, false);
         const double before = world.energy();
         double most = 0, last = 0;
-        for (int i = 0; i < steps; ++i) {
+        for (int i = 0; i < 20000; ++i) {
             run(world, 1);
             last = world.energy() - before;
             most = std::max(most, std::abs(last));
@@ -135,9 +137,8 @@ TEST(Energy, ExplicitGainsSymplecticIsBoundedImplicitLoses) {
     };
     EXPECT_GT(drift("explicit_euler").second, 10);
     EXPECT_LT(drift("semi_implicit_euler").first, 1.0);
-    for (const char *method : {"stormer_verlet", "velocity_verlet"})
+    for (const char *method : {"stormer_verlet", "velocity_verlet", "soft_step"})
         EXPECT_LT(drift(method).first, 0.1) << method;
-    EXPECT_LT(drift("soft_step", 4000).first, 0.02); // later a particle strikes the ball
     EXPECT_LT(drift("backward_euler").second, -1);
 }
 

@@ -234,7 +234,7 @@ void store(StepContext &context, Real h) {
     store_contacts(context);
 }
 
-void advance(StepContext &context) {
+void advance_avbd(StepContext &context) {
     const StepSettings &settings = context.settings;
     const auto h = static_cast<Real>(settings.dt / settings.substeps);
     const Vec3 gravity{settings.gravity};
@@ -286,7 +286,7 @@ Method avbd() {
              .reads = {SettingGroup::constraints, SettingGroup::speculative,
                        SettingGroup::threshold, SettingGroup::gyroscopic, SettingGroup::penalty},
              .defaults = {.substeps = 1, .iterations = 10}},
-            advance};
+            advance_avbd};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION
