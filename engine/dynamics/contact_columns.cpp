@@ -104,8 +104,8 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     const SolverBody &a = context.bodies[contact.key.a];
     const SolverBody &b = context.bodies[contact.key.b];
     block.contacts[lane] = index;
-    block.body_a[lane] = static_cast<ContactBlock::Index>(contact.key.a * stride);
-    block.body_b[lane] = static_cast<ContactBlock::Index>(contact.key.b * stride);
+    block.body_a.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.a * stride);
+    block.body_b.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.b * stride);
     const auto bit = static_cast<std::uint16_t>(1U << lane);
     for (const std::uint32_t body : {contact.key.a, contact.key.b})
         block.inertia_turns =

@@ -3,30 +3,17 @@
 // (a colouring of the contact graph), so that the answer is the same at any width.
 #pragma once
 
+#include "engine/dynamics/columns.h"
 #include "engine/dynamics/contact_constraint.h"
 
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
 
-inline constexpr std::size_t column_lanes = 16;
-
 // Of a contact's load: how much more of what the relaxing pass added is remembered, at the most.
 inline constexpr Real relaxed_share = Real(1) / Real(16);
-
-struct alignas(64) Column {
-    Real lanes[column_lanes]; // NOLINT(modernize-avoid-c-arrays): what vectors load from
-};
-struct Columns3 {
-    Column x, y, z;
-};
-// A symmetric matrix.
-struct ColumnsSymmetric {
-    Column xx, yy, zz, xy, xz, yz;
-};
 
 struct ContactBlock {
     struct Point {
@@ -44,10 +31,9 @@ struct ContactBlock {
     // Of each body, as an index of a Real from the first one of the array of bodies; and whether it
     // is dynamic: others are never written.
     static constexpr std::uint32_t none = UINT32_MAX;
-    using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
-    alignas(64) Index body_a[column_lanes]; // NOLINT(modernize-avoid-c-arrays)
-    alignas(64) Index body_b[column_lanes]; // NOLINT(modernize-avoid-c-arrays)
-    std::uint16_t writes_a = 0;             // bit k: lane k
+    IndexColumn body_a;
+    IndexColumn body_b;
+    std::uint16_t writes_a = 0; // bit k: lane k
     std::uint16_t writes_b = 0;
     std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
     std::size_t used = 0;                 // lanes

@@ -11,7 +11,7 @@
 // After foreach_target.h, which must choose the target first.
 #include <hwy/highway.h>
 
-#include "engine/math/wide_vector-inl.h"
+#include "engine/dynamics/columns-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace plumb::inline PLUMB_PRECISION {
@@ -19,63 +19,14 @@ namespace kernels::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Tag = hn::CappedTag<Real, column_lanes>;
-using IndexTag = hn::RebindToSigned<Tag>;
-using Lanes = hn::Vec<Tag>;
-using Indices = hn::Vec<IndexTag>;
-using Vector = wide::HWY_NAMESPACE::Vector<Lanes>;
-using wide::HWY_NAMESPACE::cross;
-using wide::HWY_NAMESPACE::dot;
-using wide::HWY_NAMESPACE::max;
-using wide::HWY_NAMESPACE::min;
-using wide::HWY_NAMESPACE::minus;
-using wide::HWY_NAMESPACE::plus;
-using wide::HWY_NAMESPACE::times;
-constexpr Tag tag{};
+using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
 constexpr int new_sweeps = 8;
 
-struct Symmetric {
-    Lanes xx, yy, zz, xy, xz, yz;
-};
-
-HWY_INLINE Lanes all(Real x) {
-    return hn::Set(tag, x);
-}
-HWY_INLINE Vector times(const Symmetric &m, const Vector &v) {
-    return {hn::Add(hn::Add(hn::Mul(m.xx, v.x), hn::Mul(m.xy, v.y)), hn::Mul(m.xz, v.z)),
-            hn::Add(hn::Add(hn::Mul(m.xy, v.x), hn::Mul(m.yy, v.y)), hn::Mul(m.yz, v.z)),
-            hn::Add(hn::Add(hn::Mul(m.xz, v.x), hn::Mul(m.yz, v.y)), hn::Mul(m.zz, v.z))};
-}
 // 1 / x, or 0 where x is not positive.
 HWY_INLINE Lanes inverse(Lanes x) {
     const auto positive = hn::Gt(x, hn::Zero(tag));
     return hn::IfThenElseZero(positive,
                               hn::Div(all(Real(1)), hn::IfThenElse(positive, x, all(Real(1)))));
-}
-
-HWY_INLINE Lanes load(const Column &from, std::size_t lane) {
-    return hn::Load(tag, from.lanes + lane);
-}
-HWY_INLINE Vector load(const Columns3 &from, std::size_t lane) {
-    return {load(from.x, lane), load(from.y, lane), load(from.z, lane)};
-}
-HWY_INLINE Symmetric load(const ColumnsSymmetric &from, std::size_t lane) {
-    return {load(from.xx, lane), load(from.yy, lane), load(from.zz, lane),
-            load(from.xy, lane), load(from.xz, lane), load(from.yz, lane)};
-}
-HWY_INLINE void store(Lanes v, Column &to, std::size_t lane) {
-    hn::Store(v, tag, to.lanes + lane);
-}
-HWY_INLINE void store(const Vector &v, Columns3 &to, std::size_t lane) {
-    store(v.x, to.x, lane);
-    store(v.y, to.y, lane);
-    store(v.z, to.z, lane);
-}
-
-HWY_INLINE Vector gather(const Real *bodies, int offset, Indices index) {
-    const Real *from = bodies + offset;
-    return {hn::GatherIndex(tag, from, index), hn::GatherIndex(tag, from + 1, index),
-            hn::GatherIndex(tag, from + 2, index)};
 }
 
 struct Velocity {
@@ -87,8 +38,8 @@ HWY_INLINE Velocity gather_velocity(const BodyReals &bodies, Indices index) {
             gather(bodies.bodies, bodies.angular_velocity, index)};
 }
 
-HWY_INLINE void scatter(const Velocity &v, const BodyReals &bodies,
-                        const ContactBlock::Index *index, unsigned writes, std::size_t lane) {
+HWY_INLINE void scatter(const Velocity &v, const BodyReals &bodies, const IndexColumn &index,
+                        unsigned writes, std::size_t lane) {
     HWY_ALIGN Real out[6][column_lanes];
     hn::Store(v.linear.x, tag, out[0]);
     hn::Store(v.linear.y, tag, out[1]);
@@ -99,8 +50,8 @@ HWY_INLINE void scatter(const Velocity &v, const BodyReals &bodies,
     for (std::size_t k = 0; k < hn::Lanes(tag); ++k) {
         if (((writes >> (lane + k)) & 1U) == 0)
             continue;
-        Real *linear = bodies.bodies + index[lane + k] + bodies.velocity;
-        Real *angular = bodies.bodies + index[lane + k] + bodies.angular_velocity;
+        Real *linear = bodies.bodies + index.lanes[lane + k] + bodies.velocity;
+        Real *angular = bodies.bodies + index.lanes[lane + k] + bodies.angular_velocity;
         linear[0] = out[0][k];
         linear[1] = out[1][k];
         linear[2] = out[2][k];
@@ -128,9 +79,8 @@ struct Pair {
 };
 
 HWY_INLINE Pair load_pair(const ContactBlock &block, const BodyReals &bodies, std::size_t lane) {
-    const IndexTag index_tag;
-    return {gather_velocity(bodies, hn::Load(index_tag, block.body_a + lane)),
-            gather_velocity(bodies, hn::Load(index_tag, block.body_b + lane)),
+    return {gather_velocity(bodies, load(block.body_a, lane)),
+            gather_velocity(bodies, load(block.body_b, lane)),
             load(block.inv_mass_a, lane),
             load(block.inv_mass_b, lane),
             load(block.inv_inertia_a, lane),
@@ -209,9 +159,8 @@ HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, Indices in
 void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool remember_first) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         if (block.inertia_turns) {
-            const IndexTag index_tag;
-            reload(block.inv_inertia_a, bodies, hn::Load(index_tag, block.body_a + lane), lane);
-            reload(block.inv_inertia_b, bodies, hn::Load(index_tag, block.body_b + lane), lane);
+            reload(block.inv_inertia_a, bodies, load(block.body_a, lane), lane);
+            reload(block.inv_inertia_b, bodies, load(block.body_b, lane), lane);
         }
         Pair pair = load_pair(block, bodies, lane);
         const Vector n = load(block.normal, lane);
@@ -288,14 +237,13 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     const Lanes one = all(Real(1));
     const Lanes soft_mass = all(pushes ? bias.softness.mass_scale : Real(1));
     const Lanes soft_impulse = all(pushes ? bias.softness.impulse_scale : Real(0));
-    const IndexTag index_tag;
     // Friction tips a body that the normal impulses know nothing of yet, where nothing is
     // remembered: without further sweeps what slides off at once would keep what it gains by that.
     const int sweeps = block.is_new && !pushes ? new_sweeps : 1;
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         Pair pair = load_pair(block, bodies, lane);
-        const Indices index_a = hn::Load(index_tag, block.body_a + lane);
-        const Indices index_b = hn::Load(index_tag, block.body_b + lane);
+        const Indices index_a = load(block.body_a, lane);
+        const Indices index_b = load(block.body_b, lane);
         const Vector moved = minus(gather(bodies.bodies, bodies.moved, index_b),
                                    gather(bodies.bodies, bodies.moved, index_a));
         const Vector n = load(block.normal, lane);

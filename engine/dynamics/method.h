@@ -14,6 +14,7 @@
 #include "engine/dynamics/particle_constraint.h"
 #include "engine/dynamics/settings.h"
 #include "engine/dynamics/smooth_forces.h"
+#include "engine/dynamics/spring_columns.h"
 #include "engine/dynamics/state.h"
 #include "engine/dynamics/step_report.h"
 
@@ -41,6 +42,7 @@ struct SolverScratch {
     std::vector<Vec3> contact_impulses;          // likewise
     std::vector<Real> changes;                   // of all impulses by one pass
     std::vector<SpringConstraint> springs;
+    SpringSchedule spring_schedule;
     std::vector<ParticleContactConstraint> particle_contacts;
     std::vector<Mat3> particle_stiffness;       // of each particle, of all its springs (N/m)
     std::vector<Vec2> spring_rates;             // see find_spring_rates

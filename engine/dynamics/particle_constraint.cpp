@@ -84,8 +84,7 @@ Vec2 rates_at(const StepContext &context, const SpringEnd &end) {
 }
 
 // The larger of the two ends: none swings or slows down faster than twice that.
-Vec2 rates_of(const StepContext &context, const SpringConstraint &row) {
-    const Spring &spring = context.model.springs[row.spring];
+Vec2 rates_of(const StepContext &context, const Spring &spring) {
     return Real(2) * glm::max(rates_at(context, spring.a), rates_at(context, spring.b));
 }
 
@@ -113,9 +112,6 @@ void solve(StepContext &context, SpringConstraint &row) {
     apply(context, row, change);
 }
 
-// A spring's row for a substep: k and c as softness over its share of h (Catto 2011, "Soft
-// Constraints": gamma = 1 / (h (c + h k)), beta / h = k / (c + h k)).
-//
 // What h follows has no row here: its pull comes by itself, and its damping at the substep's end
 // (damp). Stiffer ones begin with the impulse of the explicit force at the middle or end of the
 // substep, as far as that is stable.
@@ -124,54 +120,28 @@ void refresh(StepContext &context, SpringConstraint &row, Real h, SpringRule rul
     const Real length = align(context, row);
     row.impulse = Real(0);
     row.mass = Real(0);
-    row.share = Real(1);
-    row.is_followed = false;
+    row.time = SpringTime{};
     if (row.axis == Vec3{Real(0)})
         return;
-    const Vec2 rates = rates_of(context, row);
-    row.is_followed =
-        rule == SpringRule::midpoint && h * h * rates.x <= followed_turn * followed_turn;
-    if (row.is_followed)
+    row.time = spring_time(context, spring, h, rule);
+    if (row.time.is_followed || row.time.softness == Real(0))
         return;
-    const Real turn = h * std::max(std::sqrt(rates.x), rates.y);
-    if (rule == SpringRule::midpoint)
-        row.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
-    const Real time = row.share * h;
-    const Real pull = spring.damping + time * spring.stiffness;
-    if (!(pull > Real(0)))
-        return;
-    row.softness = Real(1) / (time * pull);
-    row.bias = pull_of(spring, length) / pull;
+    row.softness = row.time.softness;
+    row.bias = row.time.bias_rate * (length - spring.rest_length);
     set_mass(context, row);
 }
 
 // Half of a substep of the pull of a spring that it follows; 0 of others.
 Real half_pull(const StepContext &context, const SpringConstraint &row, Real length, Real h) {
-    return row.is_followed ? Real(-0.5) * h * pull_of(context.model.springs[row.spring], length)
-                           : Real(0);
+    return row.time.is_followed
+               ? Real(-0.5) * h * pull_of(context.model.springs[row.spring], length)
+               : Real(0);
 }
 
 // The guess is made for all springs from the same velocities.
-void guess(const StepContext &context, SpringConstraint &row, Real h) {
-    if (row.mass == Real(0))
-        return;
-    const Vec2 rates = rates_of(context, row);
-    const Real time = row.share * h;
-    const Real swing = row.is_followed ? Real(0) : time * rates.x;
-    const Real followed = Real(1) / std::max(Real(1), time * (swing + rates.y));
-    row.impulse = -followed * (row.bias + speed_of(context, row)) / row.softness;
-}
-
-// So soft that of a speed along the row e^-x is left, x = damping / mass: exact over any substep
-// where the row is alone. (Softness 1 / damping leaves 1 / (1 + x), as implicit Euler does.)
-void soften_to_decay(const StepContext &context, SpringConstraint &row, Real damping) {
-    row.softness = Real(0);
-    set_mass(context, row);
-    if (row.mass == Real(0))
-        return;
-    constexpr Real none_left = Real(40); // e^-x is far below rounding
-    row.softness = Real(1) / (row.mass * std::expm1(std::min(damping / row.mass, none_left)));
-    set_mass(context, row);
+void guess(const StepContext &context, SpringConstraint &row) {
+    if (row.mass != Real(0))
+        row.impulse = -row.time.guessed * (row.bias + speed_of(context, row)) / row.softness;
 }
 
 // The damping of springs that h follows, over all of it: of the velocities that the forces before
@@ -180,19 +150,27 @@ void soften_to_decay(const StepContext &context, SpringConstraint &row, Real dam
 void damp(StepContext &context, Real h) {
     const auto for_damped = [&](auto &&use) {
         for (SpringConstraint &row : context.scratch.springs)
-            if (row.is_followed && context.model.springs[row.spring].damping > Real(0))
+            if (row.time.is_followed && context.model.springs[row.spring].damping > Real(0))
                 use(row);
     };
     for_damped([&](SpringConstraint &row) {
         const Real damping = h * context.model.springs[row.spring].damping;
         row.bias = Real(0);
-        row.softness = Real(1) / damping;
-        guess(context, row, h);
-        soften_to_decay(context, row, damping);
+        row.impulse = -row.time.guessed * damping * speed_of(context, row);
+        row.softness = Real(0);
+        set_mass(context, row);
+        if (row.mass == Real(0))
+            return;
+        row.softness = decay_softness(Real(1) / row.mass, damping);
+        set_mass(context, row);
     });
+    aim_spring_columns(context, SpringPart::damping);
     for_damped([&](SpringConstraint &row) { apply(context, row, row.impulse); });
-    for (int i = 0; i < context.settings.iterations; ++i)
+    begin_spring_columns(context, SpringPart::damping);
+    for (int i = 0; i < context.settings.iterations; ++i) {
         for_damped([&](SpringConstraint &row) { solve(context, row); });
+        solve_spring_columns(context, SpringPart::damping);
+    }
 }
 
 Vec3 relative_velocity(const StepContext &context, const ParticleContact &contact,
@@ -301,9 +279,37 @@ void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
     }
 }
 
-void prepare_particles(StepContext &context) {
+SpringTime spring_time(const StepContext &context, const Spring &spring, Real h, SpringRule rule) {
+    SpringTime out;
+    const Vec2 rates = rates_of(context, spring);
+    out.is_followed =
+        rule == SpringRule::midpoint && h * h * rates.x <= followed_turn * followed_turn;
+    if (out.is_followed) {
+        out.guessed = Real(1) / std::max(Real(1), h * rates.y);
+        return out;
+    }
+    const Real turn = h * std::max(std::sqrt(rates.x), rates.y);
+    if (rule == SpringRule::midpoint)
+        out.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
+    const Real time = out.share * h;
+    const Real pull = spring.damping + time * spring.stiffness;
+    if (!(pull > Real(0)))
+        return out;
+    out.softness = Real(1) / (time * pull);
+    out.bias_rate = spring.stiffness / pull;
+    out.guessed = Real(1) / std::max(Real(1), time * (time * rates.x + rates.y));
+    return out;
+}
+
+Real decay_softness(Real inverse, Real damping) {
+    constexpr Real none_left = Real(40); // e^-x is far below rounding
+    return inverse / std::expm1(std::min(damping * inverse, none_left));
+}
+
+void prepare_particles(StepContext &context, bool in_columns) {
     SolverScratch &s = context.scratch;
     s.springs.clear();
+    s.spring_schedule.springs.clear();
     s.particle_contacts.clear();
     if (!context.active.has_particles)
         return;
@@ -312,8 +318,15 @@ void prepare_particles(StepContext &context) {
     for (std::uint32_t i = 0; i < context.model.springs.size(); ++i) {
         if (context.torn[i] != 0)
             continue;
-        s.springs.emplace_back().spring = i;
+        const Spring &spring = context.model.springs[i];
+        if (in_columns && spring.a.kind == SpringEnd::Kind::particle &&
+            spring.b.kind == SpringEnd::Kind::particle)
+            s.spring_schedule.springs.push_back(i);
+        else
+            s.springs.emplace_back().spring = i;
     }
+    prepare_spring_columns(context,
+                           static_cast<Real>(context.settings.dt / context.settings.substeps));
     for (std::uint32_t i = 0; i < context.particle_contacts.size(); ++i) {
         ParticleContactConstraint &row = s.particle_contacts.emplace_back();
         row.contact = i;
@@ -356,8 +369,9 @@ void refresh_particles(StepContext &context, Real h, SpringRule rule) {
     SolverScratch &s = context.scratch;
     for (SpringConstraint &row : s.springs) {
         refresh(context, row, h, rule);
-        guess(context, row, h); // nothing for those that h follows, whose mass is 0 here
+        guess(context, row); // nothing for those that h follows, whose mass is 0 here
     }
+    aim_spring_columns(context, SpringPart::pull);
     for (ParticleContactConstraint &row : s.particle_contacts)
         refresh(context, row);
     for (const SpringConstraint &row : s.springs) {
@@ -366,12 +380,15 @@ void refresh_particles(StepContext &context, Real h, SpringRule rule) {
                           spring_point(spring.a, context.bodies, context.particles).position;
         apply(context, row, row.impulse + half_pull(context, row, glm::dot(line, row.axis), h));
     }
+    begin_spring_columns(context, SpringPart::pull);
 }
 
 void solve_springs(StepContext &context) {
     for (SpringConstraint &row : context.scratch.springs)
         solve(context, row);
-    context.report.constraint_passes += context.scratch.springs.size();
+    solve_spring_columns(context, SpringPart::pull);
+    context.report.constraint_passes +=
+        context.scratch.springs.size() + context.scratch.spring_schedule.springs.size();
 }
 
 void solve_particle_contacts(StepContext &context, const ParticlePush &push, Real h) {
@@ -427,12 +444,14 @@ void drift_particles(StepContext &context, Real h) {
 
 void repeat_particle_springs(StepContext &context, Real h) {
     for (SpringConstraint &row : context.scratch.springs) {
-        if (row.share == Real(1) && !row.is_followed)
+        if (row.time.share == Real(1) && !row.time.is_followed)
             continue;
         const Real length = align(context, row);
         apply(context, row,
-              (Real(1) / row.share - Real(1)) * row.impulse + half_pull(context, row, length, h));
+              (Real(1) / row.time.share - Real(1)) * row.impulse +
+                  half_pull(context, row, length, h));
     }
+    repeat_spring_columns(context);
     damp(context, h);
 }
 

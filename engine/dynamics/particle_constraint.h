@@ -13,20 +13,41 @@ namespace plumb::inline PLUMB_PRECISION {
 struct Model;
 struct StepContext;
 
+// How springs follow the time of a substep. midpoint: springs that h follows pull by their lengths
+// before and after the move (Stoermer and Verlet), so that what hangs at rest hangs where they hold
+// it, and energy is kept, however few the passes; stiffer ones by the midpoint rule, and less and
+// less of it, down to implicit Euler.
+enum class SpringRule { implicit_euler, midpoint };
+
+// A spring's part in a substep.
+struct SpringTime {
+    bool is_followed = false; // half of its pull comes before the move and half after it
+    // Of all others, whose row is k and c as softness over their share of h (Catto 2011, "Soft
+    // Constraints": gamma = 1 / (h (c + h k)), beta / h = k / (c + h k)):
+    Real share = Real(1);     // 1/2 the midpoint rule, 1 implicit Euler
+    Real softness = Real(0);  // gamma, 1/kg; 0: the spring does nothing
+    Real bias_rate = Real(0); // beta / h, 1/s
+    // Of the impulse that the present speed asks for of the row's softness alone (for those that
+    // are followed: of their damping), so much keeps all springs together stable.
+    Real guessed = Real(1);
+};
+SpringTime spring_time(const StepContext &context, const Spring &spring, Real h, SpringRule rule);
+// So soft that of a speed along a row e^-x is left, x = damping inverse: exact over any substep
+// where the row is alone. (Softness 1 / damping leaves 1 / (1 + x), as implicit Euler does.)
+// `inverse`: of the row's mass (1/kg), `damping`: over the substep (N s / (m/s)); both > 0.
+Real decay_softness(Real inverse, Real damping);
+
 // A spring as a soft row (Catto 2011, "Soft Constraints").
 struct SpringConstraint {
     std::uint32_t spring = 0; // index in the model
     Vec3 axis{Real(0)};       // unit, from a to b; 0 where they are at one point
     Vec3 r_a{Real(0)};        // arms on bodies, world
     Vec3 r_b{Real(0)};
-    Real share = Real(1);    // of the substep for which the row is solved: 1/2 the midpoint rule, 1
-                             // implicit Euler
-    Real softness = Real(0); // gamma, 1/kg
-    Real bias = Real(0);     // beta / h times the error, m/s
-    Real mass = Real(0);     // 1 / (K + gamma)
-    Real impulse = Real(0);  // accumulated, along the axis on b (N s)
-    bool is_followed = false; // its pull is that of its length, half before the move and half after
-                              // it; the row is of its damping alone
+    SpringTime time;
+    Real softness = Real(0);   // gamma, 1/kg; of what is followed: of its damping alone
+    Real bias = Real(0);       // beta / h times the error, m/s
+    Real mass = Real(0);       // 1 / (K + gamma)
+    Real impulse = Real(0);    // accumulated, along the axis on b (N s)
     Real remembered = Real(0); // for recall_particles
 };
 
@@ -52,12 +73,6 @@ struct ParticlePush {
     bool loaded_only = false; // contacts that are open and bear nothing are left alone
 };
 
-// How springs follow the time of a substep. midpoint: springs that h follows pull by their lengths
-// before and after the move (Stoermer and Verlet), so that what hangs at rest hangs where they hold
-// it, and energy is kept, however few the passes; stiffer ones by the midpoint rule, and less and
-// less of it, down to implicit Euler.
-enum class SpringRule { implicit_euler, midpoint };
-
 // How fast all springs at a body (first) or particle (behind them) swing it and slow it down, at
 // the most: sums of stiffness and of damping over its mass (1/s^2, 1/s). With K <= 2 diag(K_ii) for
 // a net of springs no mode swings faster than sqrt(2 x), nor slows down faster than 2 y, x and y
@@ -66,7 +81,9 @@ void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
                        std::span<const ParticleMotion> particles,
                        std::span<const std::uint8_t> torn, std::vector<Mat3> &stiffness,
                        std::vector<Vec2> &rates);
-void prepare_particles(StepContext &context);
+// Springs between particles become columns (spring_columns.h) instead of rows where so asked; these
+// are solved by the functions below along with the rows, but for recall_particles.
+void prepare_particles(StepContext &context, bool in_columns = false);
 void kick_particles(StepContext &context, const Vec3 &gravity, Real h);
 // The hand's spring on the particle that it holds, if it holds one; never stronger than max_force.
 void pull_particle(StepContext &context, Real h);

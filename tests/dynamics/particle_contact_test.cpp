@@ -219,28 +219,16 @@ TEST_P(ParticleContacts, BounceAtTheirRestitution) {
 
 // A net over the ground with a ball in it.
 World trampoline(const std::string &method, int iterations, double damping) {
-    constexpr int n = 15;
     StepSettings settings = settings_for(method);
     settings.iterations = iterations;
     World world(method, settings);
     world.add_body(ground(0.5, 0, V{0, 1, 0}));
-    const auto at = [&](int i, int j) { return std::uint32_t(i * n + j); };
-    const double cell = 2.0 / (n - 1);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            const bool pinned = i == 0 || j == 0 || i == n - 1 || j == n - 1;
-            world.add_particle(
-                particle_at(V{i * cell - 1, 1.5, j * cell - 1}, 2.0 / (n * n), pinned));
-        }
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            if (i + 1 < n)
-                world.add_spring(
-                    spring(of_particle(at(i, j)), of_particle(at(i + 1, j)), cell, 500, damping));
-            if (j + 1 < n)
-                world.add_spring(
-                    spring(of_particle(at(i, j)), of_particle(at(i, j + 1)), cell, 500, damping));
-        }
+    add_net(world, {.n = 15,
+                    .side = 2,
+                    .middle = {0, 1.5, 0},
+                    .mass = 2,
+                    .stiffness = 500,
+                    .damping = damping});
     world.add_body(dynamic_body(ball(0.3), 3, V{0, 2.2, 0}));
     return world;
 }
@@ -306,26 +294,15 @@ TEST(SoftStepNet, GainsNoEnergy) {
     struct Net {
         double stiffness, mass, dt;
     };
-    constexpr int n = 9;
-    constexpr double cell = 0.25, ball_mass = 3, drop = 0.7;
+    constexpr double ball_mass = 3, drop = 0.7;
     for (const Net &net :
          {Net{500, 0.5, 1.0 / 60}, Net{500, 0.05, 1.0 / 60}, Net{5000, 0.5, 1.0 / 60},
           Net{500, 0.5, 1.0 / 30}, Net{2000, 0.1, 1.0 / 120}}) {
         StepSettings settings = settings_for("soft_step");
         settings.dt = net.dt;
         World world("soft_step", settings);
-        const auto at = [&](int i, int j) { return std::uint32_t(i * n + j); };
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j)
-                world.add_particle(particle_at(V{(i - n / 2) * cell, 0, (j - n / 2) * cell},
-                                               net.mass / (n * n),
-                                               i % (n - 1) == 0 || j % (n - 1) == 0));
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j)
-                for (const auto &[to_i, to_j] : {std::pair{i + 1, j}, std::pair{i, j + 1}})
-                    if (to_i < n && to_j < n)
-                        world.add_spring(spring(of_particle(at(i, j)), of_particle(at(to_i, to_j)),
-                                                cell, net.stiffness, 0.1));
+        add_net(world,
+                {.n = 9, .side = 2, .mass = net.mass, .stiffness = net.stiffness, .damping = 0.1});
         world.add_body(dynamic_body(ball(0.3), ball_mass, V{0, 0.3 + drop, 0}));
         const double before = world.energy();
         double most = before;

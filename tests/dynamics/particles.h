@@ -39,6 +39,33 @@ inline SpringDef spring(const SpringEnd &a, const SpringEnd &b, double rest_leng
     return def;
 }
 
+// n by n particles in a level square, those at its edge pinned, and springs between neighbours.
+struct NetOf {
+    int n = 2;
+    double side = 1;
+    V middle{0};
+    double mass = 1; // of all
+    double stiffness = 0;
+    double damping = 0;
+};
+inline void add_net(World &world, const NetOf &net) {
+    const int n = net.n;
+    const double cell = net.side / (n - 1);
+    const auto first = std::uint32_t(world.state().particles.size());
+    const auto at = [&](int i, int j) { return of_particle(first + std::uint32_t(i * n + j)); };
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            world.add_particle(
+                particle_at(net.middle + V{i * cell - net.side / 2, 0, j * cell - net.side / 2},
+                            net.mass / (n * n), i % (n - 1) == 0 || j % (n - 1) == 0));
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            for (const auto &[to_i, to_j] : {std::pair{i + 1, j}, std::pair{i, j + 1}})
+                if (to_i < n && to_j < n)
+                    world.add_spring(
+                        spring(at(i, j), at(to_i, to_j), cell, net.stiffness, net.damping));
+}
+
 inline V particle_position(const World &world, std::uint32_t index) {
     return wide(world.state().particles[index].position);
 }

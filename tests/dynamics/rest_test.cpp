@@ -1,5 +1,5 @@
 // What stands comes to rest and stays there: long, and at every width of the processor's vectors.
-#include "tests/dynamics/worlds.h"
+#include "tests/dynamics/particles.h"
 
 #include <hwy/highway.h>
 #include <hwy/targets.h>
@@ -82,8 +82,8 @@ TEST(Rest, ASlopeJustTooSteepGivesTheClosedFormsWay) {
     }
 }
 
-// The contacts of one colour share no body: their order, and how many the processor works on at
-// once, does not matter.
+// The contacts of one colour share no body, and its springs no particle: their order, and how many
+// the processor works on at once, does not matter.
 TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
     const auto hash_at = [](std::int64_t target) {
         hwy::SetSupportedTargetsForTest(target);
@@ -95,6 +95,14 @@ TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
             const V at{0.7 * (i % 5), 0.4 + 0.8 * (i / 25), 0.7 * (i / 5 % 5)};
             world.add_body(dynamic_body(any_shape(random), random.next_in(0.5, 5), at));
         }
+        // One that a substep follows, and one that is too stiff for that.
+        for (const double stiffness : {300.0, 3e5})
+            add_net(world, {.n = 8,
+                            .side = 3,
+                            .middle = {1.4, stiffness > 1000 ? 4.0 : 3.0, 1.4},
+                            .mass = 1,
+                            .stiffness = stiffness,
+                            .damping = 0.1});
         run(world, 120);
         return world.hash();
     };

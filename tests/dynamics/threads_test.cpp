@@ -1,6 +1,6 @@
 // Steps shared out to many threads: the same bits as with one. Under ThreadSanitizer this is what
 // it looks at.
-#include "tests/dynamics/worlds.h"
+#include "tests/dynamics/particles.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
@@ -10,7 +10,8 @@ using namespace trial;
 class Threads : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Threads, testing::ValuesIn(contact_methods()), name_of);
 
-// A heap that falls together: many times more pairs than a part of the loop over them takes.
+// A heap that falls together, under a net: many times more pairs, and springs, than a part of the
+// loop over them takes.
 World heap(const std::string &method) {
     Random random(9);
     World world(method, settings_for(method));
@@ -31,6 +32,13 @@ World heap(const std::string &method) {
         }
         last = id;
     }
+    if (find_method(method)->info.springs)
+        add_net(world, {.n = 17,
+                        .side = 4,
+                        .middle = {1.6, 4, 1.6},
+                        .mass = 1,
+                        .stiffness = 500,
+                        .damping = 0.2});
     return world;
 }
 

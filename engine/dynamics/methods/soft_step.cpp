@@ -55,7 +55,7 @@ void advance_soft_step(StepContext &context) {
     prepare_contact_columns(context);
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
-    prepare_particles(context);
+    prepare_particles(context, true);
     context.scratch.joint_system.arrange(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {

@@ -1,0 +1,31 @@
+// The same number of 16 rows side by side, so that the processor works on as many at once as it
+// can.
+#pragma once
+
+#include "engine/math/types.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+inline constexpr std::size_t column_lanes = 16;
+
+struct alignas(64) Column {
+    Real lanes[column_lanes]; // NOLINT(modernize-avoid-c-arrays): what vectors load from
+};
+struct Columns3 {
+    Column x, y, z;
+};
+// A symmetric matrix.
+struct ColumnsSymmetric {
+    Column xx, yy, zz, xy, xz, yz;
+};
+// Where a lane's body or particle is: its index in Reals, from the first one of the array.
+struct alignas(64) IndexColumn {
+    using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+    Index lanes[column_lanes]; // NOLINT(modernize-avoid-c-arrays)
+};
+
+} // namespace plumb::inline PLUMB_PRECISION
