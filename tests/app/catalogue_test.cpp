@@ -117,11 +117,14 @@ TEST_P(Scene, GoesOnTheSameFromASavedFile) {
                 copies.push_back({step, Simulation::create(again.scene, {}, nullptr)});
             }
             for (const Copy &copy : copies)
-                ASSERT_EQ(copy.simulation->hash(), original->hash())
-                    << method.name << ", saved at step " << copy.saved_at << ", at step " << step;
-            original->step();
+                if (step == copy.saved_at || step == copy.saved_at + together) {
+                    ASSERT_EQ(copy.simulation->hash(), original->hash())
+                        << method.name << ", saved at step " << copy.saved_at << ", at step "
+                        << step;
+                }
             std::erase_if(copies,
-                          [&](const Copy &copy) { return step >= copy.saved_at + together; });
+                          [&](const Copy &copy) { return step == copy.saved_at + together; });
+            original->step();
             for (const Copy &copy : copies)
                 copy.simulation->step();
         }
