@@ -3,9 +3,9 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/world.h"
-#include "engine/math/basis.h"
 #include "engine/scene/expect.h"
 #include "engine/scene/real/body_def.h"
+#include "engine/scene/real/read_world.h"
 
 #include <algorithm>
 #include <map>
@@ -106,7 +106,9 @@ class WorldSimulation final : public Simulation {
         return book_->scene.joints.at(joint).name;
     }
     const SoftParts &soft_parts() const override { return soft_; }
-    void read(Frame &into, const FrameParts &parts) const override;
+    void read(Frame &into, const FrameParts &parts) const override {
+        read_world(world_, book_->scene.joints, into, parts);
+    }
 
     std::optional<Pick> pick(const glm::dvec3 &origin, const glm::dvec3 &direction) const override {
         const auto hit = world_.raycast(Ray{Vec3{origin}, Vec3{direction}});
@@ -125,10 +127,6 @@ class WorldSimulation final : public Simulation {
         SavedWorld world;
         std::shared_ptr<Book> book;
     };
-
-    BodyState body_state(std::uint32_t body) const;
-    JointView joint_view(std::uint32_t joint) const;
-    void read_contacts(std::vector<ContactView> &views) const;
 
     void obey(const AddBody &command);
     void obey(const RemoveBody &command);
@@ -376,7 +374,7 @@ SceneDesc WorldSimulation::describe() const {
         if (!book_->infos[i].alive)
             continue;
         BodyDesc body = book_->scene.bodies[i];
-        const BodyState now = body_state(i);
+        const BodyState now = body_state(world_, i);
         if (world.bodies()[i].has_mass_frame) {
             const Motion &motion = world.motions()[i];
             body.mass_pose = {glm::dvec3{motion.position}, glm::dquat{motion.rotation}};
@@ -468,98 +466,6 @@ void WorldSimulation::describe_soft_parts(SceneDesc &out) const {
         return find_quantity(expect.quantity)->needs_spring() &&
                std::ranges::find(out.springs, expect.body, &SpringDesc::name) == out.springs.end();
     });
-}
-
-BodyState WorldSimulation::body_state(std::uint32_t body) const {
-    const Motion &motion = world_.motions()[body];
-    const Transform pose = world_.pose_of(body);
-    return {glm::dvec3{pose.position}, glm::dquat{pose.rotation}, glm::dvec3{motion.velocity},
-            glm::dvec3{motion.angular_velocity}, world_.state().paces[body].is_asleep()};
-}
-
-void WorldSimulation::read(Frame &into, const FrameParts &parts) const {
-    into.step_count = world_.step_count();
-    into.time = world_.time();
-    into.bodies.resize(world_.motions().size());
-    for (std::uint32_t i = 0; i < into.bodies.size(); ++i)
-        into.bodies[i] = body_state(i);
-    const State &state = world_.state();
-    into.particles.resize(state.particles.size());
-    for (std::size_t i = 0; i < into.particles.size(); ++i)
-        into.particles[i] = {glm::dvec3{state.particles[i].position},
-                             glm::dvec3{state.particles[i].velocity}};
-    into.torn.assign(state.torn.begin(), state.torn.end());
-    into.joints.clear();
-    for (std::uint32_t i = 0; parts.joints && i < world_.joints().size(); ++i)
-        if (world_.joints()[i].alive)
-            into.joints.push_back(joint_view(i));
-    into.contacts.clear();
-    if (parts.contacts)
-        read_contacts(into.contacts);
-    into.impacts.clear();
-    if (parts.impacts)
-        for (const Impact &impact : world_.impacts())
-            into.impacts.push_back({impact.key.a, impact.key.b, glm::dvec3{impact.position},
-                                    glm::dvec3{impact.normal},
-                                    static_cast<double>(impact.impulse)});
-}
-
-void WorldSimulation::read_contacts(std::vector<ContactView> &views) const {
-    const World &world = world_;
-    for (const Contact &contact : world.contacts()) {
-        const double rate = world.substeps_of(world.island_body(contact.key.a, contact.key.b)) /
-                            world.settings().dt;
-        const TangentBasis basis = tangent_basis(contact.manifold.normal);
-        for (int k = 0; k < contact.manifold.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            const ManifoldPoint &point = contact.manifold.points[index];
-            const Vec3 &impulse = contact.impulses[index];
-            views.push_back({contact.key.a, contact.key.b, glm::dvec3{point.position},
-                             glm::dvec3{contact.manifold.normal},
-                             static_cast<double>(point.separation),
-                             static_cast<double>(impulse.x) * rate,
-                             rate * glm::dvec3{impulse.y * basis.t1 + impulse.z * basis.t2}});
-        }
-    }
-}
-
-JointView WorldSimulation::joint_view(std::uint32_t i) const {
-    const World &world = world_;
-    const Joint &joint = world.joints()[i];
-    const JointDesc &desc = book_->scene.joints[i];
-    const Motion &a = world.joint_motion(joint.a);
-    const Motion &b = world.joint_motion(joint.b);
-    JointView view;
-    view.joint = i;
-    view.type = joint.type;
-    if (joint.a != Joint::world)
-        view.body_a = joint.a;
-    if (joint.b != Joint::world)
-        view.body_b = joint.b;
-    view.anchor_a = glm::dvec3{world.anchor_a(joint)};
-    view.anchor_b = glm::dvec3{world.anchor_b(joint)};
-    view.frame_a = glm::dquat{a.rotation * joint.frame_a_local};
-    view.frame_b = glm::dquat{b.rotation * joint.frame_b_local};
-    view.limits = desc.limits;
-    view.motor_speed = desc.motor_speed;
-    view.max_motor_force = desc.max_motor_force;
-    view.frequency = desc.frequency;
-    view.break_force = desc.break_force;
-    view.broken = world.state().joints[i].broken;
-    view.drift = static_cast<double>(world.joint_error(i));
-    const JointPlace place = place_of(joint, a, b);
-    view.position = static_cast<double>(place.position);
-    view.speed = static_cast<double>(place.speed);
-    if (desc.max_length > 0)
-        view.limits = {desc.min_length, desc.max_length};
-    const World::JointLoad load = world.joint_load(i);
-    view.force = glm::dvec3{load.force};
-    view.torque = glm::dvec3{load.torque};
-    const double rate =
-        world.substeps_of(world.island_body(joint.a, joint.b)) / world.settings().dt;
-    view.motor_force =
-        desc.motor_speed ? rate * static_cast<double>(world.state().joints[i].impulses.back()) : 0;
-    return view;
 }
 
 } // namespace

@@ -1,0 +1,221 @@
+#include "engine/dynamics/joint_impulse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// K of a point-to-point constraint: (1/ma + 1/mb) 1 - [ra] Ia^-1 [ra] - [rb] Ib^-1 [rb]
+// (Catto 2009, "Modeling and Solving Constraints", slide 52, in 3D).
+Mat3 point_matrix(const SolverBody &a, const SolverBody &b, const Vec3 &r_a, const Vec3 &r_b) {
+    const Mat3 ra = cross_matrix(r_a);
+    const Mat3 rb = cross_matrix(r_b);
+    Mat3 linear{Real(0)};
+    for (int i = 0; i < 3; ++i)
+        linear[i][i] = a.inv_mass[i] + b.inv_mass[i];
+    return linear - ra * a.inv_inertia * ra - rb * b.inv_inertia * rb;
+}
+
+// K between two rows: u^T K v (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers").
+Real row_coupling(const RowBlock &rows, const SolverBody &a, const SolverBody &b, const Vec3 &u,
+                  const Vec3 &v) {
+    if (rows.kind == RowKind::angular)
+        return glm::dot(u, a.inv_inertia * v) + glm::dot(u, b.inv_inertia * v);
+    return glm::dot(u, (a.inv_mass + b.inv_mass) * v) +
+           glm::dot(a.inv_inertia * glm::cross(rows.r_a, u), glm::cross(rows.r_a, v)) +
+           glm::dot(b.inv_inertia * glm::cross(rows.r_b, u), glm::cross(rows.r_b, v));
+}
+
+// The inverse of a symmetric matrix that is not negative. Where nothing can move along some
+// direction (a locked axis), a trace's rounding stands for the zero: no impulse goes that way.
+Mat3 inverse_of(Mat3 k) {
+    const Real trace = k[0][0] + k[1][1] + k[2][2];
+    if (!(trace > Real(0)))
+        return Mat3{Real(0)};
+    const Real size = trace / Real(3);
+    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
+    if (!(glm::determinant(k) > least * size * size * size))
+        for (int i = 0; i < 3; ++i)
+            k[i][i] += Real(1e-3) * size;
+    return glm::inverse(k);
+}
+
+// The mean velocity over h, because it turns, of the end of an arm that starts as r: the chord of
+// its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
+Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
+    const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);
+    Real along = Real(1) - squared / Real(6) * (Real(1) - squared / Real(20));
+    Real inward = Real(0.5) - squared / Real(24) * (Real(1) - squared / Real(30));
+    if (squared > Real(0.04)) { // the series' next terms show
+        const Real angle = std::sqrt(squared);
+        along = std::sin(angle) / angle;
+        inward = (Real(1) - std::cos(angle)) / squared;
+    }
+    const Vec3 turning = glm::cross(angular_velocity, r);
+    return along * turning + (inward * h) * glm::cross(angular_velocity, turning);
+}
+
+// The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
+// and -1 for an upper one.
+Real limit_change(const JointConstraint &joint, Real speed, const Softness &softness,
+                  const JointPass &pass, Real side) {
+    const Real gap = side * joint.rows.error.x;
+    const Real impulse = side * joint.impulse.x;
+    const bool is_off = gap > Real(0);
+    if (is_off && joint.is_spring())
+        return -joint.impulse.x; // a slack spring does not pull
+    if (is_off && pass.loaded_only && impulse == Real(0))
+        return Real(0);
+    const Softness used = is_off ? Softness{} : softness;
+    const Real target = is_off ? gap / pass.h : used.bias_rate * gap;
+    const Real change = -used.mass_scale * joint.mass[0][0] * (side * speed + target) -
+                        used.impulse_scale * impulse;
+    return side * (std::max(impulse + change, Real(0)) - impulse);
+}
+
+} // namespace
+
+Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
+    if (rows.kind == RowKind::point)
+        return inverse_of(point_matrix(a, b, rows.r_a, rows.r_b));
+    if (rows.count == 1) {
+        const Real k = rows.kind == RowKind::linear
+                           ? inverse_effective_mass(a, b, rows.r_a, rows.r_b, rows.axes[0])
+                           : row_coupling(rows, a, b, rows.axes[0], rows.axes[0]);
+        Mat3 mass{Real(0)};
+        mass[0][0] = k > Real(0) ? Real(1) / k : Real(0);
+        return mass;
+    }
+    Mat3 k{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        for (int j = 0; j <= i; ++j)
+            k[i][j] = k[j][i] = row_coupling(rows, a, b, rows.axes[static_cast<std::size_t>(i)],
+                                             rows.axes[static_cast<std::size_t>(j)]);
+    Mat3 mass{Real(0)};
+    if (rows.count == 2) {
+        const Real determinant = k[0][0] * k[1][1] - k[1][0] * k[0][1];
+        const Real size = Real(0.5) * (k[0][0] + k[1][1]);
+        if (determinant > Real(1e-6) * size * size) {
+            mass[0][0] = k[1][1] / determinant;
+            mass[1][1] = k[0][0] / determinant;
+            mass[1][0] = mass[0][1] = -k[1][0] / determinant;
+        } else {
+            for (int i = 0; i < 2; ++i)
+                mass[i][i] = k[i][i] > Real(0) ? Real(1) / (k[0][0] + k[1][1]) : Real(0);
+        }
+    } else {
+        mass = inverse_of(k);
+    }
+    return mass;
+}
+
+Real size_of(const RowBlock &rows) {
+    return rows.kind == RowKind::angular
+               ? Real(1)
+               : glm::length(rows.r_a) + glm::length(rows.r_b) + rows.swing_length;
+}
+
+Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                  const JointPass &pass) {
+    if (rows.kind == RowKind::angular) {
+        const Vec3 turning = b.angular_velocity - a.angular_velocity;
+        Vec3 v{Real(0)};
+        for (int i = 0; i < rows.count; ++i)
+            v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], turning);
+        return v;
+    }
+    Vec3 relative = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+    if (pass.at_the_end) {
+        // The mean over h of the anchors' relative velocity.
+        const Vec3 now = relative;
+        relative =
+            (b.velocity - a.velocity) + (chord_velocity(b.angular_velocity, rows.r_b, pass.h) -
+                                         chord_velocity(a.angular_velocity, rows.r_a, pass.h));
+        if (rows.turns_with_a)
+            relative += chord_velocity(-a.angular_velocity, pass.h * now, pass.h);
+    }
+    if (rows.kind == RowKind::point)
+        return relative;
+    Vec3 v{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], relative);
+    if (pass.at_the_end && rows.swing_length > Real(0)) {
+        // How much longer the line between the anchors becomes while they swing aside.
+        const Real distance = rows.swing_length;
+        const Vec3 aside = pass.h * (relative - v.x * rows.axes[0]);
+        const Real squared = std::min(glm::dot(aside, aside), distance * distance);
+        v.x += squared / (distance + std::sqrt(distance * distance - squared)) / pass.h;
+    }
+    return v;
+}
+
+void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
+    if (rows.kind == RowKind::point) {
+        body.apply_impulse(impulse, arm);
+        return;
+    }
+    Vec3 sum = impulse.x * rows.axes[0];
+    for (int i = 1; i < rows.count; ++i)
+        sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
+    if (rows.kind == RowKind::angular)
+        body.apply_angular_impulse(sum);
+    else
+        body.apply_impulse(sum, arm);
+}
+
+Vec3 pushed(const Vec3 &bias, Real most) {
+    const Real speed = glm::length(bias);
+    return speed > most ? (most / speed) * bias : bias;
+}
+
+Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
+                    const JointPass &pass) {
+    const RowBlock &rows = joint.rows;
+    const Softness softness = joint.is_spring()
+                                  ? make_soft(rows.frequency, rows.damping_ratio, pass.spring_time)
+                                  : pass.softness;
+    const Vec3 v = row_velocity(rows, a, b, pass);
+    const Real most =
+        joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
+    const auto towards = [&](const Vec3 &error) {
+        if (rows.count == 1)
+            return Vec3{-softness.mass_scale * joint.mass[0][0] *
+                                (v.x + std::clamp(softness.bias_rate * error.x, -most, most)) -
+                            softness.impulse_scale * joint.impulse.x,
+                        Real(0), Real(0)};
+        return -softness.mass_scale *
+                   (joint.mass * (v + pushed(softness.bias_rate * error, most))) -
+               softness.impulse_scale * joint.impulse;
+    };
+    switch (rows.bounds) {
+    case RowBounds::equal:
+        return towards(rows.error);
+    case RowBounds::at_least:
+        return {limit_change(joint, v.x, softness, pass, Real(1)), Real(0), Real(0)};
+    case RowBounds::at_most:
+        return {limit_change(joint, v.x, softness, pass, Real(-1)), Real(0), Real(0)};
+    case RowBounds::motor: {
+        const Real limit = rows.max_force * pass.h * pass.force_share;
+        const Real change = -joint.mass[0][0] * (v.x - rows.speed);
+        return {std::clamp(joint.impulse.x + change, -limit, limit) - joint.impulse.x, Real(0),
+                Real(0)};
+    }
+    case RowBounds::pull: {
+        const Real limit = rows.max_force * pass.h * pass.force_share;
+        Vec3 total = joint.impulse + towards(rows.error);
+        const Real length = glm::length(total);
+        if (length > limit)
+            total *= limit / length;
+        return total - joint.impulse;
+    }
+    }
+    return Vec3{Real(0)};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,22 @@
+// What the rows of a joint do to its two bodies: masses, speeds, impulses.
+#pragma once
+
+#include "engine/dynamics/body.h"
+#include "engine/dynamics/joint_constraint.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// K^-1 of the rows. What nothing can move has none: 0.
+Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b);
+// How fast the rows' errors grow; at the end of pass.h where the pass says so.
+Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                  const JointPass &pass);
+// Of an impulse along the rows, at an arm of the body's.
+void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse);
+// No faster than `most`.
+Vec3 pushed(const Vec3 &bias, Real most);
+// What a pass adds to the rows' impulse.
+Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
+                    const JointPass &pass);
+
+} // namespace plumb::inline PLUMB_PRECISION
