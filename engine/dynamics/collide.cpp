@@ -12,6 +12,11 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
+// Of the width of the smaller body: the farthest that speculative_distance and kept_travel go. What
+// is a hair's breadth for a crate is more than a match is thick.
+constexpr Real speculative_share = Real(0.2);
+constexpr Real kept_share = Real(0.05);
+
 // What the solver remembered, point by point of the same features. What points bore that are gone
 // is shared out among those that are new, so that a rocking box keeps its load while its corners
 // pass from one edge to the next.
@@ -78,7 +83,19 @@ Real World::contact_reach(const Candidate &candidate) const {
     const Vec3 gravity{settings_.gravity};
     const Vec3 falling = gravity_on(model_->bodies[candidate.key.b], gravity) -
                          gravity_on(model_->bodies[candidate.key.a], gravity);
-    return static_cast<Real>(settings_.speculative_distance) + glm::length(falling) * dt * dt;
+    return std::min(static_cast<Real>(settings_.speculative_distance),
+                    speculative_share * moving_width(candidate)) +
+           glm::length(falling) * dt * dt;
+}
+
+// The least width of what moves by forces of the two.
+Real World::moving_width(const Candidate &candidate) const {
+    Real width = std::numeric_limits<Real>::infinity();
+    for (const auto &[body, collider] : {std::pair{candidate.key.a, candidate.collider_a},
+                                         std::pair{candidate.key.b, candidate.collider_b}})
+        if (model_->bodies[body].kind == BodyKind::dynamic)
+            width = std::min(width, 2 * model_->colliders[collider].half_width);
+    return width;
 }
 
 // How far apart the two may be and still meet within the step; NaN when they are about to diverge.
@@ -177,7 +194,8 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
     const Real travel = glm::length((motion_b.position - motion_a.position) - origin.offset) +
                         std::sqrt(arm_a) * turn_between(origin.rotation_a, motion_a.rotation) +
                         std::sqrt(arm_b) * turn_between(origin.rotation_b, motion_b.rotation);
-    if (!(travel <= static_cast<Real>(settings_.kept_travel)))
+    if (!(travel <=
+          std::min(static_cast<Real>(settings_.kept_travel), kept_share * moving_width(candidate))))
         return false;
     Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
     contact.origin = origin;

@@ -79,7 +79,7 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
                            .slop = static_cast<Real>(settings.penetration_slop),
                            .frictionless = true};
     const ParticlePush particle_push{rigid.bias_rate, push.push_velocity};
-    const JointPass joint_pass{.softness = rigid, .h = h, .spring_time = h};
+    const JointPass joint_pass{.softness = rigid, .h = h};
 
     prepare_contacts(context);
     prepare_joints(context);
@@ -90,7 +90,7 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
-        recall_joints(context, Real(1), Springs::solve);
+        recall_joints(context, Real(1), Springs::at_the_end, h);
         recall_contacts(context, Real(1));
         kick_particles(context, gravity, h);
         refresh_particles(context, h, SpringRule::implicit_euler);

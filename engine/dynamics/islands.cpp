@@ -25,6 +25,14 @@ constexpr double spare = 1.25;
 constexpr double followed_together = 1.2;
 constexpr double followed_alone = 1.1;
 
+// Rates times substep of joints that are springs: others at their bodies add to them.
+constexpr double followed_swing = 0.6;
+constexpr double followed_damping = 16;
+
+// How far a body that touches another may turn in a substep (rad): with lever arms that are those
+// of another pose, impulses do work.
+constexpr double followed_roll = 0.4;
+
 // How far a body under load may turn on its joints in a substep (rad): what it loses of its energy
 // falls with the square of that.
 constexpr double followed_turn = 0.08;
@@ -37,6 +45,10 @@ std::uint16_t count_of(double substeps) {
 
 double least_of(const Vec3 &v) {
     return static_cast<double>(std::min({v.x, v.y, v.z}));
+}
+
+double square(double x) {
+    return x * x;
 }
 
 double largest(const Vec3 &v) {
@@ -320,6 +332,16 @@ void World::note_contact_needs(const IslandGroup &group) {
         const double depth = settings_.substep_tolerance * width;
         return 0.5 * load * group.substeps * settings_.dt * inverse / (ratio * ratio * depth);
     };
+    const auto roll_of = [&](std::uint32_t body) {
+        const Vec3 &spin = s.bodies[body].angular_velocity;
+        const double roll =
+            static_cast<double>(glm::dot(spin, spin)) * square(settings_.dt / followed_roll);
+        const bool is_fast = roll > square(settings_.substeps);
+        return is_fast && model_->bodies[body].kind == BodyKind::dynamic &&
+                       extent_of(body) > Real(0)
+                   ? roll
+                   : 0.0;
+    };
     constexpr std::size_t contacts_a_part = 256;
     s.contact_loads.resize(group.contacts.size());
     for_parts(s.tasks, group.contacts.size(), contacts_a_part,
@@ -330,7 +352,7 @@ void World::note_contact_needs(const IslandGroup &group) {
     for (std::size_t i = 0; i < group.contacts.size(); ++i) {
         const ContactEnds &ends = s.ends[group.contacts[i]];
         for (const std::uint32_t body : {ends.a, ends.b})
-            s.loads[body] = std::max(s.loads[body], s.contact_loads[i]);
+            s.loads[body] = std::max({s.loads[body], s.contact_loads[i], roll_of(body)});
     }
 }
 
@@ -350,7 +372,19 @@ void World::note_joint_needs(const IslandGroup &group) {
         return joint.joint != JointConstraint::grab && joint.rows.kind != RowKind::angular &&
                joint.rows.bounds != RowBounds::motor && !joint.is_spring();
     };
+    const auto ask = [&](const JointConstraint &joint, double squared) {
+        for_ends(joint, [&](std::uint32_t body, double) {
+            s.loads[body] = std::max(s.loads[body], squared);
+        });
+    };
     for (const JointConstraint &joint : solver.joints) {
+        if (joint.is_spring()) {
+            const double swing =
+                2 * std::numbers::pi * static_cast<double>(joint.rows.frequency) * settings_.dt;
+            const double slowing = 2 * static_cast<double>(joint.rows.damping_ratio) * swing;
+            ask(joint,
+                std::max(square(swing / followed_swing), square(slowing / followed_damping)));
+        }
         if (!is_loaded(joint))
             continue;
         const double impulse = static_cast<double>(glm::length(joint.impulse)); // of a substep
@@ -361,14 +395,18 @@ void World::note_joint_needs(const IslandGroup &group) {
             inverse += largest(s.bodies[body].inv_mass);
             is_together = is_together || solver.joint_system.group_of(body) != JointSystem::none;
         });
+        if (joint.rows.swing_length > Real(0)) {
+            // A rod under tension holds what is at its ends back aside, and turns with them.
+            const double length = static_cast<double>(joint.rows.swing_length);
+            const double tension = impulse * group.substeps / settings_.dt;
+            ask(joint, 4 * tension / length * inverse * square(settings_.dt / followed_together));
+        }
         if (is_together)
             continue;
         const double drift = settings_.substep_tolerance * static_cast<double>(size_of(joint.rows));
         const double squared =
             0.5 * impulse * group.substeps * settings_.dt * inverse / (ratio * ratio * drift);
-        for_ends(joint, [&](std::uint32_t body, double) {
-            s.loads[body] = std::max(s.loads[body], squared);
-        });
+        ask(joint, squared);
     }
     // And the rate sqrt(sum F r / I) that they make, and how fast their bodies turn.
     for (const JointConstraint &joint : solver.joints)

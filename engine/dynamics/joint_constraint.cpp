@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -91,9 +91,11 @@ void let_go(StepContext &context, JointGroup &group) {
     }
 }
 
-// What a group takes off the inverse mass of a row that is not of it, such as a limit's, when it
-// answers to a unit impulse there: c^T K^-1 c, with c what the impulse does to the group's rows.
-Real answered(StepContext &context, const JointConstraint &joint, const JointGroup &group) {
+// What a group answers to an impulse along the rows of a joint that is not of it, such as a limit:
+// the impulses that keep the speeds of the group's rows, in its right-hand sides. Returns the sum
+// of their products with what the impulse did to those rows.
+Real find_answer(StepContext &context, const JointConstraint &joint, const JointGroup &group,
+                 const Vec3 &impulse) {
     const JointSystem &system = context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
     const auto struck = [&](std::uint32_t body) {
@@ -103,8 +105,10 @@ Real answered(StepContext &context, const JointConstraint &joint, const JointGro
     };
     SolverBody a = struck(joint.a);
     SolverBody b = struck(joint.b);
-    apply(a, joint.rows, joint.rows.r_a, Vec3{Real(-1), Real(0), Real(0)});
-    apply(b, joint.rows, joint.rows.r_b, Vec3{Real(1), Real(0), Real(0)});
+    if (joint.moves_a)
+        apply(a, joint.rows, joint.rows.r_a, -impulse);
+    if (joint.moves_b)
+        apply(b, joint.rows, joint.rows.r_b, impulse);
     const SolverBody still;
     const auto after = [&](std::uint32_t body) -> const SolverBody & {
         return body == Joint::world ? still : body == joint.a ? a : body == joint.b ? b : still;
@@ -114,12 +118,42 @@ Real answered(StepContext &context, const JointConstraint &joint, const JointGro
         return row_velocity(other.rows, after(other.a), after(other.b), JointPass{});
     };
     for (std::uint32_t place = group.first; place < group.last; ++place)
-        sides[place - group.first] = effect(place);
+        sides[place - group.first] = -effect(place);
     system.solve(group, sides);
     Real sum = Real(0);
     for (std::uint32_t place = group.first; place < group.last; ++place)
-        sum += glm::dot(effect(place), sides[place - group.first]);
+        sum -= glm::dot(effect(place), sides[place - group.first]);
     return sum;
+}
+
+// Calls use(group) for those that the joint's bodies hang on, as far as they are held.
+template <typename Use>
+void for_held_groups(StepContext &context, const JointConstraint &joint, Use &&use) {
+    JointSystem &system = context.scratch.joint_system;
+    std::uint32_t last = JointSystem::none;
+    for (const std::uint32_t body : {joint.a, joint.b}) {
+        const std::uint32_t group =
+            body == Joint::world ? JointSystem::none : system.group_of(body);
+        if (group == JointSystem::none || group == last || !system.groups()[group].is_held)
+            continue;
+        last = group;
+        use(system.groups()[group]);
+    }
+}
+
+// At once, so that the next limit or motor of the same bodies knows of it: each is as heavy as the
+// groups make it, and would overshoot against bodies that these have not held back yet.
+void answer(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
+    for_held_groups(context, joint, [&](const JointGroup &group) {
+        find_answer(context, joint, group, impulse);
+        const std::span<const Vec3> sides = sides_of(context, group);
+        for (std::uint32_t place = group.first; place < group.last; ++place) {
+            JointConstraint &other =
+                context.scratch.joints[context.scratch.joint_system.block(place)];
+            other.impulse += sides[place - group.first];
+            apply(context, other, sides[place - group.first]);
+        }
+    });
 }
 
 bool is_changed(const StepContext &context, std::uint32_t body) {
@@ -130,29 +164,35 @@ bool is_changed(const StepContext &context, const JointConstraint &joint) {
 }
 
 // Limits and motors against bodies whose joints are solved together: as heavy as those make them.
-void weigh_with_groups(StepContext &context, bool changed_only) {
-    JointSystem &system = context.scratch.joint_system;
-    if (system.groups().empty())
+void weigh(StepContext &context, JointConstraint &joint) {
+    joint.is_weighed = false;
+    Real &mass = joint.mass[0][0];
+    if (joint.is_held || joint.rows.count != 1 || joint.is_spring() || !(mass > Real(0)))
         return;
-    for (JointConstraint &joint : context.scratch.joints) {
-        if (changed_only && !is_changed(context, joint))
-            continue;
-        Real &mass = joint.mass[0][0];
-        if (joint.is_held || joint.rows.count != 1 || joint.is_spring() || !(mass > Real(0)))
-            continue;
-        std::uint32_t last = JointSystem::none;
-        Real inverse = Real(1) / mass;
-        const Real least = Real(1e-3) * inverse;
-        for (const std::uint32_t body : {joint.a, joint.b}) {
-            const std::uint32_t group =
-                body == Joint::world ? JointSystem::none : system.group_of(body);
-            if (group == JointSystem::none || group == last || !system.groups()[group].is_held)
-                continue;
-            last = group;
-            inverse -= answered(context, joint, system.groups()[group]);
+    const Real alone = Real(1) / mass;
+    Real inverse = alone;
+    for_held_groups(context, joint, [&](const JointGroup &group) {
+        inverse -= find_answer(context, joint, group, Vec3{Real(1), Real(0), Real(0)});
+        joint.is_weighed = true;
+    });
+    mass = Real(1) / std::max(inverse, Real(1e-3) * alone);
+}
+
+void weigh_with_groups(StepContext &context, bool changed_only) {
+    if (context.scratch.joint_system.groups().empty())
+        return;
+    for (JointConstraint &joint : context.scratch.joints)
+        if (!changed_only || is_changed(context, joint))
+            weigh(context, joint);
+}
+
+// After groups were let go.
+void weigh_again(StepContext &context) {
+    for (JointConstraint &joint : context.scratch.joints)
+        if (joint.is_weighed) {
+            joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
+            weigh(context, joint);
         }
-        mass = Real(1) / std::max(inverse, least);
-    }
 }
 
 // Some microseconds of work.
@@ -266,22 +306,31 @@ void remember_joints(StepContext &context) {
     }
 }
 
-void recall_joints(StepContext &context, Real share, Springs springs) {
+Real spring_share(const RowBlock &rows, Real h) {
+    // Twice the rate of the joint by itself: others at its bodies, and its own lever arms.
+    const Real turn = Real(4) * std::numbers::pi_v<Real> * rows.frequency * h;
+    return turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
+}
+
+void recall_joints(StepContext &context, Real share, Springs springs, Real h) {
     for (JointConstraint &joint : context.scratch.joints) {
         if (springs == Springs::skip && joint.is_spring())
             continue;
-        const Vec3 recalled = share * joint.remembered;
+        const bool is_midpoint = springs == Springs::midpoint && joint.is_spring();
+        const Vec3 recalled =
+            (is_midpoint ? spring_share(joint.rows, h) : share) * joint.remembered;
         joint.impulse += recalled;
         apply(context, joint, recalled);
     }
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
-void repeat_springs(StepContext &context) {
+void repeat_springs(StepContext &context, Real h) {
     for (JointConstraint &joint : context.scratch.joints)
         if (joint.is_spring()) {
-            apply(context, joint, joint.impulse);
-            joint.impulse *= Real(2);
+            const Vec3 rest = (Real(1) / spring_share(joint.rows, h) - Real(1)) * joint.impulse;
+            apply(context, joint, rest);
+            joint.impulse += rest;
         }
 }
 
@@ -297,8 +346,12 @@ void solve_joints(StepContext &context, const JointPass &pass) {
                     let_go(context, group);
             }
     };
+    const auto held = [&] { return std::ranges::count(groups, true, &JointGroup::is_held); };
+    const auto before = held();
     if (pass.at_the_end)
         for_parts(context.tasks, groups.size(), groups_a_part, hold);
+    if (held() != before)
+        weigh_again(context);
     bool is_changed = !pass.at_the_end;
     for (JointConstraint &joint : context.scratch.joints) {
         if (joint.is_held || (pass.springs == Springs::skip && joint.is_spring()) ||
@@ -308,6 +361,8 @@ void solve_joints(StepContext &context, const JointPass &pass) {
             impulse_change(joint, context.body(joint.a), context.body(joint.b), pass);
         joint.impulse += change;
         apply(context, joint, change);
+        if (joint.is_weighed && change != Vec3{Real(0)})
+            answer(context, joint, change);
         is_changed = true;
     }
     const auto solve = [&](std::size_t begin, std::size_t end) {

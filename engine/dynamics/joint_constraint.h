@@ -25,11 +25,13 @@ struct JointConstraint {
     Vec3 impulse{Real(0)};    // accumulated in this substep, on b (N s, N m s)
     Vec3 remembered{Real(0)}; // of the substep before
     bool is_held = false;     // solved with its group in this substep (JointSystem)
+    bool is_weighed = false;  // by what groups make of its bodies: they answer each of its impulses
     bool is_spring() const { return rows.frequency > Real(0); }
 };
 
-// Whether a pass leaves out the joints that are springs.
-enum class Springs { solve, skip };
+// What a pass does about the joints that are springs: leaves them out, or solves them for the force
+// at the substep's end (implicit Euler) or at its spring_share.
+enum class Springs { skip, at_the_end, midpoint };
 
 // One Gauss-Seidel pass over all rows.
 struct JointPass {
@@ -41,15 +43,18 @@ struct JointPass {
     // (Ryckaert, Ciccotti, Berendsen 1977): the way of an anchor is then the chord that it turns
     // through, which no spin makes longer than its circle. Otherwise the velocities alone agree.
     bool at_the_end = false;
-    Springs springs = Springs::solve;
-    // s over which a spring's force acts in this pass: h for the implicit Euler rule, h / 2 for the
-    // first half of the midpoint rule.
-    Real spring_time = Real(0);
+    Springs springs = Springs::at_the_end;
     // Whether limits that are off and bear nothing are left to the next substep.
     bool loaded_only = false;
     Real force_share = Real(1); // of max_force * h, for motors and grabs
     bool skips_motors = false;  // as a pass over pseudo velocities does
 };
+
+// The share of a substep after which a spring's force is that of all of it: 1/2, the midpoint rule,
+// which keeps energy, as long as h follows the spring; more and more of it, up to implicit Euler,
+// the stiffer it is: a pass solves springs that share bodies only in part, and the midpoint rule
+// would double what it leaves.
+Real spring_share(const RowBlock &rows, Real h);
 
 // The length against which a block's drift is measured (m): that of its arms; 1 for angles.
 Real size_of(const RowBlock &rows);
@@ -80,9 +85,9 @@ void refresh_joints(StepContext &context);
 void refresh_changed_joints(StepContext &context);
 // Warm starting, as for contacts.
 void remember_joints(StepContext &context);
-void recall_joints(StepContext &context, Real share, Springs springs);
-// Applies what the springs did in the first half of the substep once more.
-void repeat_springs(StepContext &context);
+void recall_joints(StepContext &context, Real share, Springs springs, Real h);
+// Applies what springs do in the rest of the substep, after Springs::midpoint.
+void repeat_springs(StepContext &context, Real h);
 void solve_joints(StepContext &context, const JointPass &pass);
 // What the joints of a group answer to an impact: changes velocities so that the joints hold them.
 // Nothing for JointSystem::none, or a group that is not held.

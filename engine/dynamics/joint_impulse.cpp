@@ -177,8 +177,10 @@ Vec3 pushed(const Vec3 &bias, Real most) {
 Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
                     const JointPass &pass) {
     const RowBlock &rows = joint.rows;
+    const Real spring_time =
+        pass.springs == Springs::midpoint ? spring_share(rows, pass.h) * pass.h : pass.h;
     const Softness softness = joint.is_spring()
-                                  ? make_soft(rows.frequency, rows.damping_ratio, pass.spring_time)
+                                  ? make_soft(rows.frequency, rows.damping_ratio, spring_time)
                                   : pass.softness;
     const Vec3 v = row_velocity(rows, a, b, pass);
     const Real most =

@@ -230,11 +230,14 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Real com
             if (effect.body != Joint::world)
                 add_coupling(effect, effect, own);
         const Real size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Real>(count);
+        // A little along what nothing can move (a locked axis): what pulls that way pulls in vain.
         softening_[place] = compliance * own;
+        for (int i = 0; i < count; ++i)
+            softening_[place][i][i] += Real(1e-5) * size;
         own += softening_[place];
-        // Rows that are not there, and a little along what nothing can move (a locked axis).
-        for (int i = 0; i < 3; ++i)
-            own[i][i] += i < count && size > Real(0) ? Real(1e-5) * size : Real(1);
+        for (int i = 0; i < 3; ++i) // rows that are not there
+            if (i >= count || !(size > Real(0)))
+                own[i][i] += Real(1);
         diagonal_[place] = own;
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
             lower_[i] = Mat3{Real(0)};

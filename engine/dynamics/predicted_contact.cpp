@@ -45,15 +45,21 @@ Real World::way_of(const Candidate &candidate) const {
 Real World::turning_reach(std::uint32_t index) const {
     if (!method_->info.looks_ahead)
         return Real(0);
-    const Body &body = model_->bodies[index];
     const Real spin = glm::length(going(index).angular_velocity) * static_cast<Real>(settings_.dt);
     if (spin == Real(0))
         return Real(0);
+    const Real extent = extent_of(index);
+    return spin * extent > Real(0.5) * least_half_width(model_->bodies[index])
+               ? std::min(spin, Real(2)) * extent
+               : Real(0);
+}
+
+Real World::extent_of(std::uint32_t index) const {
+    const Body &body = model_->bodies[index];
     Real extent = Real(0);
     for (std::uint32_t c = 0; c < body.collider_count; ++c)
         extent = std::max(extent, model_->colliders[body.first_collider + c].extent);
-    return spin * extent > Real(0.5) * least_half_width(body) ? std::min(spin, Real(2)) * extent
-                                                              : Real(0);
+    return extent;
 }
 
 namespace {
@@ -105,10 +111,12 @@ void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Sh
 
 } // namespace
 
-// For the one of two solids that is small for the way that they go in a step.
+// For the one of two solids that is small for the way that they come towards each other in a step.
 void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                          Manifold &manifold) const {
-    const Real way = way_of(candidate);
+    const Real way = static_cast<Real>(settings_.dt) *
+                     glm::dot(going(candidate.key.a).velocity - going(candidate.key.b).velocity,
+                              manifold.normal);
     const Real width_a = model_->colliders[candidate.collider_a].half_width;
     const Real width_b = model_->colliders[candidate.collider_b].half_width;
     const bool a_moves = model_->bodies[candidate.key.a].kind == BodyKind::dynamic;

@@ -120,9 +120,11 @@ void World::wake_all() {
 bool World::is_at_rest(std::uint32_t index) const {
     const Body &body = model_->bodies[index];
     const Motion &motion = scratch_.bodies[index];
-    Real extent = Real(0);
-    for (std::uint32_t c = 0; c < body.collider_count; ++c)
-        extent = std::max(extent, model_->colliders[body.first_collider + c].extent);
+    Real extent = Real(0); // round ones too: a spin that no eye sees is still kept
+    for (std::uint32_t c = 0; c < body.collider_count; ++c) {
+        const Collider &collider = model_->colliders[body.first_collider + c];
+        extent = std::max(extent, collider.extent + collider.rounding);
+    }
     const double width = 2 * static_cast<double>(least_half_width(body));
     const double gravity = glm::length(glm::dvec3{gravity_on(body, Vec3{settings_.gravity})});
     const auto limit =

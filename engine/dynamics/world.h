@@ -243,6 +243,9 @@ class World {
     Real least_half_width(const Body &body) const;
     bool find_surprises();
     Real contact_reach(const Candidate &candidate) const;
+    Real moving_width(const Candidate &candidate) const;
+    // How far its spin moves its surface at most, a radian (m).
+    Real extent_of(std::uint32_t body) const;
     Real turning_reach(std::uint32_t body) const;
     Real way_of(const Candidate &candidate) const;
     void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,

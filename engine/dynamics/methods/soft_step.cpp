@@ -48,7 +48,7 @@ void advance_soft_step(StepContext &context) {
                             .push_velocity = static_cast<Real>(settings.push_velocity),
                             .h = h,
                             .at_the_end = true,
-                            .spring_time = Real(0.5) * h,
+                            .springs = Springs::midpoint,
                             .force_share = Real(0.5)};
     const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .loaded_only = true};
 
@@ -67,7 +67,7 @@ void advance_soft_step(StepContext &context) {
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
         remember_joints(context);
-        recall_joints(context, Real(0.5), Springs::solve);
+        recall_joints(context, Real(0.5), Springs::midpoint, h);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
         recall_contact_columns(context, Real(0.5), true);
         if (has_particles) {
@@ -86,10 +86,10 @@ void advance_soft_step(StepContext &context) {
         if (has_particles)
             drift_particles(context, h);
         refresh_joints(context);
-        recall_joints(context, Real(0.5), Springs::skip);
+        recall_joints(context, Real(0.5), Springs::skip, h);
         turn_contact_columns(context, Real(0));
         recall_contact_columns(context, Real(0.5), false);
-        repeat_springs(context);
+        repeat_springs(context, h);
         if (has_particles) {
             kick_particles(context, gravity, Real(0.5) * h);
             repeat_particle_springs(context, h);

@@ -19,8 +19,8 @@ void advance_tgs_soft(StepContext &context) {
                                        static_cast<Real>(settings.contact_damping_ratio), h),
                              static_cast<Real>(settings.push_velocity), Real(0)};
     const ParticlePush particle_push{biased.softness.bias_rate, biased.push_velocity};
-    const JointPass holding{.softness = joint_softness, .h = h, .spring_time = h};
-    const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .spring_time = h};
+    const JointPass holding{.softness = joint_softness, .h = h};
+    const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip};
 
     prepare_contacts(context);
     prepare_joints(context);
@@ -32,7 +32,7 @@ void advance_tgs_soft(StepContext &context) {
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
-        recall_joints(context, Real(1), Springs::solve);
+        recall_joints(context, Real(1), Springs::at_the_end, h);
         recall_contacts(context, Real(1));
         refresh_particles(context, h, SpringRule::implicit_euler);
         for (int i = 0; i < settings.iterations; ++i) {
