@@ -210,10 +210,22 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
     }
 }
 
+// The share of a contact's impulses that is remembered.
+Real remembered_share(const ContactBlock &block, std::size_t lane) {
+    if (block.struck.lanes[lane] == Real(0))
+        return Real(1);
+    Real sum = Real(0);
+    for (int k = 0; k < block.points_used; ++k)
+        sum += block.points[k].impulse.x.lanes[lane];
+    const Real most = std::max(remembered_blow * sum, growing_blow * block.began.lanes[lane]);
+    return sum > most ? most / sum : Real(1);
+}
+
 // As the kernels have it between substeps (recall_impl).
-Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane) {
+Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane, Real kept) {
     Vec3 impulse = get(point.impulse, lane);
     const Real relaxed = impulse.x - point.remembered.x.lanes[lane];
+    impulse *= kept;
     const Real most = relaxed_share * impulse.x;
     impulse.x += std::max(std::min(relaxed, most), -most);
     return impulse;
@@ -328,8 +340,9 @@ void store_contact_columns(StepContext &context) {
         for (const ContactBlock &block : blocks)
             for (std::size_t lane = 0; lane < block.used; ++lane) {
                 Contact &contact = context.contacts[block.contacts[lane]];
+                const Real kept = remembered_share(block, lane);
                 for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
-                    contact.impulses[k] = next_impulse(block.points[k], lane);
+                    contact.impulses[k] = next_impulse(block.points[k], lane, kept);
                 if (contact.moment == Moment::turning)
                     express_anew(contact, get(block.normal, lane), get(block.t1, lane));
             }

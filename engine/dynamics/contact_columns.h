@@ -14,6 +14,11 @@ namespace plumb::inline PLUMB_PRECISION {
 
 // Of a contact's load: how much more of what the relaxing pass added is remembered, at the most.
 inline constexpr Real relaxed_share = Real(1) / Real(16);
+// A blow is no load: what strikes in a substep would push as hard in the next, though nothing comes
+// any more, and throw off what stands on it. So where bodies close fast (struck_speed), what is
+// remembered grows from so little, and no faster; what goes on is known in ten substeps.
+inline constexpr Real remembered_blow = Real(1) / Real(64);
+inline constexpr Real growing_blow = Real(1.5);
 
 struct ContactBlock {
     struct Point {
@@ -47,6 +52,8 @@ struct ContactBlock {
     Columns3 t1; // t2 = n x t1
     Column friction;
     Column bounces;    // 1 where there is restitution
+    Column struck;     // 1 where the bodies closed faster than struck_speed in this substep
+    Column began;      // all normal impulses that were remembered as it began (N s)
     Column rounding_a; // radius by which a round surface lies beyond its core (m)
     Column rounding_b;
     Columns3 inv_mass_a; // along the world's axes

@@ -7,6 +7,7 @@
 #include "engine/math/basis.h"
 
 #include <array>
+#include <limits>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -55,6 +56,8 @@ struct ContactBias {
     bool loaded_only = false;
     // Whether the pass leaves friction alone, as one over pseudo velocities does.
     bool frictionless = false;
+    // m/s; contacts that close faster are swept more than once (soft_step).
+    Real struck_speed = std::numeric_limits<Real>::infinity();
 };
 
 // 1 / (K along n): the effective mass of two points against each other along a unit vector.

@@ -166,12 +166,25 @@ void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool 
         const Vector n = load(block.normal, lane);
         const Vector t1 = load(block.t1, lane);
         const Vector t2 = cross(n, t1);
+        Lanes kept = all(Real(1));
+        if (remember_first) {
+            Lanes sum = hn::Zero(tag);
+            for (int k = 0; k < block.points_used; ++k)
+                sum = hn::Add(sum, load(block.points[k].impulse.x, lane));
+            const Lanes most = max(hn::Mul(all(remembered_blow), sum),
+                                   hn::Mul(all(growing_blow), load(block.began, lane)));
+            const auto forgets =
+                hn::And(hn::Gt(load(block.struck, lane), hn::Zero(tag)), hn::Gt(sum, most));
+            kept = hn::IfThenElse(forgets, hn::Div(most, hn::IfThenElse(forgets, sum, kept)), kept);
+            store(hn::Mul(kept, sum), block.began, lane);
+        }
         for (int k = 0; k < block.points_used; ++k) {
             ContactBlock::Point &point = block.points[k];
             Vector before = load(point.impulse, lane);
             Vector recalled;
             if (remember_first) {
                 const Lanes relaxed = hn::Sub(before.x, load(point.remembered.x, lane));
+                before = times(kept, before);
                 const Lanes most = hn::Mul(all(relaxed_share), before.x);
                 before.x = hn::Add(before.x, max(min(relaxed, most), hn::Neg(most)));
                 store(before, point.remembered, lane);
@@ -239,7 +252,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     const Lanes soft_impulse = all(pushes ? bias.softness.impulse_scale : Real(0));
     // Friction tips a body that the normal impulses know nothing of yet, where nothing is
     // remembered: without further sweeps what slides off at once would keep what it gains by that.
-    const int sweeps = block.is_new && !pushes ? new_sweeps : 1;
+    const bool sweeps_all = block.is_new && !pushes;
+    const Lanes struck_speed = all(-bias.struck_speed);
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         Pair pair = load_pair(block, bodies, lane);
         const Indices index_a = load(block.body_a, lane);
@@ -259,7 +273,16 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         const Vector t2 = cross(n, t1);
         const Lanes friction = load(block.friction, lane);
         const auto bounces = hn::Gt(load(block.bounces, lane), zero);
-        for (int sweep = 0; sweep < sweeps; ++sweep) {
+        // What is struck is swept again, too: of its corners, the first would take most of the
+        // blow, and tilt it. (Zeros are lanes without a point.)
+        auto struck = hn::FirstN(tag, 0);
+        auto again = hn::FirstN(tag, sweeps_all ? column_lanes : 0);
+        for (int sweep = 0; sweep < new_sweeps; ++sweep) {
+            const bool is_first = sweep == 0;
+            if (sweep == 1)
+                again = hn::Or(again, struck);
+            if (!is_first && hn::AllFalse(tag, again))
+                break;
             for (int k = 0; k < block.points_used; ++k) {
                 ContactBlock::Point &point = block.points[k];
                 const Vector r_a = load(point.r_a, lane);
@@ -279,6 +302,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 const Lanes target =
                     hn::IfThenElse(apart, hn::Mul(separation, all(inv_h)), pushes ? push : zero);
                 const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
+                if (is_first)
+                    struck = hn::Or(struck, hn::Lt(speed, struck_speed));
                 // What comes in faster than anything is pushed out is stopped at once: as a spring
                 // it would be through a thin wall before it turned round.
                 const auto rigid = hn::Or(apart, hn::Lt(speed, least));
@@ -293,6 +318,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                     // What bounces and has come a hair too deep is left to the next impacts.
                     total = hn::IfThenElse(hn::And(hn::Or(apart, bounces), hn::Eq(before, zero)),
                                            before, total);
+                if (!is_first)
+                    total = hn::IfThenElse(again, total, before);
                 pair.apply(times(hn::Sub(total, before), n), r_a, r_b);
                 store(total, point.impulse.x, lane);
             }
@@ -312,8 +339,12 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 const auto slides = hn::Gt(length, limit);
                 const Lanes scale = hn::IfThenElse(
                     slides, hn::Div(limit, hn::IfThenElse(slides, length, one)), one);
-                const Lanes after_1 = hn::Mul(scale, new_1);
-                const Lanes after_2 = hn::Mul(scale, new_2);
+                Lanes after_1 = hn::Mul(scale, new_1);
+                Lanes after_2 = hn::Mul(scale, new_2);
+                if (!is_first) {
+                    after_1 = hn::IfThenElse(again, after_1, before_1);
+                    after_2 = hn::IfThenElse(again, after_2, before_2);
+                }
                 pair.apply(plus(times(hn::Sub(after_1, before_1), t1),
                                 times(hn::Sub(after_2, before_2), t2)),
                            r_a, r_b);
@@ -322,6 +353,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
             }
         }
         store_pair(pair, block, bodies, lane);
+        const Lanes before = pushes ? zero : load(block.struck, lane);
+        store(hn::IfThenElse(struck, one, before), block.struck, lane);
     }
     block.is_new = block.is_new && pushes;
 }

@@ -31,15 +31,16 @@ void advance_soft_step(StepContext &context) {
     const Softness joint_softness =
         make_soft(static_cast<Real>(settings.joint_frequency_ratio) * rate,
                   static_cast<Real>(settings.joint_damping_ratio), h);
-    const ContactBias contact_bias{
-        make_soft(static_cast<Real>(settings.contact_frequency_ratio) * rate,
-                  static_cast<Real>(settings.contact_damping_ratio), h),
-        static_cast<Real>(settings.push_velocity), Real(0)};
+    ContactBias contact_bias{make_soft(static_cast<Real>(settings.contact_frequency_ratio) * rate,
+                                       static_cast<Real>(settings.contact_damping_ratio), h),
+                             static_cast<Real>(settings.push_velocity), Real(0)};
 
     const ParticlePush particle_push{contact_bias.softness.bias_rate, contact_bias.push_velocity};
 
     ContactBias relax_bias;
     relax_bias.loaded_only = true;
+    contact_bias.struck_speed = relax_bias.struck_speed =
+        glm::length(gravity) * static_cast<Real>(settings.dt);
 
     // First for the poses at the substep's end, with half of the forces and springs by the first
     // half of the midpoint rule; then for the velocities there.
