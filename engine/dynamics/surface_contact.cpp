@@ -1,6 +1,8 @@
 #include "engine/dynamics/surface_contact.h"
 
+#include "engine/geometry/raycast.h"
 #include "engine/geometry/support.h"
+#include "engine/geometry/triangle.h"
 
 #include <array>
 #include <cmath>
@@ -109,14 +111,29 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
         if (may_lean(surface, pose, index, triangle, manifold.points[0].position, out))
             return manifold;
     }
-    // The face's contact: the deepest point, when it is over this triangle.
-    const Vec3 deepest = farthest(solid, -face);
-    const Real separation = glm::dot(face, deepest - placed_one.a);
+    // The face's contact: the deepest point, when it is over this triangle. When it lies over a
+    // ridge's other side, whose own deepest point may lie over this one: where the ridge is, of
+    // which neither would know. (Over a hollow, or in the plane, the other triangle has it.)
+    Vec3 deepest = farthest(solid, -face);
+    Real separation = glm::dot(face, deepest - placed_one.a);
     if (separation > margin)
         return {};
+    bool is_over = true;
     for (std::size_t edge = 0; edge < 3; ++edge)
-        if (triangle.beyond(deepest, edge) > Real(1e-4) * triangle.size)
+        if (triangle.beyond(deepest, edge) > Real(1e-4) * triangle.size) {
+            if (!surface.is_outer_edge(index, static_cast<int>(edge)))
+                return {};
+            is_over = false;
+        }
+    if (!is_over) {
+        const Vec3 on_ridge = closest_point(placed_one, deepest);
+        const Real depth = glm::length(box.max - box.min) + margin;
+        const auto inside = ray_interval(solid, {on_ridge - depth * face, face});
+        if (!inside || inside->t_enter >= depth) // what is still above it comes down beyond
             return {};
+        separation = inside->t_enter - depth;
+        deepest = on_ridge + separation * face;
+    }
     Manifold result;
     result.normal = -face;
     result.count = 1;
