@@ -39,11 +39,11 @@ Mat3 inverse_of(Mat3 k) {
     if (!(trace > Real(0)))
         return Mat3{Real(0)};
     const Real size = trace / Real(3);
-    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
-    if (!(glm::determinant(k) > least * size * size * size))
+    k /= size; // the determinant of what is very heavy would be too small a number
+    if (!(glm::determinant(k) > Real(64) * std::numeric_limits<Real>::epsilon()))
         for (int i = 0; i < 3; ++i)
-            k[i][i] += Real(1e-3) * size;
-    return glm::inverse(k);
+            k[i][i] += Real(1e-3);
+    return glm::inverse(k) / size;
 }
 
 // The mean velocity over h, because it turns, of the end of an arm that starts as r: the chord of

@@ -54,7 +54,10 @@ bool is_followed(const Body &body, Real stiffness, Real h) {
 // For the present substep; a body that bears less again is as it was. Says whether anything
 // changed.
 bool raise_inertia(SolverBody &motion, const Body &body, Real stiffness, Real h) {
-    const Real needed = needed_inertia(stiffness, h, inertia_alone);
+    // What cannot move as a joint asks (a locked axis) bears ever more, the heavier it is made.
+    constexpr Real most = Real(1e6);
+    const Real needed =
+        std::min(needed_inertia(stiffness, h, inertia_alone), most * least(body.inertia));
     // The inertia of a body that is not a ball was found anew when it turned.
     if (!(needed > least(body.inertia)) && !is_isotropic(body.inertia))
         return false;
