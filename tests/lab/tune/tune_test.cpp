@@ -47,6 +47,7 @@ TuneOptions quick(const std::vector<std::string> &methods,
     options.methods = methods;
     options.repeats = 1;
     options.starts = 1;
+    options.plainer = false;
     options.base.precision = Precision::dual;
     for (const std::string &setting : settings)
         options.base.settings.give(parse_setting(setting));
