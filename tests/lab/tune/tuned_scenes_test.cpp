@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <set>
 
 #include <gtest/gtest.h>
 
@@ -21,8 +20,14 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::string> &not_tuned() {
     static const std::string cloth = "cloth", particles = "springs between many particles";
     static const std::map<std::string, std::string> why{
-        {"book_cloth", cloth},    {"cloth_over_sphere", cloth}, {"flag", cloth},
-        {"hanging_cloth", cloth}, {"trampoline", cloth},        {"soft_rope", particles}};
+        {"book_cloth", cloth},
+        {"cloth_over_sphere", cloth},
+        {"flag", cloth},
+        {"hanging_cloth", cloth},
+        {"trampoline", cloth},
+        {"soft_rope", particles},
+        {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
+        {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};
     return why;
 }
 
