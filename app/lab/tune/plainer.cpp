@@ -80,8 +80,9 @@ std::vector<Simplification> simplifications(const SceneDesc &scene, const RunOpt
         if (turns(body))
             all.push_back(of_bodies("the rotation of " + name, name, lock_rotation));
         if (const std::string_view shape = shape_name(body); !shape.empty())
-            all.push_back(of_bodies("the " + std::string(shape) + " of " + name + ", as a sphere",
-                                    name, make_sphere));
+            all.push_back(
+                of_bodies("the " + std::string(shape) + " of " + name + " (a sphere will do)", name,
+                          make_sphere));
     }
     return all;
 }

@@ -97,6 +97,7 @@ void time_in_turns(const std::vector<TimedRun> &runs, const TuneOptions &options
     const auto stopped = [&] { return options.stop && options.stop(); };
     const double rounds = options.repeats;
     std::vector<EndTimer> timers;
+    timers.reserve(runs.size());
     for (const auto &[trial, run] : runs)
         timers.push_back(trial->timer(*run));
     std::vector<std::vector<double>> timings(runs.size());

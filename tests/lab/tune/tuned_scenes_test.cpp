@@ -56,13 +56,13 @@ class TunedScene : public testing::TestWithParam<fs::path> {
         std::vector<SceneMessage> messages;
         const SceneText text{GetParam(), read_scene_text(GetParam(), messages).value()};
         const std::vector<SceneDesc> all = starts_of(text, other_start(GetParam().stem().string()));
-        starts_ = {all.front(), all.back()};
-        own_ = resolve_run(starts_.front(), {}).settings;
+        scene_starts = {all.front(), all.back()};
+        own_settings = resolve_run(scene_starts.front(), {}).settings;
     }
 
     // With the margin, from both starts or until one misses.
     [[nodiscard]] TunedRun run(const RunOptions &options) const {
-        return Trial(starts_, TuneOptions{}).run(options, {});
+        return Trial(scene_starts, TuneOptions{}).run(options, {});
     }
 
     void expect_missed_or_more_work(const RunOptions &options, double work) const {
@@ -73,21 +73,21 @@ class TunedScene : public testing::TestWithParam<fs::path> {
             << " iterations: " << other.worst << ": " << other.error;
     }
 
-    std::vector<SceneDesc> starts_;
-    StepSettings own_;
+    std::vector<SceneDesc> scene_starts;
+    StepSettings own_settings;
 };
 
 TEST_P(TunedScene, MeetsWhatItExpectsWithAMarginAndTheNextCheaperDoesNot) {
     const TunedRun own = run({});
     EXPECT_EQ(own.verdict, TuneVerdict::met) << own.worst << ": " << own.error;
-    if (own_.substeps > 1) {
+    if (own_settings.substeps > 1) {
         RunOptions fewer;
-        fewer.settings.give(&StepSettings::substeps, own_.substeps - 1);
+        fewer.settings.give(&StepSettings::substeps, own_settings.substeps - 1);
         expect_missed_or_more_work(fewer, own.work);
     }
-    if (own_.iterations > 1) {
+    if (own_settings.iterations > 1) {
         RunOptions fewer;
-        fewer.settings.give(&StepSettings::iterations, own_.iterations - 1);
+        fewer.settings.give(&StepSettings::iterations, own_settings.iterations - 1);
         expect_missed_or_more_work(fewer, own.work);
     }
 }
