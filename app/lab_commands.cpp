@@ -318,8 +318,9 @@ void add_tune(CommandLine &line) {
     CLI::App *tune_command = line.app.add_subcommand(
         "tune",
         "Finds the cheapest method, precision, dt, substeps and iterations with which a scene "
-        "meets all that it expects of itself, with a margin and from several starts. What is given "
-        "by --methods, --precision, --set and the like stays as it is given");
+        "meets all that it expects of itself, with a margin and from several starts, and what its "
+        "model can then do without: sleep, a body's rotation, its shape. What is given by "
+        "--methods, --precision, --set and the like stays as it is given");
     tune_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()
@@ -353,7 +354,7 @@ void add_tune(CommandLine &line) {
                            "Prints what was tried, what each cost and what it missed");
     tune_command->add_flag("--write", arguments->command.write,
                            "Writes what was chosen into the scene's file, and leaves all else in "
-                           "it as it is");
+                           "it, its bodies too, as it is");
     add_run_options(*tune_command, line.common, true);
     tune_command->callback([=, &line] {
         arguments->command.scene = line.common.scene_paths().front();

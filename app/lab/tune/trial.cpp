@@ -1,6 +1,5 @@
 #include "app/lab/tune/trial.h"
 
-#include "app/lab/run/end_timer.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/timing.h"
 
@@ -87,32 +86,44 @@ TunedRun Trial::run(const RunOptions &options, const Progress &progress) const {
     return run;
 }
 
-void Trial::time(const std::vector<TunedRun *> &runs, const Progress &progress) const {
-    const double end = run_end(scene(), 0);
-    const double rounds = options_.repeats;
+EndTimer Trial::timer(const TunedRun &run) const {
+    auto simulation = make(scene(), run.options);
+    auto saved = simulation->save();
+    return {std::move(simulation), std::move(saved), run_end(scene(), 0), run.cost};
+}
+
+void time_in_turns(const std::vector<TimedRun> &runs, const TuneOptions &options,
+                   const Progress &progress) {
+    const auto stopped = [&] { return options.stop && options.stop(); };
+    const double rounds = options.repeats;
     std::vector<EndTimer> timers;
-    for (const TunedRun *run : runs) {
-        auto simulation = make(scene(), run->options);
-        auto saved = simulation->save();
-        timers.emplace_back(std::move(simulation), std::move(saved), end, run->cost);
-    }
+    timers.reserve(runs.size());
+    for (const auto &[trial, run] : runs)
+        timers.push_back(trial->timer(*run));
     std::vector<std::vector<double>> timings(runs.size());
-    for (int round = 0; round < options_.repeats; ++round)
+    for (int round = 0; round < options.repeats; ++round)
         for (std::size_t i = 0; i < runs.size(); ++i) {
             if (stopped())
                 return;
             if (progress)
-                progress((round + static_cast<double>(i) / static_cast<double>(runs.size())) /
-                             rounds,
-                         scene().name + ": timing " + run_text(runs[i]->resolved));
-            timings[i].push_back(timers[i].time(options_.stop).value_or(runs[i]->cost));
+                progress(
+                    (round + static_cast<double>(i) / static_cast<double>(runs.size())) / rounds,
+                    runs[i].trial->scene().name + ": timing " + run_text(runs[i].run->resolved));
+            timings[i].push_back(timers[i].time(options.stop).value_or(runs[i].run->cost));
         }
     if (stopped())
         return;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-        runs[i]->cost = median(timings[i]);
-        runs[i]->timings = std::move(timings[i]);
+        runs[i].run->cost = median(timings[i]);
+        runs[i].run->timings = std::move(timings[i]);
     }
+}
+
+bool is_always_dearer(const TunedRun &run, const TunedRun &other) {
+    for (std::size_t i = 0; i < std::min(run.timings.size(), other.timings.size()); ++i)
+        if (run.timings[i] < same_cost * other.timings[i])
+            return false;
+    return true;
 }
 
 } // namespace plumb

@@ -2,6 +2,7 @@
 
 #include "app/lab/run/method_choice.h"
 #include "app/lab/timing.h"
+#include "app/lab/tune/plainer.h"
 #include "app/lab/tune/search.h"
 #include "app/lab/tune/starts.h"
 #include "app/lab/tune/trial.h"
@@ -92,8 +93,8 @@ bool same_kind(const ResolvedRun &a, const ResolvedRun &b) {
 }
 
 // Times those runs that may be the cheapest, with what they are compared with.
-void time_best(const Trial &trial, Tuning &tuning, const std::vector<std::size_t> &choices,
-               const Progress &progress) {
+void time_best(const Trial &trial, const TuneOptions &options, Tuning &tuning,
+               const std::vector<std::size_t> &choices, const Progress &progress) {
     const auto run = [&](std::size_t i) -> const TunedRun & { return tuning.runs[i]; };
     double least = run(choices.front()).cost;
     for (const std::size_t i : choices)
@@ -109,20 +110,11 @@ void time_best(const Trial &trial, Tuning &tuning, const std::vector<std::size_t
     if (tuning.own().verdict != TuneVerdict::diverged &&
         std::ranges::find(timed, std::size_t{0}) == timed.end())
         timed.push_back(0);
-    std::vector<TunedRun *> runs;
+    std::vector<TimedRun> runs;
     runs.reserve(timed.size());
     for (const std::size_t i : timed)
-        runs.push_back(&tuning.runs[i]);
-    trial.time(runs, progress);
-}
-
-// Whether it cost more than the other in each round: of a few, or of very short ones, the median
-// would be noise.
-bool is_always_dearer(const TunedRun &run, const TunedRun &other) {
-    for (std::size_t i = 0; i < std::min(run.timings.size(), other.timings.size()); ++i)
-        if (run.timings[i] < same_cost * other.timings[i])
-            return false;
-    return true;
+        runs.push_back({&trial, &tuning.runs[i]});
+    time_in_turns(runs, options, progress);
 }
 
 // The cheapest; of those of its method that were not always dearer, what is the least work.
@@ -144,8 +136,8 @@ std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choic
 }
 
 // The chosen settings with twice the substeps, timed beside all that were.
-void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
-                const Progress &progress) {
+void add_dearer(const Trial &trial, const TuneOptions &options, SubstepSearch &search,
+                Tuning &tuning, const Progress &progress) {
     tuning.dearer.reset();
     RunOptions twice = tuning.runs[*tuning.chosen].options;
     const int substeps = 2 * tuning.runs[*tuning.chosen].resolved.settings.substeps;
@@ -157,12 +149,12 @@ void add_dearer(const Trial &trial, SubstepSearch &search, Tuning &tuning,
     if (verdict == TuneVerdict::unfinished)
         return;
     tuning.dearer = dearer;
-    std::vector<TunedRun *> runs;
+    std::vector<TimedRun> runs;
     for (std::size_t i = 0; i < tuning.runs.size(); ++i)
         if (!tuning.runs[i].timings.empty() || i == tuning.chosen ||
             (i == dearer && verdict != TuneVerdict::diverged))
-            runs.push_back(&tuning.runs[i]);
-    trial.time(runs, progress);
+            runs.push_back({&trial, &tuning.runs[i]});
+    time_in_turns(runs, options, progress);
 }
 
 // Whether that met the scene, and was timed as cheaper than what is chosen.
@@ -174,6 +166,12 @@ bool is_cheaper(const Tuning &tuning, std::optional<std::size_t> other) {
 }
 
 } // namespace
+
+const TunedRun &Tuning::plainest() const {
+    const auto last =
+        std::find_if(plainer.rbegin(), plainer.rend(), [](const auto &m) { return m.is_enough; });
+    return last == plainer.rend() ? runs[*chosen] : last->run;
+}
 
 Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
     if (!(options.tolerance > 0 && options.tolerance <= 1))
@@ -212,7 +210,7 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
             options.progress(from + (to - from) * fraction, what);
     };
     SubstepSearch search(trial, tuning.runs, stopped, progress);
-    constexpr double searching = 0.85, timing = 0.95;
+    constexpr double searching = 0.75, timing = 0.8, comparing = 0.85;
     const auto part = [&](std::size_t i) {
         return searching * static_cast<double>(i) / static_cast<double>(all.size() + 1);
     };
@@ -233,17 +231,22 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
         from = searching;
         to = timing;
         if (!stopped())
-            time_best(trial, tuning, choices, progress);
+            time_best(trial, options, tuning, choices, progress);
         tuning.chosen = cheapest(tuning, choices);
     }
     // More substeps may even be cheaper: what is stiffer comes to rest, and sleeps, earlier.
     while (tuning.chosen && !rows.is_given("substeps") && !stopped()) {
         from = timing;
-        to = 1;
-        add_dearer(trial, search, tuning, progress);
+        to = comparing;
+        add_dearer(trial, options, search, tuning, progress);
         if (!is_cheaper(tuning, tuning.dearer))
             break;
         tuning.chosen = tuning.dearer;
+    }
+    if (tuning.chosen && options.plainer && !stopped()) {
+        from = comparing;
+        to = 1;
+        leave_out(starts, options, tuning, progress);
     }
     tuning.interrupted = stopped();
     return tuning;

@@ -25,6 +25,7 @@ struct TuneOptions {
     int starts = 3;                   // beside the scene as it stands; see starts.h
     std::optional<double> budget;     // s of CPU time for a simulated second
     int repeats = 5;                  // timings of each that comes into question
+    bool plainer = true;              // whether to try what the model can do without
     std::function<bool()> stop;       // asked often; true ends early with what there is
     Progress progress;
     MakeSimulation make; // empty: Simulation::create, on one thread
@@ -49,6 +50,14 @@ struct TunedRun {
     std::vector<double> timings;
 };
 
+// The scene with one thing less, beside all that was left out before.
+struct PlainerModel {
+    std::string what; // that is left out, after "without"
+    TunedRun run;
+    double times_as_dear = 0; // as the fuller one; 0 where it was not timed
+    bool is_enough = false;   // left out
+};
+
 struct Tuning {
     std::string scene;
     std::size_t expectations = 0;
@@ -59,11 +68,14 @@ struct Tuning {
     bool own_is_given = false; // something is given that differs
     std::optional<std::size_t> chosen;
     std::optional<std::size_t> dearer; // the chosen one with twice the substeps
+    std::vector<PlainerModel> plainer; // of the chosen one, as they were tried
     std::optional<double> budget;
     std::vector<std::string> left_out; // why, of each method that cannot run the scene
     bool interrupted = false;
 
     [[nodiscard]] const TunedRun &own() const { return runs.front(); }
+    // The chosen one, less all that can be left out.
+    [[nodiscard]] const TunedRun &plainest() const;
     // Chosen, and within the budget.
     [[nodiscard]] bool found() const { return chosen && !(budget && runs[*chosen].cost > *budget); }
 };
@@ -79,7 +91,8 @@ inline constexpr int most_substeps = 1024;
 // These are found by doubling and then halving the gap; where some setting has met the scene, only
 // what is less work (by the same method, no finer in precision and in dt) is tried at all,
 // beginning with the most substeps, so that most are left out after one run or none. Those that
-// come into question are timed against each other in turns.
+// come into question are timed against each other in turns. Of what is chosen, plainer models are
+// tried in the end; see plainer.h.
 //
 // Throws std::invalid_argument when the scene's motion is held to nothing, and for options that
 // make no sense.

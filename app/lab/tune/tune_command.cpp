@@ -21,7 +21,7 @@ ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, 
     if (read_scene_text(path, messages) != scene.text)
         throw std::invalid_argument(path.string() +
                                     " was changed in the meantime, and is left as it is");
-    const TunedRun &chosen = tuning.runs[*tuning.chosen];
+    const TunedRun &chosen = tuning.plainest();
     std::string text;
     try {
         text = with_run(scene.text, path.string(), chosen.resolved);

@@ -89,11 +89,14 @@ void print_table(std::ostream &out, const Tuning &tuning) {
            "error: the worst in units\n  of its tolerance, at least so large where it was missed\n";
 }
 
+std::string ratio_text(double ratio) {
+    return short_number(ratio) + " times as much";
+}
+
 // As they were paired, where they were timed.
 std::string times_as_much(const TunedRun &run, const TunedRun &other) {
     const bool timed = !run.timings.empty() && !other.timings.empty();
-    return short_number(timed ? median_ratio(run.timings, other.timings) : run.cost / other.cost) +
-           " times as much";
+    return ratio_text(timed ? median_ratio(run.timings, other.timings) : run.cost / other.cost);
 }
 
 void print_choice(std::ostream &out, const Tuning &tuning) {
@@ -127,6 +130,36 @@ void print_dearer(std::ostream &out, const Tuning &tuning) {
     out << ".\n";
 }
 
+void print_plainer_table(std::ostream &out, const Tuning &tuning) {
+    for (const PlainerModel &model : tuning.plainer) {
+        out << "  without " << model.what << ": " << verdict_name(model.run.verdict);
+        if (model.run.verdict != TuneVerdict::diverged)
+            out << ", worst error " << error_text(model.run);
+        if (model.times_as_dear > 0)
+            out << ", " << ratio_text(model.times_as_dear);
+        out << (model.is_enough ? "; LEFT OUT\n" : "\n");
+    }
+}
+
+void print_plainer(std::ostream &out, const Tuning &tuning) {
+    std::vector<std::string> less;
+    double ratio = 1;
+    for (const PlainerModel &model : tuning.plainer)
+        if (model.is_enough) {
+            less.push_back(model.what);
+            ratio *= model.times_as_dear;
+        }
+    if (less.empty()) {
+        out << "  Nothing of its model can be left out.\n";
+        return;
+    }
+    out << "  It can do without ";
+    for (std::size_t i = 0; i < less.size(); ++i)
+        out << (i == 0 ? "" : i + 1 < less.size() ? ", " : " and ") << less[i];
+    out << ": that costs " << ratio_text(ratio) << ", with a worst error of "
+        << error_text(tuning.plainest()) << ".\n";
+}
+
 // The nearest to its tolerance of those that missed.
 const TunedRun *nearest(const Tuning &tuning) {
     const TunedRun *best = nullptr;
@@ -139,8 +172,10 @@ const TunedRun *nearest(const Tuning &tuning) {
 } // namespace
 
 void print(std::ostream &out, const Tuning &tuning, bool explain) {
-    if (explain)
+    if (explain) {
         print_table(out, tuning);
+        print_plainer_table(out, tuning);
+    }
     for (const std::string &why : grouped_reasons(tuning.left_out))
         out << "  left out: " << why << '\n';
     const std::string all = tuning.expectations == 1
@@ -168,6 +203,8 @@ void print(std::ostream &out, const Tuning &tuning, bool explain) {
     print_choice(out, tuning);
     if (tuning.dearer)
         print_dearer(out, tuning);
+    if (!tuning.plainer.empty())
+        print_plainer(out, tuning);
     if (!tuning.found())
         out << "  That is beyond the budget, " << short_number(1e3 * *tuning.budget)
             << " ms for a simulated second.\n";

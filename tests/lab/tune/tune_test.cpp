@@ -47,6 +47,7 @@ TuneOptions quick(const std::vector<std::string> &methods,
     options.methods = methods;
     options.repeats = 1;
     options.starts = 1;
+    options.plainer = false;
     options.base.precision = Precision::dual;
     for (const std::string &setting : settings)
         options.base.settings.give(parse_setting(setting));
@@ -152,6 +153,24 @@ TEST(Tune, OneStopKeepsWhatIsDone) {
     EXPECT_TRUE(tuning.interrupted);
     ASSERT_TRUE(tuning.chosen) << printed(tuning); // the scene's own, at least
     EXPECT_NE(printed(tuning).find("the cheapest so far"), std::string::npos);
+}
+
+TEST(Tune, TakesDoubleOnlyWhereFloatIsTooCoarse) {
+    for (const bool far : {false, true}) {
+        std::string text = falling_box;
+        if (far) { // where floats are 6 cm apart
+            text.replace(text.find("[0, 10, 0]"), 10, "[0, 1000010, 0]");
+            text.replace(text.find("5.095"), 5, "1000005.095");
+        }
+        TuneOptions options = quick({"rk4"}, {"dt=1/60", "substeps=1"});
+        options.base.precision.reset();
+        options.starts = 0; // others are a millionth of the place away
+        const Tuning tuning = tune_scene({"fall.toml", text}, options);
+        ASSERT_TRUE(tuning.found()) << printed(tuning);
+        EXPECT_EQ(tuning.runs[*tuning.chosen].resolved.precision,
+                  far ? Precision::dual : Precision::single)
+            << printed(tuning);
+    }
 }
 
 TEST(Tune, ASceneThatIsHeldToNothingIsRefused) {

@@ -1,56 +1,109 @@
-// Scenes that run at tuned settings meet what they expect with the margin and from other starts,
-// and what is cheaper by one substep does not.
-#include "app/lab/tune/tune.h"
+// Every scene that moves runs at tuned settings: it meets what it expects with the margin and from
+// other starts, and the next cheaper point does not.
+#include "app/lab/tune/starts.h"
+#include "app/lab/tune/trial.h"
 
-#include "engine/scene/file/change.h"
 #include "engine/scene/scene_file.h"
 
-#include <sstream>
+#include <algorithm>
+#include <filesystem>
+#include <map>
 
 #include <gtest/gtest.h>
 
 namespace plumb {
 namespace {
 
-class TunedScene : public testing::TestWithParam<const char *> {
+namespace fs = std::filesystem;
+
+// All others run at what `plumb tune` found: a new scene, too, or it says why not here.
+const std::map<std::string, std::string> &not_tuned() {
+    static const std::string cloth = "cloth", particles = "springs between many particles";
+    static const std::map<std::string, std::string> why{
+        {"book_cloth", cloth},
+        {"cloth_over_sphere", cloth},
+        {"flag", cloth},
+        {"hanging_cloth", cloth},
+        {"trampoline", cloth},
+        {"soft_rope", particles},
+        {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
+        {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};
+    return why;
+}
+
+// The start other than the scene's own from which it is run. Of heaps, where chance plays in, the
+// first from which what is cheaper misses.
+int other_start(const std::string &scene) {
+    static const std::map<std::string, int> starts{{"666", 7}, {"kapla", 6}};
+    const auto found = starts.find(scene);
+    return found != starts.end() ? found->second : 1;
+}
+
+std::vector<fs::path> tuned_scenes() {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry &file :
+         fs::recursive_directory_iterator(fs::path(PLUMB_SOURCE_DIR) / "scenes"))
+        if (file.path().extension() == ".toml" && has_world(load_scene(file.path()).scene) &&
+            !not_tuned().contains(file.path().stem().string()))
+            files.push_back(file.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+class TunedScene : public testing::TestWithParam<fs::path> {
   protected:
-    // The scene with its own settings but so many substeps fewer.
-    static TunedRun run_with_fewer(int fewer) {
+    void SetUp() override {
         std::vector<SceneMessage> messages;
-        const std::string path = PLUMB_SOURCE_DIR "/scenes/" + std::string(GetParam());
-        const SceneText text{path, read_scene_text(path, messages).value()};
-        const StepSettings own = resolve_run(parse_scene(text.text, path).scene, {}).settings;
-        EXPECT_EQ(own.max_substeps, 1) << "what is tuned takes just so many";
-        TuneOptions options;
-        options.methods = {"soft_step"};
-        options.starts = 1;
-        options.repeats = 1;
-        options.base.precision = Precision::single;
-        options.base.settings.give(&StepSettings::dt, own.dt);
-        options.base.settings.give(&StepSettings::iterations, own.iterations);
-        options.base.settings.give(&StepSettings::max_substeps, own.max_substeps);
-        options.base.settings.give(&StepSettings::substeps, own.substeps - fewer);
-        return tune_scene(text, options).runs.at(0);
+        const SceneText text{GetParam(), read_scene_text(GetParam(), messages).value()};
+        const std::vector<SceneDesc> all = starts_of(text, other_start(GetParam().stem().string()));
+        scene_starts = {all.front(), all.back()};
+        own_settings = resolve_run(scene_starts.front(), {}).settings;
     }
+
+    // With the margin, from both starts or until one misses.
+    [[nodiscard]] TunedRun run(const RunOptions &options) const {
+        return Trial(scene_starts, TuneOptions{}).run(options, {});
+    }
+
+    void expect_missed_or_more_work(const RunOptions &options, double work) const {
+        const TunedRun other = run(options);
+        EXPECT_TRUE(other.verdict != TuneVerdict::met || other.work > work / same_cost)
+            << other.resolved.settings.substeps << " substeps, at most "
+            << other.resolved.settings.max_substeps << ", " << other.resolved.settings.iterations
+            << " iterations: " << other.worst << ": " << other.error;
+    }
+
+    std::vector<SceneDesc> scene_starts;
+    StepSettings own_settings;
 };
 
-TEST_P(TunedScene, MeetsWhatItExpectsWithAMarginAndWithOneSubstepLessDoesNot) {
-    const TunedRun own = run_with_fewer(0);
+TEST_P(TunedScene, MeetsWhatItExpectsWithAMarginAndTheNextCheaperDoesNot) {
+    const TunedRun own = run({});
     EXPECT_EQ(own.verdict, TuneVerdict::met) << own.worst << ": " << own.error;
-    if (own.resolved.settings.substeps > 1) {
-        const TunedRun cheaper = run_with_fewer(1);
-        EXPECT_EQ(cheaper.verdict, TuneVerdict::missed) << cheaper.worst << ": " << cheaper.error;
+    if (own_settings.substeps > 1) {
+        RunOptions fewer;
+        fewer.settings.give(&StepSettings::substeps, own_settings.substeps - 1);
+        expect_missed_or_more_work(fewer, own.work);
+    }
+    if (own_settings.iterations > 1) {
+        RunOptions fewer;
+        fewer.settings.give(&StepSettings::iterations, own_settings.iterations - 1);
+        expect_missed_or_more_work(fewer, own.work);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TunedScene,
-                         testing::Values("contact/seams.toml", "contact/slope_holds.toml",
-                                         "joints/door.toml"),
-                         [](const auto &scene) {
-                             std::string name = scene.param;
-                             std::erase_if(name, [](char c) { return c == '/' || c == '.'; });
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, TunedScene, testing::ValuesIn(tuned_scenes()),
+                         [](const auto &scene) { return scene.param.stem().string(); });
+
+TEST(TunedScenes, OfThoseThatAreNotEachIsThere) {
+    for (const auto &[name, why] : not_tuned()) {
+        bool found = false;
+        for (const fs::directory_entry &file :
+             fs::recursive_directory_iterator(fs::path(PLUMB_SOURCE_DIR) / "scenes"))
+            found = found || file.path().filename() == name + ".toml";
+        EXPECT_TRUE(found) << name;
+    }
+}
 
 } // namespace
 } // namespace plumb
