@@ -38,12 +38,16 @@ Mat3 inverse_of(Mat3 k) {
     const Real trace = k[0][0] + k[1][1] + k[2][2];
     if (!(trace > Real(0)))
         return Mat3{Real(0)};
-    const Real size = trace / Real(3);
-    k /= size; // the determinant of what is very heavy would be too small a number
-    if (!(glm::determinant(k) > Real(64) * std::numeric_limits<Real>::epsilon()))
+    // The determinant of what is very heavy would be too small a number. By a power of two: that
+    // rounds nothing.
+    const Real scale = std::exp2(static_cast<Real>(-std::ilogb(trace)));
+    k *= scale;
+    const Real size = trace * scale / Real(3);
+    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
+    if (!(glm::determinant(k) > least * size * size * size))
         for (int i = 0; i < 3; ++i)
-            k[i][i] += Real(1e-3);
-    return glm::inverse(k) / size;
+            k[i][i] += Real(1e-3) * size;
+    return scale * glm::inverse(k);
 }
 
 // The mean velocity over h, because it turns, of the end of an arm that starts as r: the chord of

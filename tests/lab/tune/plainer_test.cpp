@@ -1,5 +1,5 @@
 // What scenes can do without, and what they cannot.
-#include "app/lab/tune/tune.h"
+#include "tests/lab/tune/printed.h"
 
 #include "engine/scene/scene_file.h"
 
@@ -26,12 +26,6 @@ const PlainerModel &without(const Tuning &tuning, const std::string &what) {
     if (found == tuning.plainer.end())
         throw std::logic_error(what + " was not tried");
     return *found;
-}
-
-std::string printed(const Tuning &tuning) {
-    std::ostringstream out;
-    print(out, tuning, true);
-    return out.str();
 }
 
 TEST(Plainer, AFallingBoxNeedsNeitherSleepNorRotationNorItsShape) {

@@ -1,5 +1,5 @@
 // The cheapest settings of scenes whose errors are known in closed form, and of some that ship.
-#include "app/lab/tune/tune.h"
+#include "tests/lab/tune/printed.h"
 
 #include "app/lab/tune/starts.h"
 #include "engine/scene/file/change.h"
@@ -52,12 +52,6 @@ TuneOptions quick(const std::vector<std::string> &methods,
     for (const std::string &setting : settings)
         options.base.settings.give(parse_setting(setting));
     return options;
-}
-
-std::string printed(const Tuning &tuning, bool explain = true) {
-    std::ostringstream out;
-    print(out, tuning, explain);
-    return out.str();
 }
 
 SceneText shipped(const std::string &name) {
