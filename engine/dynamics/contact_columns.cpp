@@ -245,6 +245,47 @@ void express_anew(Contact &contact, const Vec3 &normal, const Vec3 &t1) {
     }
 }
 
+bool any_has_turned_far(const StepContext &context) {
+    return std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
+        return has_turned_far(context.bodies[body].turned);
+    });
+}
+
+// Whether a body has turned so far since the step began that its corners are elsewhere: what a
+// substep of a fast one makes of their arms.
+bool has_other_arms(const StepContext &context, std::uint32_t body, std::uint32_t collider) {
+    constexpr Real far = Real(0.2);
+    const Vec3 &turn = context.bodies[body].turned;
+    return glm::dot(turn, turn) > far * far && is_dynamic(context, body) &&
+           context.model.colliders[collider].extent > Real(0);
+}
+bool has_other_arms(const StepContext &context, const Contact &contact) {
+    // What bounces has been answered where it struck.
+    return contact.moment != Moment::turning && contact.restitution == Real(0) &&
+           (has_other_arms(context, contact.key.a, contact.collider_a) ||
+            has_other_arms(context, contact.key.b, contact.collider_b));
+}
+
+// Arms and inertias of a lane as the bodies are now, to one point, that of the body that has
+// turned.
+void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lane) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    const SolverBody &a = context.bodies[contact.key.a];
+    const SolverBody &b = context.bodies[contact.key.b];
+    set(block.inv_inertia_a, lane, a.inv_inertia);
+    set(block.inv_inertia_b, lane, b.inv_inertia);
+    const Vec3 n = get(block.normal, lane);
+    const bool is_of_a = has_other_arms(context, contact.key.a, contact.collider_a);
+    const Vec3 between = b.position - a.position;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        const ContactAnchor &anchor = contact.anchors[k];
+        const Vec3 arm = is_of_a ? a.rotation * anchor.core_a + block.rounding_a.lanes[lane] * n
+                                 : b.rotation * anchor.core_b - block.rounding_b.lanes[lane] * n;
+        set(block.points[k].r_a, lane, is_of_a ? arm : arm + between);
+        set(block.points[k].r_b, lane, is_of_a ? arm - between : arm);
+    }
+}
+
 } // namespace
 
 // What rides on a turntable is turned by friction all the time. With the arms of the step's start
@@ -259,6 +300,27 @@ void turn_contact_columns(StepContext &context, Real t) {
                 if (context.contacts[block.contacts[lane]].moment == Moment::turning)
                     turn_lane(context, block, lane, t);
     });
+}
+
+void rearm_contact_columns(StepContext &context) {
+    if (!any_has_turned_far(context))
+        return;
+    ContactSchedule &schedule = context.scratch.schedule;
+    for (ContactBlock &block : schedule.blocks) {
+        bool any = false;
+        for (std::size_t lane = 0; lane < block.used; ++lane) {
+            if (!has_other_arms(context, context.contacts[block.contacts[lane]]))
+                continue;
+            if (block.ahead == ContactBlock::none) {
+                block.ahead = static_cast<std::uint32_t>(schedule.start_arms.size());
+                fill_start_arms(context, block, schedule.start_arms.emplace_back());
+            }
+            rearm_lane(context, block, lane);
+            any = true;
+        }
+        if (any)
+            kernels::finish(std::span(&block, 1));
+    }
 }
 
 void prepare_contact_columns(StepContext &context) {
@@ -325,9 +387,7 @@ void recall_contact_columns(StepContext &context, Real share, bool remember_firs
 
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h) {
     const BodyReals bodies = reals_of(context.bodies);
-    const bool any_far = std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
-        return has_turned_far(context.bodies[body].turned);
-    });
+    const bool any_far = any_has_turned_far(context);
     const std::span<const StartArms> start_arms = context.scratch.schedule.start_arms;
     for_colours(context, [&](std::span<ContactBlock> blocks) {
         kernels::solve(blocks, start_arms, bodies, bias, Real(1) / h, any_far);

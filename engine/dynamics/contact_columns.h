@@ -103,6 +103,9 @@ struct BodyReals {
 void prepare_contact_columns(StepContext &context);
 // Normals and arms of contacts of what turns together, as they are t seconds from now.
 void turn_contact_columns(StepContext &context, Real t);
+// Arms and masses of contacts whose bodies have turned far since the step began: with those of
+// another pose impulses do work, and what is thin is flung off.
+void rearm_contact_columns(StepContext &context);
 // As remember_contacts, recall_contacts, solve_contacts and store_contacts.
 void recall_contact_columns(StepContext &context, Real share, bool remember_first);
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);

@@ -272,6 +272,19 @@ TEST(Sleep, WhatMovesSlowlyStaysAwake) {
 
 // It is state: a world that was saved asleep, or built anew from what is known of it, goes on with
 // the same bits.
+// A ball's spin moves no surface that anything could touch; it is kept all the same.
+TEST(Sleep, ABallThatSpinsStaysAwake) {
+    for (const double radius : {0.01, 0.5, 10.0})
+        for (const double speed : {0.1, 20.0}) { // of its surface, in radii
+            World world("soft_step", settings_for("soft_step"));
+            world.add_body(ground(0, 0));
+            const BodyId id = world.add_body(dynamic_body(ball(radius), 1, V{0, radius, 0}));
+            world.set_motion(id, world.pose_of(id.index), Vec3{Real(0)}, narrow(V{0, speed, 0}));
+            run(world, 180);
+            EXPECT_NEAR(spin_of(world, id).y, speed, 1e-4 * speed) << radius << ", " << speed;
+        }
+}
+
 TEST(Sleep, IsSaved) {
     World world = floor_world();
     const std::vector<BodyId> boxes = add_stack(world, 4, 0);

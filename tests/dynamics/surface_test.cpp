@@ -148,6 +148,36 @@ TEST(Surface, OneSidedLetsPassFromBehindAndTwoSidedDoesNot) {
 }
 
 // Into a bowl: whatever falls in stays in, and comes to rest at the bottom.
+// Each face's deepest point may lie over the other: neither would hold what comes down on the
+// ridge.
+TEST(Surface, NothingFallsThroughHills) {
+    const auto hills = [](double x, double z) { return std::sin(0.9 * x) * std::cos(0.8 * z); };
+    for (const bool as_field : {false, true}) {
+        const auto surface =
+            as_field ? std::make_shared<const TriangleSurface>(field(16, 1.6, hills), Sides::front)
+                     : std::make_shared<const TriangleSurface>(grid(16, 1.6, hills), Sides::front);
+        Random random(5);
+        World world("soft_step", settings_for("soft_step"));
+        world.add_body(surface_body(surface, 0.5));
+        std::vector<BodyId> boxes;
+        for (int i = 0; i < 60; ++i) {
+            BodyDef box =
+                dynamic_body(block(V{0.5, random.next_in(0.1, 0.3), 0.25}), 100,
+                             V{random.next_in(-8, 8), random.next_in(2, 4), random.next_in(-8, 8)});
+            box.pose.rotation = narrow(any_rotation(random));
+            box.colliders.front().filter = {.layer = 1, .ignores = 2}; // not each other
+            boxes.push_back(world.add_body(box));
+        }
+        run(world, 180);
+        for (const BodyId id : boxes) {
+            const V at = position_of(world, id);
+            if (std::abs(at.x) < 12 && std::abs(at.z) < 12) {
+                EXPECT_GT(at.y, hills(at.x, at.z) - 0.3) << as_field << ", " << id.index;
+            }
+        }
+    }
+}
+
 TEST(Surface, ABallComesToRestInABowl) {
     World world("soft_step", settings_for("soft_step"));
     const auto bowl = [](double x, double z) { return 0.1 * (x * x + z * z); };

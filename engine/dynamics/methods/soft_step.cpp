@@ -89,6 +89,7 @@ void advance_soft_step(StepContext &context) {
         refresh_joints(context);
         recall_joints(context, Real(0.5), Springs::skip, h);
         turn_contact_columns(context, Real(0));
+        rearm_contact_columns(context); // for the next substep's first half, too
         recall_contact_columns(context, Real(0.5), false);
         repeat_springs(context, h);
         if (has_particles) {

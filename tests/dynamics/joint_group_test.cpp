@@ -1,0 +1,145 @@
+// Limits, motors and springs of bodies that hang together: what each does, the others know of.
+#include "tests/dynamics/worlds.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+constexpr double cube = 0.2, spacing = 0.4;
+
+// Cubes in a row along x, each on a joint like `def` halfway from the one before, the first on the
+// world; the last is pushed aside.
+struct Row {
+    World world;
+    std::vector<BodyId> cubes;
+
+    double energy() const { return world.energy(); }
+    double kinetic() const { return world.measure().kinetic_energy; }
+};
+
+Row row_of(int count, JointDef def, const StepSettings &settings, double push) {
+    Row row{World("soft_step", settings), {}};
+    for (int i = 0; i < count; ++i) {
+        const V at{spacing * (i + 1), 0, 0};
+        const V velocity{0, i + 1 == count ? push : 0, 0};
+        row.cubes.push_back(row.world.add_body(
+            dynamic_body(block(V{cube / 2}), 1000 * cube * cube * cube, at, velocity)));
+        def.a = i > 0 ? row.cubes[std::size_t(i - 1)] : BodyId{};
+        def.b = row.cubes.back();
+        def.anchor_a_local = narrow(V{spacing / 2, 0, 0});
+        def.anchor_b_local = narrow(V{-spacing / 2, 0, 0});
+        // A hinge's axis is x: turned to z.
+        def.frame_a_local = def.frame_b_local = narrow(glm::angleAxis(-pi / 2, V{0, 1, 0}));
+        row.world.add_joint(def);
+    }
+    return row;
+}
+
+JointDef hinge() {
+    JointDef def;
+    def.type = JointType::hinge;
+    return def;
+}
+
+// Two limits that hold at once, of one hinge or of several in a row, each see what the others did.
+TEST(JointGroup, LimitsOfARowDoNoWork) {
+    for (const int count : {1, 2, 3, 5})
+        for (const double reach : {0.0, 0.1, 0.5})
+            for (const int substeps : {1, 4, 16}) {
+                JointDef def = hinge();
+                def.limits = JointLimits{Real(-reach), Real(reach)};
+                StepSettings settings = weightless(settings_for("soft_step"));
+                settings.substeps = substeps;
+                Row row = row_of(count, def, settings, 0.5);
+                const double before = row.energy();
+                for (int step = 0; step < 300; ++step) {
+                    row.world.step(nullptr);
+                    ASSERT_LE(row.energy(), 1.01 * before)
+                        << count << " hinges, " << reach << ", " << substeps << ", step " << step;
+                }
+            }
+}
+
+TEST(JointGroup, ARowWithinLimitsHangsStill) {
+    JointDef def = hinge();
+    def.limits = JointLimits{Real(-0.5), Real(0.5)};
+    Row row = row_of(3, def, settings_for("soft_step"), 0);
+    const double before = row.energy();
+    for (int step = 0; step < 600; ++step) {
+        row.world.step(nullptr);
+        ASSERT_LE(row.energy(), before + 0.1) << step; // of a fall of 80 J
+    }
+    EXPECT_LT(row.kinetic(), 1e-3);
+    for (std::uint32_t i = 0; i < 3; ++i)
+        EXPECT_LT(double(row.world.joint_error(i)), 2e-3);
+}
+
+TEST(JointGroup, BrakesAndMotorsAgainstLimitsDoNoWork) {
+    for (const int count : {1, 2, 4})
+        for (const double force : {100.0, 1e3, 1e4})
+            for (const double speed : {0.0, 1.0}) {
+                JointDef def = hinge();
+                def.motor = JointMotor{Real(speed), Real(force)};
+                if (speed != 0)
+                    def.limits = JointLimits{Real(-0.3), Real(0.3)};
+                Row row = row_of(count, def, weightless(settings_for("soft_step")), 0.1);
+                // All that turns at the motors' speed: the outermost goes as fast as all of them
+                // make it.
+                const double fastest = 0.1 + speed * count * count * spacing;
+                const double most = 0.5 * 8 * count * fastest * fastest * 2;
+                for (int step = 0; step < 240; ++step) {
+                    row.world.step(nullptr);
+                    ASSERT_LE(row.kinetic(), most)
+                        << count << " hinges, " << force << ", " << speed << ", step " << step;
+                }
+                EXPECT_LT(row.kinetic(), 1e-4 * most) << count << " " << force << " " << speed;
+            }
+}
+
+// However stiff, and however many: a push is never more than it was. (Undamped ones that share a
+// body gain slowly: one pass solves them in part.)
+TEST(JointGroup, StiffSpringsInARowGainNothing) {
+    for (const JointType type :
+         {JointType::ball, JointType::hinge, JointType::slider, JointType::fixed})
+        for (const int count : {1, 2, 4})
+            for (const double frequency : {10.0, 60.0, 120.0, 500.0})
+                for (const double damping : {0.5, 1.0}) {
+                    JointDef def;
+                    def.type = type;
+                    def.frequency = Real(frequency);
+                    def.damping_ratio = Real(damping);
+                    Row row = row_of(count, def, weightless(settings_for("soft_step")), 0.01);
+                    const double before = row.kinetic();
+                    for (int step = 0; step < 120; ++step) {
+                        row.world.step(nullptr);
+                        ASSERT_LE(row.kinetic(), 2 * before)
+                            << int(type) << ", " << count << " of " << frequency << " Hz, "
+                            << damping << ", step " << step;
+                    }
+                }
+}
+
+// What cannot move as its joint asks stays finite, and where it is.
+TEST(JointGroup, WhatIsLockedAndPulledStays) {
+    for (const JointType type : {JointType::ball, JointType::fixed}) {
+        World world("soft_step", weightless(settings_for("soft_step")));
+        BodyDef held = dynamic_body(block(V{0.2, 0.1, 0.1}), 16, V{0});
+        held.locked = {true, true, true, false, false, false};
+        BodyDef mover = dynamic_body(block(V{0.1}), 8, V{1, 0, 0}, V{0.4, 0.2, 0});
+        mover.kind = BodyKind::kinematic;
+        JointDef def;
+        def.type = type;
+        def.a = world.add_body(mover);
+        def.b = world.add_body(held);
+        def.anchor_a_local = narrow(V{-0.5, 0, 0});
+        def.anchor_b_local = narrow(V{0.5, 0, 0});
+        world.add_joint(def);
+        run(world, 120);
+        EXPECT_TRUE(world.report().finite) << int(type);
+        EXPECT_EQ(position_of(world, def.b), V{0}) << int(type);
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
