@@ -1,5 +1,7 @@
 #include "engine/dynamics/joint_impulse.h"
 
+#include "engine/dynamics/contact_constraint.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -133,8 +133,8 @@ void prepare_spring_columns(StepContext &context, Real h) {
     colour(context.model, schedule);
     arrange(schedule);
     for_blocks(context, [&](std::span<SpringBlock> blocks) {
-        const std::uint32_t *spring =
-            schedule.lanes.data() + (blocks.data() - schedule.blocks.data()) * column_lanes;
+        const auto first = static_cast<std::size_t>(blocks.data() - schedule.blocks.data());
+        const std::uint32_t *spring = schedule.lanes.data() + first * column_lanes;
         for (SpringBlock &block : blocks) {
             block = SpringBlock{};
             for (std::size_t lane = 0; lane < column_lanes; ++lane, ++spring)
