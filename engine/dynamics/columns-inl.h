@@ -75,6 +75,23 @@ HWY_INLINE Vector gather(const Real *first, int offset, Indices index) {
             hn::GatherIndex(tag, from + 2, index)};
 }
 
+// The reverse, for the lanes whose bits are set in `writes`.
+HWY_INLINE void scatter(const Vector &v, Real *first, int offset, const IndexColumn &index,
+                        unsigned writes, std::size_t lane) {
+    HWY_ALIGN Real out[3][column_lanes];
+    hn::Store(v.x, tag, out[0]);
+    hn::Store(v.y, tag, out[1]);
+    hn::Store(v.z, tag, out[2]);
+    for (std::size_t k = 0; k < hn::Lanes(tag); ++k) {
+        if (((writes >> (lane + k)) & 1U) == 0)
+            continue;
+        Real *to = first + index.lanes[lane + k] + offset;
+        to[0] = out[0][k];
+        to[1] = out[1][k];
+        to[2] = out[2][k];
+    }
+}
+
 } // namespace columns::HWY_NAMESPACE
 } // namespace plumb::inline PLUMB_PRECISION
 HWY_AFTER_NAMESPACE();

@@ -1,6 +1,7 @@
 #include "engine/dynamics/contact_columns.h"
 
 #include "engine/dynamics/approach.h"
+#include "engine/dynamics/colours.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
@@ -155,29 +156,12 @@ void fill_start_arms(const StepContext &context, const ContactBlock &block, Star
     }
 }
 
-// Some microseconds of work.
-constexpr std::size_t blocks_a_part = 8;
-
-// Blocks that nobody else writes to, in parts.
 template <class Use> void for_blocks(StepContext &context, Use &&use) {
-    const std::span<ContactBlock> blocks = context.scratch.schedule.blocks;
-    for_parts(context.tasks, blocks.size(), blocks_a_part,
-              [&](std::size_t begin, std::size_t end) { use(blocks.subspan(begin, end - begin)); });
+    for_blocks(context.tasks, std::span(context.scratch.schedule.blocks), use);
 }
-
-// In parts that share no dynamic body, one colour after another.
 template <class Use> void for_colours(StepContext &context, Use &&use) {
-    const ContactSchedule &schedule = context.scratch.schedule;
-    const std::span<ContactBlock> blocks = context.scratch.schedule.blocks;
-    std::size_t first = 0;
-    for (const std::uint32_t last : schedule.colour_ends) {
-        const std::span<ContactBlock> colour = blocks.subspan(first, last - first);
-        for_parts(
-            context.tasks, colour.size(), blocks_a_part,
-            [&](std::size_t begin, std::size_t end) { use(colour.subspan(begin, end - begin)); });
-        first = last;
-    }
-    use(blocks.subspan(first));
+    ContactSchedule &schedule = context.scratch.schedule;
+    for_colours(context.tasks, std::span(schedule.blocks), schedule.colour_ends, use);
 }
 
 // Normal, tangents and arms of one contact as they are t seconds from now; and its separation along

@@ -38,27 +38,10 @@ HWY_INLINE Velocity gather_velocity(const BodyReals &bodies, Indices index) {
             gather(bodies.bodies, bodies.angular_velocity, index)};
 }
 
-HWY_INLINE void scatter(const Velocity &v, const BodyReals &bodies, const IndexColumn &index,
-                        unsigned writes, std::size_t lane) {
-    HWY_ALIGN Real out[6][column_lanes];
-    hn::Store(v.linear.x, tag, out[0]);
-    hn::Store(v.linear.y, tag, out[1]);
-    hn::Store(v.linear.z, tag, out[2]);
-    hn::Store(v.angular.x, tag, out[3]);
-    hn::Store(v.angular.y, tag, out[4]);
-    hn::Store(v.angular.z, tag, out[5]);
-    for (std::size_t k = 0; k < hn::Lanes(tag); ++k) {
-        if (((writes >> (lane + k)) & 1U) == 0)
-            continue;
-        Real *linear = bodies.bodies + index.lanes[lane + k] + bodies.velocity;
-        Real *angular = bodies.bodies + index.lanes[lane + k] + bodies.angular_velocity;
-        linear[0] = out[0][k];
-        linear[1] = out[1][k];
-        linear[2] = out[2][k];
-        angular[0] = out[3][k];
-        angular[1] = out[4][k];
-        angular[2] = out[5][k];
-    }
+HWY_INLINE void scatter_velocity(const Velocity &v, const BodyReals &bodies,
+                                 const IndexColumn &index, unsigned writes, std::size_t lane) {
+    scatter(v.linear, bodies.bodies, bodies.velocity, index, writes, lane);
+    scatter(v.angular, bodies.bodies, bodies.angular_velocity, index, writes, lane);
 }
 
 // The two bodies of the contacts in the lanes of one vector.
@@ -89,8 +72,8 @@ HWY_INLINE Pair load_pair(const ContactBlock &block, const BodyReals &bodies, st
 
 HWY_INLINE void store_pair(const Pair &pair, const ContactBlock &block, const BodyReals &bodies,
                            std::size_t lane) {
-    scatter(pair.a, bodies, block.body_a, block.writes_a, lane);
-    scatter(pair.b, bodies, block.body_b, block.writes_b, lane);
+    scatter_velocity(pair.a, bodies, block.body_a, block.writes_a, lane);
+    scatter_velocity(pair.b, bodies, block.body_b, block.writes_b, lane);
 }
 
 // u^T K v (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers"), from the turns r x u

@@ -71,7 +71,7 @@ inline std::vector<SettingGroup> read_by_impulses() {
 // `solve` is called with a pass over all rows, and may do it as often as it likes.
 template <typename Solve> void advance_by_impulses(StepContext &context, Solve &&solve) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     const Vec3 gravity{settings.gravity};
     const Softness rigid{static_cast<Real>(settings.baumgarte) / h, Real(1), Real(0)};
     const ContactBias push{.softness = rigid,
@@ -90,7 +90,7 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
-        recall_joints(context, Real(1), Springs::at_the_end, h);
+        recall_joints(context, Real(1), Springs::at_the_end);
         recall_contacts(context, Real(1));
         kick_particles(context, gravity, h);
         refresh_particles(context, h, SpringRule::implicit_euler);

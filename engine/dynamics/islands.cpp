@@ -25,7 +25,8 @@ constexpr double spare = 1.25;
 constexpr double followed_together = 1.2;
 constexpr double followed_alone = 1.1;
 
-// Rates times substep of joints that are springs: others at their bodies add to them.
+// Rates times substep of joints that are springs, and of what rods under tension hold back aside:
+// others at their bodies add to them.
 constexpr double followed_swing = 0.6;
 constexpr double followed_damping = 16;
 
@@ -399,7 +400,7 @@ void World::note_joint_needs(const IslandGroup &group) {
             // A rod under tension holds what is at its ends back aside, and turns with them.
             const double length = static_cast<double>(joint.rows.swing_length);
             const double tension = impulse * group.substeps / settings_.dt;
-            ask(joint, 4 * tension / length * inverse * square(settings_.dt / followed_together));
+            ask(joint, 4 * tension / length * inverse * square(settings_.dt / followed_swing));
         }
         if (is_together)
             continue;

@@ -312,7 +312,8 @@ Real spring_share(const RowBlock &rows, Real h) {
     return turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
 }
 
-void recall_joints(StepContext &context, Real share, Springs springs, Real h) {
+void recall_joints(StepContext &context, Real share, Springs springs) {
+    const Real h = context.substep();
     for (JointConstraint &joint : context.scratch.joints) {
         if (springs == Springs::skip && joint.is_spring())
             continue;
@@ -325,7 +326,8 @@ void recall_joints(StepContext &context, Real share, Springs springs, Real h) {
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
-void repeat_springs(StepContext &context, Real h) {
+void repeat_springs(StepContext &context) {
+    const Real h = context.substep();
     for (JointConstraint &joint : context.scratch.joints)
         if (joint.is_spring()) {
             const Vec3 rest = (Real(1) / spring_share(joint.rows, h) - Real(1)) * joint.impulse;
@@ -346,12 +348,13 @@ void solve_joints(StepContext &context, const JointPass &pass) {
                     let_go(context, group);
             }
     };
-    const auto held = [&] { return std::ranges::count(groups, true, &JointGroup::is_held); };
-    const auto before = held();
-    if (pass.at_the_end)
+    if (pass.at_the_end) {
+        const auto held = [&] { return std::ranges::count(groups, true, &JointGroup::is_held); };
+        const auto before = held();
         for_parts(context.tasks, groups.size(), groups_a_part, hold);
-    if (held() != before)
-        weigh_again(context);
+        if (held() != before)
+            weigh_again(context);
+    }
     bool is_changed = !pass.at_the_end;
     for (JointConstraint &joint : context.scratch.joints) {
         if (joint.is_held || (pass.springs == Springs::skip && joint.is_spring()) ||

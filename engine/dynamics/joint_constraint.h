@@ -85,9 +85,9 @@ void refresh_joints(StepContext &context);
 void refresh_changed_joints(StepContext &context);
 // Warm starting, as for contacts.
 void remember_joints(StepContext &context);
-void recall_joints(StepContext &context, Real share, Springs springs, Real h);
+void recall_joints(StepContext &context, Real share, Springs springs);
 // Applies what springs do in the rest of the substep, after Springs::midpoint.
-void repeat_springs(StepContext &context, Real h);
+void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);
 // What the joints of a group answer to an impact: changes velocities so that the joints hold them.
 // Nothing for JointSystem::none, or a group that is not held.

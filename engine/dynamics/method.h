@@ -80,6 +80,7 @@ struct StepContext {
     TaskPool *tasks = nullptr; // null: one thread; with more the bits are the same
 
     std::span<const std::uint32_t> moving() const { return active.moving; }
+    Real substep() const { return static_cast<Real>(settings.dt / settings.substeps); } // s
     SolverBody &body(std::uint32_t index) {
         return index == Joint::world ? world_frame : bodies[index];
     }

@@ -306,7 +306,7 @@ Real decay_softness(Real inverse, Real damping) {
     return inverse / std::expm1(std::min(damping * inverse, none_left));
 }
 
-void prepare_particles(StepContext &context, bool in_columns) {
+void prepare_particles(StepContext &context, SpringRule rule) {
     SolverScratch &s = context.scratch;
     s.springs.clear();
     s.spring_schedule.springs.clear();
@@ -319,14 +319,13 @@ void prepare_particles(StepContext &context, bool in_columns) {
         if (context.torn[i] != 0)
             continue;
         const Spring &spring = context.model.springs[i];
-        if (in_columns && spring.a.kind == SpringEnd::Kind::particle &&
+        if (rule == SpringRule::midpoint && spring.a.kind == SpringEnd::Kind::particle &&
             spring.b.kind == SpringEnd::Kind::particle)
             s.spring_schedule.springs.push_back(i);
         else
             s.springs.emplace_back().spring = i;
     }
-    prepare_spring_columns(context,
-                           static_cast<Real>(context.settings.dt / context.settings.substeps));
+    prepare_spring_columns(context, context.substep());
     for (std::uint32_t i = 0; i < context.particle_contacts.size(); ++i) {
         ParticleContactConstraint &row = s.particle_contacts.emplace_back();
         row.contact = i;

@@ -81,9 +81,9 @@ void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
                        std::span<const ParticleMotion> particles,
                        std::span<const std::uint8_t> torn, std::vector<Mat3> &stiffness,
                        std::vector<Vec2> &rates);
-// Springs between particles become columns (spring_columns.h) instead of rows where so asked; these
-// are solved by the functions below along with the rows, but for recall_particles.
-void prepare_particles(StepContext &context, bool in_columns = false);
+// By the midpoint rule springs between particles become columns (spring_columns.h) instead of rows:
+// these are solved by the functions below along with the rows, but for recall_particles.
+void prepare_particles(StepContext &context, SpringRule rule = SpringRule::implicit_euler);
 void kick_particles(StepContext &context, const Vec3 &gravity, Real h);
 // The hand's spring on the particle that it holds, if it holds one; never stronger than max_force.
 void pull_particle(StepContext &context, Real h);

@@ -105,11 +105,13 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,
      SettingGroup::speculative,
      "Contacts closer than this are made before they touch, so that nothing falls into its "
-     "neighbour within a step; bodies that approach each other get their relative motion on top."},
+     "neighbour within a step; no more than a fifth of the smaller body's width. Bodies that "
+     "approach each other get their relative motion on top."},
     {"kept_travel", &StepSettings::kept_travel, "m", 0, 1e9, SettingGroup::kept,
      "Contacts of several points are kept as they were found until the surfaces have moved so far "
-     "against each other; 0: found again in each step. Well below speculative_distance, so that "
-     "no corner that was left out comes to touch."},
+     "against each other, and no more than a twentieth of the smaller body's width; 0: found again "
+     "in each step. Well below speculative_distance, so that no corner that was left out comes to "
+     "touch."},
     {"penetration_slop", &StepSettings::penetration_slop, "m", 0, 1e9, SettingGroup::baumgarte,
      "Penetration that is left alone, so that contacts persist."},
     {"baumgarte", &StepSettings::baumgarte, "", 0, 1, SettingGroup::baumgarte,

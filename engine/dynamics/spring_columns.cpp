@@ -1,5 +1,6 @@
 #include "engine/dynamics/spring_columns.h"
 
+#include "engine/dynamics/colours.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
@@ -14,34 +15,17 @@ constexpr std::size_t colours = 64;
 constexpr std::size_t alone = colours;
 constexpr std::uint32_t none = UINT32_MAX;
 
-// Some microseconds of work.
-constexpr std::size_t blocks_a_part = 8;
-
 ParticleReals reals_of(std::span<ParticleMotion> particles) {
     static_assert(sizeof(ParticleMotion) == ParticleReals::stride * sizeof(Real));
     return {particles.empty() ? nullptr : &particles.front().position.x};
 }
 
-// Blocks that nobody else writes to, in parts.
 template <class Use> void for_blocks(StepContext &context, Use &&use) {
-    const std::span<SpringBlock> blocks = context.scratch.spring_schedule.blocks;
-    for_parts(context.tasks, blocks.size(), blocks_a_part,
-              [&](std::size_t begin, std::size_t end) { use(blocks.subspan(begin, end - begin)); });
+    for_blocks(context.tasks, std::span(context.scratch.spring_schedule.blocks), use);
 }
-
-// In parts that share no particle, one colour after another.
 template <class Use> void for_colours(StepContext &context, Use &&use) {
-    const SpringSchedule &schedule = context.scratch.spring_schedule;
-    const std::span<SpringBlock> blocks = context.scratch.spring_schedule.blocks;
-    std::size_t first = 0;
-    for (const std::uint32_t last : schedule.colour_ends) {
-        const std::span<SpringBlock> colour = blocks.subspan(first, last - first);
-        for_parts(
-            context.tasks, colour.size(), blocks_a_part,
-            [&](std::size_t begin, std::size_t end) { use(colour.subspan(begin, end - begin)); });
-        first = last;
-    }
-    use(blocks.subspan(first));
+    SpringSchedule &schedule = context.scratch.spring_schedule;
+    for_colours(context.tasks, std::span(schedule.blocks), schedule.colour_ends, use);
 }
 
 // The first colour that neither particle has a spring of, in the order of the model's springs.

@@ -20,21 +20,6 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
 
-HWY_INLINE void scatter_velocity(const Vector &v, const ParticleReals &particles,
-                                 const IndexColumn &index, std::size_t lane, std::size_t used) {
-    HWY_ALIGN Real out[3][column_lanes];
-    hn::Store(v.x, tag, out[0]);
-    hn::Store(v.y, tag, out[1]);
-    hn::Store(v.z, tag, out[2]);
-    const std::size_t count = used - lane < hn::Lanes(tag) ? used - lane : hn::Lanes(tag);
-    for (std::size_t k = 0; k < count; ++k) {
-        Real *to = particles.first + index.lanes[lane + k] + ParticleReals::velocity;
-        to[0] = out[0][k];
-        to[1] = out[1][k];
-        to[2] = out[2][k];
-    }
-}
-
 // The two particles of the springs in the lanes of one vector.
 struct Ends {
     Vector a, b; // velocities
@@ -52,8 +37,9 @@ HWY_INLINE void apply(Ends ends, const Vector &impulse, const SpringBlock &block
                       const ParticleReals &particles, std::size_t lane) {
     ends.a = minus(ends.a, times(load(block.inv_mass_a, lane), impulse));
     ends.b = plus(ends.b, times(load(block.inv_mass_b, lane), impulse));
-    scatter_velocity(ends.a, particles, block.a, lane, block.used);
-    scatter_velocity(ends.b, particles, block.b, lane, block.used);
+    const unsigned used = (1U << block.used) - 1;
+    scatter(ends.a, particles.first, ParticleReals::velocity, block.a, used, lane);
+    scatter(ends.b, particles.first, ParticleReals::velocity, block.b, used, lane);
 }
 
 // Stores the lines as they are now; says how far the springs are stretched, 0 where there is no

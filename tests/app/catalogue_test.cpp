@@ -96,7 +96,7 @@ TEST_P(Scene, HasSomethingToHoldItTo) {
 
 // The state, written as a scene and loaded again, hashes the same and goes on the same.
 TEST_P(Scene, GoesOnTheSameFromASavedFile) {
-    constexpr std::uint64_t together = 40; // steps
+    constexpr std::uint64_t together = 100; // steps
     const SceneDesc scene = loaded(GetParam());
     for (const MethodInfo &method : method_infos()) {
         if (!why_not(method, scene).empty())

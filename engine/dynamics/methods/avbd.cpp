@@ -236,7 +236,7 @@ void store(StepContext &context, Real h) {
 
 void advance_avbd(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     const Vec3 gravity{settings.gravity};
     const auto threshold = static_cast<Real>(settings.restitution_threshold);
     const Stiffening stiffening{.h = h,

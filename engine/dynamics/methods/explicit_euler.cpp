@@ -9,7 +9,7 @@ namespace {
 
 void advance_explicit_euler(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     Accelerations &start = context.scratch.accelerations[0];
     for (int substep = 0; substep < settings.substeps; ++substep) {
         find_accelerations(context, start);

@@ -105,7 +105,7 @@ void strike_all(StepContext &context) {
 
 void advance_naive_impulses(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     const Vec3 gravity{settings.gravity};
 
     prepare_contacts(context);

@@ -32,7 +32,7 @@ template <typename Use> void for_each_impulse(SolverScratch &scratch, Use &&use)
 }
 
 void go_on(StepContext &context, Real share) {
-    recall_joints(context, share, Springs::at_the_end, Real(0));
+    recall_joints(context, share, Springs::at_the_end);
     recall_contacts(context, share);
     recall_particles(context, share);
 }

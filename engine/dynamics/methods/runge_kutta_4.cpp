@@ -149,7 +149,7 @@ void take_substep(StepContext &context, Real h) {
 
 void advance_runge_kutta_4(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     for (int substep = 0; substep < settings.substeps; ++substep)
         take_substep(context, h);
 }

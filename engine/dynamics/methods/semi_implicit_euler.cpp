@@ -9,7 +9,7 @@ namespace {
 
 void advance_semi_implicit_euler(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     for (int substep = 0; substep < settings.substeps; ++substep) {
         kick_smoothly(context, h);
         drift_smoothly(context, h);

@@ -20,7 +20,7 @@ namespace {
 
 void advance_soft_step(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     const Real rate = Real(1) / h;
     const Vec3 gravity{settings.gravity};
     if (context.active.is_free()) { // nothing of what follows would do anything
@@ -56,7 +56,7 @@ void advance_soft_step(StepContext &context) {
     prepare_contact_columns(context);
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
-    prepare_particles(context, true);
+    prepare_particles(context, SpringRule::midpoint);
     context.scratch.joint_system.arrange(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -68,7 +68,7 @@ void advance_soft_step(StepContext &context) {
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
         remember_joints(context);
-        recall_joints(context, Real(0.5), Springs::midpoint, h);
+        recall_joints(context, Real(0.5), Springs::midpoint);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
         recall_contact_columns(context, Real(0.5), true);
         if (has_particles) {
@@ -87,11 +87,11 @@ void advance_soft_step(StepContext &context) {
         if (has_particles)
             drift_particles(context, h);
         refresh_joints(context);
-        recall_joints(context, Real(0.5), Springs::skip, h);
+        recall_joints(context, Real(0.5), Springs::skip);
         turn_contact_columns(context, Real(0));
         rearm_contact_columns(context); // for the next substep's first half, too
         recall_contact_columns(context, Real(0.5), false);
-        repeat_springs(context, h);
+        repeat_springs(context);
         if (has_particles) {
             kick_particles(context, gravity, Real(0.5) * h);
             repeat_particle_springs(context, h);

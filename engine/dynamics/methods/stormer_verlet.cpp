@@ -13,7 +13,7 @@ namespace {
 
 void advance_stormer_verlet(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     Accelerations &middle = context.scratch.accelerations[0];
     const bool corrects = depend_on_velocities(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {

@@ -9,7 +9,7 @@ namespace {
 
 void advance_tgs_soft(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     const Real rate = Real(1) / h;
     const Vec3 gravity{settings.gravity};
     const Softness joint_softness =
@@ -32,7 +32,7 @@ void advance_tgs_soft(StepContext &context) {
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
-        recall_joints(context, Real(1), Springs::at_the_end, h);
+        recall_joints(context, Real(1), Springs::at_the_end);
         recall_contacts(context, Real(1));
         refresh_particles(context, h, SpringRule::implicit_euler);
         for (int i = 0; i < settings.iterations; ++i) {

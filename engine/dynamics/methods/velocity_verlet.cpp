@@ -11,7 +11,7 @@ namespace {
 
 void advance_velocity_verlet(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     Accelerations &now = context.scratch.accelerations[0];
     const bool corrects = depend_on_velocities(context);
     find_accelerations(context, now);

@@ -196,7 +196,7 @@ void store(StepContext &context, Real h) {
 
 void advance_xpbd(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const auto h = static_cast<Real>(settings.dt / settings.substeps);
+    const Real h = context.substep();
     const Vec3 gravity{settings.gravity};
 
     prepare_contacts(context);
