@@ -34,8 +34,7 @@ Real row_coupling(const RowBlock &rows, const SolverBody &a, const SolverBody &b
            glm::dot(b.inv_inertia * glm::cross(rows.r_b, u), glm::cross(rows.r_b, v));
 }
 
-// The inverse of a symmetric matrix that is not negative. Where nothing can move along some
-// direction (a locked axis), a trace's rounding stands for the zero: no impulse goes that way.
+// The inverse of a symmetric matrix that is not negative; nothing where it is 0.
 Mat3 inverse_of(Mat3 k) {
     const Real trace = k[0][0] + k[1][1] + k[2][2];
     if (!(trace > Real(0)))
@@ -44,12 +43,7 @@ Mat3 inverse_of(Mat3 k) {
     // rounds nothing.
     const Real scale = std::exp2(static_cast<Real>(-std::ilogb(trace)));
     k *= scale;
-    const Real size = trace * scale / Real(3);
-    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
-    if (!(glm::determinant(k) > least * size * size * size))
-        for (int i = 0; i < 3; ++i)
-            k[i][i] += Real(1e-3) * size;
-    return scale * glm::inverse(k);
+    return scale * glm::inverse(k + locked_compliance(k));
 }
 
 // The mean velocity over h, because it turns, of the end of an arm that starts as r: the chord of
@@ -86,6 +80,17 @@ Real limit_change(const JointConstraint &joint, Real speed, const Softness &soft
 }
 
 } // namespace
+
+Mat3 locked_compliance(const Mat3 &k) {
+    const Real size = (k[0][0] + k[1][1] + k[2][2]) / Real(3);
+    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
+    if (!(size > Real(0)) || glm::determinant(k) > least * size * size * size)
+        return Mat3{Real(0)};
+    // Next to 1 along what nothing can move, and next to 0 along all else.
+    constexpr Real small = Real(1e-4);
+    const Mat3 locked = small * glm::inverse(k / size + Mat3{small});
+    return (Real(1e3) * size) * (locked * locked);
+}
 
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
     if (rows.kind == RowKind::point)

@@ -6,6 +6,10 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
+// So much to add to K, a symmetric matrix that is not negative, that next to no impulse goes along
+// what nothing can move (a locked axis): it would pull in vain, the harder the longer. 0 where
+// there is no such direction.
+Mat3 locked_compliance(const Mat3 &k);
 // K^-1 of the rows. What nothing can move has none: 0.
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b);
 // How fast the rows' errors grow; at the end of pass.h where the pass says so.

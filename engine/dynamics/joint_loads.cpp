@@ -55,7 +55,7 @@ bool is_followed(const Body &body, Real stiffness, Real h) {
 // changed.
 bool raise_inertia(SolverBody &motion, const Body &body, Real stiffness, Real h) {
     // What cannot move as a joint asks (a locked axis) bears ever more, the heavier it is made.
-    constexpr Real most = Real(1e6);
+    constexpr Real most = Real(1e3);
     const Real needed =
         std::min(needed_inertia(stiffness, h, inertia_alone), most * least(body.inertia));
     // The inertia of a body that is not a ball was found anew when it turned.

@@ -1,5 +1,6 @@
 #include "engine/dynamics/joint_system.h"
 
+#include "engine/dynamics/joint_impulse.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
@@ -230,10 +231,12 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Real com
             if (effect.body != Joint::world)
                 add_coupling(effect, effect, own);
         const Real size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Real>(count);
-        // A little along what nothing can move (a locked axis): what pulls that way pulls in vain.
-        softening_[place] = compliance * own;
+        Mat3 all = own;
+        for (int i = count; i < 3; ++i)
+            all[i][i] = size;
+        softening_[place] = compliance * own + locked_compliance(all);
         for (int i = 0; i < count; ++i)
-            softening_[place][i][i] += Real(1e-5) * size;
+            softening_[place][i][i] += Real(1e-5) * size; // for rounding
         own += softening_[place];
         for (int i = 0; i < 3; ++i) // rows that are not there
             if (i >= count || !(size > Real(0)))

@@ -97,32 +97,90 @@ TEST(JointGroup, BrakesAndMotorsAgainstLimitsDoNoWork) {
             }
 }
 
-// However stiff, and however many: a push is never more than it was. (Undamped ones that share a
-// body gain slowly: one pass solves them in part.)
+// However stiff, and however many: a push is never more than it was.
 TEST(JointGroup, StiffSpringsInARowGainNothing) {
     for (const JointType type :
          {JointType::ball, JointType::hinge, JointType::slider, JointType::fixed})
         for (const int count : {1, 2, 4})
-            for (const double frequency : {10.0, 60.0, 120.0, 500.0})
-                for (const double damping : {0.5, 1.0}) {
+            for (const double frequency : {10.0, 60.0, 120.0, 500.0, 2000.0})
+                for (const double damping : {0.0, 0.1, 0.5, 1.0, 10.0}) {
                     JointDef def;
                     def.type = type;
                     def.frequency = Real(frequency);
                     def.damping_ratio = Real(damping);
                     Row row = row_of(count, def, weightless(settings_for("soft_step")), 0.01);
                     const double before = row.kinetic();
-                    for (int step = 0; step < 120; ++step) {
+                    // A known failing: of undamped ones at the edge of what the most substeps
+                    // follow, one pass gains a little.
+                    const double most = damping > 0 ? 1.1 : 10;
+                    for (int step = 0; step < 240; ++step) {
                         row.world.step(nullptr);
-                        ASSERT_LE(row.kinetic(), 2 * before)
+                        ASSERT_LE(row.kinetic(), most * before)
                             << int(type) << ", " << count << " of " << frequency << " Hz, "
                             << damping << ", step " << step;
                     }
                 }
 }
 
+// Four weights, each on a soft joint below the one before: k = m w^2 with m the mass that moves,
+// and each bears all below it.
+TEST(JointGroup, ARowOfSpringsSagsByTheSumOfThem) {
+    constexpr int count = 4;
+    constexpr double mass = 8, frequency = 3;
+    for (const JointType type : {JointType::ball, JointType::fixed}) {
+        World world("soft_step", settings_for("soft_step"));
+        JointDef def;
+        def.type = type;
+        def.frequency = Real(frequency);
+        def.damping_ratio = Real(0.5);
+        for (int i = 0; i < count; ++i) {
+            def.a = def.b;
+            def.b =
+                world.add_body(dynamic_body(block(V{cube / 2}), mass, V{0, -spacing * (i + 1), 0}));
+            def.anchor_a_local = narrow(V{0, -spacing / 2, 0});
+            def.anchor_b_local = narrow(V{0, spacing / 2, 0});
+            world.add_joint(def);
+        }
+        run(world, 60 * 10);
+        double sag = 0;
+        for (int i = 0; i < count; ++i) {
+            const double moved = i > 0 ? mass / 2 : mass;
+            sag += (count - i) * mass * gravity / (moved * std::pow(2 * pi * frequency, 2));
+        }
+        EXPECT_NEAR(position_of(world, def.b).y, -spacing * count - sag, 0.01 * sag) << int(type);
+    }
+}
+
+// Rods, whose ends turn freely, under tension: as many substeps as keep a whip from gaining.
+TEST(JointGroup, AChainOfRodsGainsNothing) {
+    for (const auto &[count, end] : {std::pair{3, 10.0}, std::pair{5, 10.0}, std::pair{8, 10.0},
+                                     std::pair{8, 30.0}, std::pair{5, 100.0}}) {
+        World world("soft_step", settings_for("soft_step"));
+        JointDef def;
+        def.type = JointType::distance;
+        double fall = 0;
+        for (int i = 0; i < count; ++i) {
+            const double x = 0.2 + 0.4 * i, mass = i + 1 < count ? 1 : end;
+            BodyDef link = dynamic_body(block(V{0.2, 0.05, 0.05}), mass, V{x, 0, 0});
+            link.colliders.front().filter = {.layer = 1, .ignores = 2};
+            def.a = def.b;
+            def.b = world.add_body(link);
+            def.min_length = def.max_length = Real(i > 0 ? 0.4 : 0.2);
+            world.add_joint(def);
+            fall += mass * gravity * x;
+        }
+        const double before = world.energy();
+        for (int step = 0; step < 60 * 20; ++step) {
+            world.step(nullptr);
+            ASSERT_LE(world.energy(), before + 0.01 * fall) << count << ", " << end << ", " << step;
+        }
+    }
+}
+
 // What cannot move as its joint asks stays finite, and where it is.
 TEST(JointGroup, WhatIsLockedAndPulledStays) {
-    for (const JointType type : {JointType::ball, JointType::fixed}) {
+    for (const JointType type :
+         {JointType::ball, JointType::hinge, JointType::slider, JointType::fixed}) {
         World world("soft_step", weightless(settings_for("soft_step")));
         BodyDef held = dynamic_body(block(V{0.2, 0.1, 0.1}), 16, V{0});
         held.locked = {true, true, true, false, false, false};
