@@ -236,18 +236,33 @@ bool any_has_turned_far(const StepContext &context) {
 }
 
 // Whether a body has turned so far since the step began that its corners are elsewhere: what a
-// substep of a fast one makes of their arms.
-bool has_other_arms(const StepContext &context, std::uint32_t body, std::uint32_t collider) {
+// substep of a fast one makes of their arms. A thin one, sooner: along an arm that has turned by t
+// against a stick, K grows by about 3 t^2 / m times its largest over its least inertia, and passes
+// with the mass of the step's start would push ever harder.
+bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces) {
     constexpr Real far = Real(0.2);
+    constexpr Real share = Real(0.1);
     const Vec3 &turn = context.bodies[body].turned;
-    return glm::dot(turn, turn) > far * far && is_dynamic(context, body) &&
-           context.model.colliders[collider].extent > Real(0);
+    const Real squared = glm::dot(turn, turn);
+    if (!(squared > Real(0)) || !is_dynamic(context, body))
+        return false;
+    const Vec3 &inertia = context.model.bodies[body].inertia;
+    const Real least = std::min({inertia.x, inertia.y, inertia.z});
+    const Real most = std::max({inertia.x, inertia.y, inertia.z});
+    // What bounces has been answered where it struck; but a thin one cannot be left so.
+    if (bounces && least > Real(0.25) * most)
+        return false;
+    return squared > std::min(far * far, share * least / most);
+}
+bool has_other_arms(const StepContext &context, const Contact &contact, std::uint32_t body,
+                    std::uint32_t collider) {
+    return context.model.colliders[collider].extent > Real(0) &&
+           has_other_arms(context, body, contact.restitution > Real(0));
 }
 bool has_other_arms(const StepContext &context, const Contact &contact) {
-    // What bounces has been answered where it struck.
-    return contact.moment != Moment::turning && contact.restitution == Real(0) &&
-           (has_other_arms(context, contact.key.a, contact.collider_a) ||
-            has_other_arms(context, contact.key.b, contact.collider_b));
+    return contact.moment != Moment::turning &&
+           (has_other_arms(context, contact, contact.key.a, contact.collider_a) ||
+            has_other_arms(context, contact, contact.key.b, contact.collider_b));
 }
 
 // Arms and inertias of a lane as the bodies are now, to one point, that of the body that has
@@ -259,7 +274,7 @@ void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lan
     set(block.inv_inertia_a, lane, a.inv_inertia);
     set(block.inv_inertia_b, lane, b.inv_inertia);
     const Vec3 n = get(block.normal, lane);
-    const bool is_of_a = has_other_arms(context, contact.key.a, contact.collider_a);
+    const bool is_of_a = has_other_arms(context, contact, contact.key.a, contact.collider_a);
     const Vec3 between = b.position - a.position;
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
         const ContactAnchor &anchor = contact.anchors[k];
@@ -287,7 +302,9 @@ void turn_contact_columns(StepContext &context, Real t) {
 }
 
 void rearm_contact_columns(StepContext &context) {
-    if (!any_has_turned_far(context))
+    if (!std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
+            return has_other_arms(context, body, false);
+        }))
         return;
     ContactSchedule &schedule = context.scratch.schedule;
     for (ContactBlock &block : schedule.blocks) {

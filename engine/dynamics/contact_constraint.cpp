@@ -62,6 +62,17 @@ void solve_friction(const ContactConstraint &contact, ContactPointConstraint &po
     apply_pair_impulse(a, b, point, impulse);
 }
 
+Real tangent_mass_of(const ContactPointConstraint &point, const TangentBasis &tangents,
+                     const SolverBody &a, const SolverBody &b) {
+    const Real k11 = coupling(a, b, point, tangents.t1, tangents.t1);
+    const Real k12 = coupling(a, b, point, tangents.t1, tangents.t2);
+    const Real k22 = coupling(a, b, point, tangents.t2, tangents.t2);
+    const Real half_difference = Real(0.5) * (k11 - k22);
+    const Real k_largest =
+        Real(0.5) * (k11 + k22) + std::sqrt(half_difference * half_difference + k12 * k12);
+    return k_largest > Real(0) ? Real(1) / k_largest : Real(0);
+}
+
 void prepare_contacts(StepContext &context, Prepare which) {
     std::vector<ContactConstraint> &constraints = context.scratch.contacts;
     constraints.clear();
@@ -95,13 +106,7 @@ void prepare_contacts(StepContext &context, Prepare which) {
 
             const Real k_normal = inverse_effective_mass(a, b, point.r_a, point.r_b, out.normal);
             point.normal_mass = k_normal > Real(0) ? Real(1) / k_normal : Real(0);
-            const Real k11 = coupling(a, b, point, out.tangents.t1, out.tangents.t1);
-            const Real k12 = coupling(a, b, point, out.tangents.t1, out.tangents.t2);
-            const Real k22 = coupling(a, b, point, out.tangents.t2, out.tangents.t2);
-            const Real half_difference = Real(0.5) * (k11 - k22);
-            const Real k_largest =
-                Real(0.5) * (k11 + k22) + std::sqrt(half_difference * half_difference + k12 * k12);
-            point.tangent_mass = k_largest > Real(0) ? Real(1) / k_largest : Real(0);
+            point.tangent_mass = tangent_mass_of(point, out.tangents, a, b);
         }
     }
 }

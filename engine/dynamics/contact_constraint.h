@@ -64,6 +64,9 @@ struct ContactBias {
 Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
                             const Vec3 &r_b, const Vec3 &direction);
 
+// ContactPointConstraint::tangent_mass at the present poses.
+Real tangent_mass_of(const ContactPointConstraint &point, const TangentBasis &tangents,
+                     const SolverBody &a, const SolverBody &b);
 // Changes the tangential impulse of a point so that it stops sliding, the total cut to `limit` (N
 // s) in length: Coulomb's circular cone.
 void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, SolverBody &a,

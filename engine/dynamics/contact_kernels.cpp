@@ -8,6 +8,7 @@
 // Vectors of unknown size cannot stand in structs.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #include <hwy/foreach_target.h>
+#include <limits>
 // After foreach_target.h, which must choose the target first.
 #include <hwy/highway.h>
 
@@ -20,7 +21,10 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
+using Mask = hn::Mask<decltype(tag)>;
 constexpr int new_sweeps = 8;
+// Of struck_speed: contacts that close or part faster are solved as a whole before their points.
+constexpr Real even_share = Real(1) / Real(20);
 
 // 1 / x, or 0 where x is not positive.
 HWY_INLINE Lanes inverse(Lanes x) {
@@ -223,6 +227,80 @@ HWY_INLINE Lanes way_along(const Vector &n, const Turned &by, const Vector &r, L
     return hn::Add(hn::Mul(by.first, dot(n, cross(by.turn, r))), hn::Mul(by.second, second));
 }
 
+// One impulse for all points of a contact together, so much that the one that needs least has what
+// it needs: of a body that lands flat the first corner would otherwise take most of the blow, and
+// tilt it. Returns which of `fast` land flat: they are stopped at once, since of corners a hair
+// deep and a hair apart some would be springs and some not.
+template <typename SeparationAt, typename TargetOf>
+HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, const Vector &n,
+                             Mask chosen, Mask fast, bool loaded_only, Lanes soft_mass,
+                             Lanes soft_impulse, const SeparationAt &separation_at,
+                             const TargetOf &target_of) {
+    const Lanes zero = hn::Zero(tag);
+    const Lanes one = all(Real(1));
+    const Lanes huge = all(std::numeric_limits<Real>::max());
+    Vector r_a{zero, zero, zero}; // the mean of the points
+    Vector r_b{zero, zero, zero};
+    Lanes count = zero;
+    Lanes softest = zero;
+    Lanes least_rigid = huge;
+    Lanes least_need = huge;
+    Lanes most_need = hn::Neg(huge);
+    Lanes least_load = huge;
+    for (int k = 0; k < block.points_used; ++k) {
+        const ContactBlock::Point &point = block.points[k];
+        const Lanes mass = load(point.normal_mass, lane);
+        const auto there = hn::Gt(mass, zero);
+        const Lanes share = hn::IfThenElseZero(there, one);
+        const Vector point_a = load(point.r_a, lane);
+        const Vector point_b = load(point.r_b, lane);
+        count = hn::Add(count, share);
+        r_a = plus(r_a, times(share, point_a));
+        r_b = plus(r_b, times(share, point_b));
+        // By so much a soft point yields to an impulse (1 / kg): none is left over for the points
+        // one by one where all are alike.
+        const Lanes separation = separation_at(k);
+        const auto is_soft = hn::And(there, hn::Le(separation, zero));
+        const Lanes yielding = hn::IfThenElseZero(
+            is_soft, hn::Div(soft_impulse, hn::Mul(soft_mass, hn::IfThenElse(there, mass, one))));
+        const Lanes load_before = load(point.impulse.x, lane);
+        const Lanes speed = dot(pair.velocity_at(point_a, point_b), n);
+        const Lanes rigid_need = hn::Neg(hn::Add(speed, target_of(separation)));
+        const Lanes need = hn::Sub(rigid_need, hn::Mul(yielding, load_before));
+        softest = max(softest, yielding);
+        least_rigid = hn::IfThenElse(there, min(least_rigid, rigid_need), least_rigid);
+        least_need = hn::IfThenElse(there, min(least_need, need), least_need);
+        most_need = hn::IfThenElse(there, max(most_need, need), most_need);
+        least_load = hn::IfThenElse(there, min(least_load, load_before), least_load);
+    }
+    const Lanes share = hn::Div(one, max(count, one));
+    r_a = times(share, r_a);
+    r_b = times(share, r_b);
+    const Turns of_n = turns(r_a, r_b, n);
+    const Vector inv_mass = plus(pair.inv_mass_a, pair.inv_mass_b);
+    const Lanes k_n = hn::Add(dot(n, times(inv_mass, n)),
+                              hn::Add(dot(times(pair.inv_inertia_a, of_n.a), of_n.a),
+                                      dot(times(pair.inv_inertia_b, of_n.b), of_n.b)));
+    auto evenly = hn::And(chosen, hn::Gt(count, one));
+    if (loaded_only)
+        evenly = hn::And(evenly, hn::Gt(least_load, zero));
+    const auto stops = hn::And(hn::And(evenly, fast), hn::Gt(least_rigid, zero));
+    // Nothing where the points do not agree.
+    const Lanes soft_need = max(least_need, min(most_need, zero));
+    const Lanes need = hn::IfThenElse(stops, least_rigid, soft_need);
+    const Lanes yielding = hn::IfThenZeroElse(stops, hn::Mul(share, softest));
+    const Lanes sum = hn::Mul(need, inverse(hn::Add(k_n, yielding)));
+    const Lanes each = hn::IfThenElseZero(evenly, max(hn::Mul(share, sum), hn::Neg(least_load)));
+    pair.apply(times(hn::Mul(count, each), n), r_a, r_b);
+    for (int k = 0; k < block.points_used; ++k) {
+        ContactBlock::Point &point = block.points[k];
+        const auto there = hn::Gt(load(point.normal_mass, lane), zero);
+        store(hn::Add(load(point.impulse.x, lane), hn::IfThenElseZero(there, each)),
+              point.impulse.x, lane);
+    }
+    return stops;
+}
+
 void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReals &bodies,
                 const ContactBias &bias, Real inv_h, bool any_far) {
     const Lanes zero = hn::Zero(tag);
@@ -237,6 +315,7 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     // remembered: without further sweeps what slides off at once would keep what it gains by that.
     const bool sweeps_all = block.is_new && !pushes;
     const Lanes struck_speed = all(-bias.struck_speed);
+    const Lanes even_speed = all(even_share * bias.struck_speed);
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         Pair pair = load_pair(block, bodies, lane);
         const Indices index_a = load(block.body_a, lane);
@@ -256,9 +335,35 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         const Vector t2 = cross(n, t1);
         const Lanes friction = load(block.friction, lane);
         const auto bounces = hn::Gt(load(block.bounces, lane), zero);
+        const auto separation_at = [&](int k) HWY_ATTR {
+            const ContactBlock::Point &point = block.points[k];
+            const Lanes way_a = way_along(n, turned_a,
+                                          start_arms ? load(start_arms->points[k].core_a, lane)
+                                                     : load(point.r_a, lane),
+                                          rounding_a);
+            const Lanes way_b = way_along(n, turned_b,
+                                          start_arms ? load(start_arms->points[k].core_b, lane)
+                                                     : load(point.r_b, lane),
+                                          rounding_b);
+            return hn::Add(load(point.separation, lane), hn::Add(way, hn::Sub(way_b, way_a)));
+        };
+        // How fast a point is to part (m/s).
+        const auto target_of = [&](Lanes separation) HWY_ATTR {
+            const Lanes depth = min(hn::Add(separation, slop), zero);
+            const Lanes push = pushes ? max(hn::Mul(rate, depth), least) : zero;
+            return hn::IfThenElse(hn::Gt(separation, zero), hn::Mul(separation, all(inv_h)), push);
+        };
+        // Told by one point: what lands flat is all alike.
+        const Lanes first_speed = dot(
+            pair.velocity_at(load(block.points[0].r_a, lane), load(block.points[0].r_b, lane)), n);
+        auto struck = hn::Lt(first_speed, struck_speed);
+        const auto even = hn::Gt(hn::Abs(first_speed), even_speed);
+        auto stops = hn::FirstN(tag, 0);
+        if (!hn::AllFalse(tag, even))
+            stops = solve_evenly(block, lane, pair, n, even, struck, bias.loaded_only, soft_mass,
+                                 soft_impulse, separation_at, target_of);
         // What is struck is swept again, too: of its corners, the first would take most of the
         // blow, and tilt it. (Zeros are lanes without a point.)
-        auto struck = hn::FirstN(tag, 0);
         auto again = hn::FirstN(tag, sweeps_all ? column_lanes : 0);
         for (int sweep = 0; sweep < new_sweeps; ++sweep) {
             const bool is_first = sweep == 0;
@@ -270,26 +375,16 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 ContactBlock::Point &point = block.points[k];
                 const Vector r_a = load(point.r_a, lane);
                 const Vector r_b = load(point.r_b, lane);
-                const Lanes way_a = way_along(
-                    n, turned_a, start_arms ? load(start_arms->points[k].core_a, lane) : r_a,
-                    rounding_a);
-                const Lanes way_b = way_along(
-                    n, turned_b, start_arms ? load(start_arms->points[k].core_b, lane) : r_b,
-                    rounding_b);
-                const Lanes separation =
-                    hn::Add(load(point.separation, lane), hn::Add(way, hn::Sub(way_b, way_a)));
+                const Lanes separation = separation_at(k);
                 const Lanes before = load(point.impulse.x, lane);
                 const auto apart = hn::Gt(separation, zero);
-                const Lanes depth = min(hn::Add(separation, slop), zero);
-                const Lanes push = max(hn::Mul(rate, depth), least);
-                const Lanes target =
-                    hn::IfThenElse(apart, hn::Mul(separation, all(inv_h)), pushes ? push : zero);
+                const Lanes target = target_of(separation);
                 const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
                 if (is_first)
                     struck = hn::Or(struck, hn::Lt(speed, struck_speed));
                 // What comes in faster than anything is pushed out is stopped at once: as a spring
                 // it would be through a thin wall before it turned round.
-                const auto rigid = hn::Or(apart, hn::Lt(speed, least));
+                const auto rigid = hn::Or(apart, hn::Or(stops, hn::Lt(speed, least)));
                 const Lanes mass_scale = hn::IfThenElse(rigid, one, soft_mass);
                 const Lanes impulse_scale = hn::IfThenElse(rigid, zero, soft_impulse);
                 const Lanes change =

@@ -195,6 +195,7 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             const auto index = static_cast<std::size_t>(k);
             ContactPointConstraint point = contact.points[index];
             point.impulse = Vec3{normal_impulse[index], Real(0), Real(0)};
+            point.tangent_mass = tangent_mass_of(point, contact.tangents, a, b);
             solve_friction(contact, point, a, b, contact.friction * normal_impulse[index]);
             joints.give();
         }

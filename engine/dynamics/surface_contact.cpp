@@ -4,6 +4,7 @@
 #include "engine/geometry/support.h"
 #include "engine/geometry/triangle.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -78,6 +79,14 @@ bool may_lean(const TriangleSurface &surface, const Transform &pose, std::uint32
     return false;
 }
 
+// Whether a point so deep under a face, and so far beyond its edge, lies where a hollow opens:
+// below both faces it is beyond the edge of each. The face that it is deeper under has it, or both.
+bool is_in_hollow(Real bend, Real depth, Real beyond) {
+    constexpr Real rounding = Real(1.01);
+    return depth > Real(0) && beyond * std::sqrt(std::max(Real(1) + bend, Real(0))) <=
+                                  rounding * depth * std::sqrt(std::max(Real(1) - bend, Real(0)));
+}
+
 } // namespace
 
 Manifold collide(const Shape &solid, const TriangleSurface &surface, const Transform &pose,
@@ -120,10 +129,16 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
         return {};
     bool is_over = true;
     for (std::size_t edge = 0; edge < 3; ++edge)
-        if (triangle.beyond(deepest, edge) > Real(1e-4) * triangle.size) {
-            if (!surface.is_outer_edge(index, static_cast<int>(edge)))
-                return {};
-            is_over = false;
+        if (const Real beyond = triangle.beyond(deepest, edge);
+            beyond > Real(1e-4) * triangle.size) {
+            const int number = static_cast<int>(edge);
+            if (surface.is_outer_edge(index, number)) {
+                is_over = false;
+            } else {
+                const Vec3 other = to_world_vector(pose, surface.normal_beyond(index, number));
+                if (!is_in_hollow(glm::dot(other, triangle.face), -separation, beyond))
+                    return {};
+            }
         }
     if (!is_over) {
         const Vec3 on_ridge = closest_point(placed_one, deepest);

@@ -178,6 +178,26 @@ TEST(Surface, NothingFallsThroughHills) {
     }
 }
 
+// A bar with one edge along a gutter, sunk below both of its faces: at least one of them has it.
+TEST(Surface, AnEdgeInAGutterTouchesAFace) {
+    for (const double steep : {0.1, 0.4, 0.8})
+        for (const double depth : {1e-4, 1e-3, 1e-2, 0.05})
+            for (const double lean : {-0.9, -0.3, 0.0, 0.3, 0.9}) {
+                const TriangleSurface gutter(
+                    grid(2, 2, [&](double x, double) { return steep * std::abs(x); }),
+                    Sides::front);
+                const double more = lean * (pi / 4 - std::atan(steep)), half = 0.3;
+                const V edge = std::sqrt(2) * half * V{std::sin(more), -std::cos(more), 0};
+                const Box bar{narrow(V{0, -depth, 0} - edge),
+                              narrow(glm::angleAxis(pi / 4 + more, V{0, 0, 1})),
+                              narrow(V{half, half, 0.7})};
+                int touched = 0;
+                for (std::uint32_t i = 0; i < gutter.triangle_count(); ++i)
+                    touched += collide(Shape{bar}, gutter, Transform{}, i, Real(0)).count;
+                EXPECT_GT(touched, 0) << steep << ", " << depth << ", " << lean;
+            }
+}
+
 TEST(Surface, ABallComesToRestInABowl) {
     World world("soft_step", settings_for("soft_step"));
     const auto bowl = [](double x, double z) { return 0.1 * (x * x + z * z); };
