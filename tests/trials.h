@@ -1,4 +1,4 @@
-// How many random inputs a test draws.
+// How many random inputs a test draws, or steps it goes on for.
 #pragma once
 
 #include <cstdlib>

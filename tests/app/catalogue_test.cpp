@@ -1,5 +1,6 @@
 // Every scene of the catalogue with every method that can run it.
 #include "tests/app/program.h"
+#include "tests/trials.h"
 
 #include "app/lab/run/check.h"
 #include "engine/core/task_pool.h"
@@ -96,7 +97,7 @@ TEST_P(Scene, HasSomethingToHoldItTo) {
 
 // The state, written as a scene and loaded again, hashes the same and goes on the same.
 TEST_P(Scene, GoesOnTheSameFromASavedFile) {
-    constexpr std::uint64_t together = 100; // steps
+    const auto together = static_cast<std::uint64_t>(trials(100)); // steps
     const SceneDesc scene = loaded(GetParam());
     for (const MethodInfo &method : method_infos()) {
         if (!why_not(method, scene).empty())
