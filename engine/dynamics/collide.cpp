@@ -117,6 +117,23 @@ Real World::acting_side(const ContactKey &key) const {
 }
 
 // A contact without its manifold.
+namespace {
+
+// The part of a surface's distance along a normal that rolling on it does not change: the radius of
+// a ball or capsule, and of a cylinder that lies on its side.
+Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal) {
+    const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
+    if (cylinder == nullptr || collider.surface)
+        return collider.rounding;
+    // What the rim's rounding is off by, where it leans, is of the second order.
+    constexpr Real leaning = Real(0.2);
+    const Vec3 axis = rotation * (cylinder->b - cylinder->a);
+    return std::abs(glm::dot(axis, normal)) <= leaning * glm::length(axis) ? cylinder->radius
+                                                                           : Real(0);
+}
+
+} // namespace
+
 Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle,
                               std::vector<Contact> &out) const {
     Contact &contact = out.emplace_back();
@@ -132,6 +149,13 @@ Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle
     return contact;
 }
 
+void World::set_rounding(Contact &contact) const {
+    contact.rounding_a = rounding_along(model_->colliders[contact.collider_a],
+                                        contact.origin.rotation_a, contact.origin.normal);
+    contact.rounding_b = rounding_along(model_->colliders[contact.collider_b],
+                                        contact.origin.rotation_b, contact.origin.normal);
+}
+
 void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
                         const FoundManifold &found, std::vector<Contact> &out) const {
     if (found.manifold.count == 0)
@@ -139,10 +163,11 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     Contact &contact = begin_contact(candidate, triangle, out);
     contact.manifold = found.manifold;
     contact.moment = found.moment;
-    const Real rounding_a = model_->colliders[candidate.collider_a].rounding;
-    const Real rounding_b = model_->colliders[candidate.collider_b].rounding;
     const Vec3 &normal = contact.manifold.normal;
     contact.origin = origin_of(normal, found.a, found.b);
+    set_rounding(contact);
+    const Real rounding_a = contact.rounding_a;
+    const Real rounding_b = contact.rounding_b;
     const Real side = acting_side(contact.key);
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
@@ -179,8 +204,6 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
     const ContactMemory *before = find_memory(state_, candidate.key);
     if (before == nullptr || before->point_count < 2)
         return false;
-    const Collider &a = model_->colliders[candidate.collider_a];
-    const Collider &b = model_->colliders[candidate.collider_b];
     const Motion &motion_a = state_.motions[candidate.key.a];
     const Motion &motion_b = state_.motions[candidate.key.b];
     const ContactOrigin &origin = before->origin;
@@ -199,6 +222,7 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
         return false;
     Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
     contact.origin = origin;
+    set_rounding(contact);
     const Real side = acting_side(candidate.key);
     const Vec3 &normal = origin.normal;
     const Mat3 then_a = glm::mat3_cast(origin.rotation_a);
@@ -214,8 +238,8 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
         ContactAnchor &anchor = contact.anchors[k];
         anchor.core_a = point.core_a;
         anchor.core_b = point.core_b;
-        const Vec3 surface_a = then_a * point.core_a + a.rounding * normal;
-        const Vec3 surface_b = then_b * point.core_b - b.rounding * normal;
+        const Vec3 surface_a = then_a * point.core_a + contact.rounding_a * normal;
+        const Vec3 surface_b = then_b * point.core_b - contact.rounding_b * normal;
         const Vec3 half =
             Real(0.5) * glm::dot(origin.offset + (surface_b - surface_a), normal) * normal;
         anchor.arm_a = surface_a + (Real(1) + side) * half;
@@ -224,9 +248,10 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
         const Vec3 core_a = now_a * point.core_a;
         const Vec3 core_b = now_b * point.core_b;
         to.feature = point.feature;
-        to.separation = glm::dot(offset + (core_b - core_a), normal) - (a.rounding + b.rounding);
+        to.separation = glm::dot(offset + (core_b - core_a), normal) -
+                        (contact.rounding_a + contact.rounding_b);
         to.position =
-            motion_a.position + core_a + (a.rounding + Real(0.5) * to.separation) * normal;
+            motion_a.position + core_a + (contact.rounding_a + Real(0.5) * to.separation) * normal;
     }
     return true;
 }

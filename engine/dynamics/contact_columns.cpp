@@ -119,8 +119,8 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
     block.bounces.lanes[lane] = contact.restitution > Real(0) ? Real(1) : Real(0);
-    block.rounding_a.lanes[lane] = context.model.colliders[contact.collider_a].rounding;
-    block.rounding_b.lanes[lane] = context.model.colliders[contact.collider_b].rounding;
+    block.rounding_a.lanes[lane] = contact.rounding_a;
+    block.rounding_b.lanes[lane] = contact.rounding_b;
     set(block.inv_mass_a, lane, a.inv_mass);
     set(block.inv_mass_b, lane, b.inv_mass);
     set(block.inv_inertia_a, lane, a.inv_inertia);

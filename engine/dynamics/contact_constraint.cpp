@@ -83,8 +83,7 @@ void prepare_contacts(StepContext &context, Prepare which) {
         ContactConstraint &out = constraints.emplace_back();
         const SolverBody &a = context.bodies[contact.key.a];
         const SolverBody &b = context.bodies[contact.key.b];
-        const Real rounding = context.model.colliders[contact.collider_a].rounding +
-                              context.model.colliders[contact.collider_b].rounding;
+        const Real rounding = contact.rounding_a + contact.rounding_b;
         out.contact = i;
         out.a = contact.key.a;
         out.b = contact.key.b;

@@ -15,7 +15,7 @@ namespace plumb::inline PLUMB_PRECISION {
 struct ContactPointConstraint {
     Vec3 r_a{Real(0)}; // world, from a's centre of mass, at the start of the step
     Vec3 r_b{Real(0)};
-    // The same points without the rounding radius of a sphere or capsule, in the body's frame: a
+    // The same points without the rounding of their surfaces, in the body's frame: a
     // round surface keeps its distance when the body rolls, so only the core's point turns with it.
     Vec3 core_a{Real(0)};
     Vec3 core_b{Real(0)};

@@ -117,7 +117,7 @@ void add_tangential(Vec3 &lambda, const Vec3 &change, const TangentBasis &tangen
 void turn_arms(const StepContext &context, const ContactConstraint &contact,
                ContactPointConstraint &point, const SolverBody &a, const SolverBody &b) {
     const Contact &found = context.contacts[contact.contact];
-    const Real rounding_a = context.model.colliders[found.collider_a].rounding;
+    const Real rounding_a = found.rounding_a;
     point.r_a = a.rotation * point.core_a + rounding_a * contact.normal;
     point.r_b = b.rotation * point.core_b - (point.rounding - rounding_a) * contact.normal;
 }

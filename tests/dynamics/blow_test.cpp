@@ -121,22 +121,27 @@ TEST(SoftStepBlow, SmallDominoesFallAsLargeOnes) {
     }
 }
 
-// A capsule on its side rolls on, as a ball does.
-TEST(SoftStepBlow, ACapsuleRollsOnAtAnySpeed) {
-    for (const double radius : {0.02, 0.3})
-        for (const double turn : {0.1, 0.5, 1.0, 2.0}) { // a step
-            World world("soft_step", settings_for("soft_step"));
-            world.add_body(ground(0.5, 0));
-            const double speed = 60 * turn * radius;
-            BodyDef capsule = dynamic_body(upright_capsule(2 * radius, radius), 1, V{0, radius, 0},
-                                           V{speed, 0, 0});
-            capsule.pose.rotation = narrow(glm::angleAxis(pi / 2, V{1, 0, 0}));
-            capsule.angular_velocity = narrow(V{0, 0, -speed / radius});
-            const BodyId id = world.add_body(capsule);
-            run(world, 120);
-            EXPECT_NEAR(velocity_of(world, id).x, speed, 1e-3 * speed) << radius << ", " << turn;
-            EXPECT_NEAR(position_of(world, id).y, radius, 0.01 * radius) << radius << ", " << turn;
-        }
+// A capsule or cylinder on its side rolls on, as a ball does.
+TEST(SoftStepBlow, WhatIsRoundRollsOnAtAnySpeed) {
+    for (const double radius : {0.002, 0.02, 0.3})
+        for (const double turn : {0.1, 0.3, 0.5, 1.0, 2.0, 3.0}) // a step
+            for (const Shape &shape :
+                 {Shape{upright_capsule(2 * radius, radius)},
+                  Shape{Cylinder{narrow(V{0, -2 * radius, 0}), narrow(V{0, 2 * radius, 0}),
+                                 Real(radius)}}}) {
+                World world("soft_step", settings_for("soft_step"));
+                world.add_body(ground(0.5, 0));
+                const double speed = 60 * turn * radius;
+                BodyDef roller = dynamic_body(shape, 1, V{0, radius, 0}, V{speed, 0, 0});
+                roller.pose.rotation = narrow(glm::angleAxis(pi / 2, V{1, 0, 0}));
+                roller.angular_velocity = narrow(V{0, 0, -speed / radius});
+                const BodyId id = world.add_body(roller);
+                run(world, 120);
+                EXPECT_NEAR(velocity_of(world, id).x, speed, 1e-3 * speed)
+                    << radius << ", " << turn << ", " << shape.index();
+                EXPECT_NEAR(position_of(world, id).y, radius, 0.01 * radius)
+                    << radius << ", " << turn << ", " << shape.index();
+            }
 }
 
 } // namespace
