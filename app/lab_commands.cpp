@@ -207,6 +207,10 @@ void add_chart(CommandLine &line) {
     chart_command->add_flag("--convergence", arguments->command.options.convergence,
                             "Error against dt with fitted orders, nothing timed: dt=1/960..1/30 "
                             "unless --sweep has another, one substep, and double");
+    chart_command->add_flag(
+        "--one-step", arguments->command.options.one_step,
+        "For motion that is chaotic: the error of one step (of a frame of 60 Hz, if that is longer)"
+        " from states of one accurate run in double, the same for every method");
     chart_command
         ->add_option("--seed", arguments->command.options.seed,
                      "Of the order in which each round of timings goes")

@@ -88,7 +88,7 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
         {"measure", {"SCENE", "--method", "--steps", "--csv"}, true},
         {"chart",
          {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--set", "--dt",
-          "--substeps", "--iterations", "--precision"},
+          "--substeps", "--iterations", "--precision", "--convergence", "--one-step"},
          false}, // timed on one thread: it has no --threads
         {"map",
          {"SCENE", "--x", "--y", "NAME=FROM..TO[:N][log]", "--methods", "--image", "--csv",
@@ -137,6 +137,9 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "compare a.png",
                                   "chart pendulum --sweep dt",
                                   "chart geometry --methods rk4",
+                                  "chart geometry --one-step",
+                                  "chart free_fall --one-step --convergence",
+                                  "chart free_fall --one-step --expect height",
                                   "map pendulum --x dt=1/120..1/30",
                                   "map pendulum --x dt=1/30..1/120 --y substeps=1,2",
                                   "map pendulum --x dtt=1..2 --y substeps=1,2",
