@@ -98,6 +98,7 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
          {"SCENE", "--methods", "--tolerance", "--starts", "--budget", "--repeats", "--explain",
           "--write", "--set", "--dt", "--substeps", "--iterations", "--precision"},
          false}, // timed on one thread
+        {"reference", {"SCENE", "--write"}, false},
         {"compare", {"A", "B", "--tolerance", "--difference"}, false},
     };
     const ProgramResult all = run_program("--help");
@@ -147,6 +148,9 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "map pendulum --x dt=1/60,1/30 --y substeps=1,2 --seconds 1",
                                   "map points --x dt=1/60,1/30 --y substeps=1,2",
                                   "tune points",
+                                  "reference",
+                                  "reference pendulum rope",
+                                  "reference pendulum --write",
                                   "tune pendulum --tolerance 0",
                                   "tune pendulum --budget 1",
                                   "tune pendulum --methods soft_stop",

@@ -156,7 +156,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.left_out = grouped_reasons(chart.left_out);
     if (chart.steps_from) {
         content.floor = chart.steps_from->floor();
-        content.floor_label = "below " + short_quantity(*content.floor, "m") + " not told apart";
+        content.floor_label = "not told apart below " + short_quantity(*content.floor, "m");
     }
 
     if (chart.convergence) {
@@ -218,7 +218,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     const bool both = has_both_modes(chart);
     if (chart.steps_from)
         add("states of " + chart.steps_from->accurate + ", whose own error is " +
-            short_quantity(chart.steps_from->own_error.rms, "m"));
+            with_unit(chart.steps_from->own_error.rms, "m"));
     if (!chart.runs.empty()) {
         const ResolvedRun &first = chart.runs.front().resolved;
         for (const SettingNumber number : setting_numbers())

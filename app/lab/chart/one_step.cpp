@@ -1,5 +1,6 @@
 #include "app/lab/chart/one_step.h"
 
+#include "app/lab/run/accurate_run.h"
 #include "app/lab/run/judged_run.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
@@ -17,7 +18,7 @@ namespace plumb {
 namespace {
 
 constexpr double shortest_frame = 1.0 / 60; // s
-constexpr int steps_a_frame = 16, substeps_a_step = 16;
+constexpr int steps_a_frame = 16;
 constexpr std::size_t gone_along = 16; // frames
 
 SceneDesc without_memory(SceneDesc scene) {
@@ -71,31 +72,18 @@ double angle_between(const glm::dquat &a, const glm::dquat &b) {
     return 2 * std::atan2(glm::length(glm::dvec3(turn.x, turn.y, turn.z)), std::abs(turn.w));
 }
 
-// The accurate run's. What is given in `base` holds for it, too, but for how it steps.
-RunOptions accurate_options(const SceneDesc &scene, const RunOptions &base, double frame,
-                            int steps) {
-    RunOptions run = base;
-    run.method = why_not(*find_method_info("rk4"), scene).empty() ? "rk4" : "soft_step";
-    run.precision = Precision::dual;
-    run.settings.give(&StepSettings::dt, frame / steps);
-    run.settings.give(&StepSettings::substeps, substeps_a_step);
-    run.settings.give(&StepSettings::max_substeps, 1);
-    run.settings.give(&StepSettings::sleep_after, 0.0);
-    return run;
-}
-
 } // namespace
 
 OneStepStates::OneStepStates(const SceneDesc &scene, const OneStepOptions &options)
     : start_(without_memory(scene)), stop_(options.stop) {
     const double dt = resolve_run(scene, options.base).settings.dt;
     frame_ = dt * std::max(1.0, std::ceil(shortest_frame / dt - 1e-6));
-    const RunOptions run = accurate_options(scene, options.base, frame_, steps_a_frame);
+    const RunOptions run = accurate_run(scene, options.base, frame_ / steps_a_frame);
     accurate_ = resolve_run(scene, run);
     follow(scene, run, options);
     if (interrupted_)
         return;
-    const RunOptions finer = accurate_options(scene, options.base, frame_, 2 * steps_a_frame);
+    const RunOptions finer = accurate_run(scene, options.base, frame_ / (2 * steps_a_frame));
     own_error_ =
         error_of([&](const SceneDesc &state) { return Simulation::create(state, finer, nullptr); });
     interrupted_ = stopped();

@@ -33,10 +33,9 @@ class OneStepStates {
   public:
     using Make = std::function<std::unique_ptr<Simulation>(const SceneDesc &)>;
 
-    // Runs the scene accurately, in double: by rk4 if it can, else by soft_step, 16 steps of 16
-    // substeps a frame. A frame is the scene's dt, or as many of them as make 1/60 s. Throws
-    // std::invalid_argument when nothing in the scene moves, when it ends before its first frame,
-    // or when that run comes to grief.
+    // Runs the scene as accurate_run has it, with 16 steps a frame. A frame is the scene's dt, or
+    // as many of them as make 1/60 s. Throws std::invalid_argument when nothing in the scene moves,
+    // when it ends before its first frame, or when that run comes to grief.
     OneStepStates(const SceneDesc &scene, const OneStepOptions &options);
 
     // Of one frame from each state. What a solver remembers of the step before (loads, stiffnesses)
