@@ -18,8 +18,11 @@ namespace plumb {
 namespace {
 
 constexpr double shortest_frame = 1.0 / 60; // s
-constexpr int steps_a_frame = 16;
-constexpr std::size_t gone_along = 16; // frames
+// Collision is found once a step: where things strike each other, steps count, not substeps.
+constexpr int steps_a_frame = 64, substeps_a_step = 4;
+constexpr std::size_t gone_along = 16; // frames, at most
+// Of the accurate run all frames are states, or as many frames in so many stretches.
+constexpr std::size_t most_frames = 600, stretch_count = 10;
 
 SceneDesc without_memory(SceneDesc scene) {
     scene.contacts.clear();
@@ -78,17 +81,38 @@ OneStepStates::OneStepStates(const SceneDesc &scene, const OneStepOptions &optio
     : start_(without_memory(scene)), stop_(options.stop) {
     const double dt = resolve_run(scene, options.base).settings.dt;
     frame_ = dt * std::max(1.0, std::ceil(shortest_frame / dt - 1e-6));
-    const RunOptions run = accurate_run(scene, options.base, frame_ / steps_a_frame);
+    const RunOptions run =
+        accurate_run(scene, options.base, frame_ / steps_a_frame, substeps_a_step);
     accurate_ = resolve_run(scene, run);
     follow(scene, run, options);
     if (interrupted_)
         return;
-    const RunOptions finer = accurate_run(scene, options.base, frame_ / (2 * steps_a_frame));
+    const RunOptions finer =
+        accurate_run(scene, options.base, frame_ / (2 * steps_a_frame), substeps_a_step);
     own_error_ =
         error_of([&](const SceneDesc &state) { return Simulation::create(state, finer, nullptr); });
     interrupted_ = stopped();
     if (!own_error_.failure.empty() && !interrupted_)
         throw std::invalid_argument("the accurate run at half its step: " + own_error_.failure);
+}
+
+std::size_t OneStepStates::instants() const {
+    std::size_t count = 0;
+    for (const Stretch &stretch : stretches_)
+        count += stretch.steps - stretch.uncounted;
+    return count;
+}
+
+void OneStepStates::lay_out_stretches(std::size_t frames) {
+    const bool all = frames <= most_frames;
+    stretches_.resize(all ? 1 : stretch_count);
+    for (std::size_t i = 0; i < stretches_.size(); ++i) {
+        Stretch &stretch = stretches_[i];
+        stretch.steps = all ? frames : most_frames / stretch_count;
+        stretch.uncounted = std::min(gone_along, stretch.steps / 2);
+        if (!all)
+            stretch.first = i * (frames - stretch.steps) / (stretch_count - 1);
+    }
 }
 
 void OneStepStates::follow(const SceneDesc &scene, const RunOptions &run,
@@ -97,11 +121,7 @@ void OneStepStates::follow(const SceneDesc &scene, const RunOptions &run,
     const auto frames = static_cast<std::size_t>(options.duration / frame_ + slack);
     if (frames == 0)
         throw std::invalid_argument("it ends before its first frame of " + format_dt(frame_));
-    const std::size_t count = std::min(options.most, frames);
-    std::vector<std::size_t> at; // frames
-    for (std::size_t i = 0; i < count; ++i)
-        at.push_back((2 * i + 1) * frames / (2 * count));
-    instants_.resize(count);
+    lay_out_stretches(frames);
 
     const std::unique_ptr<Simulation> simulation = Simulation::create(scene, run, nullptr);
     soft_ = simulation->soft_parts();
@@ -117,7 +137,8 @@ void OneStepStates::follow(const SceneDesc &scene, const RunOptions &run,
     }
     if (!any_moves)
         throw std::invalid_argument("nothing in it is moved by forces, so no step can be wrong");
-    for (std::size_t k = 0; k <= at.back() + 1; ++k) {
+    const std::size_t end = stretches_.back().first + stretches_.back().steps;
+    for (std::size_t k = 0; k <= end; ++k) {
         for (int step = 0; step < steps_a_frame && k > 0; ++step) {
             std::string why;
             try {
@@ -134,11 +155,11 @@ void OneStepStates::follow(const SceneDesc &scene, const RunOptions &run,
         }
         Frame frame;
         simulation->read(frame, {.joints = true});
-        for (std::size_t i = 0; i < count; ++i)
-            if (k + gone_along >= at[i] && k <= at[i] + 1)
-                instants_[i].frames.push_back(frame);
+        for (Stretch &stretch : stretches_)
+            if (k >= stretch.first && k <= stretch.first + stretch.steps)
+                stretch.frames.push_back(frame);
         if (options.progress)
-            options.progress(static_cast<double>(k) / static_cast<double>(at.back() + 1));
+            options.progress(static_cast<double>(k) / static_cast<double>(end));
         if (stopped()) {
             interrupted_ = true;
             return;
@@ -146,24 +167,45 @@ void OneStepStates::follow(const SceneDesc &scene, const RunOptions &run,
     }
 }
 
+template <typename Add>
+void OneStepStates::add_squares(const Frame &frame, const Frame &truth, const Add &add) const {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const BodyInfo &info = bodies_[i];
+        if (info.kind != BodyKind::dynamic)
+            continue;
+        const BodyState &a = frame.bodies[i], &b = truth.bodies[i];
+        const glm::dvec3 apart = a.position + a.orientation * mass_centres_[i] - b.position -
+                                 b.orientation * mass_centres_[i];
+        const double gyration =
+            (info.inertia.x + info.inertia.y + info.inertia.z) / (2 * info.mass);
+        const double angle = angle_between(a.orientation, b.orientation);
+        add(glm::dot(apart, apart) + gyration * angle * angle);
+    }
+    for (std::size_t i = 0; i < soft_.particles.size(); ++i)
+        if (!soft_.particles[i].pinned) {
+            const glm::dvec3 apart = frame.particles[i].position - truth.particles[i].position;
+            add(glm::dot(apart, apart));
+        }
+}
+
 OneStepError OneStepStates::error_of(const Make &make) const {
     OneStepError error;
     double sum = 0;
     std::size_t count = 0;
-    const auto add = [&](double square) {
+    const auto add_square = [&](double square) {
         sum += square;
         ++count;
         error.worst = std::max(error.worst, std::sqrt(square));
     };
-    for (const Instant &instant : instants_) {
+    Frame frame;
+    for (const Stretch &stretch : stretches_) {
         SceneDesc scene = start_;
-        Frame frame;
-        for (std::size_t i = 0; i + 1 < instant.frames.size(); ++i) {
+        for (std::size_t i = 0; i < stretch.steps; ++i) {
             if (stopped()) {
                 error.failure = "interrupted";
                 return error;
             }
-            put_state(scene, instant.frames[i], soft_);
+            put_state(scene, stretch.frames[i], soft_);
             const std::unique_ptr<Simulation> simulation = make(scene);
             const double dt = simulation->settings().dt;
             const auto steps = std::lround(frame_ / dt);
@@ -181,32 +223,15 @@ OneStepError OneStepStates::error_of(const Make &make) const {
             if (error.failure.empty() && !simulation->report().finite)
                 error.failure = "not finite";
             if (!error.failure.empty()) {
-                error.failure += ", a step after " + with_unit(instant.frames[i].time, "s");
+                error.failure += ", a step after " + with_unit(stretch.frames[i].time, "s");
                 return error;
             }
-            if (i + 2 < instant.frames.size())
-                scene = simulation->describe();
-            else
-                simulation->read(frame, {});
-        }
-        const Frame &truth = instant.frames.back();
-        for (std::size_t i = 0; i < bodies_.size(); ++i) {
-            const BodyInfo &info = bodies_[i];
-            if (info.kind != BodyKind::dynamic)
+            scene = simulation->describe();
+            if (i < stretch.uncounted)
                 continue;
-            const BodyState &a = frame.bodies[i], &b = truth.bodies[i];
-            const glm::dvec3 apart = a.position + a.orientation * mass_centres_[i] - b.position -
-                                     b.orientation * mass_centres_[i];
-            const double gyration =
-                (info.inertia.x + info.inertia.y + info.inertia.z) / (2 * info.mass);
-            const double angle = angle_between(a.orientation, b.orientation);
-            add(glm::dot(apart, apart) + gyration * angle * angle);
+            simulation->read(frame, {});
+            add_squares(frame, stretch.frames[i + 1], add_square);
         }
-        for (std::size_t i = 0; i < soft_.particles.size(); ++i)
-            if (!soft_.particles[i].pinned) {
-                const glm::dvec3 apart = frame.particles[i].position - truth.particles[i].position;
-                add(glm::dot(apart, apart));
-            }
     }
     error.rms = std::sqrt(sum / static_cast<double>(count));
     return error;

@@ -21,9 +21,8 @@ struct OneStepError {
 };
 
 struct OneStepOptions {
-    RunOptions base;       // of the accurate run, where that is not its own matter
-    double duration = 5;   // s, of the accurate run
-    std::size_t most = 24; // instants
+    RunOptions base;     // of the accurate run, where that is not its own matter
+    double duration = 5; // s, of the accurate run
     // Asked often; true ends early. May be empty.
     std::function<bool()> stop;
     std::function<void(double)> progress; // fraction done; may be empty
@@ -33,30 +32,37 @@ class OneStepStates {
   public:
     using Make = std::function<std::unique_ptr<Simulation>(const SceneDesc &)>;
 
-    // Runs the scene as accurate_run has it, with 16 steps a frame. A frame is the scene's dt, or
-    // as many of them as make 1/60 s. Throws std::invalid_argument when nothing in the scene moves,
-    // when it ends before its first frame, or when that run comes to grief.
+    // Runs the scene as accurate_run has it, with 64 steps of 4 substeps a frame. A frame is the
+    // scene's dt, or as many of them as make 1/60 s. Throws std::invalid_argument when nothing in
+    // the scene moves, when it ends before its first frame, or when that run comes to grief.
     OneStepStates(const SceneDesc &scene, const OneStepOptions &options);
 
     // Of one frame from each state. What a solver remembers of the step before (loads, stiffnesses)
-    // is its own: it goes along with the accurate run for some frames up to each state, which takes
-    // poses and velocities of the accurate run at every one of them.
+    // is its own: it goes along with the accurate run, and takes poses and velocities of that at
+    // every frame. Those with which it begins to remember, up to 16, are not counted.
     //
     // `make` makes a simulation of that scene; with a dt that does not divide the frame there is no
     // error.
     [[nodiscard]] OneStepError error_of(const Make &make) const;
 
     [[nodiscard]] double frame() const { return frame_; } // s
-    [[nodiscard]] std::size_t instants() const { return instants_.size(); }
+    // The states: of every frame, or where there are very many, of ten stretches.
+    [[nodiscard]] std::size_t instants() const;
     [[nodiscard]] const ResolvedRun &accurate() const { return accurate_; }
     // Of the accurate run itself: how far off it is by one with half its dt.
     [[nodiscard]] const OneStepError &own_error() const { return own_error_; }
     [[nodiscard]] bool interrupted() const { return interrupted_; }
 
   private:
-    struct Instant {
-        std::vector<Frame> frames; // the last but one is the state, the last the accurate next one
+    struct Stretch {
+        std::size_t first = 0;     // of the accurate run's frames
+        std::size_t steps = 0;     // one from each of its frames but the last
+        std::size_t uncounted = 0; // of these
+        std::vector<Frame> frames;
     };
+    void lay_out_stretches(std::size_t frames);
+    template <typename Add> // of each body and particle, the square of its distance (m^2)
+    void add_squares(const Frame &frame, const Frame &truth, const Add &add) const;
     void follow(const SceneDesc &scene, const RunOptions &run, const OneStepOptions &options);
     [[nodiscard]] bool stopped() const { return stop_ && stop_(); }
 
@@ -64,7 +70,7 @@ class OneStepStates {
     SoftParts soft_;
     std::vector<BodyInfo> bodies_;
     std::vector<glm::dvec3> mass_centres_; // of each body in its frame (m)
-    std::vector<Instant> instants_;
+    std::vector<Stretch> stretches_;
     double frame_ = 0;
     ResolvedRun accurate_;
     OneStepError own_error_;

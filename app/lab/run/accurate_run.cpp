@@ -2,8 +2,7 @@
 
 namespace plumb {
 
-RunOptions accurate_run(const SceneDesc &scene, const RunOptions &base, double dt) {
-    constexpr int substeps = 16;
+RunOptions accurate_run(const SceneDesc &scene, const RunOptions &base, double dt, int substeps) {
     RunOptions run = base;
     run.method = why_not(*find_method_info("rk4"), scene).empty() ? "rk4" : "soft_step";
     run.precision = Precision::dual;

@@ -50,6 +50,7 @@ std::vector<RefinedTruth> refine(const SceneDesc &scene, const RefineOptions &op
             truth.desc = expect;
             truth.unit = judge(expect, 0).unit;
         }
+    constexpr int substeps = 16;
     double dt = resolve_run(scene, {}).settings.dt;
     for (int halving = 0; halving <= options.halvings; ++halving, dt /= 2) {
         // Only as far as the windows of those reach that are not settled.
@@ -60,7 +61,7 @@ std::vector<RefinedTruth> refine(const SceneDesc &scene, const RefineOptions &op
                 left.expects.push_back(truth.desc);
         if (left.expects.empty())
             break;
-        const RunOptions run = accurate_run(scene, {}, dt);
+        const RunOptions run = accurate_run(scene, {}, dt, substeps);
         const std::unique_ptr<Simulation> simulation = Simulation::create(left, run, nullptr);
         JudgeOptions judging;
         judging.stop = options.stop;

@@ -32,9 +32,9 @@ struct RefineOptions {
     std::function<void(double dt, double fraction)> progress; // of each run; may be empty
 };
 
-// Of each expectation with a truth: by accurate_run, from the scene's dt on, which is halved until
-// each is settled, or as often as it may be. Those of a run that diverged have no number. Ended
-// early it is empty.
+// Of each expectation with a truth: by accurate_run with 16 substeps, from the scene's dt on, which
+// is halved until each is settled, or as often as it may be. Those of a run that diverged have no
+// number. Ended early it is empty.
 [[nodiscard]] std::vector<RefinedTruth> refine(const SceneDesc &scene,
                                                const RefineOptions &options = {});
 

@@ -9,7 +9,7 @@ namespace {
 
 // Of a spring that the scene has; none, having reported it, when it is none of its springs.
 std::optional<std::string> read_spring_name(Reading &reading, const Table &table) {
-    const std::optional<std::string> name = table.string("spring");
+    std::optional<std::string> name = table.string("spring");
     if (name && std::ranges::find(reading.scene.springs, *name, &SpringDesc::name) ==
                     reading.scene.springs.end()) {
         table.error("spring", "there is no spring " + in_quotes(*name),
