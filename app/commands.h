@@ -34,6 +34,7 @@ void add_chart(CommandLine &line);
 void add_merge(CommandLine &line);
 void add_map(CommandLine &line);
 void add_tune(CommandLine &line);
+void add_reference(CommandLine &line);
 void add_bench(CommandLine &line);
 void add_compare(CommandLine &line);
 

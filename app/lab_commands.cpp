@@ -8,6 +8,7 @@
 #include "app/lab/queries/query_chart.h"
 #include "app/lab/run/check.h"
 #include "app/lab/run/measure.h"
+#include "app/lab/run/reference.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
 #include "app/lab/tune/tune.h"
@@ -207,6 +208,10 @@ void add_chart(CommandLine &line) {
     chart_command->add_flag("--convergence", arguments->command.options.convergence,
                             "Error against dt with fitted orders, nothing timed: dt=1/960..1/30 "
                             "unless --sweep has another, one substep, and double");
+    chart_command->add_flag(
+        "--one-step", arguments->command.options.one_step,
+        "For motion that is chaotic: the error of one step (of a frame of 60 Hz, if that is longer)"
+        " from states of one accurate run in double, the same for every method");
     chart_command
         ->add_option("--seed", arguments->command.options.seed,
                      "Of the order in which each round of timings goes")
@@ -364,6 +369,26 @@ void add_tune(CommandLine &line) {
             arguments->command.options.budget = parse_budget(arguments->budget);
         arguments->command.options.base = line.common.run();
         line.result = code_of(tune_scene(arguments->command, std::cout, std::cerr));
+    });
+}
+
+void add_reference(CommandLine &line) {
+    const auto command = std::make_shared<ReferenceCommand>();
+    CLI::App *reference_command = line.app.add_subcommand(
+        "reference",
+        "Finds what a scene's truths are by refinement: of a run in double whose dt is halved "
+        "until that changes each by less than a tenth of its tolerance");
+    reference_command
+        ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
+        ->required()
+        ->expected(1);
+    reference_command->add_flag(
+        "--write", command->write,
+        "Writes those that have an `estimate` into the scene's file, with their estimates, and "
+        "leaves all else in it as it is");
+    reference_command->callback([=, &line] {
+        command->scene = line.common.scene_paths().front();
+        line.result = code_of(refine_scene(*command, std::cout, std::cerr));
     });
 }
 

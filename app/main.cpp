@@ -60,6 +60,7 @@ int main_with_errors(int argc, char **argv) {
     add_merge(line);
     add_map(line);
     add_tune(line);
+    add_reference(line);
     add_bench(line);
     add_compare(line);
 

@@ -116,6 +116,8 @@ struct ExpectDesc {
     double value = 0; // truth, or the bound
     double tolerance =
         0; // absolute, in the quantity's unit; how far the truth may be missed. 0 for bounds
+    // By how much halving the step changed a truth that was found by refinement; none of others.
+    std::optional<double> estimate;
     std::string source;   // where the truth comes from
     std::size_t line = 0; // in the scene file
 };

@@ -88,7 +88,7 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
         {"measure", {"SCENE", "--method", "--steps", "--csv"}, true},
         {"chart",
          {"SCENE", "--methods", "--sweep", "--expect", "--repeats", "--out", "--set", "--dt",
-          "--substeps", "--iterations", "--precision"},
+          "--substeps", "--iterations", "--precision", "--convergence", "--one-step"},
          false}, // timed on one thread: it has no --threads
         {"map",
          {"SCENE", "--x", "--y", "NAME=FROM..TO[:N][log]", "--methods", "--image", "--csv",
@@ -98,6 +98,7 @@ TEST(CommandLine, HelpOfEveryCommandNamesEveryOption) {
          {"SCENE", "--methods", "--tolerance", "--starts", "--budget", "--repeats", "--explain",
           "--write", "--set", "--dt", "--substeps", "--iterations", "--precision"},
          false}, // timed on one thread
+        {"reference", {"SCENE", "--write"}, false},
         {"compare", {"A", "B", "--tolerance", "--difference"}, false},
     };
     const ProgramResult all = run_program("--help");
@@ -137,6 +138,9 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "compare a.png",
                                   "chart pendulum --sweep dt",
                                   "chart geometry --methods rk4",
+                                  "chart geometry --one-step",
+                                  "chart free_fall --one-step --convergence",
+                                  "chart free_fall --one-step --expect height",
                                   "map pendulum --x dt=1/120..1/30",
                                   "map pendulum --x dt=1/30..1/120 --y substeps=1,2",
                                   "map pendulum --x dtt=1..2 --y substeps=1,2",
@@ -144,6 +148,9 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "map pendulum --x dt=1/60,1/30 --y substeps=1,2 --seconds 1",
                                   "map points --x dt=1/60,1/30 --y substeps=1,2",
                                   "tune points",
+                                  "reference",
+                                  "reference pendulum rope",
+                                  "reference pendulum --write",
                                   "tune pendulum --tolerance 0",
                                   "tune pendulum --budget 1",
                                   "tune pendulum --methods soft_stop",

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -110,6 +111,38 @@ TEST_F(InterruptedChart, GoesOnWithEveryScene) {
     EXPECT_FALSE(fs::exists(partial("a")));
     EXPECT_FALSE(fs::exists(partial("b")));
     EXPECT_EQ(chart({"a", "b"}, {"soft_step"}), 4); // anew
+}
+
+// Its accurate run is run again, but no row.
+TEST_F(Interrupted, AChartOfSingleStepsGoesOn) {
+    ChartCommand command;
+    command.scenes = {folder_ / "a.toml"};
+    command.options = quick({});
+    command.options.one_step = true;
+    command.options.methods = {"stormer_verlet", "rk4"};
+    command.options.sweep = {parse_sweep("substeps=1,2")};
+    command.options.repeats = 1;
+    command.options.shard = {1, 2};
+    command.out_dir = folder_;
+    std::set<int> made; // substeps, of Stormer-Verlet
+    bool interrupts = true;
+    command.options.make = [&](const SceneDesc &scene, const RunOptions &options) {
+        if (interrupts && options.method == "rk4")
+            (void)std::raise(SIGINT);
+        if (options.method == "stormer_verlet" && scene.expects.empty())
+            made.insert(resolve_run(scene, options).settings.substeps); // a single step
+        return Simulation::create(scene, options, nullptr);
+    };
+    EXPECT_EQ(chart_scenes(command, out_, err_), ExitCode::fine) << err_.str();
+    const fs::path table = folder_ / "a.one-step.1-of-2.csv";
+    EXPECT_EQ(rows_by_method(text_of(table.string() + ".partial"))["stormer_verlet"], 1);
+    EXPECT_EQ(made, std::set<int>{1});
+    interrupts = false;
+    made.clear();
+    EXPECT_EQ(chart_scenes(command, out_, err_), ExitCode::fine) << err_.str();
+    EXPECT_TRUE(made.empty());
+    EXPECT_EQ(rows_by_method(text_of(table)), (Rows{{"stormer_verlet", 1}, {"rk4", 1}}));
+    EXPECT_FALSE(fs::exists(table.string() + ".partial"));
 }
 
 TEST_F(InterruptedChart, KeepsWhatWasKnownWhenItIsInterruptedAtOnce) {

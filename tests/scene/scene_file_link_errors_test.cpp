@@ -108,6 +108,27 @@ at_most = 1
 @tolerance = 1
 )",
          {"a bound has no tolerance; put it into the bound itself"}},
+        {"ExpectEstimateOfBound",
+         expect + R"(to = 1
+at_most = 1
+@estimate = 0
+)",
+         {"a bound has no estimate; truths have one that refinement found"}},
+        {"ExpectCoarseEstimate",
+         expect + R"(to = 1
+equals = 1
+tolerance = 0.5
+estimate = @0.05
+)",
+         {"the estimate of 0.05 is not less than a tenth of the tolerance of 0.5; a truth is known "
+          "ten times as well as it is held to; `plumb reference SCENE --write` refines it"}},
+        {"ExpectNegativeEstimate",
+         expect + R"(to = 1
+equals = 1
+tolerance = 0.5
+estimate = @-0.01
+)",
+         {"estimate is -0.01; it must be a number from 0 to 1e9"}},
         {"ExpectNoSource",
          R"(@[[expect]]
 name = "e"

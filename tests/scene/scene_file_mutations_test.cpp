@@ -151,6 +151,7 @@ quantity = "energy_error"
 to = 2
 equals = 0
 tolerance = 0.5
+estimate = 0.01
 source = "conserved but for friction"
 
 [state]

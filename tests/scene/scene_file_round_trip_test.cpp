@@ -141,7 +141,7 @@ std::vector<std::string> words(const SceneDesc &scene) {
     for (const ExpectDesc &e : scene.expects) {
         w.add(e.name), w.add(e.quantity), w.add(e.body), w.add(e.reduce), w.add(e.level);
         w.add(e.from), w.add(e.to), w.number(static_cast<std::uint64_t>(e.relation));
-        w.add(e.value), w.add(e.tolerance), w.add(e.source);
+        w.add(e.value), w.add(e.tolerance), w.add(e.estimate), w.add(e.source);
     }
     w.number(scene.step_count);
     for (const ContactStateDesc &c : scene.contacts) {
@@ -535,8 +535,11 @@ class Scenes {
         e.to = e.from + positive();
         e.relation = static_cast<ExpectDesc::Relation>(random_.next_index(3));
         e.value = one_in(4) ? std::numeric_limits<double>::max() : number();
-        if (e.relation == ExpectDesc::Relation::equals)
+        if (e.relation == ExpectDesc::Relation::equals) {
             e.tolerance = positive();
+            if (one_in(2))
+                e.estimate = random_.next_unit() * 0.099 * e.tolerance;
+        }
         e.source = text();
         return e;
     }

@@ -232,6 +232,7 @@ from = 0.5
 to = 2
 equals = -19.62
 tolerance = 1e-3
+estimate = 2e-5
 source = "g t^2 / 2"
 )");
     const ExpectDesc &expect = scene.expects.at(0);
@@ -244,6 +245,7 @@ source = "g t^2 / 2"
     EXPECT_EQ(expect.relation, ExpectDesc::Relation::equals);
     EXPECT_EQ(expect.value, -19.62);
     EXPECT_EQ(expect.tolerance, 1e-3);
+    EXPECT_EQ(expect.estimate, 2e-5);
 }
 
 TEST(SceneFileValues, LoadSaysWhenItCannotRead) {

@@ -45,11 +45,16 @@ void judge_error(const ErrorMeasure &measure, ChartRun &run) {
             run.failure = describe(*run.run.divergence);
         return;
     }
-    run.error = error_of(measure, run.run);
+    if (measure.kind != ErrorMeasure::Kind::one_step)
+        run.error = error_of(measure, run.run);
+    else if (run.one_step.failure.empty())
+        run.error = run.one_step.rms;
     run.status = !std::isfinite(run.error) ? ChartStatus::no_result
                  : run.run.all_met()       ? ChartStatus::fine
                                            : ChartStatus::outside;
-    run.failure = run.status == ChartStatus::no_result ? "no result: " + unmeasured(run.run) : "";
+    run.failure = run.status != ChartStatus::no_result ? ""
+                  : run.one_step.failure.empty()       ? "no result: " + unmeasured(run.run)
+                                                       : "no result: " + run.one_step.failure;
 }
 
 void set_cost(ChartRun &run) {
@@ -67,10 +72,11 @@ void set_cost(ChartRun &run) {
 
 void mark_front(SceneChart &chart) {
     std::vector<CostAndError> choices;
-    // What fails the scene is no choice, however cheap.
+    // What fails the scene is no choice, however cheap; nor are errors that are not told apart.
+    const double floor = chart.steps_from ? chart.steps_from->floor() : 0;
     for (const ChartRun &run : chart.runs)
         choices.push_back(run.status == ChartStatus::fine && !chart.convergence
-                              ? CostAndError{run.cost, run.error}
+                              ? CostAndError{run.cost, std::max(run.error, floor)}
                               : CostAndError{infinity, infinity});
     const std::vector<bool> front = pareto_front(choices);
     for (std::size_t i = 0; i < front.size(); ++i)
@@ -119,7 +125,9 @@ SweepAxis default_convergence_sweep() {
 }
 
 void finish_chart(SceneChart &chart) {
-    if (everything_expected(chart.scene).empty())
+    if (chart.steps_from)
+        chart.measure = one_step_measure(chart.steps_from->frame, chart.steps_from->instants);
+    else if (everything_expected(chart.scene).empty())
         chart.measure =
             followed_measure(chart.scene, std::ranges::any_of(chart.runs, [](const ChartRun &run) {
                                  return run.run.had_contacts;
@@ -144,6 +152,10 @@ class Charting {
             throw std::invalid_argument("durations must be above 0 s");
         if (options_.shard.n < 1 || options_.shard.n > options_.shard.of)
             throw std::invalid_argument("there is no such shard");
+        if (options_.one_step &&
+            (options_.convergence || !options_.expect.empty() || !options_.engines.empty()))
+            throw std::invalid_argument("a chart of single steps is of no expectation, of one dt, "
+                                        "and of our own methods");
         if (options_.convergence && options_.precisions.empty() && !options_.base.precision)
             options_.precisions = {Precision::dual};
         chart_.scene = scene;
@@ -166,6 +178,8 @@ class Charting {
     }
 
     SceneChart make() {
+        if (options_.one_step)
+            find_states();
         std::vector<std::size_t> mine;
         for (std::size_t i = options_.shard.n - 1; i < planned_.size(); i += options_.shard.of)
             mine.push_back(i);
@@ -175,8 +189,9 @@ class Charting {
             if (stopped() && known == options_.known.end())
                 continue; // what is known stays known
             // Both halves of the work count as half.
-            const double share = (chart_.repeats > 0 ? 0.5 : 1) / static_cast<double>(mine.size());
-            const double begin = share * static_cast<double>(chart_.runs.size());
+            const double share =
+                ((chart_.repeats > 0 ? 0.5 : 1) - states_share_) / static_cast<double>(mine.size());
+            const double begin = states_share_ + share * static_cast<double>(chart_.runs.size());
             if (known == options_.known.end())
                 run(index, begin, share);
             else
@@ -195,21 +210,36 @@ class Charting {
         if (options_.progress)
             options_.progress(fraction, scene_.name + ": " + run_text(run.resolved));
     }
+    // What single steps begin with.
+    void find_states() {
+        OneStepOptions options;
+        options.base = options_.base;
+        options.duration = end_;
+        options.stop = options_.stop;
+        states_share_ = 0.2;
+        options.progress = [this](double fraction) {
+            if (options_.progress)
+                options_.progress(states_share_ * fraction, scene_.name + ": the accurate run");
+        };
+        states_.emplace(scene_, options);
+        chart_.steps_from = {states_->frame(), states_->instants(), run_text(states_->accurate()),
+                             states_->own_error()};
+    }
     void report_change() {
         finish_chart(chart_);
         if (changed_)
             changed_(chart_);
     }
 
-    std::unique_ptr<Simulation> simulation(const PlannedRun &run) {
+    std::unique_ptr<Simulation> simulation(const PlannedRun &run, const SceneDesc &scene) {
         if (run.engine != nullptr)
-            return engine_simulation(*run.engine, scene_, run.resolved);
+            return engine_simulation(*run.engine, scene, run.resolved);
         if (options_.make)
-            return options_.make(scene_, run.options);
+            return options_.make(scene, run.options);
         std::unique_ptr<TaskPool> &pool = pools_[run.threads];
         if (!pool && run.threads > 1)
             pool = std::make_unique<TaskPool>(run.threads);
-        return Simulation::create(scene_, run.options, pool.get());
+        return Simulation::create(scene, run.options, pool.get());
     }
 
     void run(std::size_t index, double begin, double share) {
@@ -219,7 +249,7 @@ class Charting {
         run.resolved = next.resolved;
         run.threads = next.threads;
         run.point = next.point;
-        std::unique_ptr<Simulation> simulated = simulation(next);
+        std::unique_ptr<Simulation> simulated = simulation(next, scene_);
         std::unique_ptr<Simulation::Saved> saved;
         JudgeOptions judging;
         judging.follow_errors = true;
@@ -231,6 +261,11 @@ class Charting {
         judging.progress = [&](double fraction) { progress(begin + share * fraction, run); };
         run.run = judge_run(*simulated, scene_, judging);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
+        if (states_ && !run.run.divergence && !run.run.stopped) {
+            run.one_step =
+                states_->error_of([&](const SceneDesc &state) { return simulation(next, state); });
+            run.run.stopped = stopped();
+        }
         set_cost(run);
         timers_.emplace_back();
         if (saved && !run.run.divergence && !run.run.stopped && chart_.repeats > 0)
@@ -254,7 +289,7 @@ class Charting {
         if (!stopped() && !known.run.divergence &&
             known.timings.size() < static_cast<std::size_t>(chart_.repeats))
             try {
-                std::unique_ptr<Simulation> simulated = simulation(planned_[index]);
+                std::unique_ptr<Simulation> simulated = simulation(planned_[index], scene_);
                 const double slack = 1e-6 * simulated->settings().dt;
                 while (simulated->time() < end_ - chart_.timed - slack && !stopped()) {
                     simulated->step();
@@ -307,6 +342,8 @@ class Charting {
     const std::function<void(const SceneChart &)> &changed_;
     double end_; // s, of each run
     SceneChart chart_;
+    std::optional<OneStepStates> states_;
+    double states_share_ = 0; // of all the work
     std::vector<PlannedRun> planned_;
     std::map<int, std::unique_ptr<TaskPool>> pools_; // by threads; outlive the timers
     std::vector<std::optional<EndTimer>> timers_;    // as many as runs

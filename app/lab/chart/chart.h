@@ -3,6 +3,7 @@
 
 #include "app/lab/chart/chart_layout.h"
 #include "app/lab/chart/error_measure.h"
+#include "app/lab/chart/one_step.h"
 #include "app/lab/exit_code.h"
 #include "app/lab/progress.h"
 #include "app/lab/run/judged_run.h"
@@ -42,8 +43,9 @@ struct ChartRun {
     SweepPoint point;
     JudgedRun run; // a full one from the start: chaos keeps errors of any other from comparing
     ChartStatus status = ChartStatus::unfinished;
-    double error = 0;    // in the measure's unit; infinite without a result
-    std::string failure; // why there is no error; empty when there is
+    double error = 0;      // in the measure's unit; infinite without a result
+    OneStepError one_step; // of charts of single steps
+    std::string failure;   // why there is no error; empty when there is
     // The expectation with the largest error in units of its tolerance, as an index into
     // run.outcomes; none when all errors are 0.
     std::optional<std::size_t> worst;
@@ -77,6 +79,8 @@ struct ChartOptions {
     // Error against dt instead of cost: nothing is timed, and of substeps there is one unless
     // something else is given.
     bool convergence = false;
+    // The error of single steps, from states of one accurate run: see OneStepStates.
+    bool one_step = false;
     double budget = 1;          // s of CPU time per simulated second: at 60 Hz all of a frame
     double duration = 5;        // s, of scenes that expect nothing
     int repeats = 5;            // timings of each run; their median counts
@@ -95,12 +99,23 @@ void add_sweep(ChartOptions &options, std::string_view text);
 // Of all that makes it another run of the chart: method, threads, precision, settings.
 [[nodiscard]] std::string run_key(const ResolvedRun &run, int threads);
 
+// Of a chart of single steps: what they were taken from.
+struct StepsFrom {
+    double frame = 0;         // s, how long each is
+    std::size_t instants = 0; // states
+    std::string accurate;     // the run that they are of, in words
+    OneStepError own_error;   // that run's
+    // Errors below it say no more of a run than that they are.
+    [[nodiscard]] double floor() const { return 10 * own_error.rms; }
+};
+
 struct SceneChart {
     SceneDesc scene;
     std::vector<SweepAxis> sweep;
     ErrorMeasure measure;
     std::vector<ChartRun> runs; // method by method, the first axis fastest; those that were begun
     bool convergence = false;
+    std::optional<StepsFrom> steps_from; // of a chart of single steps
     bool wall_clock = false; // all times are by the clock on the wall: of charts of several threads
     double budget = 1;       // s per simulated second
     std::uint64_t seed = 1;
@@ -109,6 +124,11 @@ struct SceneChart {
     int repeats = 0;
     double timed = 0; // s, simulated, in each timing
     bool interrupted = false;
+    // Of a chart of single steps, whether the accurate run is so much truer that the error is the
+    // run's own; true of others.
+    [[nodiscard]] bool told_apart(const ChartRun &run) const {
+        return !steps_from || run.error >= steps_from->floor();
+    }
     [[nodiscard]] double median_spread() const; // of (greatest - least) / median over the runs
 };
 
@@ -145,9 +165,9 @@ struct ChartCommand {
 };
 
 // Writes out_dir/SCENE.csv, SCENE.png and SCENE.svg for each scene, prints tables to `out` and
-// everything else to `err`. Of convergence SCENE.convergence.csv and so on, of a shard
-// SCENE.2-of-4.csv alone. On Ctrl-C the rows so far stay in SCENE.csv.partial, from which the same
-// command goes on, and are charted as SCENE.partial.png.
+// everything else to `err`. Of convergence SCENE.convergence.csv and so on, of single
+// steps SCENE.one-step.csv, of a shard SCENE.2-of-4.csv alone. On Ctrl-C the rows so far stay in
+// SCENE.csv.partial, from which the same command goes on, and are charted as SCENE.partial.png.
 [[nodiscard]] ExitCode chart_scenes(const ChartCommand &command, std::ostream &out,
                                     std::ostream &err);
 

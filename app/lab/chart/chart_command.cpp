@@ -48,6 +48,12 @@ class LazyPainter {
     bool failed_ = false;
 };
 
+// What the names of all files of a chart begin with.
+std::filesystem::path stem_of(const std::filesystem::path &folder, const std::string &scene,
+                              bool convergence, bool one_step) {
+    return folder / (scene + (convergence ? ".convergence" : one_step ? ".one-step" : ""));
+}
+
 // SCENE.png and SCENE.svg, or SCENE.partial.png.
 ExitCode write_pictures(const SceneChart &chart, const std::filesystem::path &stem,
                         const std::string &command, LazyPainter &painter, std::ostream &err) {
@@ -103,7 +109,7 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
     options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
     const Shard &shard = options.shard;
     const std::filesystem::path stem =
-        command.out_dir / (scene.name + (options.convergence ? ".convergence" : ""));
+        stem_of(command.out_dir, scene.name, options.convergence, options.one_step);
     std::string table = stem.string();
     if (shard.of > 1)
         table += "." + std::to_string(shard.n) + "-of-" + std::to_string(shard.of);
@@ -202,7 +208,7 @@ ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostre
     }
     create_folder(command.out_dir);
     const std::filesystem::path stem =
-        command.out_dir / (chart.scene.name + (chart.convergence ? ".convergence" : ""));
+        stem_of(command.out_dir, chart.scene.name, chart.convergence, chart.steps_from.has_value());
     OutputFile csv(stem.string() + ".csv");
     write_chart_csv(csv.stream(), chart);
     csv.finish();

@@ -128,7 +128,9 @@ std::string values_by_method(const SceneChart &chart, SettingNumber number) {
 ChartContent chart_content(const SceneChart &chart, const std::string &command) {
     ChartContent content;
     content.title = (chart.scene.title.empty() ? chart.scene.name : chart.scene.title) +
-                    (chart.convergence ? ": how the error falls with dt" : ": what truth costs");
+                    (chart.convergence  ? ": how the error falls with dt"
+                     : chart.steps_from ? ": what a true step costs"
+                                        : ": what truth costs");
     content.subtitle = chart.measure.explanation;
     if (chart.interrupted) {
         const auto finished =
@@ -152,6 +154,10 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.limit = chart.measure.limit;
     content.limit_label = chart.measure.limit_label;
     content.left_out = grouped_reasons(chart.left_out);
+    if (chart.steps_from) {
+        content.floor = chart.steps_from->floor();
+        content.floor_label = "not told apart below " + short_quantity(*content.floor, "m");
+    }
 
     if (chart.convergence) {
         content.cost_title = "dt";
@@ -210,6 +216,9 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         settings += (settings.empty() ? "" : "  ·  ") + text;
     };
     const bool both = has_both_modes(chart);
+    if (chart.steps_from)
+        add("states of " + chart.steps_from->accurate + ", whose own error is " +
+            with_unit(chart.steps_from->own_error.rms, "m"));
     if (!chart.runs.empty()) {
         const ResolvedRun &first = chart.runs.front().resolved;
         for (const SettingNumber number : setting_numbers())

@@ -22,6 +22,8 @@ void draw_grid(ChartPen &pen, const ChartContent &content, const ChartLayout &la
     pen.fill(plot, paper);
     if (layout.corner && layout.corner->min.y < layout.corner->max.y)
         pen.fill(*layout.corner, fine_tint);
+    if (layout.floor_line)
+        pen.fill({{plot.min.x, *layout.floor_line}, {plot.max.x, plot.max.y}}, untold_tint);
     for (const bool decade : {false, true}) {
         for (const PlacedTick &tick : layout.cost_ticks)
             if (tick.decade == decade)
@@ -59,6 +61,11 @@ void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &l
         pen.dashed({field.min.x, *layout.limit_line}, {field.max.x, *layout.limit_line}, limit_ink,
                    1.5f, 8, 5);
         pen.text(layout.limit_text.min, content.limit_label, Face::label, limit_ink);
+    }
+    if (layout.floor_line) {
+        pen.dashed({field.min.x, *layout.floor_line}, {field.max.x, *layout.floor_line}, soft_ink,
+                   1.5f, 8, 5);
+        pen.text(layout.floor_text.min, content.floor_label, Face::label, soft_ink);
     }
     if (layout.budget_line)
         pen.dashed({*layout.budget_line, layout.plot.min.y},

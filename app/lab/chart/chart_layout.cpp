@@ -107,6 +107,11 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         errors.push_back(*content.limit);
     // A line in the next decade or so is worth the room.
     constexpr double reach = 20;
+    const bool floor_shows =
+        content.floor && *content.floor > 0 &&
+        std::ranges::any_of(errors, [&](double error) { return error < reach * *content.floor; });
+    if (floor_shows)
+        errors.push_back(*content.floor);
     const bool has_budget = content.budget && !costs.empty();
     bool budget_shows = false, budget_is_above = false;
     if (has_budget) {
@@ -162,6 +167,9 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
                                                                                             : 0.0f;
             for (const PixelBox &obstacle : obstacles)
                 sum += box.overlaps(obstacle) ? 1000.0f : 0.0f;
+            if (budget_shows && box.min.x < x_of(*content.budget) &&
+                box.max.x > x_of(*content.budget))
+                sum += 100;
             return sum;
         };
         const PixelBox best = *std::ranges::min_element(places, {}, score);
@@ -178,6 +186,13 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         const float above = *layout.limit_line - 4 - text.y, below = *layout.limit_line + 4;
         layout.limit_text = best_place({box_at(right, above, text), box_at(right, below, text),
                                         box_at(left, above, text), box_at(left, below, text)});
+    }
+    if (floor_shows) {
+        layout.floor_line = y_of(*content.floor);
+        const glm::vec2 text = text_size(content.floor_label, label_text);
+        const float left = field.min.x + 10, right = field.max.x - 10 - text.x;
+        const float below = *layout.floor_line + 4;
+        layout.floor_text = best_place({box_at(right, below, text), box_at(left, below, text)});
     }
     if (has_budget) {
         const std::string cost =
@@ -234,6 +249,9 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     if (layout.limit_line)
         lines.emplace_back(glm::vec2(field.min.x, *layout.limit_line),
                            glm::vec2(field.max.x, *layout.limit_line));
+    if (layout.floor_line)
+        lines.emplace_back(glm::vec2(field.min.x, *layout.floor_line),
+                           glm::vec2(field.max.x, *layout.floor_line));
     if (layout.budget_line)
         lines.emplace_back(glm::vec2(*layout.budget_line, field.min.y),
                            glm::vec2(*layout.budget_line, plot.max.y));

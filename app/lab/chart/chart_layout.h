@@ -44,6 +44,8 @@ struct ChartContent {
     std::string label_meaning;   // "substeps"
     std::optional<double> limit; // true enough at most; 0 where only an error of exactly zero is
     std::string limit_label;
+    std::optional<double> floor; // errors below it are not told apart
+    std::string floor_label;
     std::optional<double> budget; // what it may cost; true enough and within it is the corner
     std::string budget_label;
     std::vector<ChartSeries> series;
@@ -95,6 +97,8 @@ struct ChartLayout {
                                      // go without where there is no room
     std::optional<float> limit_line; // y; for a limit of 0 the top of the strip for zero
     PixelBox limit_text;
+    std::optional<float> floor_line; // y; none where all errors are far above it
+    PixelBox floor_text;
     // x; none where there is no budget, or it lies so far from all runs that the scale leaves it
     // out: then the text says on which side.
     std::optional<float> budget_line;

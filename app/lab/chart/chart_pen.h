@@ -31,6 +31,7 @@ inline constexpr ImU32 weak_grid = colour(0xeff1f3);
 inline constexpr ImU32 frame = colour(0xa4abb2);
 inline constexpr ImU32 paper = colour(0xffffff);
 inline constexpr ImU32 fine_tint = colour(0xf0f7f1);
+inline constexpr ImU32 untold_tint = colour(0xf4f2f0);
 inline constexpr ImU32 limit_ink = colour(0x2f7d4f);
 inline constexpr ImU32 budget_ink = colour(0x9a5b13);
 inline constexpr ImU32 front = colour(0xdcdfe3);

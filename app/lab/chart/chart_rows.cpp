@@ -78,6 +78,9 @@ std::optional<ChartRun> read_run(const CsvReader &row, const SceneDesc &scene,
     run.run.max_energy_error = row.number("max_energy_error").value_or(0);
     run.run.unresolved_impacts =
         static_cast<std::uint64_t>(row.number("unresolved_impacts").value_or(0));
+    run.one_step = {row.number("one_step_rms_m").value_or(0),
+                    row.number("one_step_worst_m").value_or(0),
+                    std::string(row.cell("one_step_failure"))};
     if (const auto at = row.number("diverged_at_s")) {
         run.run.divergence.emplace().time = *at;
         run.failure = row.cell("diverged");
@@ -113,7 +116,14 @@ SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
     chart.timed = row.number("timed_s").value_or(0);
     chart.seed = static_cast<std::uint64_t>(row.number("seed").value_or(0));
     const std::string_view charted = row.cell("charted_error");
-    if (everything_expected(scene).empty())
+    if (const auto frame = row.number("frame_s"))
+        chart.steps_from = {*frame,
+                            static_cast<std::size_t>(row.number("instants").value_or(0)),
+                            std::string(row.cell("accurate_run")),
+                            {row.number("accurate_rms_m").value_or(0),
+                             row.number("accurate_worst_m").value_or(0),
+                             {}}};
+    else if (everything_expected(scene).empty())
         chart.measure = followed_measure(scene, charted == "max_penetration");
     else
         chart.measure = choose_measure(scene, charted == "worst" ? std::string_view() : charted);
@@ -124,7 +134,8 @@ SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
 std::string head_text(const CsvReader &row) {
     std::string text;
     for (const char *column : {"scene", "sweep", "against", "clock", "budget_s_per_s", "planned",
-                               "repeats", "timed_s", "seed", "charted_error", "commit"})
+                               "repeats", "timed_s", "seed", "charted_error", "commit", "frame_s",
+                               "instants", "accurate_run", "accurate_rms_m"})
         text.append(row.cell(column)).append("\n");
     return text;
 }
@@ -145,7 +156,7 @@ std::string chart_fingerprint(const SceneDesc &scene, const ChartOptions &option
         print.add(static_cast<double>(threads));
     print.add(options.base);
     print.add(options.expect);
-    print.add(options.convergence ? "dt" : "cost");
+    print.add(options.convergence ? "dt" : options.one_step ? "one step" : "cost");
     for (const double number :
          {options.budget, options.duration, options.timed, static_cast<double>(options.repeats),
           static_cast<double>(options.seed)})

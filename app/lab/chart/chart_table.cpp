@@ -63,6 +63,11 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
                              "commit",
                              "fingerprint"})
         csv.cell(name);
+    if (chart.steps_from)
+        for (const char *name :
+             {"one_step_rms_m", "one_step_worst_m", "one_step_failure", "told_apart", "frame_s",
+              "instants", "accurate_run", "accurate_rms_m", "accurate_worst_m"})
+            csv.cell(name);
     for (const ExpectDesc &expect : everything_expected(chart.scene))
         for (const char *column : {".measured", ".error", ".limit", ".scaled_error", ".passed"})
             csv.cell(expect.name + column);
@@ -112,6 +117,16 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
             .cell(run.machine.empty() ? here : run.machine)
             .cell(run.commit.empty() ? commit : run.commit)
             .cell(fingerprint);
+        if (chart.steps_from)
+            csv.cell(run.one_step.rms)
+                .cell(run.one_step.worst)
+                .cell(run.one_step.failure)
+                .cell(chart.told_apart(run))
+                .cell(chart.steps_from->frame)
+                .cell(static_cast<std::uint64_t>(chart.steps_from->instants))
+                .cell(chart.steps_from->accurate)
+                .cell(chart.steps_from->own_error.rms)
+                .cell(chart.steps_from->own_error.worst);
         for (const ExpectOutcome &outcome : run.run.outcomes)
             if (outcome.judged())
                 csv.cell(outcome.measured)
@@ -134,6 +149,10 @@ void print(std::ostream &out, const SceneChart &chart) {
         out << "; " << label;
     }
     out << '\n';
+    if (chart.steps_from)
+        out << "  states of " << chart.steps_from->accurate << ", whose own error is "
+            << with_unit(chart.steps_from->own_error.rms, "m")
+            << "; ~: below ten times that, and not told apart\n";
     char line[256];
     std::snprintf(line, sizeof line, "  %-22s %9s %9s %10s %12s %8s %14s %14s\n", "method",
                   "substeps", "iteration", "dt", chart.wall_clock ? "wall ms/s" : "CPU ms/s",
@@ -145,7 +164,9 @@ void print(std::ostream &out, const SceneChart &chart) {
             std::snprintf(spread, sizeof spread, "%.1f %%",
                           100 * (run.cost_high - run.cost_low) / run.cost);
         const std::string error =
-            std::isfinite(run.error) ? with_unit(run.error, chart.measure.unit) : "-";
+            std::isfinite(run.error)
+                ? (chart.told_apart(run) ? "" : "~") + with_unit(run.error, chart.measure.unit)
+                : "-";
         std::snprintf(
             line, sizeof line, "  %-22.22s %9s %9d %10s %12.5g %8s %14.4g %14s  %s%s",
             std::string(run.resolved.method->name).c_str(), substeps_text(run.resolved).c_str(),
@@ -153,7 +174,9 @@ void print(std::ostream &out, const SceneChart &chart) {
             1e3 * run.cost, spread, 1e3 * run.run.worst_step_time, error.c_str(),
             std::string(status_name(run.status)).c_str(), run.pareto ? ", Pareto front" : "");
         out << line;
-        if (run.worst && !run.run.divergence && everything_expected(chart.scene).size() > 1)
+        if (chart.steps_from && std::isfinite(run.error))
+            out << "; farthest " << with_unit(run.one_step.worst, "m");
+        else if (run.worst && !run.run.divergence && everything_expected(chart.scene).size() > 1)
             out << "; worst: " << run.run.outcomes[*run.worst].desc.name;
         out << '\n';
         if (!run.failure.empty())

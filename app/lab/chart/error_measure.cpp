@@ -2,6 +2,7 @@
 
 #include "app/lab/chart/log_axis.h"
 #include "app/lab/run/run_text.h"
+#include "app/lab/run/sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -123,6 +124,19 @@ ErrorMeasure followed_measure(const SceneDesc &scene, bool had_contacts) {
     return measure;
 }
 
+ErrorMeasure one_step_measure(double frame, std::size_t instants) {
+    ErrorMeasure measure;
+    measure.kind = ErrorMeasure::Kind::one_step;
+    measure.name = "one_step";
+    measure.unit = "m";
+    measure.title = "Error of one step, root mean square";
+    measure.explanation =
+        "how far bodies are off after " + format_dt(frame) + " from each of " +
+        std::to_string(instants) +
+        " states of one accurate run, with turning as length at the radius of gyration";
+    return measure;
+}
+
 std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes) {
     std::optional<std::size_t> worst;
     double error = 0;
@@ -150,6 +164,8 @@ double error_of(const ErrorMeasure &measure, const JudgedRun &run) {
         return run.max_joint_drift;
     case ErrorMeasure::Kind::energy:
         return run.max_energy_error;
+    case ErrorMeasure::Kind::one_step:
+        break;
     }
     return std::numeric_limits<double>::infinity();
 }

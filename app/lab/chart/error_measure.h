@@ -11,7 +11,7 @@
 namespace plumb {
 
 struct ErrorMeasure {
-    enum class Kind { worst, expectation, penetration, joint_drift, energy };
+    enum class Kind { worst, expectation, penetration, joint_drift, energy, one_step };
     Kind kind = Kind::energy;
     std::size_t expectation = 0; // index into everything_expected, when of that kind
     std::string name;
@@ -32,10 +32,14 @@ struct ErrorMeasure {
 // For scenes that expect nothing: the error that the scene can show.
 [[nodiscard]] ErrorMeasure followed_measure(const SceneDesc &scene, bool had_contacts);
 
+// Of a chart of single steps, each a frame of so many seconds, from so many states.
+[[nodiscard]] ErrorMeasure one_step_measure(double frame, std::size_t instants);
+
 // The outcome with the largest error in units of its tolerance; none when no error is above 0.
 [[nodiscard]] std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes);
 
-// The run's error by this measure; infinite when it could not be measured.
+// The run's error by this measure, which is not that of single steps; infinite when it could not be
+// measured.
 [[nodiscard]] double error_of(const ErrorMeasure &measure, const JudgedRun &run);
 
 } // namespace plumb

@@ -1,8 +1,10 @@
 #include "app/lab/run/scene_text.h"
 
+#include "app/files/output_file.h"
 #include "app/lab/progress.h"
 #include "engine/dynamics/method_info.h"
 
+#include <stdexcept>
 #include <utility>
 
 namespace plumb {
@@ -24,6 +26,20 @@ std::optional<SceneText> read_scene(const std::filesystem::path &path, std::ostr
     if (!text || !result.ok())
         return std::nullopt;
     return SceneText{path, std::move(*text)};
+}
+
+void write_back(const SceneText &scene, const std::string &text, std::ostream &err) {
+    const std::filesystem::path &path = scene.path;
+    std::vector<SceneMessage> messages;
+    if (!std::filesystem::is_regular_file(path))
+        throw std::invalid_argument(path.string() + " is no file that can be written to");
+    if (read_scene_text(path, messages) != scene.text)
+        throw std::invalid_argument(path.string() +
+                                    " was changed in the meantime, and is left as it is");
+    OutputFile file(path);
+    file.stream() << text;
+    file.finish();
+    err << "wrote " << path.string() << '\n';
 }
 
 } // namespace plumb

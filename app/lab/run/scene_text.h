@@ -22,4 +22,8 @@ struct SceneText {
 [[nodiscard]] std::optional<SceneText> read_scene(const std::filesystem::path &path,
                                                   std::ostream &err);
 
+// Puts another text in its place, and says so. Throws std::invalid_argument when the file is no
+// longer as it was read, or none that can be written to.
+void write_back(const SceneText &scene, const std::string &text, std::ostream &err);
+
 } // namespace plumb

@@ -1,6 +1,5 @@
 #include "app/lab/tune/tune.h"
 
-#include "app/files/output_file.h"
 #include "app/lab/interrupt.h"
 #include "engine/scene/file/change.h"
 #include "engine/scene/file/settings.h"
@@ -17,10 +16,6 @@ namespace {
 
 ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, std::ostream &err) {
     const std::filesystem::path &path = scene.path;
-    std::vector<SceneMessage> messages;
-    if (read_scene_text(path, messages) != scene.text)
-        throw std::invalid_argument(path.string() +
-                                    " was changed in the meantime, and is left as it is");
     const TunedRun &chosen = tuning.plainest();
     std::string text;
     try {
@@ -33,10 +28,7 @@ ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, 
         out << "  Nothing to write: the file has these settings.\n";
         return ExitCode::fine;
     }
-    OutputFile file(path);
-    file.stream() << text;
-    file.finish();
-    err << "wrote " << path.string() << '\n';
+    write_back(scene, text, err);
     const ResolvedRun before = resolve_run(parse_scene(scene.text, path.string()).scene, {});
     if (chosen.resolved.settings.dt != before.settings.dt)
         err << "dt holds for every method: whether the others still meet the scene, `plumb check "

@@ -9,7 +9,7 @@ namespace {
 
 // Of a spring that the scene has; none, having reported it, when it is none of its springs.
 std::optional<std::string> read_spring_name(Reading &reading, const Table &table) {
-    const std::optional<std::string> name = table.string("spring");
+    std::optional<std::string> name = table.string("spring");
     if (name && std::ranges::find(reading.scene.springs, *name, &SpringDesc::name) ==
                     reading.scene.springs.end()) {
         table.error("spring", "there is no spring " + in_quotes(*name),
@@ -69,12 +69,23 @@ void read_reduction(const Table &table, ExpectDesc &expect) {
                      "period and crossings have one");
 }
 
+void read_estimate(const Table &table, ExpectDesc &expect) {
+    expect.estimate = table.number("estimate", not_negative);
+    if (expect.estimate && 10 * *expect.estimate >= expect.tolerance)
+        table.error("estimate",
+                    "the estimate of " + shortest(*expect.estimate) +
+                        " is not less than a tenth of the tolerance of " +
+                        shortest(expect.tolerance),
+                    "a truth is known ten times as well as it is held to; `plumb reference SCENE "
+                    "--write` refines it");
+}
+
 } // namespace
 
 void read_expect(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 13> keys{
-        "name", "quantity", "body",    "spring",   "reduce",    "level", "from",
-        "to",   "equals",   "at_most", "at_least", "tolerance", "source"};
+    static constexpr std::array<std::string_view, 14> keys{
+        "name", "quantity", "body",    "spring",   "reduce",    "level",    "from",
+        "to",   "equals",   "at_most", "at_least", "tolerance", "estimate", "source"};
     static constexpr std::array<std::string_view, 3> relations{"equals", "at_most", "at_least"};
     const Table table(reading.report, source, title_of("expect", source), keys);
     ExpectDesc expect;
@@ -106,8 +117,10 @@ void read_expect(Reading &reading, const toml::table &source) {
             if (table.require("tolerance", "how far the truth may be missed, in the "
                                            "quantity's unit"))
                 expect.tolerance = table.number("tolerance", above_zero).value_or(1);
+            read_estimate(table, expect);
         } else {
             table.refuse({"tolerance"}, "a bound", "put it into the bound itself");
+            table.refuse({"estimate"}, "a bound", "truths have one that refinement found");
         }
     }
     if (table.require("source", "where does the number come from?")) {

@@ -1,5 +1,6 @@
 #include "engine/scene/file/settings.h"
 
+#include "engine/scene/file/lines.h"
 #include "engine/scene/file/reading.h"
 #include "engine/scene/file/text.h"
 #include "engine/scene/scene_file.h"
@@ -19,69 +20,6 @@ using namespace scene_file;
 constexpr std::string_view own_lines = "write [world] and [methods.NAME] as tables, with each key "
                                        "and its value on one line of its own";
 
-// A file as its lines, each with its end. Lines keep their index: removed ones are empty, and what
-// is added stands in one with what it follows.
-class Lines {
-  public:
-    explicit Lines(std::string_view text)
-        : end_(text.find("\r\n") == std::string_view::npos ? "\n" : "\r\n") {
-        while (!text.empty()) {
-            const std::size_t length = std::min(text.find('\n'), text.size() - 1) + 1;
-            lines_.emplace_back(text.substr(0, length));
-            text.remove_prefix(length);
-        }
-    }
-
-    std::size_t size() const { return lines_.size(); }
-    std::string_view line(std::size_t i) const { return lines_.at(i); }
-    std::string take(std::size_t i) { return std::exchange(lines_.at(i), {}); }
-    void add_after(std::size_t i, std::string_view text) {
-        std::string &line = lines_.at(i);
-        if (!line.empty() && line.back() != '\n')
-            line += end_;
-        line += with_ends(text);
-    }
-    void add_before(std::size_t i, std::string_view text) {
-        lines_.at(i) = with_ends(text) + lines_.at(i);
-    }
-    // Of a line "key = value # comment".
-    void set_value(std::size_t i, std::string_view key, std::string_view value) {
-        std::string &line = lines_.at(i);
-        std::size_t at = line.find_first_not_of(" \t");
-        if (at == std::string::npos || !std::string_view(line).substr(at).starts_with(key))
-            throw std::invalid_argument(std::string(own_lines));
-        at = line.find('=', at + key.size());
-        at = at == std::string::npos ? at : line.find_first_not_of(" \t", at + 1);
-        if (at == std::string::npos)
-            throw std::invalid_argument(std::string(own_lines));
-        const bool quoted = line[at] == '"' || line[at] == '\'';
-        const std::size_t last =
-            quoted ? line.find(line[at], at + 1) : line.find_first_of(" \t#\r\n", at) - 1;
-        line.replace(at, std::min(last, line.size() - 1) + 1 - at, value);
-    }
-    std::string text() const {
-        std::string all;
-        for (const std::string &line : lines_)
-            all += line;
-        return all;
-    }
-
-  private:
-    std::string with_ends(std::string_view text) const {
-        std::string all;
-        for (const char c : text)
-            all += c == '\n' ? end_ : std::string(1, c);
-        return all;
-    }
-
-    std::string end_;
-    std::vector<std::string> lines_;
-};
-
-std::size_t line_of(const toml::source_region &region) {
-    return region.begin.line - 1;
-}
-
 // What stands for it in a file.
 std::string value_text(const SettingRow &row, const StepSettings &settings) {
     const std::string text = setting_text(row, settings);
@@ -94,7 +32,7 @@ bool same_value(const SettingRow &row, const StepSettings &a, const StepSettings
 
 class Change {
   public:
-    Change(std::string_view text, const std::string &path) : lines_(text) {
+    Change(std::string_view text, const std::string &path) : lines_(text, own_lines) {
         std::vector<SceneMessage> messages;
         std::optional<toml::table> root = parse_toml(text, path, messages);
         if (!root)

@@ -313,6 +313,8 @@ class SceneWriter {
         line(relations[static_cast<std::size_t>(expect.relation)], shortest(expect.value));
         if (expect.relation == ExpectDesc::Relation::equals)
             line("tolerance", shortest(expect.tolerance));
+        if (expect.estimate)
+            line("estimate", shortest(*expect.estimate));
         line("source", string(expect.source));
     }
 

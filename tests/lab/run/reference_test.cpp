@@ -1,0 +1,151 @@
+// Truths by refinement: against closed forms, those of the scenes, and written into a file.
+#include "app/lab/run/reference.h"
+
+#include "engine/scene/scene_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace plumb {
+namespace {
+
+namespace fs = std::filesystem;
+
+// It hangs on a soft joint of 1 Hz, and falls by sag (1 - cos w t), sag = g / w^2: by all of it in
+// a quarter of a period.
+std::string sagging(const std::string &equals, const std::string &estimate) {
+    return R"([[body]]
+name = "bob"
+shape = "sphere"
+radius = 0.1
+[[joint]]
+name = "rope"
+type = "ball"
+body_b = "bob"
+anchor = [0, 0, 0]
+frequency = 1
+damping_ratio = 0
+[[expect]]
+name = "way"
+quantity = "displacement"
+body = "bob"
+to = 0.25
+equals = )" +
+           equals + " # m\ntolerance = 1e-4\nestimate = " + estimate +
+           "\nsource = \"by refinement\"\n";
+}
+const double sagging_truth = 9.81 / (4 * std::numbers::pi * std::numbers::pi);
+
+class Reference : public testing::Test {
+  protected:
+    Reference() {
+        std::string name = (fs::temp_directory_path() / "plumb-test-XXXXXX").string();
+        folder_ = mkdtemp(name.data());
+    }
+    ~Reference() override { fs::remove_all(folder_); }
+
+    ExitCode command(bool write) {
+        out_.str("");
+        ReferenceCommand command;
+        command.scene = folder_ / "sag.toml";
+        command.write = write;
+        return refine_scene(command, out_, err_);
+    }
+    void put(const std::string &text) const { std::ofstream(folder_ / "sag.toml") << text; }
+    [[nodiscard]] std::string text() const {
+        std::ostringstream text;
+        text << std::ifstream(folder_ / "sag.toml").rdbuf();
+        return text.str();
+    }
+
+    fs::path folder_;
+    std::ostringstream out_, err_;
+};
+
+TEST(Refinement, SettlesAtClosedFormsWithinItsEstimate) {
+    const SceneDesc scene = parse_scene(sagging("1", "0"), "sag.toml").scene;
+    const std::vector<RefinedTruth> truths = refine(scene);
+    ASSERT_EQ(truths.size(), 1U);
+    EXPECT_TRUE(truths[0].settled());
+    EXPECT_FALSE(truths[0].agrees());
+    EXPECT_EQ(truths[0].run.precision, Precision::dual);
+    EXPECT_LE(truths[0].run.settings.dt, 1.0 / 120);
+    EXPECT_LT(truths[0].estimate, 1e-5);
+    EXPECT_NEAR(truths[0].value, sagging_truth, truths[0].estimate);
+    EXPECT_GT(truths[0].estimate, 0);
+}
+
+TEST(Refinement, OfWhatDependsOnTheStepDoesNotSettle) {
+    // A joint that breaks does so at the end of the first step, however short.
+    const SceneFileResult file = load_scene(PLUMB_SOURCE_DIR "/scenes/joints/breaking.toml");
+    RefineOptions options;
+    options.halvings = 2;
+    const std::vector<RefinedTruth> truths = refine(file.scene, options);
+    ASSERT_EQ(truths.size(), 1U);
+    EXPECT_FALSE(truths[0].settled());
+    EXPECT_DOUBLE_EQ(truths[0].run.settings.dt, 1.0 / 240);
+    options.only_estimated = true;
+    EXPECT_TRUE(refine(file.scene, options).empty());
+    options = {};
+    options.stop = [] { return true; };
+    EXPECT_TRUE(refine(file.scene, options).empty());
+}
+
+// Those that have no closed form.
+TEST(Refinement, OfTheScenesIsWhatTheyHave) {
+    int count = 0;
+    for (const fs::directory_entry &file :
+         fs::recursive_directory_iterator(fs::path(PLUMB_SOURCE_DIR) / "scenes")) {
+        if (file.path().extension() != ".toml")
+            continue;
+        RefineOptions options;
+        options.only_estimated = true;
+        for (const RefinedTruth &truth : refine(load_scene(file.path()).scene, options)) {
+            EXPECT_TRUE(truth.settled()) << file.path() << truth.desc.name;
+            EXPECT_NEAR(truth.value, truth.desc.value, *truth.desc.estimate)
+                << file.path() << truth.desc.name;
+            ++count;
+        }
+    }
+    EXPECT_GE(count, 1);
+}
+
+TEST_F(Reference, IsSaidAndWrittenAndNothingElse) {
+    put(sagging("1", "0"));
+    EXPECT_EQ(command(false), ExitCode::outside_tolerance);
+    EXPECT_NE(out_.str().find("OTHER sag/way: 0.2484"), std::string::npos) << out_.str();
+    EXPECT_EQ(text(), sagging("1", "0"));
+
+    EXPECT_EQ(command(true), ExitCode::fine) << err_.str();
+    const ExpectDesc written = parse_scene(text(), "sag.toml").scene.expects.at(0);
+    EXPECT_NEAR(written.value, sagging_truth, *written.estimate);
+    std::ostringstream value, estimate;
+    value << text().substr(text().find("equals = ") + 9,
+                           text().find(" # m") - text().find("equals = ") - 9);
+    estimate << text().substr(text().find("estimate = ") + 11,
+                              text().find("\nsource") - text().find("estimate = ") - 11);
+    EXPECT_EQ(text(), sagging(value.str(), estimate.str()));
+    EXPECT_LE(value.str().size(), 12U) << "digits that say nothing";
+
+    EXPECT_EQ(command(true), ExitCode::fine);
+    EXPECT_NE(out_.str().find("Nothing to write"), std::string::npos) << out_.str();
+    EXPECT_EQ(command(false), ExitCode::fine);
+    EXPECT_NE(out_.str().find("ok    sag/way"), std::string::npos) << out_.str();
+}
+
+TEST_F(Reference, WithoutAnEstimateThereIsNoneToWrite) {
+    std::string text = sagging("1", "0");
+    text.erase(text.find("estimate"), text.find("source") - text.find("estimate"));
+    put(text);
+    EXPECT_THROW((void)command(true), std::invalid_argument);
+    EXPECT_EQ(command(false), ExitCode::fine); // said, and no more
+    EXPECT_NE(out_.str().find("OTHER"), std::string::npos) << out_.str();
+}
+
+} // namespace
+} // namespace plumb
