@@ -116,7 +116,6 @@ Real World::acting_side(const ContactKey &key) const {
     return static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
 }
 
-// A contact without its manifold.
 namespace {
 
 // The part of a surface's distance along a normal that rolling on it does not change: the radius of
@@ -132,8 +131,18 @@ Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &
                                                                            : Real(0);
 }
 
+// Once its origin is known.
+void set_rounding(Contact &contact, const Model &model) {
+    const ContactOrigin &origin = contact.origin;
+    contact.rounding_a =
+        rounding_along(model.colliders[contact.collider_a], origin.rotation_a, origin.normal);
+    contact.rounding_b =
+        rounding_along(model.colliders[contact.collider_b], origin.rotation_b, origin.normal);
+}
+
 } // namespace
 
+// A contact without its manifold.
 Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle,
                               std::vector<Contact> &out) const {
     Contact &contact = out.emplace_back();
@@ -149,13 +158,6 @@ Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle
     return contact;
 }
 
-void World::set_rounding(Contact &contact) const {
-    contact.rounding_a = rounding_along(model_->colliders[contact.collider_a],
-                                        contact.origin.rotation_a, contact.origin.normal);
-    contact.rounding_b = rounding_along(model_->colliders[contact.collider_b],
-                                        contact.origin.rotation_b, contact.origin.normal);
-}
-
 void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
                         const FoundManifold &found, std::vector<Contact> &out) const {
     if (found.manifold.count == 0)
@@ -165,7 +167,7 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     contact.moment = found.moment;
     const Vec3 &normal = contact.manifold.normal;
     contact.origin = origin_of(normal, found.a, found.b);
-    set_rounding(contact);
+    set_rounding(contact, *model_);
     const Real rounding_a = contact.rounding_a;
     const Real rounding_b = contact.rounding_b;
     const Real side = acting_side(contact.key);
@@ -222,7 +224,7 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
         return false;
     Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
     contact.origin = origin;
-    set_rounding(contact);
+    set_rounding(contact, *model_);
     const Real side = acting_side(candidate.key);
     const Vec3 &normal = origin.normal;
     const Mat3 then_a = glm::mat3_cast(origin.rotation_a);

@@ -26,7 +26,7 @@ struct ContactKey {
 
 // Where a contact point is on its bodies.
 struct ContactAnchor {
-    // The point without the rounding of its surface (rounding_along), in the mass frames: a round
+    // The point without the rounding of its surface (Contact), in the mass frames: a round
     // surface keeps its distance when the body rolls, so only the core's point turns with it.
     Vec3 core_a{Real(0)};
     Vec3 core_b{Real(0)};
@@ -68,7 +68,8 @@ struct Contact {
     Moment moment = Moment::start; // of the step, whose poses its normal and anchors are of
     Manifold manifold;
     ContactOrigin origin;
-    Real rounding_a = Real(0); // rounding_along of either collider (m)
+    // Radius of a surface that rolls: of a ball or capsule, of a cylinder on its side (m).
+    Real rounding_a = Real(0);
     Real rounding_b = Real(0);
     std::array<ContactAnchor, 4> anchors{};
     // For each manifold point what the solver remembers of the last substep (N s): along the

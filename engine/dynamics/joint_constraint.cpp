@@ -239,6 +239,20 @@ template <typename Due> void factor_groups(StepContext &context, Due &&is_due) {
     });
 }
 
+// How far a spring turns in a substep (rad), at twice the rate of the joint by itself: for others
+// at its bodies, and its own lever arms.
+Real spring_turn(const RowBlock &rows, Real h) {
+    return Real(4) * std::numbers::pi_v<Real> * rows.frequency * h;
+}
+
+// By the midpoint rule, a spring recalls less the stiffer it is for the substep: what one pass
+// leaves of a stiff one's impulse, of which the next is the opposite, would grow from substep to
+// substep where springs share bodies. A soft one that began anew would sag: its damper would see
+// what the pass has not come to yet.
+Real spring_recall(const RowBlock &rows, Real h) {
+    return std::max(Real(0), Real(1) - spring_turn(rows, h));
+}
+
 } // namespace
 
 void prepare_joints(StepContext &context) {
@@ -306,23 +320,9 @@ void remember_joints(StepContext &context) {
     }
 }
 
-// How far a spring turns in a substep (rad), at twice the rate of the joint by itself: for others
-// at its bodies, and its own lever arms.
-static Real spring_turn(const RowBlock &rows, Real h) {
-    return Real(4) * std::numbers::pi_v<Real> * rows.frequency * h;
-}
-
 Real spring_share(const RowBlock &rows, Real h) {
     const Real turn = spring_turn(rows, h);
     return turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
-}
-
-// By the midpoint rule, a spring recalls less the stiffer it is for the substep: what one pass
-// leaves of a stiff one's impulse, of which the next is the opposite, would grow from substep to
-// substep where springs share bodies. A soft one that began anew would sag: its damper would see
-// what the pass has not come to yet.
-static Real spring_recall(const RowBlock &rows, Real h) {
-    return std::max(Real(0), Real(1) - spring_turn(rows, h));
 }
 
 void recall_joints(StepContext &context, Real share, Springs springs) {

@@ -232,7 +232,6 @@ class World {
                            std::vector<Contact> &out) const;
     bool keeps_contacts() const;
     bool keep_contact(const Candidate &candidate, std::vector<Contact> &out) const;
-    void set_rounding(Contact &contact) const;
     void add_contact(const Candidate &candidate, std::uint32_t triangle, const FoundManifold &found,
                      std::vector<Contact> &out) const;
     void note_fixed_neighbors() const;

@@ -97,7 +97,7 @@ TEST_P(Scene, HasSomethingToHoldItTo) {
 
 // The state, written as a scene and loaded again, hashes the same and goes on the same.
 TEST_P(Scene, GoesOnTheSameFromASavedFile) {
-    const auto together = static_cast<std::uint64_t>(trials(100)); // steps
+    const auto together = static_cast<std::uint64_t>(std::max(40, trials(100))); // steps
     const SceneDesc scene = loaded(GetParam());
     for (const MethodInfo &method : method_infos()) {
         if (!why_not(method, scene).empty())
