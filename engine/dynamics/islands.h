@@ -50,6 +50,7 @@ struct Islands {
         int wanted = 0;
         int before = 0; // substeps of the last step, the most that any of its bodies took
         bool rests = true;
+        bool was_let_go = false; // see JointGroup, of any of its joints
         int substeps = 0;
     };
     std::vector<Needs> needs;

@@ -44,8 +44,8 @@ std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
 }
 
 // All rows of a group at once. Where bodies turn far within the substep, the ends of their arms
-// move along circles, and it takes some of Newton's steps until they meet.
-void solve_group(StepContext &context, const JointGroup &group, const JointPass &pass) {
+// move along circles, and it takes some of Newton's steps until they meet. Returns whether they do.
+bool solve_group(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
     // Far more than it takes when a body turns a radian within the substep.
@@ -65,7 +65,7 @@ void solve_group(StepContext &context, const JointGroup &group, const JointPass 
             holds = holds && glm::dot(side, side) <= most * most;
         }
         if (holds)
-            return;
+            return true;
         system.solve(group, sides);
         for (std::uint32_t place = group.first; place < group.last; ++place) {
             JointConstraint &joint = context.scratch.joints[system.block(place)];
@@ -74,18 +74,19 @@ void solve_group(StepContext &context, const JointGroup &group, const JointPass 
             apply(context, joint, change);
         }
     }
+    return !pass.at_the_end;
 }
 
-// Leaves a group to Gauss-Seidel, from the half of the remembered impulses with which the substep
-// began.
+// Leaves a group to Gauss-Seidel, without what it remembers: forces that nothing has stretched for
+// would give more energy than they took.
 void let_go(StepContext &context, JointGroup &group) {
     const JointSystem &system = context.scratch.joint_system;
     group.is_held = false;
+    group.was_let_go = !group.was_torn;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
-        const Vec3 change = Real(0.5) * joint.remembered - joint.impulse;
-        joint.impulse += change;
-        apply(context, joint, change);
+        apply(context, joint, -joint.impulse);
+        joint.impulse = joint.remembered = Vec3{Real(0)};
         joint.is_held = false;
         joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
     }
@@ -356,8 +357,7 @@ void solve_joints(StepContext &context, const JointPass &pass) {
     const auto hold = [&](std::size_t begin, std::size_t end) {
         for (JointGroup &group : groups.subspan(begin, end - begin))
             if (group.is_held) {
-                solve_group(context, group, pass);
-                if (!can_follow(context, group, pass.h))
+                if (!solve_group(context, group, pass))
                     let_go(context, group);
             }
     };

@@ -59,20 +59,11 @@ Real spring_share(const RowBlock &rows, Real h);
 // The length against which a block's drift is measured (m): that of its arms; 1 for angles.
 Real size_of(const RowBlock &rows);
 
-// What joints' forces do to the bodies that they act on: a force F at an arm r turns a body of
-// inertia I like a spring of stiffness F r, at the rate sqrt(F r / I), and an explicit substep h
-// follows rates up to about 1.2 / h.
-//
-// The stiffness of each body (N m): the sum of F r over its joints, from the impulses of the last
-// substep h.
-void joint_stiffness(StepContext &context, Real h, std::vector<Real> &stiffness);
-// Whether substeps of h follow what a group's joints do to its bodies, half of it in their
-// impulses.
-bool can_follow(StepContext &context, const JointGroup &group, Real h);
-// Begins a substep, before refresh_joints: where h is too long to follow, a body gets the inertia
-// that h follows (Andrews, Teichmann, Koevecses 2017, "Geometric Stiffness for Real-time
-// Constrained Multibody Dynamics"). Then says which groups are held: those that h follows, and that
-// have not been torn apart. Notes the bodies of which either changed (scratch.changed).
+// Begins a substep, before refresh_joints: where h is too long to follow what joints' forces do to
+// a body's turns, it gets the inertia that h follows (Andrews, Teichmann, Koevecses 2017,
+// "Geometric Stiffness for Real-time Constrained Multibody Dynamics"). Then says which groups are
+// held: those that have not been torn apart. Notes the bodies of which either changed
+// (scratch.changed).
 void follow_loads(StepContext &context, Real h);
 
 // Blocks of the joints that are alive and not broken, in order, then of the grab; poses are read by

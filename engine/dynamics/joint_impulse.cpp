@@ -166,18 +166,20 @@ Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b
     return v;
 }
 
-void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
-    if (rows.kind == RowKind::point) {
-        body.apply_impulse(impulse, arm);
-        return;
-    }
+Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse) {
+    if (rows.kind == RowKind::point)
+        return impulse;
     Vec3 sum = impulse.x * rows.axes[0];
     for (int i = 1; i < rows.count; ++i)
         sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
+    return sum;
+}
+
+void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
     if (rows.kind == RowKind::angular)
-        body.apply_angular_impulse(sum);
+        body.apply_angular_impulse(world_impulse(rows, impulse));
     else
-        body.apply_impulse(sum, arm);
+        body.apply_impulse(world_impulse(rows, impulse), arm);
 }
 
 Vec3 pushed(const Vec3 &bias, Real most) {

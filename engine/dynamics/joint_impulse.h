@@ -15,6 +15,8 @@ Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b);
 // How fast the rows' errors grow; at the end of pass.h where the pass says so.
 Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
                   const JointPass &pass);
+// What an impulse along the rows is in the world: a force's, or an angular one.
+Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse);
 // Of an impulse along the rows, at an arm of the body's.
 void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse);
 // No faster than `most`.

@@ -43,6 +43,8 @@ void JointSystem::arrange(StepContext &context) {
     if (!key_.empty() && key_.front() == context.bodies.size() &&
         std::ranges::equal(std::span(key_).subspan(1), joints, {}, {}, key_of)) {
         context.scratch.sides.resize(std::max(context.scratch.sides.size(), order_.size()));
+        for (JointGroup &group : groups_)
+            group.was_torn = group.was_let_go = false;
         return;
     }
     key_.assign(1, context.bodies.size());
@@ -165,7 +167,7 @@ bool JointSystem::eliminate(const std::vector<std::uint32_t> &members,
         }
         target_start_.push_back(static_cast<std::uint32_t>(targets_.size()));
     }
-    groups_.push_back({first, last, false});
+    groups_.push_back({.first = first, .last = last});
     return true;
 }
 

@@ -13,12 +13,15 @@ namespace plumb::inline PLUMB_PRECISION {
 struct StepContext;
 
 // Blocks first..last - 1 in a system's order of elimination. `is_held`: solved together in this
-// substep, not left to Gauss-Seidel. `is_factored`: it was when its joints were refreshed last.
+// substep, not left to Gauss-Seidel. `is_factored`: it was when its joints were refreshed last. In
+// this step: `was_torn` before a substep began, `was_let_go` before it was ever torn.
 struct JointGroup {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
     bool is_held = false;
     bool is_factored = false;
+    bool was_torn = false;
+    bool was_let_go = false;
 };
 
 // The equations of all rigid rows of joints that share dynamic bodies, factored as L D L^T in

@@ -6,6 +6,7 @@
 #include "engine/dynamics/contact_constraint.h"
 #include "engine/dynamics/descent.h"
 #include "engine/dynamics/events.h"
+#include "engine/dynamics/geometric_stiffness.h"
 #include "engine/dynamics/joint_constraint.h"
 #include "engine/dynamics/joint_system.h"
 #include "engine/dynamics/method_info.h"
@@ -34,7 +35,7 @@ struct SolverScratch {
     std::vector<std::uint32_t> first_blocks; // of each active joint and the grab, in `joints`
     JointSystem joint_system;
     std::vector<Vec3> sides;                     // of its equations, one for each place
-    std::vector<Real> stiffness;                 // of each body, see joint_stiffness
+    std::vector<GeometricStiffness> stiffness;   // of each body, by the last substep's impulses
     std::vector<std::uint8_t> changed;           // likewise: what follow_loads changed
     std::vector<FreeFlight> flights;             // one for each moving body
     std::vector<std::array<Vec3, 2>> velocities; // likewise, while pseudo velocities are solved

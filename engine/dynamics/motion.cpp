@@ -318,14 +318,14 @@ void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick)
 
 void end_flights(StepContext &context, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
-    const std::vector<Real> &stiffness = context.scratch.stiffness;
+    const std::vector<GeometricStiffness> &stiffness = context.scratch.stiffness;
     const auto end_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = context.moving()[i];
             SolverBody &motion = context.bodies[body];
             move_held(motion, context.model.bodies[body], flights[i], h,
                       context.settings.gyroscopic_iterations,
-                      kick == Kick::around && !stiffness.empty() && stiffness[body] > Real(0));
+                      kick == Kick::around && !stiffness.empty() && stiffness[body].most > Real(0));
             if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts off
                 motion.turned = rotation_vector(motion.rotation *
                                                 glm::conjugate(context.starts[body].rotation));

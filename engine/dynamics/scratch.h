@@ -84,7 +84,8 @@ struct Scratch {
     std::vector<JointSystem> joint_systems; // one for each group, which is often that of last step
     std::vector<double> loads;         // of each body: the square of the substeps that it wants
     std::vector<double> contact_loads; // of each contact of a group, likewise
-    std::vector<double> stiffness;     // of each body, that its joints' forces make (N m)
+    std::vector<GeometricStiffness> stiffness; // of each body, that its joints' forces make
+    std::vector<Vec3> guessed_stiffness; // likewise, for each newton that its joints may bear (m)
     std::vector<Impact> impacts;
     std::vector<ParticleMotion> particles; // the step's copy
     std::vector<std::uint8_t> torn;

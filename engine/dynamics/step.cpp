@@ -74,7 +74,8 @@ void World::step(TaskPool *tasks, StepTimes *times) {
             const StepReport before = report_;
             load_bodies();
             advance();
-            if (began_too_coarsely()) {
+            constexpr int most_refinements = 2;
+            for (int i = 0; i < most_refinements && went_too_coarsely(); ++i) {
                 scratch_.impacts.resize(impacts);
                 report_.impacts = before.impacts;
                 report_.unresolved_impacts = before.unresolved_impacts;
