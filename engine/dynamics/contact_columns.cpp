@@ -396,6 +396,13 @@ void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }
 
+bool anything_is_struck(const StepContext &context) {
+    return std::ranges::any_of(context.scratch.schedule.blocks, [](const ContactBlock &block) {
+        return std::ranges::any_of(std::span(block.struck.lanes).first(block.used),
+                                   [](Real struck) { return struck > Real(0); });
+    });
+}
+
 void store_contact_columns(StepContext &context) {
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (const ContactBlock &block : blocks)

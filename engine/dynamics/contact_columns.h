@@ -109,6 +109,8 @@ void rearm_contact_columns(StepContext &context);
 // As remember_contacts, recall_contacts, solve_contacts and store_contacts.
 void recall_contact_columns(StepContext &context, Real share, bool remember_first);
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
+// Whether any bodies closed faster than struck_speed in this substep.
+bool anything_is_struck(const StepContext &context);
 void store_contact_columns(StepContext &context);
 
 // Compiled for each instruction set (contact_kernels.cpp).
