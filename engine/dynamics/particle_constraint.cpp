@@ -88,14 +88,6 @@ Vec2 rates_of(const StepContext &context, const Spring &spring) {
     return Real(2) * glm::max(rates_at(context, spring.a), rates_at(context, spring.b));
 }
 
-// The largest rate times substep that is left to the lengths before and after the move, short of
-// the 2 at which that gains energy without bound.
-constexpr Real followed_turn = Real(1.5);
-
-Real pull_of(const Spring &spring, Real length) {
-    return spring.stiffness * (length - spring.rest_length);
-}
-
 void set_mass(const StepContext &context, SpringConstraint &row) {
     const Spring &spring = context.model.springs[row.spring];
     const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
@@ -112,51 +104,107 @@ void solve(StepContext &context, SpringConstraint &row) {
     apply(context, row, change);
 }
 
-// What h follows has no row here: its pull comes by itself, and its damping at the substep's end
-// (damp). Stiffer ones begin with the impulse of the explicit force at the middle or end of the
-// substep, as far as that is stable.
+struct Pull {
+    Vec3 axis;
+    Real impulse; // of the spring's share of the substep, along it
+};
+
+// V = k (l - r)^2 / 2 as a discrete gradient between lengths l0 and l1: the force -k (1 - 2 r / (l0
+// + l1)) times the mean of the two lines does the work V(l0) - V(l1).
+Pull pull_of(const Spring &spring, const Vec3 &line, const Vec3 &half_move, Real time) {
+    const Vec3 middle = line + half_move;
+    const Real lengths = glm::length(line) + glm::length(middle + half_move);
+    const Real distance = glm::length(middle);
+    if (!(distance > Real(0)))
+        return {Vec3{Real(0)}, Real(0)};
+    const Real stretch = distance * (Real(1) - Real(2) * spring.rest_length / lengths);
+    return {middle / distance, -time * spring.stiffness * stretch};
+}
+
+Real inverse_of(const StepContext &context, const SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    return EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
+           EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+}
+
+Vec3 relative_velocity(const StepContext &context, const SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    return velocity_at(context, spring.b, row.r_b) - velocity_at(context, spring.a, row.r_a);
+}
+
+// Both set the axis.
+Real aim(const StepContext &context, SpringConstraint &row, Real h) {
+    const Spring &spring = context.model.springs[row.spring];
+    const Real ahead = row.time.share * h;
+    const Pull pull = pull_of(spring, row.line, ahead * relative_velocity(context, row), ahead);
+    row.axis = pull.axis;
+    row.mass = Real(1) / (Real(1) + ahead * ahead * spring.stiffness * inverse_of(context, row));
+    return pull.impulse;
+}
+void solve_midpoint(StepContext &context, SpringConstraint &row, Real h) {
+    const Vec3 before = row.impulse * row.axis;
+    const Real wanted = aim(context, row, h);
+    const Real along = glm::dot(before, row.axis);
+    row.impulse = along + row.mass * (wanted - along);
+    const Spring &spring = context.model.springs[row.spring];
+    const Vec3 change = row.impulse * row.axis - before;
+    apply(context, spring.a, row.r_a, -change);
+    apply(context, spring.b, row.r_b, change);
+}
+
+// Begins with the impulse of the explicit force at the middle or end of the substep, as far as that
+// is stable.
 void refresh(StepContext &context, SpringConstraint &row, Real h, SpringRule rule) {
     const Spring &spring = context.model.springs[row.spring];
     const Real length = align(context, row);
     row.impulse = Real(0);
     row.mass = Real(0);
-    row.time = SpringTime{};
-    if (row.axis == Vec3{Real(0)})
-        return;
     row.time = spring_time(context, spring, h, rule);
-    if (row.time.is_followed || row.time.softness == Real(0))
+    if (rule == SpringRule::midpoint) {
+        row.line = length * row.axis;
+        row.impulse = row.time.guessed * aim(context, row, h);
+        return;
+    }
+    if (row.axis == Vec3{Real(0)} || row.time.softness == Real(0))
         return;
     row.softness = row.time.softness;
     row.bias = row.time.bias_rate * (length - spring.rest_length);
     set_mass(context, row);
-}
-
-// Half of a substep of the pull of a spring that it follows; 0 of others.
-Real half_pull(const StepContext &context, const SpringConstraint &row, Real length, Real h) {
-    return row.time.is_followed
-               ? Real(-0.5) * h * pull_of(context.model.springs[row.spring], length)
-               : Real(0);
-}
-
-// The guess is made for all springs from the same velocities.
-void guess(const StepContext &context, SpringConstraint &row) {
+    // For all springs from the same velocities.
     if (row.mass != Real(0))
         row.impulse = -row.time.guessed * (row.bias + speed_of(context, row)) / row.softness;
 }
 
-// The damping of springs that h follows, over all of it: of the velocities that the forces before
-// and after the move have left, which are 0 where these balance. It takes energy out however few
-// the passes are; within the move it would take away what the pulls hand on.
+// The rest of the impulse; and what the two have done too much or too little, as far as the passes
+// have left that, or contacts or turning bodies have made it.
+void repeat(StepContext &context, SpringConstraint &row, Real h) {
+    const Spring &spring = context.model.springs[row.spring];
+    const Vec3 first = row.impulse * row.axis;
+    const Vec3 both = first / row.time.share;
+    const Real length = align(context, row);
+    const Vec3 move = length * row.axis - row.line;
+    const Pull pull = pull_of(spring, row.line, Real(0.5) * move, row.time.share * h);
+    const Vec3 held = (pull.impulse / row.time.share) * pull.axis;
+    apply(context, spring.a, row.r_a, first - both);
+    apply(context, spring.b, row.r_b, both - first);
+    apply(context, row,
+          returned_impulse(speed_of(context, row), inverse_of(context, row),
+                           glm::dot(move, both - held) / h));
+}
+
+// The damping, over all of the substep: of the velocities that the pulls before and after the move
+// have left, which are 0 where these balance. It takes energy out however few the passes are;
+// within the move it would take away what the pulls hand on.
 void damp(StepContext &context, Real h) {
     const auto for_damped = [&](auto &&use) {
         for (SpringConstraint &row : context.scratch.springs)
-            if (row.time.is_followed && context.model.springs[row.spring].damping > Real(0))
+            if (context.model.springs[row.spring].damping > Real(0))
                 use(row);
     };
     for_damped([&](SpringConstraint &row) {
         const Real damping = h * context.model.springs[row.spring].damping;
         row.bias = Real(0);
-        row.impulse = -row.time.guessed * damping * speed_of(context, row);
+        row.impulse = -row.time.damped * damping * speed_of(context, row);
         row.softness = Real(0);
         set_mass(context, row);
         if (row.mass == Real(0))
@@ -282,23 +330,31 @@ void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
 SpringTime spring_time(const StepContext &context, const Spring &spring, Real h, SpringRule rule) {
     SpringTime out;
     const Vec2 rates = rates_of(context, spring);
-    out.is_followed =
-        rule == SpringRule::midpoint && h * h * rates.x <= followed_turn * followed_turn;
-    if (out.is_followed) {
-        out.guessed = Real(1) / std::max(Real(1), h * rates.y);
+    if (rule == SpringRule::midpoint) {
+        const Real turn = h * std::sqrt(rates.x);
+        out.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
+        out.guessed = Real(1) / std::max(Real(1), out.share * out.share * turn * turn);
+        out.is_swift = turn > Real(0.1);
+        out.damped = Real(1) / std::max(Real(1), h * rates.y);
         return out;
     }
-    const Real turn = h * std::max(std::sqrt(rates.x), rates.y);
-    if (rule == SpringRule::midpoint)
-        out.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
-    const Real time = out.share * h;
-    const Real pull = spring.damping + time * spring.stiffness;
+    const Real pull = spring.damping + h * spring.stiffness;
     if (!(pull > Real(0)))
         return out;
-    out.softness = Real(1) / (time * pull);
+    out.softness = Real(1) / (h * pull);
     out.bias_rate = spring.stiffness / pull;
-    out.guessed = Real(1) / std::max(Real(1), time * (time * rates.x + rates.y));
+    out.guessed = Real(1) / std::max(Real(1), h * (h * rates.x + rates.y));
     return out;
+}
+
+Real returned_impulse(Real speed, Real inverse, Real gained) {
+    const Real squared = speed * speed;
+    const Real change = Real(2) * inverse * gained;
+    const Real root = std::copysign(std::sqrt(std::max(Real(0), squared - change)), speed);
+    const Real sum = speed + root; // the difference of the roots would round
+    if (!(squared + had_for_given * change > Real(0)) || sum == Real(0))
+        return Real(0);
+    return -(change > squared ? squared / inverse : Real(2) * gained) / sum;
 }
 
 Real decay_softness(Real inverse, Real damping) {
@@ -326,6 +382,11 @@ void prepare_particles(StepContext &context, SpringRule rule) {
             s.springs.emplace_back().spring = i;
     }
     prepare_spring_columns(context, context.substep());
+    Real most = Real(0);
+    for (const Vec2 &rates : s.spring_rates)
+        most = std::max(most, rates.x);
+    const Real turn = context.substep() * std::sqrt(Real(2) * most);
+    s.spring_schedule.passes = turn < Real(3) ? 2 + static_cast<int>(turn) : 5;
     for (std::uint32_t i = 0; i < context.particle_contacts.size(); ++i) {
         ParticleContactConstraint &row = s.particle_contacts.emplace_back();
         row.contact = i;
@@ -366,25 +427,26 @@ void refresh_particles(StepContext &context, Real h, SpringRule rule) {
         return;
     pull_particle(context, h);
     SolverScratch &s = context.scratch;
-    for (SpringConstraint &row : s.springs) {
+    for (SpringConstraint &row : s.springs)
         refresh(context, row, h, rule);
-        guess(context, row); // nothing for those that h follows, whose mass is 0 here
-    }
     aim_spring_columns(context, SpringPart::pull);
     for (ParticleContactConstraint &row : s.particle_contacts)
         refresh(context, row);
-    for (const SpringConstraint &row : s.springs) {
-        const Spring &spring = context.model.springs[row.spring];
-        const Vec3 line = spring_point(spring.b, context.bodies, context.particles).position -
-                          spring_point(spring.a, context.bodies, context.particles).position;
-        apply(context, row, row.impulse + half_pull(context, row, glm::dot(line, row.axis), h));
-    }
+    for (const SpringConstraint &row : s.springs)
+        apply(context, row, row.impulse);
     begin_spring_columns(context, SpringPart::pull);
 }
 
-void solve_springs(StepContext &context) {
+int spring_passes(const StepContext &context) {
+    return context.scratch.spring_schedule.passes;
+}
+
+void solve_springs(StepContext &context, SpringRule rule) {
     for (SpringConstraint &row : context.scratch.springs)
-        solve(context, row);
+        if (rule == SpringRule::midpoint)
+            solve_midpoint(context, row, context.substep());
+        else
+            solve(context, row);
     solve_spring_columns(context, SpringPart::pull);
     context.report.constraint_passes +=
         context.scratch.springs.size() + context.scratch.spring_schedule.springs.size();
@@ -442,14 +504,8 @@ void drift_particles(StepContext &context, Real h) {
 }
 
 void repeat_particle_springs(StepContext &context, Real h) {
-    for (SpringConstraint &row : context.scratch.springs) {
-        if (row.time.share == Real(1) && !row.time.is_followed)
-            continue;
-        const Real length = align(context, row);
-        apply(context, row,
-              (Real(1) / row.time.share - Real(1)) * row.impulse +
-                  half_pull(context, row, length, h));
-    }
+    for (SpringConstraint &row : context.scratch.springs)
+        repeat(context, row, h);
     repeat_spring_columns(context);
     damp(context, h);
 }

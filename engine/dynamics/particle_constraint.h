@@ -13,29 +13,38 @@ namespace plumb::inline PLUMB_PRECISION {
 struct Model;
 struct StepContext;
 
-// How springs follow the time of a substep. midpoint: springs that h follows pull by their lengths
-// before and after the move (Stoermer and Verlet), so that what hangs at rest hangs where they hold
-// it, and energy is kept, however few the passes; stiffer ones by the midpoint rule, and less and
-// less of it, down to implicit Euler.
+// How springs follow the time of a substep. midpoint: each pulls before the move and after it with
+// the same impulse, along the mean of its lines before and after, so that the two do the work that
+// its length asks for (a discrete gradient, Gonzalez 1996, "Time Integration and Discrete
+// Hamiltonian Systems"); what hangs at rest hangs where they hold it, however few the passes are.
+// Those that swing too fast for h do less and less of it after the move, down to implicit Euler.
 enum class SpringRule { implicit_euler, midpoint };
 
 // A spring's part in a substep.
 struct SpringTime {
-    bool is_followed = false; // half of its pull comes before the move and half after it
-    // Of all others, whose row is k and c as softness over their share of h (Catto 2011, "Soft
-    // Constraints": gamma = 1 / (h (c + h k)), beta / h = k / (c + h k)):
-    Real share = Real(1);     // 1/2 the midpoint rule, 1 implicit Euler
+    Real share = Real(1); // of h, at whose end the pull is taken: 1/2 the midpoint rule
+    // Of the impulse that the present speed asks for, so much keeps all springs together stable.
+    Real guessed = Real(1);
+    // midpoint only: whether that is too little by itself; and of the damping alone, after the
+    // move, what is guessed.
+    bool is_swift = false;
+    Real damped = Real(1);
+    // implicit_euler only, whose row is k and c as softness over h (Catto 2011, "Soft Constraints":
+    // gamma = 1 / (h (c + h k)), beta / h = k / (c + h k)):
     Real softness = Real(0);  // gamma, 1/kg; 0: the spring does nothing
     Real bias_rate = Real(0); // beta / h, 1/s
-    // Of the impulse that the present speed asks for of the row's softness alone (for those that
-    // are followed: of their damping), so much keeps all springs together stable.
-    Real guessed = Real(1);
 };
 SpringTime spring_time(const StepContext &context, const Spring &spring, Real h, SpringRule rule);
 // So soft that of a speed along a row e^-x is left, x = damping inverse: exact over any substep
 // where the row is alone. (Softness 1 / damping leaves 1 / (1 + x), as implicit Euler does.)
 // `inverse`: of the row's mass (1/kg), `damping`: over the substep (N s / (m/s)); both > 0.
 Real decay_softness(Real inverse, Real damping);
+
+// The impulse along the line between two ends that part at `speed`, whose response is `inverse`
+// (1/kg), that takes `gained` (J) from their energy, or gives them back what they lost. It takes no
+// more than stops them, and gives back only what is little of what they have: else each time that
+// it cannot take all would leave a gain.
+Real returned_impulse(Real speed, Real inverse, Real gained);
 
 // A spring as a soft row (Catto 2011, "Soft Constraints").
 struct SpringConstraint {
@@ -44,9 +53,10 @@ struct SpringConstraint {
     Vec3 r_a{Real(0)};        // arms on bodies, world
     Vec3 r_b{Real(0)};
     SpringTime time;
-    Real softness = Real(0);   // gamma, 1/kg; of what is followed: of its damping alone
+    Vec3 line{Real(0)};        // midpoint: from a to b as the substep began (m)
+    Real softness = Real(0);   // gamma, 1/kg; midpoint: of its damping alone
     Real bias = Real(0);       // beta / h times the error, m/s
-    Real mass = Real(0);       // 1 / (K + gamma)
+    Real mass = Real(0);       // 1 / (K + gamma); midpoint: see SpringBlock::answer
     Real impulse = Real(0);    // accumulated, along the axis on b (N s)
     Real remembered = Real(0); // for recall_particles
 };
@@ -90,7 +100,9 @@ void pull_particle(StepContext &context, Real h);
 // Pulls so; then rows and contacts at the present poses; begins both with what they bear by
 // themselves.
 void refresh_particles(StepContext &context, Real h, SpringRule rule);
-void solve_springs(StepContext &context);
+// That soft_step makes over them.
+int spring_passes(const StepContext &context);
+void solve_springs(StepContext &context, SpringRule rule = SpringRule::implicit_euler);
 void solve_particle_contacts(StepContext &context, const ParticlePush &push, Real h);
 // Adds a share of what springs and contacts remember to their impulses, and applies it.
 void recall_particles(StepContext &context, Real share);

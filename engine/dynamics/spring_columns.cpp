@@ -80,29 +80,25 @@ void fill_lane(const StepContext &context, SpringBlock &block, std::uint32_t ind
     block.inv_mass_a.lanes[lane] = a.inv_mass;
     block.inv_mass_b.lanes[lane] = b.inv_mass;
     block.rest_length.lanes[lane] = spring.rest_length;
+    block.rate = Real(1) / h;
     const Real inverse = a.inv_mass + b.inv_mass;
     if (!(inverse > Real(0)))
         return;
     const SpringTime time = spring_time(context, spring, h, SpringRule::midpoint);
-    if (time.is_followed) {
-        block.of_stretch.lanes[lane] = Real(0.5) * h * spring.stiffness;
-        block.of_stretch_after.lanes[lane] = Real(0.5) * h * spring.stiffness;
-        const Real damping = h * spring.damping;
-        if (damping > Real(0)) {
-            block.any_damped = true;
-            const Real softness = decay_softness(inverse, damping);
-            block.damping.softness.lanes[lane] = softness;
-            block.damping.mass.lanes[lane] = Real(1) / (inverse + softness);
-            block.damping.of_speed.lanes[lane] = time.guessed * damping;
-        }
-    } else if (time.softness > Real(0)) {
-        block.any_stiff = true;
-        block.bias_rate.lanes[lane] = time.bias_rate;
-        block.pull.softness.lanes[lane] = time.softness;
-        block.pull.mass.lanes[lane] = Real(1) / (inverse + time.softness);
-        block.pull.of_speed.lanes[lane] = time.guessed / time.softness;
-        block.of_stretch.lanes[lane] = time.guessed * time.bias_rate / time.softness;
-        block.repeated.lanes[lane] = Real(1) / time.share - Real(1);
+    const Real ahead = time.share * h;
+    block.any_swift = block.any_swift || time.is_swift;
+    block.time.lanes[lane] = ahead;
+    block.of_stretch.lanes[lane] = ahead * spring.stiffness;
+    block.guessed.lanes[lane] = time.guessed;
+    block.answer.lanes[lane] = Real(1) / (Real(1) + ahead * ahead * spring.stiffness * inverse);
+    block.of_both.lanes[lane] = Real(1) / time.share;
+    const Real damping = h * spring.damping;
+    if (damping > Real(0)) {
+        block.any_damped = true;
+        const Real softness = decay_softness(inverse, damping);
+        block.damping.softness.lanes[lane] = softness;
+        block.damping.mass.lanes[lane] = Real(1) / (inverse + softness);
+        block.damping.of_speed.lanes[lane] = time.damped * damping;
     }
 }
 

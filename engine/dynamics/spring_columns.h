@@ -15,7 +15,7 @@ struct StepContext;
 
 // 16 springs of one colour: none shares a particle with another. Lanes that are not used are zeros.
 struct SpringBlock {
-    // A soft row: change = -mass (speed + softness impulse [+ what the stretch asks for]).
+    // A soft row: change = -mass (speed + softness impulse).
     struct Row {
         Column mass;
         Column softness;
@@ -23,23 +23,24 @@ struct SpringBlock {
         Column of_speed;
     };
     std::size_t used = 0;
-    bool any_stiff = false;  // some spring that a substep does not follow (SpringTime)
-    bool any_damped = false; // some spring that it follows and that has damping
+    Real rate = Real(0);     // 1 / substep (1/s)
+    bool any_swift = false;  // some spring that needs passes (SpringTime)
+    bool any_damped = false; // some spring that has damping
     IndexColumn a;
     IndexColumn b;
     Column inv_mass_a;
     Column inv_mass_b;
     Column rest_length;
-    // Of the stretch (N s/m): the impulse before the move, and that after it.
-    Column of_stretch;
-    Column of_stretch_after;
-    Column repeated;  // of the row's impulse, likewise after the move
-    Column bias_rate; // speed that the row of a stiff spring asks for, for its stretch (1/s)
-    Row pull;         // of stiff springs
-    Row damping;      // of those that a substep follows
-    Columns3 axis;    // unit, from a to b; 0 where they are at one point
-    Column stretch;   // as the substep began (m)
-    Column impulse;   // of the row that is being solved (N s)
+    Column time;       // of the substep, at which the pull is taken (s)
+    Column of_stretch; // the impulse before the move, of the stretch (N s/m)
+    Column guessed;    // the part of it with which the passes begin
+    Column answer;     // of what a pass finds missing, so much is right once the speed answers
+    Column of_both;    // the impulses before and after the move, as multiples of that before it
+    Row damping;
+    Columns3 line;  // from a to b as the substep began (m)
+    Column length;  // of that
+    Columns3 axis;  // unit, of the impulse
+    Column impulse; // N s, on b
 };
 
 // One colour after another; blocks of one colour share no particle.
@@ -51,6 +52,7 @@ struct SpringSchedule {
     std::vector<std::uint8_t> colour_of_spring;     // likewise
     std::vector<std::uint64_t> colours_of_particle; // bit c: colour c has a spring of it
     std::vector<std::uint32_t> sizes;               // of the colours
+    int passes = 1;                                 // that all springs need, these and others
 };
 
 // Positions and velocities as the kernels find them: six Reals a particle.
@@ -61,18 +63,21 @@ struct ParticleReals {
     static constexpr int stride = 6;
 };
 
-// The rows of stiff springs, before the move; or those of damping, after it.
+// Energy is given back to a spring's ends only where they have so many times as much (see
+// returned_impulse).
+inline constexpr Real had_for_given = Real(10);
+
+// Before the move; after it.
 enum class SpringPart { pull, damping };
 
 // Of the springs in schedule.springs. All others do nothing where there are no blocks.
 void prepare_spring_columns(StepContext &context, Real h);
-// The impulses with which rows begin, for the present velocities; of `pull`, the lines and lengths
-// too, and what springs that a substep follows give before the move.
+// The impulses with which passes begin, for the present velocities; of `pull`, the lines too.
 void aim_spring_columns(StepContext &context, SpringPart part);
 // Applies those.
 void begin_spring_columns(StepContext &context, SpringPart part);
 void solve_spring_columns(StepContext &context, SpringPart part);
-// What springs do in the rest of the substep, along the lines as they are now.
+// The impulses after the move.
 void repeat_spring_columns(StepContext &context);
 
 // Compiled for each instruction set (spring_kernels.cpp).

@@ -93,8 +93,8 @@ void advance_soft_step(StepContext &context) {
         }
         for (int i = 0; i < settings.iterations; ++i) {
             solve_joints(context, holding);
-            if (has_particles) {
-                solve_springs(context);
+            for (int k = 0; has_particles && k < spring_passes(context); ++k) {
+                solve_springs(context, SpringRule::midpoint);
                 solve_particle_contacts(context, particle_push, h);
             }
             solve_contact_columns(context, contact_bias, h);
