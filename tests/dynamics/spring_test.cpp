@@ -122,6 +122,78 @@ TEST(SoftStepSprings, HoldWhatHangsWhereTheyShould) {
     }
 }
 
+// Undamped springs between particles, stretched 1.1 to 10 times or slack, thrown about: a pair, a
+// row from a pin or free, a net within a frame; swinging at 0.2 to 60 rad a step.
+class StretchedSprings : public testing::TestWithParam<std::string> {
+  protected:
+    static World thrown(Random &random, double turn, const std::string &shape) {
+        const auto spread = [&](double low, double high) {
+            return low * std::pow(high / low, random.next_in(0, 1));
+        };
+        StepSettings settings = weightless(settings_for("soft_step"));
+        settings.dt = 1 / (random.next_in(0, 1) < 0.5 ? 30.0 : 240.0);
+        World world("soft_step", settings);
+        const double mass = spread(0.01, 10), rate = turn / settings.dt;
+        const double length = spread(0.02, 1);
+        const double at = length * (random.next_in(0, 1) < 0.2 ? 0.5 : spread(1.1, 10));
+        const auto add = [&](const V &position, bool pinned) {
+            ParticleDef def = particle_at(position, mass, pinned);
+            if (!pinned)
+                def.velocity = narrow(any_vector(random, 0.5 * at * rate));
+            return of_particle(world.add_particle(def));
+        };
+        const auto tie = [&](const SpringEnd &a, const SpringEnd &b) {
+            world.add_spring(spring(a, b, length, mass * rate * rate / 2));
+        };
+        if (shape == "net") {
+            constexpr int n = 5;
+            std::vector<SpringEnd> all;
+            for (int i = 0; i < n * n; ++i) {
+                const int x = i % n, z = i / n;
+                const bool edge = x % (n - 1) == 0 || z % (n - 1) == 0;
+                all.push_back(add(at * (V{x, 0, z} + any_vector(random, 0.2)), edge));
+                if (x > 0)
+                    tie(all[std::size_t(i - 1)], all.back());
+                if (z > 0)
+                    tie(all[std::size_t(i - n)], all.back());
+            }
+            return world;
+        }
+        const int links = shape == "pair" ? 1 : int(random.next_in(2, 20));
+        SpringEnd last = add(V{0}, shape == "row from a pin");
+        for (int i = 1; i <= links; ++i) {
+            const SpringEnd next = add(at * (V{i, 0, 0} + any_vector(random, 0.2)), false);
+            tie(last, next);
+            last = next;
+        }
+        return world;
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Shapes, StretchedSprings,
+                         testing::Values("pair", "row from a pin", "free row", "net"),
+                         [](const auto &shape) {
+                             std::string name = shape.param;
+                             std::ranges::replace(name, ' ', '_');
+                             return name;
+                         });
+
+TEST_P(StretchedSprings, KeepTheirEnergy) {
+    Random random(7);
+    for (const double turn : {0.3, 0.8, 2.0, 5.0, 12.0, 25.0, 50.0})
+        for (int i = 0; i < 4; ++i) {
+            World world = thrown(random, turn, GetParam());
+            const double before = world.energy();
+            double most = before;
+            for (int step = 0; step < 240; ++step) {
+                run(world, 1);
+                most = std::max(most, world.energy());
+            }
+            ASSERT_TRUE(world.report().finite);
+            EXPECT_LT(most, 1.03 * before) << turn << ' ' << i;
+            EXPECT_GT(world.energy(), turn < 6 ? 0.97 * before : 0) << turn << ' ' << i;
+        }
+}
+
 // Particles and bodies that springs tie together, and nothing else holds.
 World floating(const std::string &method) {
     World world(method, weightless(settings_for(method)));
