@@ -90,7 +90,7 @@ void fill_lane(const StepContext &context, SpringBlock &block, std::uint32_t ind
     block.time.lanes[lane] = ahead;
     block.of_stretch.lanes[lane] = ahead * spring.stiffness;
     block.guessed.lanes[lane] = time.guessed;
-    block.answer.lanes[lane] = Real(1) / (Real(1) + ahead * ahead * spring.stiffness * inverse);
+    block.answer.lanes[lane] = ahead * ahead * spring.stiffness * inverse;
     block.of_both.lanes[lane] = Real(1) / time.share;
     const Real damping = h * spring.damping;
     if (damping > Real(0)) {

@@ -24,7 +24,7 @@ struct SpringBlock {
     };
     std::size_t used = 0;
     Real rate = Real(0);     // 1 / substep (1/s)
-    bool any_swift = false;  // some spring that needs passes (SpringTime)
+    bool any_swift = false;  // of these springs some are (SpringTime); then all are solved as such
     bool any_damped = false; // some spring that has damping
     IndexColumn a;
     IndexColumn b;
@@ -34,13 +34,14 @@ struct SpringBlock {
     Column time;       // of the substep, at which the pull is taken (s)
     Column of_stretch; // the impulse before the move, of the stretch (N s/m)
     Column guessed;    // the part of it with which the passes begin
-    Column answer;     // of what a pass finds missing, so much is right once the speed answers
+    Column answer;     // how much less each N s of it asks for, by the speed that it makes
     Column of_both;    // the impulses before and after the move, as multiples of that before it
     Row damping;
     Columns3 line;  // from a to b as the substep began (m)
     Column length;  // of that
-    Columns3 axis;  // unit, of the impulse
-    Column impulse; // N s, on b
+    Columns3 pull;  // the impulse before the move (N s, on b)
+    Columns3 axis;  // unit, of the damping
+    Column impulse; // of that, on b (N s)
 };
 
 // One colour after another; blocks of one colour share no particle.

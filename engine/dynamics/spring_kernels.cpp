@@ -54,22 +54,20 @@ HWY_INLINE Lanes quotient(Lanes x, Lanes y) {
 }
 
 struct Pull {
-    Vector axis;
-    Lanes impulse; // of the spring's share of the substep, along it
+    Vector middle;
+    Lanes across;
+    Vector impulse;
 };
 
-// As pull_of in particle_constraint.cpp.
+// As pull_of in spring_constraint.cpp.
 HWY_INLINE Pull pull_of(const SpringBlock &block, const Vector &line, const Vector &half_move,
                         std::size_t lane) {
     const Vector middle = plus(line, half_move);
     const Vector after = plus(middle, half_move);
     const Lanes lengths = hn::Add(load(block.length, lane), hn::Sqrt(dot(after, after)));
-    const Lanes distance = hn::Sqrt(dot(middle, middle));
-    const Lanes share = quotient(distance, lengths);
-    const Lanes stretch =
-        hn::Sub(distance, hn::Mul(hn::Add(share, share), load(block.rest_length, lane)));
-    return {times(quotient(all(Real(1)), distance), middle),
-            hn::Neg(hn::Mul(load(block.of_stretch, lane), stretch))};
+    const Lanes rest = load(block.rest_length, lane);
+    const Lanes across = hn::Sub(all(Real(1)), quotient(hn::Add(rest, rest), lengths));
+    return {middle, across, times(hn::Neg(hn::Mul(load(block.of_stretch, lane), across)), middle)};
 }
 
 void aim_pull(SpringBlock &block, const ParticleReals &particles) {
@@ -77,11 +75,13 @@ void aim_pull(SpringBlock &block, const ParticleReals &particles) {
         const Vector line = lines(block, particles, lane);
         store(line, block.line, lane);
         store(hn::Sqrt(dot(line, line)), block.length, lane);
-        const Ends ends = velocities(block, particles, lane);
-        const Pull pull =
-            pull_of(block, line, times(load(block.time, lane), minus(ends.b, ends.a)), lane);
-        store(pull.axis, block.axis, lane);
-        store(hn::Mul(load(block.guessed, lane), pull.impulse), block.impulse, lane);
+        Vector half_move{hn::Zero(tag), hn::Zero(tag), hn::Zero(tag)};
+        if (block.any_swift) {
+            const Ends ends = velocities(block, particles, lane);
+            half_move = times(load(block.time, lane), minus(ends.b, ends.a));
+        }
+        const Pull pull = pull_of(block, line, half_move, lane);
+        store(times(load(block.guessed, lane), pull.impulse), block.pull, lane);
     }
 }
 
@@ -94,24 +94,33 @@ void aim_damping(SpringBlock &block, const ParticleReals &particles) {
     }
 }
 
-void begin_impl(const SpringBlock &block, const ParticleReals &particles) {
+void begin_impl(const SpringBlock &block, const ParticleReals &particles, SpringPart part) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag))
         apply(velocities(block, particles, lane),
-              times(load(block.impulse, lane), load(block.axis, lane)), block, particles, lane);
+              part == SpringPart::pull ? load(block.pull, lane)
+                                       : times(load(block.impulse, lane), load(block.axis, lane)),
+              block, particles, lane);
 }
 
+// As solve_midpoint in spring_constraint.cpp: the slope is one number along the line and one across
+// it.
 void solve_pull(SpringBlock &block, const ParticleReals &particles) {
+    const Lanes one = all(Real(1));
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         const Ends ends = velocities(block, particles, lane);
         const Pull pull = pull_of(block, load(block.line, lane),
                                   times(load(block.time, lane), minus(ends.b, ends.a)), lane);
-        const Vector before = times(load(block.impulse, lane), load(block.axis, lane));
-        const Lanes along = dot(before, pull.axis);
-        const Lanes now =
-            hn::Add(along, hn::Mul(load(block.answer, lane), hn::Sub(pull.impulse, along)));
-        store(pull.axis, block.axis, lane);
-        store(now, block.impulse, lane);
-        apply(ends, minus(times(now, pull.axis), before), block, particles, lane);
+        const Vector before = load(block.pull, lane);
+        const Vector missing = minus(pull.impulse, before);
+        const Lanes answer = load(block.answer, lane);
+        const Lanes along = hn::Div(one, hn::Add(one, answer));
+        const Lanes across =
+            hn::Div(one, hn::Add(one, hn::Mul(answer, hn::Max(pull.across, hn::Zero(tag)))));
+        const Lanes of_middle = quotient(dot(missing, pull.middle), dot(pull.middle, pull.middle));
+        const Vector change = plus(times(across, missing),
+                                   times(hn::Mul(hn::Sub(along, across), of_middle), pull.middle));
+        store(plus(before, change), block.pull, lane);
+        apply(ends, change, block, particles, lane);
     }
 }
 
@@ -129,7 +138,7 @@ void solve_damping(SpringBlock &block, const ParticleReals &particles) {
     }
 }
 
-// returned_impulse (particle_constraint.h), lane by lane.
+// returned_impulse (spring_constraint.h), lane by lane.
 HWY_INLINE Lanes returned(Lanes speed, Lanes inverse, Lanes gained) {
     const Lanes zero = hn::Zero(tag);
     const Lanes squared = hn::Mul(speed, speed);
@@ -144,22 +153,35 @@ HWY_INLINE Lanes returned(Lanes speed, Lanes inverse, Lanes gained) {
                               hn::Neg(hn::Div(taken, hn::IfThenElse(does, sum, all(Real(1))))));
 }
 
-void repeat_impl(SpringBlock &block, const ParticleReals &particles) {
+// As repeat in spring_constraint.cpp.
+void repeat_slow(const SpringBlock &block, const ParticleReals &particles) {
+    for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
+        const Vector line = lines(block, particles, lane);
+        const Lanes across = hn::Sub(
+            all(Real(1)), quotient(load(block.rest_length, lane), hn::Sqrt(dot(line, line))));
+        apply(velocities(block, particles, lane),
+              times(hn::Neg(hn::Mul(load(block.of_stretch, lane), across)), line), block, particles,
+              lane);
+    }
+}
+
+void repeat_swift(const SpringBlock &block, const ParticleReals &particles) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         const Vector before = load(block.line, lane);
         const Vector after = lines(block, particles, lane);
         const Vector move = minus(after, before);
-        const Pull pull = pull_of(block, before, times(all(Real(0.5)), move), lane);
-        const Vector first = times(load(block.impulse, lane), load(block.axis, lane));
-        const Vector both = times(load(block.of_both, lane), first);
-        const Vector impulse = minus(both, first);
-        const Vector held = times(load(block.of_both, lane), times(pull.impulse, pull.axis));
-        const Lanes gained = hn::Mul(all(block.rate), dot(move, minus(both, held)));
+        const Pull held = pull_of(block, before, times(all(Real(0.5)), move), lane);
+        const Vector first = load(block.pull, lane);
+        const Lanes of_both = load(block.of_both, lane);
+        const Vector both = times(of_both, first);
+        const Lanes gained =
+            hn::Mul(all(block.rate), dot(move, times(of_both, minus(first, held.impulse))));
+        const Vector rest = minus(both, first);
         Ends ends = velocities(block, particles, lane);
         const Lanes in_a = load(block.inv_mass_a, lane);
         const Lanes in_b = load(block.inv_mass_b, lane);
-        ends.a = minus(ends.a, times(in_a, impulse));
-        ends.b = plus(ends.b, times(in_b, impulse));
+        ends.a = minus(ends.a, times(in_a, rest));
+        ends.b = plus(ends.b, times(in_b, rest));
         const Vector axis = times(quotient(all(Real(1)), hn::Sqrt(dot(after, after))), after);
         const Lanes back = returned(ends.speed_along(axis), hn::Add(in_a, in_b), gained);
         apply(ends, times(back, axis), block, particles, lane);
@@ -179,7 +201,7 @@ void begin_springs(std::span<const SpringBlock> blocks, const ParticleReals &par
                    SpringPart part) {
     for (const SpringBlock &block : blocks)
         if (part == SpringPart::pull || block.any_damped)
-            begin_impl(block, particles);
+            begin_impl(block, particles, part);
 }
 void solve_springs(std::span<SpringBlock> blocks, const ParticleReals &particles, SpringPart part) {
     for (SpringBlock &block : blocks)
@@ -191,7 +213,10 @@ void solve_springs(std::span<SpringBlock> blocks, const ParticleReals &particles
 }
 void repeat_springs(std::span<SpringBlock> blocks, const ParticleReals &particles) {
     for (SpringBlock &block : blocks)
-        repeat_impl(block, particles);
+        if (block.any_swift)
+            repeat_swift(block, particles);
+        else
+            repeat_slow(block, particles);
 }
 
 } // namespace kernels::HWY_NAMESPACE

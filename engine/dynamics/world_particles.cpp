@@ -19,7 +19,7 @@ namespace {
 constexpr double particle_rest_share = 4e-3;
 
 // Rate of the fastest springs times the substep that is asked for, some short of what they can be
-// followed to (particle_constraint.cpp): they turn and tighten within the step. And how fast they
+// followed to (spring_constraint.cpp): they turn and tighten within the step. And how fast they
 // may slow down what they hold, likewise: one pass over strong dampers on light particles loses
 // what these should hand on.
 constexpr double followed_swing = 1.25;
