@@ -17,10 +17,16 @@ namespace {
 // the move, which keeps the angular momentum to rounding.
 constexpr Real swift_turn = Real(0.1);
 
-// As many as leave the energy of what swings through turn rad a substep right to a hundredth, and
-// angular momentum to 1e-6 over hundreds of steps where turn < 1.
+// As many as leave the energy of what swings through `turn` rad a substep right to a hundredth, and
+// angular momentum to 1e-5, over hundreds of steps.
 int passes_for(Real turn) {
     return turn <= swift_turn ? 1 : 2 + static_cast<int>(std::min(Real(2.5) * turn, Real(3)));
+}
+
+// With fewer, energy grows by up to 2e-5 of it a radian; damping takes more.
+constexpr Real least_damping = Real(0.01); // of the rate at which it swings
+int passes_for_damped(Real turn) {
+    return turn <= Real(0.6) ? 1 : turn <= Real(1.5) ? 2 : passes_for(turn);
 }
 
 // What a spring's end is fastened to, as far as impulses move it.
@@ -346,10 +352,13 @@ void prepare_springs(StepContext &context, SpringRule rule) {
             s.springs.emplace_back().spring = i;
     }
     prepare_spring_columns(context, h);
-    Real most = Real(0);
-    for (const Vec2 &rates : s.spring_rates)
-        most = std::max(most, rates.x);
-    s.spring_schedule.passes = passes_for(h * std::sqrt(Real(2) * most));
+    Real damped = Real(0), undamped = Real(0);
+    for (const Vec2 &rates : s.spring_rates) {
+        const bool is_damped = rates.y > least_damping * std::sqrt(rates.x);
+        Real &most = is_damped ? damped : undamped;
+        most = std::max(most, h * std::sqrt(Real(2) * rates.x));
+    }
+    s.spring_schedule.passes = std::max(passes_for(undamped), passes_for_damped(damped));
 }
 
 void begin_springs(StepContext &context, Real h, SpringRule rule) {
