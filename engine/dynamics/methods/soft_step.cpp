@@ -24,7 +24,8 @@ namespace {
 // that lands would be thrown up again. Where something was struck, as many more as the budget
 // allows.
 int relaxing_passes(const StepContext &context) {
-    // The top of ten cubes goes up again at a tenth of its speed; after one pass, as fast as it came.
+    // The top of ten cubes goes up again at a tenth of its speed; after one pass, as fast as it
+    // came.
     constexpr int most = 16;
     const StepSettings &settings = context.settings;
     const std::size_t work = context.active.contacts.size() + context.active.joints.size();
