@@ -190,7 +190,9 @@ TEST_P(StretchedSprings, KeepTheirEnergy) {
             }
             ASSERT_TRUE(world.report().finite);
             EXPECT_LT(most, 1.03 * before) << turn << ' ' << i;
-            EXPECT_GT(world.energy(), turn < 6 ? 0.97 * before : 0) << turn << ' ' << i;
+            if (turn < 6) { // what is faster may be damped
+                EXPECT_GT(world.energy(), 0.97 * before) << turn << ' ' << i;
+            }
         }
 }
 
