@@ -125,7 +125,10 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     const float text_left = left + 34;
     const float width = layout.size.x - 20 - text_left;
     float y = layout.plot.min.y + 10;
-    constexpr float row = 26;
+    // Down to the small print; many series stand closer, so that what follows finds room.
+    const float bottom = layout.plot.max.y + 54;
+    const bool many = content.series.size() > 9;
+    const float row = many ? 20 : 26, entry_row = many ? 19 : 23;
     for (const ChartSeries &series : content.series) {
         pen.line({left, y}, {left + 24, y}, series_colour(series), 1.8f);
         pen.mark({left + 12, y}, series.style, mark_radius + 1.3f, paper);
@@ -140,7 +143,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     };
     const auto entry = [&](const std::string &text) {
         pen.text({text_left, y}, text, Face::label, soft_ink, {0, 0.5f});
-        y += 23;
+        y += entry_row;
     };
     if (!layout.pareto_steps.empty()) {
         pen.line({left, y}, {left + 24, y}, front, 7);
@@ -176,7 +179,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         entry("spread of the timings");
     }
     const auto list = [&](const char *title, const std::vector<std::string> &texts) {
-        if (texts.empty() || y + 33 > layout.plot.max.y - 4)
+        if (texts.empty() || y + 33 > bottom)
             return;
         y += 12;
         pen.text({left, y}, title, Face::label, soft_ink, {0, 0.5f});
@@ -184,15 +187,17 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         for (const std::string &text : texts)
             for (const std::string &line :
                  pen.wrapped(text, Face::footer, layout.size.x - 20 - left)) {
-                if (y > layout.plot.max.y - 4)
+                if (y > bottom)
                     return;
-                pen.text({left, y}, line, Face::footer, faint_ink, {0, 0.5f});
+                const bool last = y + 16 > bottom && (&text != &texts.back());
+                pen.text({left, y}, last ? "…" : line, Face::footer, faint_ink, {0, 0.5f});
                 y += 16;
             }
     };
-    list("Failed", content.failures);
+    // What may be long comes last.
     list("Worst expectation", content.worst);
     list("Not on this chart", content.left_out);
+    list("Failed", content.failures);
 }
 
 } // namespace

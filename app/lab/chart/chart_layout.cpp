@@ -9,7 +9,8 @@ namespace plumb {
 
 namespace {
 
-constexpr float strip = 40; // height of the strips for failed runs and for zero error
+// Height of the strips for failed runs and for zero error: a mark with a label above or below it.
+constexpr float strip = 54;
 
 // The length of the part of a segment inside a box (Liang and Barsky 1984).
 float length_inside(const std::pair<glm::vec2, glm::vec2> &segment, const PixelBox &box) {
@@ -273,6 +274,11 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
+    for (const std::optional<float> &border :
+         {layout.failed_line ? std::optional(field.min.y) : std::nullopt,
+          layout.zero_line ? std::optional(field.max.y) : std::nullopt})
+        if (border)
+            obstacles.push_back({{plot.min.x, *border - 1}, {plot.max.x, *border + 1}});
     layout.labels = place_labels(layout.marks, sizes, radii, order, layout.plot, obstacles, lines);
     return layout;
 }

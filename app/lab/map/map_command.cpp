@@ -21,7 +21,7 @@ namespace plumb {
 namespace {
 
 void write_picture(const MapCommand &command, const StabilityMap &map, std::ostream &err) {
-    MapPicture picture{map, theory_of(map), grouped_reasons(map.left_out)};
+    MapPicture picture{map, theory_of(map, command.options.base), grouped_reasons(map.left_out)};
     if (!command.command.empty())
         picture.footer.push_back(command.command);
     std::filesystem::path place = command.image;

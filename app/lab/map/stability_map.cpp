@@ -238,8 +238,8 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     if (!as_it_is.ok())
         throw std::invalid_argument(scene.path.string() + " is not a scene");
     map.scene = std::move(as_it_is.scene);
-    if (map.scene.bodies.empty())
-        throw std::invalid_argument("the scene has no body, and so no motion to map");
+    if (!has_world(map.scene))
+        throw std::invalid_argument("the scene has only probes, and so no motion to map");
     if (options.duration && !map.scene.expects.empty())
         throw std::invalid_argument("the scene says itself how long it runs: until the last window "
                                     "of what it expects ends");

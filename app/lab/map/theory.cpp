@@ -1,14 +1,29 @@
 #include "app/lab/map/theory.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <string_view>
+#include <utility>
 
 namespace plumb {
 
 namespace {
 
 constexpr int curve_points = 400;
+
+// Of an undamped oscillator, by explicit methods; explicit Euler is stable at no step.
+struct SpringLimit {
+    double omega_h;
+    std::string_view text;
+    std::array<std::string_view, 3> methods;
+};
+constexpr std::array spring_limits{
+    SpringLimit{2, "2", {"semi_implicit_euler", "stormer_verlet", "velocity_verlet"}},
+    SpringLimit{2 * std::numbers::sqrt2, "2√2", {"rk4"}},
+};
 
 struct FlownAxis {
     std::string body;
@@ -97,34 +112,98 @@ std::optional<StruckBody> struck_before_wall(const SceneDesc &scene, const std::
                       0.5 * (behind.near + behind.far) - 0.5 * (target.near + target.far)};
 }
 
-std::vector<TheoryCurve> theory_of(const StabilityMap &map) {
-    const auto is_dt = [](const MapAxis &axis) { return axis.name == "dt"; };
-    if (is_dt(map.x) == is_dt(map.y))
-        return {};
-    const bool dt_along_x = is_dt(map.x);
-    const MapAxis &dt_axis = dt_along_x ? map.x : map.y;
-    const std::optional<FlownAxis> flown = flown_axis(map.scene, dt_along_x ? map.y : map.x);
+bool swings_by_itself(const SceneDesc &scene, const std::string &spring) {
+    if (scene.springs.size() != 1 || !scene.cloths.empty() || !scene.joints.empty())
+        return false;
+    const SpringDesc &only = scene.springs.front();
+    return only.name == spring && only.damping == 0 && only.a.empty() != only.b.empty();
+}
+
+namespace {
+
+struct DtAxis {
+    bool along_x = false;
+    const MapAxis &dt, &other;
+
+    [[nodiscard]] glm::dvec2 point(double dt_value, double value) const {
+        return along_x ? glm::dvec2(dt_value, value) : glm::dvec2(value, dt_value);
+    }
+    // A value of the other axis for each dt.
+    template <typename Of> [[nodiscard]] std::vector<glm::dvec2> curve(const Of &value) const {
+        std::vector<glm::dvec2> points;
+        // Beyond both ends, for the halves of the outer cells.
+        const double low = 0.5 * dt.values.front(), high = 2 * dt.values.back();
+        for (int i = 0; i <= curve_points; ++i) {
+            const double at = low * std::pow(high / low, static_cast<double>(i) / curve_points);
+            points.push_back(point(at, value(at)));
+        }
+        return points;
+    }
+};
+
+void add_struck(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes) {
+    const std::optional<FlownAxis> flown = flown_axis(map.scene, axes.other);
     if (!flown)
-        return {};
+        return;
     const std::optional<StruckBody> struck =
         struck_before_wall(map.scene, flown->body, flown->axis);
     if (!struck)
-        return {};
+        return;
     TheoryCurve curve;
     curve.name = "theory: struck to the wall's middle in one step";
     for (const MethodMap &of_method : map.methods)
         if (of_method.method->contacts && !of_method.method->looks_ahead)
             curve.methods.push_back(of_method.method);
     if (curve.methods.empty())
-        return {};
-    // Beyond both ends, for the halves of the outer cells.
-    const double low = 0.5 * dt_axis.values.front(), high = 2 * dt_axis.values.back();
-    for (int i = 0; i <= curve_points; ++i) {
-        const double dt = low * std::pow(high / low, static_cast<double>(i) / curve_points);
-        const double speed = struck->way / (struck->speed_ratio * dt);
-        curve.points.push_back(dt_along_x ? glm::dvec2(dt, speed) : glm::dvec2(speed, dt));
+        return;
+    curve.points = axes.curve([&](double dt) { return struck->way / (struck->speed_ratio * dt); });
+    curves.push_back(std::move(curve));
+}
+
+void add_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes,
+                const RunOptions &base) {
+    const std::string_view name = axes.other.name, head = "spring.", tail = ".frequency";
+    if (!name.starts_with(head) || !name.ends_with(tail) ||
+        name.size() <= head.size() + tail.size() ||
+        !swings_by_itself(map.scene, std::string(name.substr(
+                                         head.size(), name.size() - head.size() - tail.size()))))
+        return;
+    // Those of one limit and as many substeps share a curve.
+    for (const SpringLimit &limit : spring_limits) {
+        std::map<int, std::vector<const MethodInfo *>> by_substeps;
+        for (const MethodMap &of_method : map.methods) {
+            if (std::ranges::find(limit.methods, of_method.method->name) == limit.methods.end())
+                continue;
+            RunOptions run = base;
+            run.method = std::string(of_method.method->name);
+            by_substeps[resolve_run(map.scene, run).settings.substeps].push_back(of_method.method);
+        }
+        for (const auto &[substeps, methods] : by_substeps) {
+            std::string label = "theory: ω dt = ";
+            if (substeps > 1)
+                label += std::to_string(substeps) + " × ";
+            label += limit.text;
+            for (const MethodInfo *method : methods)
+                label.append(method == methods.front() ? " (" : ", ").append(method->name);
+            const double omega_dt = limit.omega_h * substeps;
+            curves.push_back({label + ")", methods, axes.curve([&](double dt) {
+                                  return omega_dt / (2 * std::numbers::pi * dt);
+                              })});
+        }
     }
-    return {curve};
+}
+
+} // namespace
+
+std::vector<TheoryCurve> theory_of(const StabilityMap &map, const RunOptions &base) {
+    const auto is_dt = [](const MapAxis &axis) { return axis.name == "dt"; };
+    if (is_dt(map.x) == is_dt(map.y))
+        return {};
+    const DtAxis axes{is_dt(map.x), is_dt(map.x) ? map.x : map.y, is_dt(map.x) ? map.y : map.x};
+    std::vector<TheoryCurve> curves;
+    add_struck(curves, map, axes);
+    add_spring(curves, map, axes, base);
+    return curves;
 }
 
 } // namespace plumb

@@ -6,6 +6,8 @@
 #include "tests/lab/csv_reader.h"
 
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
@@ -169,6 +171,77 @@ TEST(StabilityMap, TheoryIsReadFromTheScene) {
     open.bodies.erase(open.bodies.begin());
     EXPECT_FALSE(struck_before_wall(open, "heavy", 0));
     EXPECT_TRUE(struck_before_wall(map.scene, "heavy", 0));
+}
+
+// An oscillator of omega, let go at rest: explicit methods are stable up to omega h = 2, or 2
+// sqrt(2) of RK4.
+TEST(StabilityMap, ASpringIsThrownWhereTheoryHasIt) {
+    constexpr const char *spring = R"(
+[world]
+gravity = [0, 0, 0]
+[[particle]]
+name = "bob"
+position = [0, -1.05, 0]
+[[spring]]
+name = "coil"
+b = "bob"
+anchor_a = [0, 0, 0]
+rest_length = 1
+frequency = 1
+[[expect]]
+name = "bounded"
+quantity = "energy_error"
+reduce = "max"
+to = 3
+at_most = 300
+source = "linear stability"
+)";
+    for (const int substeps : {1, 3}) {
+        MapOptions options;
+        options.methods = {"soft_step", "semi_implicit_euler", "stormer_verlet", "velocity_verlet",
+                           "rk4",       "backward_euler"};
+        options.base.settings = parse_setting("substeps=" + std::to_string(substeps));
+        const StabilityMap map =
+            map_scene({"scene.toml", spring}, parse_map_axis("dt=1/60..1/4:5log"),
+                      parse_map_axis("spring.coil.frequency=4,8"), options);
+        std::map<const MethodInfo *, std::vector<glm::dvec2>> theory;
+        for (const TheoryCurve &curve : theory_of(map, options.base))
+            for (const MethodInfo *method : curve.methods)
+                theory[method] = curve.points;
+        EXPECT_EQ(theory.size(), 4U);
+        for (const MethodMap &of_method : map.methods) {
+            if (!theory.contains(of_method.method)) {
+                EXPECT_TRUE(of_method.limits.empty()) << of_method.method->name;
+                continue;
+            }
+            const double limit = of_method.method->name == "rk4" ? std::sqrt(8.0) : 2;
+            for (const glm::dvec2 &point : theory[of_method.method])
+                EXPECT_NEAR(2 * std::numbers::pi * point.y * point.x, limit * substeps, 1e-12);
+            for (const MapLimit &found : of_method.limits)
+                // A cell is a factor of 2, cut into 32 parts.
+                EXPECT_NEAR(2 * std::numbers::pi * found.y * between(map.x, found.low, found.high),
+                            limit * substeps, 0.02 * limit * substeps)
+                    << of_method.method->name;
+            EXPECT_FALSE(of_method.limits.empty());
+        }
+    }
+}
+
+TEST(StabilityMap, ASpringWithDampingOrANeighbourHasNoTheory) {
+    SceneDesc scene;
+    SpringDesc &spring = scene.springs.emplace_back();
+    spring.name = "coil";
+    spring.b = "bob";
+    EXPECT_TRUE(swings_by_itself(scene, "coil"));
+    EXPECT_FALSE(swings_by_itself(scene, "other"));
+    spring.damping = 1;
+    EXPECT_FALSE(swings_by_itself(scene, "coil"));
+    spring.damping = 0;
+    spring.a = "bib";
+    EXPECT_FALSE(swings_by_itself(scene, "coil"));
+    spring.a = "";
+    scene.springs.push_back(SpringDesc(spring));
+    EXPECT_FALSE(swings_by_itself(scene, "coil"));
 }
 
 // Semi-implicit Euler falls by g t (t + dt) / 2: 5.085 m, the least that is true enough, it comes
