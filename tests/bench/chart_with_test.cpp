@@ -60,5 +60,23 @@ TEST(ChartWith, AFallIsTheSameInAll) {
             << run.resolved.method->name;
 }
 
+TEST(ChartWith, SingleStepsAreTakenFromTheSameStates) {
+    SceneDesc fall = falling_scene();
+    fall.bodies[0].velocity = {1, 2, 3};
+    fall.bodies[0].angular_velocity = {3, 2, 1};
+    ChartOptions options;
+    options.one_step = true;
+    options.methods = {"semi_implicit_euler"};
+    for (const OtherEngine &engine : other_engines())
+        options.engines.push_back(&engine);
+    options.sweep = {parse_sweep("substeps=1")};
+    options.repeats = 1;
+    const SceneChart chart = chart_scene(fall, options);
+    EXPECT_EQ(chart.runs.size(), 1 + options.engines.size());
+    // All three are semi-implicit: a step is off by g dt^2 / 2.
+    for (const ChartRun &run : chart.runs)
+        EXPECT_NEAR(run.error, 0.5 * 9.81 / 3600, 2e-5) << run.resolved.method->name;
+}
+
 } // namespace
 } // namespace plumb

@@ -152,10 +152,9 @@ class Charting {
             throw std::invalid_argument("durations must be above 0 s");
         if (options_.shard.n < 1 || options_.shard.n > options_.shard.of)
             throw std::invalid_argument("there is no such shard");
-        if (options_.one_step &&
-            (options_.convergence || !options_.expect.empty() || !options_.engines.empty()))
-            throw std::invalid_argument("a chart of single steps is of no expectation, of one dt, "
-                                        "and of our own methods");
+        if (options_.one_step && (options_.convergence || !options_.expect.empty()))
+            throw std::invalid_argument("a chart of single steps is of no expectation and of one "
+                                        "dt");
         if (options_.convergence && options_.precisions.empty() && !options_.base.precision)
             options_.precisions = {Precision::dual};
         chart_.scene = scene;
@@ -262,8 +261,17 @@ class Charting {
         run.run = judge_run(*simulated, scene_, judging);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
         if (states_ && !run.run.divergence && !run.run.stopped) {
+            std::shared_ptr<Simulation> engine; // it remembers within, not in the scene
             run.one_step =
-                states_->error_of([&](const SceneDesc &state) { return simulation(next, state); });
+                states_->error_of([&](const SceneDesc &state) -> std::shared_ptr<Simulation> {
+                    if (next.engine == nullptr)
+                        return simulation(next, state);
+                    if (engine)
+                        put(*engine, state);
+                    else
+                        engine = simulation(next, state);
+                    return engine;
+                });
             run.run.stopped = stopped();
         }
         set_cost(run);

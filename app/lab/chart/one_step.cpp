@@ -206,7 +206,7 @@ OneStepError OneStepStates::error_of(const Make &make) const {
                 return error;
             }
             put_state(scene, stretch.frames[i], soft_);
-            const std::unique_ptr<Simulation> simulation = make(scene);
+            const std::shared_ptr<Simulation> simulation = make(scene);
             const double dt = simulation->settings().dt;
             const auto steps = std::lround(frame_ / dt);
             if (std::abs(static_cast<double>(steps) * dt - frame_) > 1e-6 * frame_) {

@@ -30,7 +30,7 @@ struct OneStepOptions {
 
 class OneStepStates {
   public:
-    using Make = std::function<std::unique_ptr<Simulation>(const SceneDesc &)>;
+    using Make = std::function<std::shared_ptr<Simulation>(const SceneDesc &)>;
 
     // Runs the scene as accurate_run has it, with 64 steps of 4 substeps a frame. A frame is the
     // scene's dt, or as many of them as make 1/60 s. Throws std::invalid_argument when nothing in
@@ -41,8 +41,8 @@ class OneStepStates {
     // is its own: it goes along with the accurate run, and takes poses and velocities of that at
     // every frame. Those with which it begins to remember, up to 16, are not counted.
     //
-    // `make` makes a simulation of that scene; with a dt that does not divide the frame there is no
-    // error.
+    // `make` makes a simulation of that scene, or puts one that it made before there; with a dt
+    // that does not divide the frame there is no error.
     [[nodiscard]] OneStepError error_of(const Make &make) const;
 
     [[nodiscard]] double frame() const { return frame_; } // s

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,11 @@ class Engine {
     // In the order of the scene's bodies. Velocities of bodies that are not dynamic may be
     // anything.
     [[nodiscard]] virtual std::vector<BodyState> states() const = 0;
+    // Puts each dynamic body so, in the scene's order; what it remembers of the step before stays.
+    // Only charts of single steps ask for it; throws std::invalid_argument where it cannot.
+    virtual void put(const std::vector<BodyState> &) {
+        throw std::invalid_argument("an engine that cannot be put anywhere");
+    }
 };
 
 // Bullet and ODE; null where the scene has what they are not given. The scene outlives the engine.

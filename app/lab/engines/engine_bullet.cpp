@@ -120,6 +120,18 @@ class BulletEngine final : public Engine {
         return states;
     }
 
+    void put(const std::vector<BodyState> &states) override {
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            btRigidBody &body = *bodies_[i];
+            if (body.isStaticOrKinematicObject())
+                continue;
+            body.setCenterOfMassTransform(
+                btTransform(of(states[i].orientation), of(states[i].position)));
+            body.setLinearVelocity(of(states[i].velocity));
+            body.setAngularVelocity(of(states[i].angular_velocity));
+        }
+    }
+
   private:
     BodyState state(std::size_t body) const {
         const btRigidBody &of_body = *bodies_[body];

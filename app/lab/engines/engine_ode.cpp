@@ -107,6 +107,22 @@ class OdeEngine final : public Engine {
         collide_share_ = (collided - begin) / (thread_cpu_time() - begin);
     }
 
+    void put(const std::vector<BodyState> &states) override {
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            dBodyID body = bodies_[i];
+            if (body == nullptr || dBodyIsKinematic(body) != 0)
+                continue;
+            const BodyState &state = states[i];
+            const glm::dvec3 &p = state.position, &v = state.velocity, &w = state.angular_velocity;
+            dQuaternion turn;
+            set(turn, state.orientation);
+            dBodySetPosition(body, real(p.x), real(p.y), real(p.z));
+            dBodySetQuaternion(body, turn);
+            dBodySetLinearVel(body, real(v.x), real(v.y), real(v.z));
+            dBodySetAngularVel(body, real(w.x), real(w.y), real(w.z));
+        }
+    }
+
     StepWork work() const override {
         return {collide_share_, touching_,
                 (touching_ + scene_.desc.joints.size()) *

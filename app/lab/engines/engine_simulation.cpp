@@ -131,6 +131,14 @@ class EngineSimulation final : public Simulation {
         into.time = time();
         into.bodies = engine_->states();
     }
+    void put(const SceneDesc &scene) {
+        std::vector<BodyState> states;
+        for (const BodyDesc &body : scene.bodies)
+            states.push_back(
+                {body.position, body.orientation, body.velocity, body.angular_velocity});
+        engine_->put(states);
+        report_is_of_ = ~std::uint64_t{0};
+    }
     std::optional<Pick> pick(const glm::dvec3 &, const glm::dvec3 &) const override {
         return std::nullopt;
     }
@@ -161,6 +169,10 @@ class EngineSimulation final : public Simulation {
 std::unique_ptr<Simulation> engine_simulation(const OtherEngine &engine, const SceneDesc &scene,
                                               const ResolvedRun &run) {
     return std::make_unique<EngineSimulation>(engine, scene, run);
+}
+
+void put(Simulation &of_engine, const SceneDesc &scene) {
+    dynamic_cast<EngineSimulation &>(of_engine).put(scene);
 }
 
 } // namespace plumb

@@ -15,4 +15,8 @@ namespace plumb {
 [[nodiscard]] std::unique_ptr<Simulation>
 engine_simulation(const OtherEngine &engine, const SceneDesc &scene, const ResolvedRun &run);
 
+// Puts the engine's dynamic bodies as the scene has them, which differs from its own in their poses
+// and velocities alone; what the engine remembers stays. Requires one that engine_simulation made.
+void put(Simulation &of_engine, const SceneDesc &scene);
+
 } // namespace plumb

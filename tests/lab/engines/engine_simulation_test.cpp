@@ -5,6 +5,7 @@
 #include "app/lab/run/judged_run.h"
 #include "engine/scene/scene_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -114,6 +115,53 @@ TEST(EngineSimulation, StandsOnTheChartBesideTheMethods) {
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(errors[i], 0.5 * gravity * std::pow(0.5, std::array{1, 2, 8}[i]), 1e-9);
     EXPECT_EQ(chart_content(chart, "").series.back().name, "Pretended, double");
+}
+
+// Semi-implicit Euler, which remembers how often it was put.
+class SteppedEngine final : public Engine {
+  public:
+    explicit SteppedEngine(const EngineScene &scene) : dt_(scene.dt()) {
+        for (const BodyDesc &body : scene.desc.bodies)
+            states_.push_back({body.position, body.orientation, body.velocity});
+    }
+    void step() override {
+        states_[1].velocity.y -= gravity * dt_;
+        states_[1].position.y += states_[1].velocity.y * dt_;
+    }
+    StepWork work() const override { return {}; }
+    std::vector<BodyState> states() const override { return states_; }
+    void put(const std::vector<BodyState> &states) override {
+        states_ = states;
+        most_puts = std::max(most_puts, ++puts_);
+    }
+
+    static inline int most_puts = 0;
+
+  private:
+    double dt_;
+    std::vector<BodyState> states_;
+    int puts_ = 0;
+};
+
+TEST(EngineSimulation, SingleStepsAreOfOneEngineThatIsPutFromStateToState) {
+    OtherEngine engine = falling_engine();
+    engine.create = [](const EngineScene &scene) { return std::make_unique<SteppedEngine>(scene); };
+    SceneDesc scene = ball_above_floor();
+    scene.expects[0].to = 0.5;
+    ChartOptions options;
+    options.one_step = true;
+    options.methods = {"rk4", "semi_implicit_euler"};
+    options.engines = {&engine};
+    options.sweep = {parse_sweep("substeps=2")};
+    options.repeats = 1;
+    SteppedEngine::most_puts = 0;
+    const SceneChart chart = chart_scene(scene, options);
+    const ChartRun &run = chart.runs.back();
+    ASSERT_EQ(run.resolved.method, &engine.info);
+    const double h = 1.0 / 120; // g h t / 2
+    EXPECT_NEAR(run.one_step.rms, 0.5 * gravity * h / 60, 1e-9);
+    EXPECT_NEAR(run.one_step.worst, run.one_step.rms, 1e-9);
+    EXPECT_EQ(SteppedEngine::most_puts, 29); // of 30 states; with the first it was made
 }
 
 TEST(EngineSimulation, WhatItIsNotToldOfIsLeftOutWithAReason) {
