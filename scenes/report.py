@@ -3,37 +3,162 @@
 commands, and which method, dt, substeps and iterations are enough.
 
 usage: scenes/report.py [--program build/release/bin/plumb] [--out out/report] [--only NAME,…]
-                        [--quick] [--with bullet,ode]
+                        [--quick] [--with bullet,ode] [--publish]
 
-Writes OUT/report.md, and the tables and pictures beside it. All of it takes less than half an hour
+Writes OUT/README.md, and the tables and pictures beside it. All of it takes less than half an hour
 on two cores; --quick makes tiny charts, to see that it works. Interrupted (Ctrl-C), it writes the page
 of what is done, and the same command goes on from there: OUT/done.txt says which commands this
-program has finished, until all are. Exit code 1 when a command failed.
+program has finished, until all are. With --publish the whole page and its pictures go into
+scenes/report/, in place of those there. Exit code 1 when a command failed.
 """
 
 import argparse
 import csv
+import dataclasses
+import math
+import os
 import pathlib
+import re
 import shlex
+import shutil
 import subprocess
 import sys
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+PUBLISHED = ROOT / "scenes/report"
 
-# A problem: its scene, what is asked of it, the options of its chart, and of its map if it has one.
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    scene: str
+    kind: str  # of scene, in the table at the top
+    title: str
+    asked: str
+    charts: tuple = ("",)  # options of each
+    area: str = ""  # options of its map
+    tune: str | None = ""  # options; None: its map is the answer
+    notes: str = ""
+    # Of a map over dt: a product of dt (s) and y that theory knows, and its name.
+    product: object = None
+    product_name: str = ""
+    mapped_substeps: str = "1"
+
+
+AWAKE = "--set sleep_after=0"
 PROBLEMS = [
-    ("mass_on_spring", "A spring without friction", "--convergence --expect period", None),
-    ("pendulum", "A pendulum's period", "", None),
-    ("heavy_chain", "A chain with a heavy end", "", None),
-    ("ten_box_stack", "A stack", "--set sleep_after=0", None),
-    ("slope_holds", "Friction that holds", "", None),
-    ("bounce_half", "Restitution", "", None),
-    ("struck_before_wall", "Struck before a wall", "",
-     "--x dt=1/480..1/30:9log --y body.heavy.velocity.x=5..80:5log "
-     "--methods soft_step,tgs_soft,sequential_impulses"),
-    ("hanging_cloth", "Cloth", "", None),
+    Problem("mass_on_spring", "springs", "A mass on a spring",
+            "Three masses swing on springs of 0.5, 1 and 2 Hz, and nothing brakes them. How fast does "
+            "the error of the period fall with dt, and what does a swing cost that is true in period, "
+            "height and energy?",
+            ("--convergence --expect period", "")),
+    Problem("spring_limit", "springs, how stiff", "How stiff a spring may be",
+            "A spring that nothing brakes, of 1 to 32 Hz: up to which dt does it stay bounded? Theory "
+            "(dashed) says ω dt = 2 for the symplectic methods and 2√2 for Runge-Kutta 4.",
+            (), "--x dt=1/480..1/15:11log --y spring.coil.frequency=1..32:6log --methods "
+            "soft_step,explicit_euler,semi_implicit_euler,velocity_verlet,rk4,backward_euler", None,
+            "Explicit Euler is stable at no step: where it holds, energy grew less than 300 times in "
+            "5 s. What is bounded need not be true: backward Euler damps, and no step longer than "
+            "half a period can follow a swing.",
+            lambda dt, y: 2 * math.pi * y * dt, "ω dt"),
+    Problem("pendulum", "a joint that swings", "A pendulum",
+            "A bob on a rod is let go at 60 degrees. Does it keep its energy, its period and the length "
+            "of its rod for 20 s?"),
+    Problem("top", "a spinning top", "A spinning top",
+            "A top that leans by 30 degrees goes round its tip once in 3.14 s. Does it go round as fast "
+            "as the closed form says, for 7 s, and neither sink nor rise?"),
+    Problem("heavy_chain", "a chain with a heavy end", "A chain with a heavy end",
+            "Ten light links carry a ball a hundred times as heavy. Do the links stay together, and "
+            "does the chain swing without losing its energy?"),
+    Problem("ten_box_stack", "a stack", "A stack",
+            "Ten boxes stand on each other. Do they stay where they are, and hardly sink in?",
+            (AWAKE,), tune=AWAKE),
+    Problem("slope_holds", "friction that holds", "Friction that holds",
+            "A box lies on a slope that is just not steep enough for it to slide. Does it stay within "
+            "2 mm for 10 s?",
+            (AWAKE,), tune=AWAKE),
+    Problem("bounce_half", "restitution", "Restitution",
+            "A ball falls and bounces with half its speed each time. Does it come up as high as it "
+            "should, twice, and then lie still?",
+            (AWAKE,), tune=AWAKE),
+    Problem("struck_before_wall", "fast impacts", "Struck before a wall",
+            "A ball at rest 10 cm before a wall of 1 cm is struck by one ten times as heavy. Does it "
+            "stay on its side? The chart is of 20 m/s, the map of 5 to 80 m/s.",
+            ("",), "--x dt=1/480..1/30:9log --y body.heavy.velocity.x=5..80:5log "
+            "--methods soft_step,tgs_soft,sequential_impulses", None,
+            "What holds at one speed and step may fail at the next, so that the map counts, not the "
+            "cheapest dot of the chart.", mapped_substeps="4 to 64"),
+    Problem("hanging_cloth", "cloth", "Cloth",
+            "Two sheets hang from an edge and from two corners. Does the first stretch under its own "
+            "weight as far as the closed form says, does the second hang evenly, and does energy not "
+            "grow?",
+            ("--sweep substeps=1..8 --repeats 2",),
+            tune="--precision float --dt 1/120 --methods "
+            "soft_step,semi_implicit_euler,stormer_verlet,velocity_verlet",
+            notes="Tuning goes through the cheapest methods of the chart alone, at the scene's own dt."),
+    Problem("tumbling", "a chaotic heap", "A heap",
+            "Twelve crystals and twelve drums fall into a heap. Runs of it part however true they are, "
+            "so the chart is of single steps: how far off is each body a sixtieth of a second after "
+            "states of one accurate run?",
+            (f"--one-step {AWAKE}",), tune=AWAKE,
+            notes="The scene itself expects no more than that nothing sinks in or gains energy."),
 ]
 QUICK = "--repeats 1 --sweep substeps=1,4 --methods soft_step,sequential_impulses"
+CHOSEN = re.compile(r"is (?P<method>\w+) with (?P<substeps>\S+) substeps?"
+                    r"(, (?P<iterations>\d+) iterations?)? and a dt of (?P<dt>\S+ s), in "
+                    r"(?P<precision>\w+): (?P<cost>\S+) ms of CPU time for a simulated second, worst "
+                    r"error (?P<error>\S+) of its tolerance( \((?P<worst>[^)]*)\))?")
+
+
+def shown_path(path):
+    """From the repository, where it is in there."""
+    path = path.resolve()
+    return str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
+
+
+def chart_stem(scene, options):
+    kind = [name for name in ("convergence", "one-step") if "--" + name in options]
+    return ".".join([scene, *kind])
+
+
+def commands_of(problem, out="out/report", quick=False):
+    """Each of the program's commands for a problem, as a list of its words, from the repository."""
+    commands = []
+    for chart in problem.charts[:1] if quick else problem.charts:
+        options = shlex.split(chart)
+        if quick:
+            kind = [name for name in ("--convergence", "--one-step") if name in options]
+            sweep = "--sweep dt=1/240..1/60" if "--convergence" in kind else QUICK
+            options = kind + shlex.split(sweep)
+        commands.append(["chart", problem.scene, *options, "--out", out])
+    if problem.area and not quick:
+        commands.append(["map", problem.scene, *shlex.split(problem.area), "--image",
+                         f"{out}/{problem.scene}.map.png", "--csv",
+                         f"{out}/{problem.scene}.map.csv"])
+    if problem.tune is not None and not quick:
+        commands.append(["tune", problem.scene, *shlex.split(problem.tune)])
+    return commands
+
+
+def in_words(command):
+    return "./plumb " + shlex.join(command)
+
+
+def hertz(seconds):
+    return f"1/{1 / seconds:.4g} s"
+
+
+def substeps_of(row):
+    most = int(row["max_substeps"])
+    chooses = row["method"] == "soft_step" and most > int(row["substeps"])
+    return row["substeps"] + (f" to {most}" if chooses else "")
+
+
+def share_of_tolerance(row):
+    """The worst error of a run in units of its tolerance, and whose it is."""
+    scaled = [(float(value), name.removesuffix(".scaled_error")) for name, value in row.items()
+              if name.endswith(".scaled_error") and value]
+    return max(scaled, default=(math.inf, ""))
 
 
 class Interrupted(Exception):
@@ -49,6 +174,7 @@ class Done:
         self.head = f"{program} {stat.st_size} {stat.st_mtime_ns}"
         lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
         self.commands = lines[1:] if lines[:1] == [self.head] else []
+        self.any_earlier = bool(self.commands)
 
     def add(self, command):
         self.commands.append(command)
@@ -63,28 +189,30 @@ class Report:
         self.program, self.out = options.program, pathlib.Path(options.out)
         self.quick, self.engines = options.quick, options.engines
         self.lines, self.failed = [], []
+        self.summary = []  # rows of the table at the top
+        self.pictures = []
+        self.provenance = ""
         self.done = Done(self.out / "done.txt", self.program)
 
-    def run(self, *arguments):
-        """Runs a command of the program's; returns its text for the page."""
-        shown = "plumb " + shlex.join(arguments)
+    def run(self, command, said_to=None):
+        """Runs a command of the program's; what it says goes into a file beside the page."""
+        shown = in_words(command)
         if shown in self.done.commands:
-            return shown
+            return
         print(shown, file=sys.stderr)
-        with subprocess.Popen([self.program, *arguments], cwd=self.out,
-                              stdout=subprocess.DEVNULL) as process:
-            try:
-                code = process.wait()
-            except KeyboardInterrupt:  # which it got, too, and keeps what it has
-                process.wait()
-                raise Interrupted from None
+        with open(self.out / said_to if said_to else os.devnull, "w", encoding="utf-8") as said:
+            with subprocess.Popen([self.program, *command], cwd=ROOT, stdout=said) as process:
+                try:
+                    code = process.wait()
+                except KeyboardInterrupt:  # which it got, too, and keeps what it has
+                    process.wait()
+                    raise Interrupted from None
         if code in (130, 143):
             raise Interrupted
         if code in (0, 3):  # 3: all runs diverged, which is a result
             self.done.add(shown)
         else:
             self.failed.append(f"{shown}: exit code {code}")
-        return shown
 
     def rows(self, table):
         path = self.out / table
@@ -98,106 +226,228 @@ class Report:
 
     def picture(self, name, what):
         if (self.out / name).exists():
+            self.pictures.append(name)
             self.say(f"![{what}]({name})", "")
 
-    def enough(self, rows):
-        """A row each method: the cheapest of its runs that meets all that is expected."""
-        self.say("| method | dt | substeps | iterations | CPU time a simulated second | worst error |",
-                 "|---|---|---|---|---|---|")
-        found = []
+    def cheapest_of_each_method(self, rows):
+        """Of what meets all that is expected; of single steps the cheapest that is hardly less true."""
+        single = "one_step_rms_m" in rows[0]
+        fine = [row for row in rows if row["status"] == "fine"]
+        least = min((float(row["error"]) for row in fine), default=0)
+        if single:
+            self.say("The cheapest run of each method whose single steps are at most a tenth less true "
+                     f"than the truest, which are off by {1e3 * least:.3g} mm (root mean square), and "
+                     "which meets all that the scene expects:", "",
+                     "| method | dt | substeps | iterations | CPU time a simulated second "
+                     "| error of a step |", "|---|---|---|---|---|---|")
+        else:
+            self.say("The cheapest run of each method on the chart that meets all that the scene "
+                     "expects:", "",
+                     "| method | dt | substeps | iterations | CPU time a simulated second "
+                     "| worst error, of its tolerance |", "|---|---|---|---|---|---|")
         for method in dict.fromkeys(row["method"] for row in rows):
-            fine = [r for r in rows if r["method"] == method and r["status"] == "fine"]
-            if not fine:
-                reasons = {r["diverged"] or "misses " + r["worst"] for r in rows
-                           if r["method"] == method}
-                self.say(f"| {method} | – | – | – | – | none is true enough: "
-                         f"{sorted(reasons)[0]} |")
+            own = [row for row in rows if row["method"] == method]
+            enough = [row for row in own if row["status"] == "fine" and
+                      (not single or float(row["error"]) <= 1.1 * least)]
+            if enough:
+                best = min(enough, key=lambda row: float(row["cpu_s_per_s"]))
+                error, worst = share_of_tolerance(best)
+                error = (f"{1e3 * float(best['error']):.3g} mm" if single else
+                         f"{error:.2g}" + (f" ({worst})" if error else ""))
+                self.say(f"| {method} | {hertz(float(best['dt_s']))} | {substeps_of(best)} | "
+                         f"{best['iterations']} | {1e3 * float(best['cpu_s_per_s']):.3g} ms | "
+                         f"{error} |")
                 continue
-            best = min(fine, key=lambda r: float(r["cpu_s_per_s"]))
-            most = int(best["max_substeps"])
-            substeps = best["substeps"] + (f" to {most}" if most > int(best["substeps"]) and
-                                           method == "soft_step" else "")
-            found.append((float(best["cpu_s_per_s"]), best, substeps))
-            self.say(f"| {method} | {1 / float(best['dt_s']):.4g} Hz | {substeps} | "
-                     f"{best['iterations']} | {1e3 * float(best['cpu_s_per_s']):.3g} ms | "
-                     f"{float(best['error']):.2g} {best['error_unit'].replace('1', '')} |")
+            error, worst = min(map(share_of_tolerance, own))
+            if single and any(row["status"] == "fine" for row in own):
+                error = min(float(row["error"]) for row in own if row["status"] == "fine")
+                why = f"at best {1e3 * error:.3g} mm"
+            elif all(row["status"] == "diverged" for row in own):
+                why = "diverges"
+            else:
+                why = f"at best {error:.3g} ({worst})" if error < math.inf else "no result"
+            self.say(f"| {method} | – | – | – | – | none: {why} |")
         self.say("")
-        if found:
-            _, best, substeps = min(found, key=lambda entry: entry[0])
-            self.say(f"**Enough: {best['method']}, {1 / float(best['dt_s']):.4g} Hz, substeps "
-                     f"{substeps}, iterations {best['iterations']}.** It is the cheapest on this "
-                     "chart that meets all that the scene expects.", "")
 
-    def problem(self, scene, title, chart, area):
-        self.say(f"## {title}", "")
-        options = shlex.split(QUICK if self.quick else chart)
-        if self.quick and "--convergence" in chart:
-            options = ["--convergence", "--sweep", "dt=1/240..1/60"]
-        convergence = "--convergence" in options
-        commands = [self.run("chart", scene, *options, "--out", ".")]
-        stem = scene + (".convergence" if convergence else "")
-        self.picture(stem + ".png", f"{title}: the chart")
-        if convergence and not self.quick:
-            commands.append(self.run("chart", scene, "--out", "."))
-            self.picture(scene + ".png", f"{title}: what truth costs")
-        elif self.engines:
-            commands.append(self.run("chart", scene, *options, "--with", self.engines, "--out",
-                                     "engines"))
-            self.picture(f"engines/{scene}.png", f"{title}: beside other engines")
-        rows = self.rows(scene + ".csv") or self.rows(stem + ".csv")
-        if rows:
-            self.enough(rows)
-        if area and not self.quick:
-            commands.append(self.run("map", scene, *shlex.split(area), "--image",
-                                     f"{scene}.map.png", "--csv", f"{scene}.map.csv"))
-            self.picture(f"{scene}.map.png", f"{title}: where methods break")
-        files = sorted((ROOT / "scenes").rglob(scene + ".toml"))
-        self.say(f"Scene: `{files[0].relative_to(ROOT)}`" if files else f"Scene: `{scene}`", "")
-        self.say("    " + "\n    ".join(commands), "")
-        if rows:
-            self.say(f"<sub>{rows[0]['machine']}; commit {rows[0]['commit']}</sub>", "")
+    def map_table(self, problem, rows):
+        """How many cells each method holds: a method's number, of how many."""
+        head = "| method | cells held | where not |"
+        if problem.product:
+            head = f"| method | cells held | where not | {problem.product_name} of the limits found |"
+        self.say(head, "|---" * (head.count("|") - 1) + "|")
+        held = {}
+        for method in dict.fromkeys(row["method"] for row in rows):
+            cells = [row for row in rows if row["method"] == method and row["kind"] == "cell"]
+            fails = [row["why"] for row in cells if row["why"] != "held"]
+            held[method] = len(cells) - len(fails)
+            limits = [problem.product(math.sqrt(float(row["low"]) * float(row["high"])),
+                                      float(list(row.values())[3]))  # y
+                      for row in rows if problem.product and row["method"] == method and
+                      row["kind"] == "limit"]
+            found = f" {min(limits):.3g} to {max(limits):.3g} |" if limits else " – |"
+            why_not = ", ".join(f"{fails.count(why)} {why}" for why in dict.fromkeys(fails))
+            self.say(f"| {method} | {held[method]} of {len(cells)} | {why_not or '–'} |" +
+                     (found if problem.product else ""))
+        self.say("")
+        return held, len(cells)
+
+    def answer_of_map(self, problem, rows, charted):
+        held, cells = self.map_table(problem, rows)
+        if problem.notes:
+            self.say(problem.notes, "")
+        most = max(held.values())
+        best = [method for method in held if held[method] == most]
+        steps = [float(row["dt"]) for row in rows if row["kind"] == "cell"]
+        span = f"{hertz(min(steps))} to {hertz(max(steps))}"
+        # Charted at the scene's own dt, with the substeps that the map has.
+        cost = [float(row["cpu_s_per_s"]) for row in charted
+                if row["method"] == best[0] and substeps_of(row) == problem.mapped_substeps]
+        cost = f"{1e3 * cost[0]:.3g} ms" if cost else "–"
+        self.say(f"**Enough: {' or '.join(best)}, any dt from {span}, substeps "
+                 f"{problem.mapped_substeps}, iterations 1**: {most} of {cells} cells held, and no other "
+                 "method of the map holds as many.", "")
+        self.summary.append([f"[{problem.kind}](#{anchor(problem.title)})", " or ".join(best), span,
+                             problem.mapped_substeps, "1", cost, f"{most} of {cells} cells held"])
+
+    def answer_of_tuning(self, problem):
+        path = self.out / f"{problem.scene}.tune.txt"
+        found = CHOSEN.search(path.read_text(encoding="utf-8")) if path.exists() else None
+        if problem.notes:
+            self.say(problem.notes, "")
+        if not found:
+            return
+        iterations = found["iterations"] or "–"
+        error = found["error"] + (f" ({found['worst']})" if found["worst"] else "")
+        self.say(f"**Enough: {found['method']}, dt {found['dt']}, substeps "
+                 f"{found['substeps'].replace('..', ' to ')}" +
+                 (f", iterations {iterations}" if found["iterations"] else "") +
+                 f", in {found['precision']}**: {found['cost']} ms of CPU time for a simulated second, "
+                 f"worst error {error} of its tolerance. `plumb tune` found nothing cheaper.", "")
+        self.summary.append([f"[{problem.kind}](#{anchor(problem.title)})", found["method"],
+                             found["dt"], found["substeps"].replace("..", " to "), iterations,
+                             f"{found['cost']} ms", error])
+
+    def problem(self, problem):
+        self.say(f"## {problem.title}", "", problem.asked, "")
+        commands = commands_of(problem, shown_path(self.out), self.quick)
+        for command in commands:
+            self.run(command, f"{problem.scene}.tune.txt" if command[0] == "tune" else None)
+        charted = []
+        for command in commands:
+            if command[0] != "chart":
+                continue
+            stem = chart_stem(problem.scene, command)
+            kind = ("error against dt" if "--convergence" in command else "error of a step against cost"
+                    if "--one-step" in command else "error against cost")
+            self.picture(stem + ".png", f"{problem.title}: {kind}")
+            if "--convergence" not in command:
+                charted = self.rows(stem + ".csv")
+        if self.engines and "--one-step" not in commands[0]:
+            other = ["chart", problem.scene, *commands[0][2:-2], "--with", self.engines, "--out",
+                     shown_path(self.out / "engines")]
+            self.run(other)
+            commands.append(other)
+            self.picture(f"engines/{problem.scene}.png", f"{problem.title}: beside other engines")
+        if charted:
+            self.cheapest_of_each_method(charted)
+            self.provenance = f"{charted[0]['machine']}; commit {charted[0]['commit']}"
+        area = self.rows(f"{problem.scene}.map.csv") if problem.area and not self.quick else []
+        if area:
+            self.picture(f"{problem.scene}.map.png", f"{problem.title}: where methods break")
+        if area and problem.tune is None:
+            self.answer_of_map(problem, area, charted)
+        elif not self.quick:
+            self.answer_of_tuning(problem)
+        files = sorted((ROOT / "scenes").rglob(problem.scene + ".toml"))
+        path = files[0].relative_to(ROOT / "scenes") if files else problem.scene
+        self.say(f"Scene: [`scenes/{path}`](../{path})", "", "    " +
+                 "\n    ".join(map(in_words, commands)), "")
+
+    def page(self, seconds, cpu_seconds):
+        head = ["# Which dt, which method, how many iterations?", "",
+                "Each problem runs by each method that can run it, at the scene's own dt, with 1 to 16 "
+                "substeps where its command says nothing else; on the charts the numbers count them. "
+                "True enough is what meets all that the scene expects of itself, each within its own "
+                "tolerance: errors are in units of it, and the worst counts. Costs are CPU time of one "
+                "thread for one simulated second, in float: ratios hold, milliseconds do not.", "",
+                "Enough is the cheapest that `plumb tune` finds among all methods, dt (double to a "
+                "quarter of the scene's), substeps, iterations (1, 2, 4, 8) and precisions, with a "
+                "fifth of each tolerance as a margin and from four starts, where its command says "
+                "nothing else; or, for the two maps, what holds the most cells. Dots that are close in cost may change places from run to run.",
+                ""]
+        if self.summary:
+            head += ["| kind of scene | method | dt | substeps | iterations | cost | worst error, "
+                     "of its tolerance |", "|---|---|---|---|---|---|---|"]
+            head += ["| " + " | ".join(row) + " |" for row in self.summary]
+            head += [""]
+        made = f"Made by `scenes/report.py --publish` on {time.strftime('%Y-%m-%d')}"
+        if seconds is not None:
+            made += f" in {seconds / 60:.0f} min, {cpu_seconds / 60:.0f} min of CPU time"
+        if self.provenance:
+            made += f"; {self.provenance}"
+        head += [made + ". The commands of a section make it again, into `out/report`.", ""]
+        return "\n".join(head + self.lines)
+
+    def publish(self, text):
+        shutil.rmtree(PUBLISHED, ignore_errors=True)
+        PUBLISHED.mkdir()
+        for name in self.pictures:
+            shutil.copyfile(self.out / name, PUBLISHED / name)
+        (PUBLISHED / "README.md").write_text(text, encoding="utf-8")
+
+
+def anchor(title):
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "build/release/bin/plumb"))
-    parser.add_argument("--out", default="out/report")
+    parser.add_argument("--out", default=str(ROOT / "out/report"))
     parser.add_argument("--only", default="", help="scenes, by name (all)")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--with", dest="engines", default="", help="other engines, as of plumb chart")
+    parser.add_argument("--publish", action="store_true",
+                        help="the whole page into scenes/report/, too")
     options = parser.parse_args()
     options.program = str(pathlib.Path(options.program).resolve())
     only = [name for name in options.only.split(",") if name]
-    unknown = [name for name in only if name not in [p[0] for p in PROBLEMS]]
+    unknown = [name for name in only if name not in [p.scene for p in PROBLEMS]]
     if unknown:
-        parser.error(f"no problem {unknown[0]}; there are {', '.join(p[0] for p in PROBLEMS)}")
+        parser.error(f"no problem {unknown[0]}; there are {', '.join(p.scene for p in PROBLEMS)}")
+    if options.publish and (only or options.quick or options.engines):
+        parser.error("what is published is the whole page: no --only, --quick or --with")
     if not pathlib.Path(options.program).is_file():
         parser.error(f"there is no program {options.program}; ./plumb builds it")
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
     report = Report(options)
-    report.say("# Which dt, which method, how many iterations?", "",
-               "Made by `scenes/report.py`. Each problem runs by each method that can run it. True "
-               "enough is what meets all that the scene expects of itself; of that, the cheapest is "
-               "enough.", "")
-    problems = [problem for problem in PROBLEMS if not only or problem[0] in only]
-    page = report.out / "report.md"
+    begin, problems = time.monotonic(), [p for p in PROBLEMS if not only or p.scene in only]
+    page = report.out / "README.md"
     for number, problem in enumerate(problems):
-        begin = len(report.lines)
+        first = len(report.lines)
         try:
-            report.problem(*problem)
+            report.problem(problem)
         except (Interrupted, KeyboardInterrupt):
-            del report.lines[begin:]
-            page.write_text("\n".join(report.lines), encoding="utf-8")
+            del report.lines[first:]
+            page.write_text(report.page(None, None), encoding="utf-8")
             print(f"interrupted: {number} of {len(problems)} problems are done and in {page}; the "
                   "same command goes on", file=sys.stderr)
             return 130
-    page.write_text("\n".join(report.lines), encoding="utf-8")
-    report.done.clear()
+    used = os.times()
+    text = report.page(None if report.done.any_earlier else time.monotonic() - begin,
+                       used.children_user + used.children_system)
+    page.write_text(text, encoding="utf-8")
     print(f"wrote {page}", file=sys.stderr)
     for failure in report.failed:
         print(failure, file=sys.stderr)
-    return 1 if report.failed else 0
+    if report.failed:
+        return 1
+    report.done.clear()
+    if options.publish:
+        report.publish(text)
+        print(f"wrote {PUBLISHED}", file=sys.stderr)
+    return 0
 
 
 if __name__ == "__main__":
