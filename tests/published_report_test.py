@@ -7,25 +7,18 @@ usage: published_report_test.py SOURCE_DIR [PROGRAM]
 With the program, each option of each command is one that its help tells.
 """
 
-import importlib.util
+import importlib
 import pathlib
 import re
 import subprocess
 import sys
 
 
-def load_report(source):
-    spec = importlib.util.spec_from_file_location("report", source / "scenes/report.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["report"] = module
-    spec.loader.exec_module(module)
-    return module
-
-
 def main():
     sys.dont_write_bytecode = True
     source = pathlib.Path(sys.argv[1])
-    report = load_report(source)
+    sys.path.insert(0, str(source / "scenes"))
+    report = importlib.import_module("report")
     folder = source / "scenes/report"
     page = (folder / "README.md").read_text(encoding="utf-8")
 
