@@ -1,6 +1,7 @@
 #include "engine/dynamics/approach.h"
 
 #include "engine/dynamics/motion.h"
+#include "engine/geometry/face_gap.h"
 #include "engine/geometry/gjk.h"
 #include "engine/geometry/half_space.h"
 #include "engine/geometry/hull_queries.h"
@@ -36,6 +37,14 @@ template <typename A, typename B> ClosestPoints closest(const A &a, const B &b, 
         const Vec3 origin = place_of(a);
         const auto core_a = core_of(a, origin);
         const auto core_b = core_of(b, origin);
+        if constexpr (HaveFaceGap<decltype(core_a), decltype(core_b)>)
+            if (guess != Vec3{Real(0)}) {
+                const auto known =
+                    face_gap(core_a, core_b, guess, std::numeric_limits<Real>::infinity());
+                if (known && known->separation > Real(0))
+                    return {known->separation, origin + known->on_a, origin + known->on_b,
+                            known->normal};
+            }
         if constexpr (!HasNearestPoints<decltype(core_a), decltype(core_b)>)
             return closest_points(
                 gjk(core_a, core_b,

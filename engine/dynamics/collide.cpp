@@ -80,9 +80,8 @@ Real predicted_from(const Collider &a, const Collider &b) {
 // gravity adds, and a little. Two bodies that feel the same gravity fall together.
 Real World::contact_reach(const Candidate &candidate) const {
     const auto dt = static_cast<Real>(settings_.dt);
-    const Vec3 gravity{settings_.gravity};
-    const Vec3 falling = gravity_on(model_->bodies[candidate.key.b], gravity) -
-                         gravity_on(model_->bodies[candidate.key.a], gravity);
+    const Vec3 falling =
+        scratch_.reach[candidate.collider_b].pull - scratch_.reach[candidate.collider_a].pull;
     return std::min(static_cast<Real>(settings_.speculative_distance),
                     speculative_share * moving_width(candidate)) +
            glm::length(falling) * dt * dt;
@@ -100,11 +99,11 @@ Real World::moving_width(const Candidate &candidate) const {
 
 // How far apart the two may be and still meet within the step; NaN when they are about to diverge.
 Real World::contact_margin(const Candidate &candidate) const {
-    const Motion &a = going(candidate.key.a);
-    const Motion &b = going(candidate.key.b);
+    const ColliderReach &a = scratch_.reach[candidate.collider_a];
+    const ColliderReach &b = scratch_.reach[candidate.collider_b];
     return contact_reach(candidate) +
-           glm::length(b.velocity - a.velocity) * static_cast<Real>(settings_.dt) +
-           turning_reach(candidate.key.a) + turning_reach(candidate.key.b);
+           glm::length(b.velocity - a.velocity) * static_cast<Real>(settings_.dt) + a.turning +
+           b.turning;
 }
 
 // Where between the two surfaces a contact acts: -1 on a's, 1 on b's, 0 midway. On that of a body
@@ -159,7 +158,8 @@ Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle
 }
 
 void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
-                        const FoundManifold &found, std::vector<Contact> &out) const {
+                        const ContactMemory *before, const FoundManifold &found,
+                        std::vector<Contact> &out) const {
     if (found.manifold.count == 0)
         return;
     Contact &contact = begin_contact(candidate, triangle, out);
@@ -190,20 +190,27 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
                 separation_along(normal, anchor.core_a, anchor.core_b, rounding_a + rounding_b,
                                  state_.motions[candidate.key.a], state_.motions[candidate.key.b]);
     }
-    const ContactMemory *before = find_memory(state_, contact.key);
     contact.is_new = before == nullptr;
     if (!contact.is_new)
         carry_over(std::span(state_.points).subspan(before->first_point, before->point_count),
                    contact);
 }
 
+// Whether a body's loads ask for more substeps than its island has: its contacts are softer then
+// than they should be.
+bool World::gets_too_few_substeps(std::uint32_t body) const {
+    const Pace &pace = state_.paces[body];
+    return pace.substeps > 0 && pace.wanted > pace.substeps; // 0: it does not choose
+}
+
 // While two bodies have hardly moved against each other since their manifold was found, it stays:
 // normal and lever arms as they were, separations following the poses. That saves finding it again,
 // and it makes the contact linear about the poses where it was found: without it a column of
 // contacts, each as soft as the step lets it be, buckles under its own weight. After Box3D (Catto),
-// which names PhysX's persistent manifolds as the source.
-bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) const {
-    const ContactMemory *before = find_memory(state_, candidate.key);
+// which names PhysX's persistent manifolds as the source. Contacts that are softer than they should
+// be buckle sooner, and are kept longer: a pyramid of base 100 falls after 10 s without that.
+bool World::keep_contact(const Candidate &candidate, const ContactMemory *before,
+                         std::vector<Contact> &out) const {
     if (before == nullptr || before->point_count < 2)
         return false;
     const Motion &motion_a = state_.motions[candidate.key.a];
@@ -219,8 +226,13 @@ bool World::keep_contact(const Candidate &candidate, std::vector<Contact> &out) 
     const Real travel = glm::length((motion_b.position - motion_a.position) - origin.offset) +
                         std::sqrt(arm_a) * turn_between(origin.rotation_a, motion_a.rotation) +
                         std::sqrt(arm_b) * turn_between(origin.rotation_b, motion_b.rotation);
-    if (!(travel <=
-          std::min(static_cast<Real>(settings_.kept_travel), kept_share * moving_width(candidate))))
+    // A full face has no corners that were left out and could come to touch.
+    const bool is_too_soft = before->point_count == 4 && (gets_too_few_substeps(candidate.key.a) ||
+                                                          gets_too_few_substeps(candidate.key.b));
+    const Real share = kept_share * moving_width(candidate);
+    const Real most =
+        is_too_soft ? share : std::min(static_cast<Real>(settings_.kept_travel), share);
+    if (!(travel <= most))
         return false;
     Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
     contact.origin = origin;
@@ -265,9 +277,7 @@ bool World::keeps_contacts() const {
 
 void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
                               std::vector<std::uint32_t> &triangles) const {
-    const Real margin = contact_margin(candidate);
-    if (!std::isfinite(margin)) // about to diverge: speeds whose square is infinite
-        return;
+    const Real margin = candidate.margin;
     const Collider &a = model_->colliders[candidate.collider_a];
     const Collider &b = model_->colliders[candidate.collider_b];
     const std::uint32_t i = candidate.collider_a;
@@ -278,9 +288,11 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                               way_of(candidate) > predicted_from(a, b);
     const bool is_turning = turn_together(candidate.key.a, candidate.key.b);
     if (!a.surface && !b.surface) {
-        if (!is_turning && keeps_contacts() && keep_contact(candidate, out))
+        const ContactMemory *before = find_memory(state_, candidate.key);
+        if (!is_turning && keeps_contacts() && keep_contact(candidate, before, out))
             return;
-        FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin),
+        const Vec3 guess = before == nullptr ? Vec3{Real(0)} : before->origin.normal;
+        FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin, guess),
                             motion_a, motion_b};
         if (is_turning)
             found.moment = Moment::turning;
@@ -289,7 +301,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         else if (found.manifold.count > 0 && is_predicted)
             guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
         drop_inner_edges(candidate, ContactKey::no_triangle, found);
-        add_contact(candidate, ContactKey::no_triangle, found, out);
+        add_contact(candidate, ContactKey::no_triangle, before, found, out);
         return;
     }
     if (a.surface && b.surface)
@@ -317,7 +329,9 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
             else if (is_predicted && !touches(found.manifold))
                 found = predicted_manifold(candidate, found.manifold.normal, triangle);
             drop_inner_edges(candidate, triangle, found);
-            add_contact(candidate, triangle, found, out);
+            ContactKey key = candidate.key;
+            key.triangle = triangle;
+            add_contact(candidate, triangle, find_memory(state_, key), found, out);
         });
 }
 

@@ -2,6 +2,7 @@
 #include "engine/dynamics/world.h"
 
 #include "engine/core/check.h"
+#include "engine/core/radix_sort.h"
 #include "engine/geometry/aabb.h"
 
 #include <algorithm>
@@ -21,6 +22,12 @@ namespace {
 bool touch(const Aabb &box, const HalfSpace &half_space) {
     const Vec3 lowest = glm::mix(box.max, box.min, glm::greaterThan(half_space.normal, Vec3{0}));
     return glm::dot(half_space.normal, lowest) <= half_space.offset;
+}
+
+// Whether two boxes are no farther apart than that.
+bool are_within(Real distance, const Aabb &a, const Aabb &b) {
+    const Vec3 gap = glm::max(glm::max(a.min - b.max, b.min - a.max), Vec3{Real(0)});
+    return glm::dot(gap, gap) <= distance * distance;
 }
 
 bool is_finite_box(const Aabb &box) {
@@ -52,11 +59,21 @@ void refuse_more_than(std::size_t limit, std::size_t pairs) {
 constexpr std::size_t colliders_a_part = 128;
 constexpr std::size_t pairs_a_part = 512;
 
-// What is in order already, as it is from step to step where nothing leaves its fat box, costs
-// one look.
-template <class T, class Key> void sort_by(std::vector<T> &list, Key key) {
-    if (!std::ranges::is_sorted(list, {}, key))
-        std::ranges::sort(list, {}, key);
+// By their bodies, then by the children. Of two bodies' pairs there are few.
+void sort_candidates(std::vector<Candidate> &list, std::vector<Candidate> &scratch) {
+    const auto bodies = [](const Candidate &candidate) {
+        return std::uint64_t{candidate.key.a} << 32 | candidate.key.b;
+    };
+    if (std::ranges::is_sorted(list, {}, &Candidate::key))
+        return;
+    radix_sort(list, scratch, bodies);
+    for (auto first = list.begin(); first != list.end();) {
+        const auto last = std::find_if(first, list.end(), [&](const Candidate &other) {
+            return bodies(other) != bodies(*first);
+        });
+        std::ranges::sort(first, last, {}, &Candidate::key);
+        first = last;
+    }
 }
 
 } // namespace
@@ -68,22 +85,24 @@ bool World::needs_contacts() const {
 
 // Everything that a collider of the body with these bounds may reach in this step, and half the
 // distance at which contacts are made.
-Aabb World::swept_bounds(const Aabb &box, std::uint32_t body) const {
-    const Body &what = model_->bodies[body];
+Aabb World::swept_bounds(const Aabb &box, const ColliderReach &of) const {
     const auto dt = static_cast<Real>(settings_.dt);
-    Real reach = static_cast<Real>(settings_.speculative_distance) / 2;
-    if (what.kind != BodyKind::fixed)
-        reach += glm::length(going(body).velocity) * dt + turning_reach(body);
-    if (what.kind == BodyKind::dynamic)
-        reach += glm::length(gravity_on(what, Vec3{settings_.gravity})) * dt * dt;
+    const Real reach = static_cast<Real>(settings_.speculative_distance) / 2 +
+                       glm::length(of.velocity) * dt + of.turning + glm::length(of.pull) * dt * dt;
     return {box.min - reach, box.max + reach};
+}
+
+// Whether pairs with that body are looked for: once some were seen to go another way than expected,
+// with those alone.
+bool World::is_asked(std::uint32_t body) const {
+    return scratch_.surprised.empty() || scratch_.surprised[body] != 0;
 }
 
 // Places a collider and sweeps its box; whether the tree has to know.
 bool World::place_collider(std::uint32_t i) const {
     Scratch &s = scratch_;
     const Collider &collider = model_->colliders[i];
-    if (collider.body == no_body)
+    if (collider.body == no_body || !is_asked(collider.body))
         return false;
     const bool is_still = s.still[collider.body] != 0;
     if (is_still && s.stays[i] != 0 && s.leaves[i] != DynamicTree::none)
@@ -91,17 +110,22 @@ bool World::place_collider(std::uint32_t i) const {
     s.stays[i] = is_still ? 1 : 0;
     const Motion &motion = state_.motions[collider.body];
     if (has_diverged(motion)) { // diverged: the report says so; nothing to collide
-        s.swept[i] = Aabb{};
+        s.boxes[i] = s.swept[i] = Aabb{};
         return false;
     }
+    const Body &body = model_->bodies[collider.body];
+    s.reach[i] = {};
+    if (body.kind != BodyKind::fixed)
+        s.reach[i] = {going(collider.body).velocity, gravity_on(body, Vec3{settings_.gravity}),
+                      turning_reach(collider.body)};
     if (!collider.surface)
         s.placed[i] = placed(collider.shape, Transform{motion.position, motion.rotation});
     if (collider.is_half_space())
         return false;
-    const Aabb box = collider.surface ? surface_bounds(collider, motion) : bounds(s.placed[i]);
-    s.swept[i] = swept_bounds(box, collider.body);
+    s.boxes[i] = collider.surface ? surface_bounds(collider, motion) : bounds(s.placed[i]);
+    s.swept[i] = swept_bounds(s.boxes[i], s.reach[i]);
     if (!is_finite_box(s.swept[i])) { // about to diverge
-        s.swept[i] = Aabb{};
+        s.boxes[i] = s.swept[i] = Aabb{};
         return false;
     }
     return s.leaves[i] == DynamicTree::none || !s.tree.holds(s.leaves[i], s.swept[i]);
@@ -112,7 +136,9 @@ bool World::place_colliders() const {
     Scratch &s = scratch_;
     const std::size_t count = model_->colliders.size();
     s.placed.resize(count);
+    s.boxes.resize(count);
     s.swept.resize(count);
+    s.reach.resize(count);
     s.leaves.resize(count, DynamicTree::none);
     s.moved.resize(count);
     s.stays.resize(count, 0);
@@ -145,6 +171,22 @@ bool World::may_touch(std::uint32_t i, std::uint32_t j) const {
            may_collide(a.filter, b.filter);
 }
 
+// Whether two colliders may be no farther apart than that: by their boxes, and by the balls around
+// their bodies' middles that hold them.
+bool World::may_be_within(Real distance, std::uint32_t i, std::uint32_t j) const {
+    const Collider &a = model_->colliders[i];
+    const Collider &b = model_->colliders[j];
+    if (a.is_half_space() || b.is_half_space())
+        return true;
+    if (!are_within(distance, scratch_.boxes[i], scratch_.boxes[j]))
+        return false;
+    if (a.surface || b.surface)
+        return true;
+    const Vec3 between = state_.motions[b.body].position - state_.motions[a.body].position;
+    const Real reach = a.extent + a.rounding + b.extent + b.rounding + distance;
+    return glm::dot(between, between) <= reach * reach;
+}
+
 void World::add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidate> &out) const {
     if (scratch_.still[model_->colliders[i].body] != 0 &&
         scratch_.still[model_->colliders[j].body] != 0)
@@ -153,10 +195,16 @@ void World::add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidat
         std::swap(i, j);
     const Collider &a = model_->colliders[i];
     const Collider &b = model_->colliders[j];
+    if (!is_asked(a.body) && !is_asked(b.body))
+        return;
     if (!model_->joined.empty() &&
         std::ranges::binary_search(model_->joined, body_pair(a.body, b.body)))
         return;
-    out.push_back({{a.body, b.body, a.child, b.child}, i, j});
+    Candidate candidate{{a.body, b.body, a.child, b.child}, i, j};
+    candidate.margin = contact_margin(candidate);
+    // Not finite: about to diverge, with speeds whose square is infinite.
+    if (std::isfinite(candidate.margin) && may_be_within(candidate.margin, i, j))
+        out.push_back(candidate);
 }
 
 // Brings the pairs whose fat boxes touch up to date, after some left theirs.
@@ -179,7 +227,7 @@ void World::find_fat_pairs() const {
         }
     };
     collect(s.tasks, model_->colliders.size(), colliders_a_part, s.pair_parts, s.new_pairs, find);
-    std::ranges::sort(s.new_pairs);
+    radix_sort(s.new_pairs, s.sorted_numbers, std::identity{});
     s.merged_pairs.clear();
     auto next = s.new_pairs.begin();
     for (const std::uint64_t pair : s.fat_pairs) {
@@ -213,8 +261,9 @@ void World::find_pairs_with_planes() const {
     }
 }
 
-// Candidates are the pairs whose swept boxes touch. The tree's fat boxes only save looking at all
-// of them: which pairs come out, and in which order, depends on the present poses alone.
+// Candidates are the pairs whose swept boxes touch and that may meet as they go against each other.
+// The tree's fat boxes only save looking at all of them: which pairs come out, and in which order,
+// depends on the present poses alone.
 void World::find_pairs() const {
     Scratch &s = scratch_;
     s.candidates.clear();
@@ -238,8 +287,8 @@ void World::find_pairs() const {
             });
     find_pairs_with_planes();
     refuse_more_than(most_candidates, s.pair_candidates.size() + s.plane_candidates.size());
-    sort_by(s.pair_candidates, &Candidate::key);
-    sort_by(s.plane_candidates, &Candidate::key);
+    sort_candidates(s.pair_candidates, s.sorted_candidates);
+    sort_candidates(s.plane_candidates, s.sorted_candidates);
     s.candidates.reserve(s.pair_candidates.capacity() + s.plane_candidates.capacity());
     s.candidates.resize(s.pair_candidates.size() + s.plane_candidates.size());
     std::ranges::merge(s.pair_candidates, s.plane_candidates, s.candidates.begin(), {},
@@ -261,7 +310,7 @@ void World::note_fixed_neighbors() const {
         if (!model_->colliders[fixed].sensor && !model_->colliders[other].sensor)
             s.beside_fixed.push_back(std::uint64_t{other} << 32 | fixed);
     }
-    sort_by(s.beside_fixed, std::identity{});
+    radix_sort(s.beside_fixed, s.sorted_numbers, std::identity{});
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -145,8 +145,8 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
     const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
     const Shape solid_a = placed(a.shape, placement(at_a));
     const Shape solid_b = placed(b.shape, placement(at_b));
-    FoundManifold found{plumb::collide(solid_a, solid_b, near + left * way_of(candidate)), at_a,
-                        at_b, Moment::touch};
+    FoundManifold found{plumb::collide(solid_a, solid_b, near + left * way_of(candidate), normal),
+                        at_a, at_b, Moment::touch};
     guard_middle(candidate, solid_a, solid_b, found.manifold);
     return found;
 }
@@ -222,8 +222,7 @@ bool World::find_surprises() {
     if (s.triangles.empty())
         s.triangles.resize(1);
     for (const Candidate &candidate : s.candidates)
-        if (s.surprised[candidate.key.a] != 0 || s.surprised[candidate.key.b] != 0)
-            collide_candidate(candidate, s.more, s.triangles.front());
+        collide_candidate(candidate, s.more, s.triangles.front());
     std::erase_if(s.more, [&](const Contact &contact) {
         return std::ranges::binary_search(s.contacts, contact.key, {}, &Contact::key);
     });

@@ -10,11 +10,19 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Two colliders whose swept boxes touch, in the order of their bodies.
+// How far a collider may go in a step: what its body says of that.
+struct ColliderReach {
+    Vec3 velocity{Real(0)};
+    Vec3 pull{Real(0)};     // gravity on it, m/s^2
+    Real turning = Real(0); // World::turning_reach
+};
+
+// Two colliders that may meet within the step, in the order of their bodies.
 struct Candidate {
     ContactKey key; // without a triangle
     std::uint32_t collider_a = 0;
     std::uint32_t collider_b = 0;
+    Real margin = Real(0); // how far apart they may be and still meet (m)
 };
 
 // How far the broad phase's boxes reach beyond what a step needs (m): larger, and bodies move
@@ -28,7 +36,9 @@ struct Scratch {
     DynamicTree tree{tree_margin};
     std::vector<DynamicTree::Leaf> leaves;
     std::vector<Shape> placed; // in the world; of surfaces nothing
-    std::vector<Aabb> swept;
+    std::vector<Aabb> boxes;   // around the colliders
+    std::vector<Aabb> swept;   // around all that they may reach
+    std::vector<ColliderReach> reach;
     std::vector<std::uint8_t> moved;
     std::vector<std::uint8_t> stays;      // placed where it still is
     std::vector<std::uint64_t> fat_pairs; // of colliders whose fat boxes touch, ascending
@@ -36,7 +46,9 @@ struct Scratch {
     std::vector<std::uint64_t> merged_pairs;
     std::vector<Candidate> pair_candidates;
     std::vector<Candidate> plane_candidates;
-    std::vector<Candidate> candidates; // both, ascending by key
+    std::vector<Candidate> candidates;         // both, ascending by key
+    std::vector<std::uint64_t> sorted_numbers; // where sorting puts things
+    std::vector<Candidate> sorted_candidates;
     FoundParts<std::uint64_t> pair_parts;
     FoundParts<Candidate> candidate_parts;
     // Of candidates with one fixed body: (the other collider << 32 | the fixed one), ascending.

@@ -83,8 +83,7 @@ void World::drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
     Manifold &manifold = found.manifold;
     if (a_is_fixed)
         manifold.normal = -manifold.normal;
-    manifold =
-        without_inner_edges(manifold, solid, piece, neighbors, contact_margin(candidate), flush);
+    manifold = without_inner_edges(manifold, solid, piece, neighbors, candidate.margin, flush);
     if (a_is_fixed)
         manifold.normal = -manifold.normal;
 }

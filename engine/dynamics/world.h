@@ -219,13 +219,15 @@ class World {
 
     bool turn_together(std::uint32_t a, std::uint32_t b) const;
     bool needs_contacts() const;
+    bool is_asked(std::uint32_t body) const;
     bool place_collider(std::uint32_t i) const;
     bool place_colliders() const;
     bool may_touch(std::uint32_t i, std::uint32_t j) const;
+    bool may_be_within(Real distance, std::uint32_t i, std::uint32_t j) const;
     void add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidate> &out) const;
     void find_fat_pairs() const;
     void find_pairs_with_planes() const;
-    Aabb swept_bounds(const Aabb &box, std::uint32_t body) const;
+    Aabb swept_bounds(const Aabb &box, const ColliderReach &of) const;
     Real contact_margin(const Candidate &candidate) const;
     Manifold present_manifold(const Contact &contact) const;
     void collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
@@ -234,8 +236,12 @@ class World {
     Contact &begin_contact(const Candidate &candidate, std::uint32_t triangle,
                            std::vector<Contact> &out) const;
     bool keeps_contacts() const;
-    bool keep_contact(const Candidate &candidate, std::vector<Contact> &out) const;
-    void add_contact(const Candidate &candidate, std::uint32_t triangle, const FoundManifold &found,
+    bool gets_too_few_substeps(std::uint32_t body) const;
+    // `before`: what is remembered of it, or null.
+    bool keep_contact(const Candidate &candidate, const ContactMemory *before,
+                      std::vector<Contact> &out) const;
+    void add_contact(const Candidate &candidate, std::uint32_t triangle,
+                     const ContactMemory *before, const FoundManifold &found,
                      std::vector<Contact> &out) const;
     void note_fixed_neighbors() const;
     // Without what a fixed body's neighbours cover (inner_edges.h).

@@ -398,7 +398,7 @@ Proximity apart(const CorePair &cores, const Vec3 &difference, Real between, con
 
 } // namespace
 
-Proximity proximity(const CorePair &cores, Real far) {
+Proximity proximity(const CorePair &cores, Real far, const Vec3 &guess) {
     const Real radii = cores.radius_a() + cores.radius_b();
     // With a closed form, what it says decides whether the cores overlap, as for `overlaps`.
     const bool is_decided = cores.has_closed_form();
@@ -411,8 +411,9 @@ Proximity proximity(const CorePair &cores, Real far) {
             return result;
         }
     }
-    const GjkResult found = cores.search(
-        cores.between_middles(), is_decided ? std::numeric_limits<Real>::infinity() : far + radii);
+    const GjkResult found =
+        cores.search(guess == Vec3{Real(0)} ? cores.between_middles() : guess,
+                     is_decided ? std::numeric_limits<Real>::infinity() : far + radii);
     Proximity result;
     if (found.is_beyond) {
         result.is_beyond = true;

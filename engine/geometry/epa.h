@@ -115,7 +115,8 @@ void keep_independent(Simplex &simplex, const Vec3 &size);
 Penetration core_penetration(const CorePair &cores, const GjkResult &overlap);
 
 // For two cores, relative to their origin; is_beyond when they are farther apart than `far`.
-Proximity proximity(const CorePair &cores, Real far);
+// `guess` is a direction from A to B to look along first; zero: from middle to middle.
+Proximity proximity(const CorePair &cores, Real far, const Vec3 &guess = Vec3{Real(0)});
 
 template <typename A, typename B>
 requires ConvexPair<A, B> Proximity proximity(const A &a, const B &b) {

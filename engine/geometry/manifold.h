@@ -22,7 +22,8 @@ struct Manifold {
 };
 
 // The contacts of one pair of solids, in one order: behind `collide`, which checks what these do
-// not. Shapes are valid and `margin` >= 0.
+// not. Shapes are valid and `margin` >= 0. `guess`: about the normal from A to B, of any length;
+// zero: unknown.
 namespace unchecked {
 
 Manifold collide(const Sphere &a, const Sphere &b, Real margin);
@@ -35,7 +36,7 @@ Manifold collide(const Sphere &a, const HalfSpace &b, Real margin);
 Manifold collide(const Box &a, const Box &b, Real margin);
 Manifold collide(const Box &a, const Capsule &b, Real margin);
 Manifold collide(const Box &a, const Cylinder &b, Real margin);
-Manifold collide(const Box &a, const ConvexHull &b, Real margin);
+Manifold collide(const Box &a, const ConvexHull &b, Real margin, const Vec3 &guess = Vec3{Real(0)});
 Manifold collide(const Box &a, const Triangle &b, Real margin);
 Manifold collide(const Box &a, const HalfSpace &b, Real margin);
 Manifold collide(const Capsule &a, const Capsule &b, Real margin);
@@ -47,7 +48,8 @@ Manifold collide(const Cylinder &a, const Cylinder &b, Real margin);
 Manifold collide(const Cylinder &a, const ConvexHull &b, Real margin);
 Manifold collide(const Cylinder &a, const Triangle &b, Real margin);
 Manifold collide(const Cylinder &a, const HalfSpace &b, Real margin);
-Manifold collide(const ConvexHull &a, const ConvexHull &b, Real margin);
+Manifold collide(const ConvexHull &a, const ConvexHull &b, Real margin,
+                 const Vec3 &guess = Vec3{Real(0)});
 Manifold collide(const ConvexHull &a, const Triangle &b, Real margin);
 Manifold collide(const ConvexHull &a, const HalfSpace &b, Real margin);
 Manifold collide(const Triangle &a, const Triangle &b, Real margin);
@@ -118,5 +120,8 @@ requires Collidable<A, B> Manifold collide(const A &a, const B &b, Real margin) 
         return mirrored(unchecked::collide(b, a, margin));
 }
 Manifold collide(const Shape &a, const Shape &b, Real margin);
+// The same to rounding, sooner where hulls are in it, with about the normal from A to B to begin
+// with, such as that of the step before; zero: unknown.
+Manifold collide(const Shape &a, const Shape &b, Real margin, const Vec3 &guess);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,5 +1,6 @@
 // Contacts of cylinders, convex hulls and triangles with every solid.
 #include "engine/geometry/epa.h"
+#include "engine/geometry/face_gap.h"
 #include "engine/geometry/manifold_pairs.h"
 #include "engine/math/basis.h"
 
@@ -382,12 +383,30 @@ bool is_over(const Feature &face, const Vec3 &point) {
     return true;
 }
 
+// `guess`: about the normal; zero: unknown.
 template <typename A, typename B>
-Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin) {
+Proximity proximity_near(const A &a, const B &b, Real margin, const Vec3 &guess) {
+    if constexpr (HaveFaceGap<A, B>)
+        if (guess != Vec3{Real(0)})
+            if (const auto known = face_gap(a, b, guess, margin)) {
+                Proximity found;
+                found.separation = known->separation;
+                found.normal = known->normal;
+                found.on_a = known->on_a;
+                found.on_b = known->on_b;
+                found.is_beyond = known->is_beyond;
+                return found;
+            }
+    return proximity(CorePair(a, b), margin, guess);
+}
+
+template <typename A, typename B>
+Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
+                        const Vec3 &guess = Vec3{Real(0)}) {
     const Vec3 origin = place_of(shape_a);
     const auto a = core_of(shape_a, origin);
     const auto b = core_of(shape_b, origin);
-    const Proximity found = proximity(CorePair(a, b), margin);
+    const Proximity found = proximity_near(a, b, margin, guess);
     Manifold manifold;
     if (found.is_beyond || found.separation > margin)
         return manifold;
@@ -495,8 +514,8 @@ Manifold collide(const Sphere &a, const Triangle &b, Real margin) {
 Manifold collide(const Box &a, const Cylinder &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide(const Box &a, const ConvexHull &b, Real margin) {
-    return collide_convex(a, b, margin);
+Manifold collide(const Box &a, const ConvexHull &b, Real margin, const Vec3 &guess) {
+    return collide_convex(a, b, margin, guess);
 }
 Manifold collide(const Box &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);
@@ -519,8 +538,8 @@ Manifold collide(const Cylinder &a, const ConvexHull &b, Real margin) {
 Manifold collide(const Cylinder &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);
 }
-Manifold collide(const ConvexHull &a, const ConvexHull &b, Real margin) {
-    return collide_convex(a, b, margin);
+Manifold collide(const ConvexHull &a, const ConvexHull &b, Real margin, const Vec3 &guess) {
+    return collide_convex(a, b, margin, guess);
 }
 Manifold collide(const ConvexHull &a, const Triangle &b, Real margin) {
     return collide_convex(a, b, margin);

@@ -55,6 +55,17 @@ TEST(Rest, ATallStackStandsOnKeptContacts) {
     EXPECT_LT(height_of(fallen, 30), 10) << "found anew in each step it falls";
 }
 
+// As large heaps are, which would take more than their budget: a lean that contacts found anew let
+// grow doubles every second.
+TEST(Rest, WhatGetsTooFewSubstepsStandsOnContactsKeptLonger) {
+    StepSettings settings = settings_for("soft_step");
+    settings.substep_budget = 0;
+    World world = stack_of(40, settings);
+    run(world, 60 * 30);
+    EXPECT_GT(height_of(world, 40), 39.5 - 0.3);
+    EXPECT_LT(world.measure().kinetic_energy, 1e-6 * world.measure().potential_energy);
+}
+
 TEST(Rest, APyramidComesToRest) {
     for (const int base : {10, 20}) {
         World world = pyramid_of(base, settings_for("soft_step"));

@@ -1,6 +1,7 @@
 #include "engine/geometry/manifold.h"
 
 #include "engine/geometry/epa.h"
+#include "engine/geometry/face_gap.h"
 #include "tests/geometry/convex_oracle.h"
 #include "tests/trials.h"
 
@@ -131,6 +132,43 @@ TEST(ManifoldConvex, KeepsTheContract) {
     check.operator()<Triangle, ConvexHull>();
     std::cout << "mean: points 0 to 4: " << counts[0] << ' ' << counts[1] << ' ' << counts[2] << ' '
               << counts[3] << ' ' << counts[4] << '\n';
+}
+
+// About the right normal, and any other: the contract is the same; with the right one a face
+// decides of every fourth.
+TEST(ManifoldConvex, KeepsTheContractWithAGuess) {
+    std::uint64_t seed = 450;
+    const auto check = [&]<typename A, typename B>() {
+        Random random(++seed);
+        int wrong = 0;
+        int with_contact = 0;
+        int by_a_face = 0;
+        const int trial_count = trials(1'000'000 / 14);
+        for (int i = 0; i < trial_count; ++i) {
+            const Pair<A, B> pair = near_pair<A, B>(random);
+            V guess = any_direction(random);
+            const Manifold without = collide(pair.a, pair.b, Real(margin));
+            if (without.count > 0 && random.next_index(4) != 0) {
+                guess = V{without.normal} + 0.05 * guess;
+                const Vec3 origin = place_of(pair.a);
+                ++with_contact;
+                by_a_face += face_gap(core_of(pair.a, origin), core_of(pair.b, origin), Vec3{guess},
+                                      Real(margin))
+                                     .has_value()
+                                 ? 1
+                                 : 0;
+            }
+            const Manifold m = collide(Shape{pair.a}, Shape{pair.b}, Real(margin), Vec3{guess});
+            const std::string text = complaint(pair, signed_distance_of(pair), m);
+            if (!text.empty() && ++wrong <= 3)
+                ADD_FAILURE() << "seed " << seed << " pair " << i << ": " << text;
+        }
+        EXPECT_EQ(wrong, 0) << "of " << trial_count << ", seed " << seed;
+        EXPECT_GT(by_a_face, with_contact / 5);
+    };
+    check.operator()<Box, ConvexHull>();
+    check.operator()<ConvexHull, Box>();
+    check.operator()<ConvexHull, ConvexHull>();
 }
 
 // Of all kinds, each with each, in either order.

@@ -29,7 +29,9 @@ int relaxing_passes(const StepContext &context) {
     const StepSettings &settings = context.settings;
     const std::size_t contacts = context.active.contacts.size();
     const auto affordable = static_cast<std::size_t>(settings.substep_budget / settings.substeps);
-    const std::size_t passes = affordable / (contacts + context.active.joints.size() + 1);
+    // Each group's share of the budget is that of its contacts.
+    const std::size_t passes =
+        affordable / (context.contacts.size() + context.active.joints.size() + 1);
     const auto wanted = static_cast<int>(std::min({passes, 2 * contacts, most}));
     return wanted > settings.iterations && anything_is_struck(context) ? wanted
                                                                        : settings.iterations;

@@ -1,0 +1,40 @@
+// Sorting by whole numbers: a pass for each byte that differs, from the least on (LSD radix sort;
+// Knuth, The Art of Computer Programming 3, 5.2.5), and nothing where the order is right already.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace plumb {
+
+// Ascending by key(item), of 64 bits; equals stay in their order. `scratch` is kept for its memory.
+template <class T, class Key>
+void radix_sort(std::vector<T> &items, std::vector<T> &scratch, Key key) {
+    if (std::ranges::is_sorted(items, {}, key))
+        return;
+    constexpr std::size_t bytes = sizeof(std::uint64_t);
+    std::array<std::array<std::size_t, 256>, bytes> counts{};
+    for (const T &item : items) {
+        const std::uint64_t value = key(item);
+        for (std::size_t byte = 0; byte < bytes; ++byte)
+            ++counts[byte][value >> (8 * byte) & 0xFFU];
+    }
+    scratch.resize(items.size());
+    for (std::size_t byte = 0; byte < bytes; ++byte) {
+        auto &places = counts[byte];
+        if (std::ranges::find(places, items.size()) != places.end())
+            continue; // the same in all
+        std::size_t next = 0;
+        for (std::size_t &place : places)
+            next += std::exchange(place, next);
+        for (const T &item : items)
+            scratch[places[key(item) >> (8 * byte) & 0xFFU]++] = item;
+        std::swap(items, scratch);
+    }
+}
+
+} // namespace plumb
