@@ -226,12 +226,13 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
     const Real travel = glm::length((motion_b.position - motion_a.position) - origin.offset) +
                         std::sqrt(arm_a) * turn_between(origin.rotation_a, motion_a.rotation) +
                         std::sqrt(arm_b) * turn_between(origin.rotation_b, motion_b.rotation);
+    const auto usual = static_cast<Real>(settings_.kept_travel);
     // A full face has no corners that were left out and could come to touch.
-    const bool is_too_soft = before->point_count == 4 && (gets_too_few_substeps(candidate.key.a) ||
-                                                          gets_too_few_substeps(candidate.key.b));
+    const bool stays_longer =
+        before->point_count == 4 && way_of(candidate) <= usual &&
+        (gets_too_few_substeps(candidate.key.a) || gets_too_few_substeps(candidate.key.b));
     const Real share = kept_share * moving_width(candidate);
-    const Real most =
-        is_too_soft ? share : std::min(static_cast<Real>(settings_.kept_travel), share);
+    const Real most = stays_longer ? share : std::min(usual, share);
     if (!(travel <= most))
         return false;
     Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
