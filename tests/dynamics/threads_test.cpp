@@ -46,10 +46,12 @@ void share_steps(const std::string &method, TaskPool::Parts parts) {
     World alone = heap(method), shared = heap(method);
     TaskPool tasks(8, parts);
     SavedWorld saved;
+    std::uint64_t most_pairs = 0; // some methods throw the heap apart
     for (int step = 0; step < 8; ++step) {
         alone.step(nullptr);
         shared.step(&tasks);
         ASSERT_EQ(shared.hash(), alone.hash()) << "step " << step;
+        most_pairs = std::max<std::uint64_t>(most_pairs, shared.report().pairs);
         // Between steps: what edits, saves and restores leave is there for all threads.
         if (step == 2)
             shared.save(saved);
@@ -59,7 +61,7 @@ void share_steps(const std::string &method, TaskPool::Parts parts) {
                 world->add_body(dynamic_body(ball(0.3), 2, V{1, 6, 1}));
             }
     }
-    EXPECT_GE(shared.report().pairs, 4U * 64); // several parts
+    EXPECT_GE(most_pairs, 8U * 64); // several parts
     shared.restore(saved);
     for (int step = 0; step < 2; ++step)
         shared.step(&tasks);
