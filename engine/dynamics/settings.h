@@ -110,9 +110,9 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"kept_travel", &StepSettings::kept_travel, "m", 0, 1e9, SettingGroup::kept,
      "Contacts of several points are kept as they were found until the surfaces have moved so far "
      "against each other, and no more than a twentieth of the smaller body's width; 0: found again "
-     "in each step. Whole faces that get fewer substeps than they ask for are kept for all of that "
-     "twentieth. Well below speculative_distance, so that no corner that was left out comes to "
-     "touch."},
+     "in each step. Whole faces that get fewer substeps than they ask for stay for all of that "
+     "twentieth while they move slowly against each other. Well below speculative_distance, so "
+     "that no corner that was left out comes to touch."},
     {"penetration_slop", &StepSettings::penetration_slop, "m", 0, 1e9, SettingGroup::baumgarte,
      "Penetration that is left alone, so that contacts persist."},
     {"baumgarte", &StepSettings::baumgarte, "", 0, 1, SettingGroup::baumgarte,

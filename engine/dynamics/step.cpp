@@ -118,6 +118,7 @@ void World::find_contacts(StepTimes *times) {
         if (model_->has_particles())
             find_particle_contacts();
     } while (wake_touched(scratch_.contacts));
+    report_.pairs = static_cast<std::uint32_t>(scratch_.candidates.size());
 }
 
 void World::load_body(std::size_t i) {
@@ -211,7 +212,6 @@ void World::advance() {
     report_.moving_bodies = static_cast<std::uint32_t>(s.awake);
     report_.contact_points = 0;
     report_.joints = model_->alive_joints;
-    report_.pairs = static_cast<std::uint32_t>(s.candidates.size());
     report_.contacts = static_cast<std::uint32_t>(s.contacts.size());
     for (const ContactEnds &contact : s.ends)
         report_.contact_points += contact.points;

@@ -89,7 +89,8 @@ HullFace face_of(const HullCore &hull, const Vec3 &direction) {
 
 // From the owner of the face to the other.
 template <typename Owner, typename Other>
-std::optional<FaceGap> above(const Owner &owner, const Other &other, const Vec3 &guess, Real far) {
+std::optional<Proximity> above(const Owner &owner, const Other &other, const Vec3 &guess,
+                               Real far) {
     const auto face = face_of(owner, guess);
     if (face.is_flat())
         return std::nullopt;
@@ -97,16 +98,20 @@ std::optional<FaceGap> above(const Owner &owner, const Other &other, const Vec3 
     const Vec3 corner = other.support(-normal);
     const Vec3 local = face.inside(corner);
     const Real height = face.height(local);
-    FaceGap gap{height, normal, corner - height * normal, corner, height > far};
-    const bool is_known =
-        gap.is_beyond || (height > Real(0) ? face.is_under(local) : face.is_nearest(local, height));
-    return is_known ? std::optional(gap) : std::nullopt;
+    const bool is_beyond = height > far;
+    if (!is_beyond && !(height > Real(0) ? face.is_under(local) : face.is_nearest(local, height)))
+        return std::nullopt;
+    return Proximity{.separation = height,
+                     .normal = normal,
+                     .on_a = corner - height * normal,
+                     .on_b = corner,
+                     .is_beyond = is_beyond};
 }
 
 } // namespace
 
 template <HasFaceGap A, HasFaceGap B>
-std::optional<FaceGap> face_gap(const A &a, const B &b, const Vec3 &guess, Real far) {
+std::optional<Proximity> face_gap(const A &a, const B &b, const Vec3 &guess, Real far) {
     if (const auto found = above(a, b, guess, far))
         return found;
     auto found = above(b, a, -guess, far);
@@ -117,9 +122,9 @@ std::optional<FaceGap> face_gap(const A &a, const B &b, const Vec3 &guess, Real 
     return found;
 }
 
-template std::optional<FaceGap> face_gap(const BoxCore &, const BoxCore &, const Vec3 &, Real);
-template std::optional<FaceGap> face_gap(const HullCore &, const HullCore &, const Vec3 &, Real);
-template std::optional<FaceGap> face_gap(const BoxCore &, const HullCore &, const Vec3 &, Real);
-template std::optional<FaceGap> face_gap(const HullCore &, const BoxCore &, const Vec3 &, Real);
+template std::optional<Proximity> face_gap(const BoxCore &, const BoxCore &, const Vec3 &, Real);
+template std::optional<Proximity> face_gap(const HullCore &, const HullCore &, const Vec3 &, Real);
+template std::optional<Proximity> face_gap(const BoxCore &, const HullCore &, const Vec3 &, Real);
+template std::optional<Proximity> face_gap(const HullCore &, const BoxCore &, const Vec3 &, Real);
 
 } // namespace plumb::inline PLUMB_PRECISION

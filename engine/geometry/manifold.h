@@ -70,6 +70,10 @@ template <typename A, typename B>
 concept CollidesInOrder = requires(const A &a, const B &b) {
     unchecked::collide(a, b, Real(0));
 };
+template <typename A, typename B>
+concept CollidesFromGuess = requires(const A &a, const B &b) {
+    unchecked::collide(a, b, Real(0), Vec3{Real(0)});
+};
 
 // Any two of Sphere, Box, Capsule, Cylinder, ConvexHull, Triangle and HalfSpace. Another one in a
 // Shape does not compile until all its pairs are above.
@@ -109,19 +113,24 @@ void check_margin(Real margin);
 // octagon in its rim, whose corners are points of it: the area of contact is up to 10 % smaller,
 // but the deepest point of the rim is always there. Of a hull face with more than 16 corners, 16
 // are taken, evenly.
+//
+// With a `guess`, about the normal from A to B, such as that of the step before, it is the same to
+// rounding, and sooner where hulls are in it; zero: unknown.
 template <typename A, typename B>
-requires Collidable<A, B> Manifold collide(const A &a, const B &b, Real margin) {
+requires Collidable<A, B> Manifold collide(const A &a, const B &b, Real margin,
+                                           const Vec3 &guess = Vec3{Real(0)}) {
     check_margin(margin);
     check_valid(a);
     check_valid(b);
-    if constexpr (CollidesInOrder<A, B>)
+    if constexpr (CollidesFromGuess<A, B>)
+        return unchecked::collide(a, b, margin, guess);
+    else if constexpr (CollidesFromGuess<B, A>)
+        return mirrored(unchecked::collide(b, a, margin, -guess));
+    else if constexpr (CollidesInOrder<A, B>)
         return unchecked::collide(a, b, margin);
     else
         return mirrored(unchecked::collide(b, a, margin));
 }
-Manifold collide(const Shape &a, const Shape &b, Real margin);
-// The same to rounding, sooner where hulls are in it, with about the normal from A to B to begin
-// with, such as that of the step before; zero: unknown.
-Manifold collide(const Shape &a, const Shape &b, Real margin, const Vec3 &guess);
+Manifold collide(const Shape &a, const Shape &b, Real margin, const Vec3 &guess = Vec3{Real(0)});
 
 } // namespace plumb::inline PLUMB_PRECISION

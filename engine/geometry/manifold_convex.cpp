@@ -388,15 +388,8 @@ template <typename A, typename B>
 Proximity proximity_near(const A &a, const B &b, Real margin, const Vec3 &guess) {
     if constexpr (HaveFaceGap<A, B>)
         if (guess != Vec3{Real(0)})
-            if (const auto known = face_gap(a, b, guess, margin)) {
-                Proximity found;
-                found.separation = known->separation;
-                found.normal = known->normal;
-                found.on_a = known->on_a;
-                found.on_b = known->on_b;
-                found.is_beyond = known->is_beyond;
-                return found;
-            }
+            if (const std::optional<Proximity> known = face_gap(a, b, guess, margin))
+                return *known;
     return proximity(CorePair(a, b), margin, guess);
 }
 

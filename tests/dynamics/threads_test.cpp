@@ -17,7 +17,7 @@ World heap(const std::string &method) {
     World world(method, settings_for(method));
     world.add_body(ground(0.6, 0.3));
     BodyId last;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 400; ++i) {
         const V at{0.45 * (i % 8), 0.4 + 0.45 * (i / 64), 0.45 * (i / 8 % 8)};
         BodyDef def = dynamic_body(any_shape(random), 1, at, any_vector(random, 1));
         def.pose.rotation = narrow(any_rotation(random));
@@ -61,7 +61,7 @@ void share_steps(const std::string &method, TaskPool::Parts parts) {
                 world->add_body(dynamic_body(ball(0.3), 2, V{1, 6, 1}));
             }
     }
-    EXPECT_GE(most_pairs, 8U * 64); // several parts
+    EXPECT_GE(most_pairs, 20U * 64);
     shared.restore(saved);
     for (int step = 0; step < 2; ++step)
         shared.step(&tasks);
