@@ -157,6 +157,31 @@ Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle
     return contact;
 }
 
+// Of a point of the manifold, which was found with the bodies so.
+void World::set_anchor(Contact &contact, std::size_t k, const Motion &a, const Motion &b) const {
+    const Vec3 &normal = contact.manifold.normal;
+    const ManifoldPoint &point = contact.manifold.points[k];
+    ContactAnchor &anchor = contact.anchors[k];
+    const Real side = acting_side(contact.key);
+    // The midpoint lies half the separation off either surface.
+    const Real half = Real(0.5) * point.separation;
+    anchor.arm_a = point.position - a.position;
+    anchor.arm_b = point.position - b.position;
+    anchor.core_a =
+        glm::conjugate(a.rotation) * (anchor.arm_a - (half + contact.rounding_a) * normal);
+    anchor.core_b =
+        glm::conjugate(b.rotation) * (anchor.arm_b + (half + contact.rounding_b) * normal);
+    anchor.arm_a += side * half * normal;
+    anchor.arm_b += side * half * normal;
+}
+
+Real World::separation_now(const Contact &contact, std::size_t k) const {
+    const ContactAnchor &anchor = contact.anchors[k];
+    return separation_along(contact.manifold.normal, anchor.core_a, anchor.core_b,
+                            contact.rounding_a + contact.rounding_b, state_.motions[contact.key.a],
+                            state_.motions[contact.key.b]);
+}
+
 void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
                         const ContactMemory *before, const FoundManifold &found,
                         std::vector<Contact> &out) const {
@@ -165,30 +190,13 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     Contact &contact = begin_contact(candidate, triangle, out);
     contact.manifold = found.manifold;
     contact.moment = found.moment;
-    const Vec3 &normal = contact.manifold.normal;
-    contact.origin = origin_of(normal, found.a, found.b);
+    contact.origin = origin_of(contact.manifold.normal, found.a, found.b);
     set_rounding(contact, *model_);
-    const Real rounding_a = contact.rounding_a;
-    const Real rounding_b = contact.rounding_b;
-    const Real side = acting_side(contact.key);
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
-        ManifoldPoint &point = contact.manifold.points[index];
-        ContactAnchor &anchor = contact.anchors[index];
-        // The midpoint lies half the separation off either surface.
-        const Real half = Real(0.5) * point.separation;
-        anchor.arm_a = point.position - found.a.position;
-        anchor.arm_b = point.position - found.b.position;
-        anchor.core_a =
-            glm::conjugate(found.a.rotation) * (anchor.arm_a - (half + rounding_a) * normal);
-        anchor.core_b =
-            glm::conjugate(found.b.rotation) * (anchor.arm_b + (half + rounding_b) * normal);
-        anchor.arm_a += side * half * normal;
-        anchor.arm_b += side * half * normal;
+        set_anchor(contact, index, found.a, found.b);
         if (found.moment != Moment::start)
-            point.separation =
-                separation_along(normal, anchor.core_a, anchor.core_b, rounding_a + rounding_b,
-                                 state_.motions[candidate.key.a], state_.motions[candidate.key.b]);
+            contact.manifold.points[index].separation = separation_now(contact, index);
     }
     contact.is_new = before == nullptr;
     if (!contact.is_new)

@@ -11,12 +11,17 @@
 #include <concepts>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
+
+// Of the half width of the thinner of two bodies: how deep they may be in each other after a step
+// where none of their contact's points is, so far from all of those.
+constexpr Real missed_share = Real(0.25);
 
 Transform placement(const Motion &motion) {
     return {motion.position, motion.rotation};
@@ -236,6 +241,56 @@ bool World::find_surprises() {
     s.contacts.insert(s.contacts.end(), s.more.begin(), s.more.end());
     std::ranges::sort(s.contacts, {}, &Contact::key);
     return true;
+}
+
+// After a try of the step: where two that touch in one place have turned so far that they are deep
+// in each other in another. Returns whether a contact got such a point, which may stop that in the
+// next try.
+bool World::find_missed_points() {
+    if (!method_->info.looks_ahead)
+        return false;
+    Scratch &s = scratch_;
+    bool any = false;
+    for (Contact &contact : s.contacts) {
+        const Collider &a = model_->colliders[contact.collider_a];
+        const Collider &b = model_->colliders[contact.collider_b];
+        const Real deep = missed_share * std::min(a.half_width, b.half_width);
+        const SolverBody &at_a = s.bodies[contact.key.a];
+        const SolverBody &at_b = s.bodies[contact.key.b];
+        const Real turning =
+            glm::length(at_a.turned) * a.extent + glm::length(at_b.turned) * b.extent;
+        Manifold &manifold = contact.manifold;
+        if (!(turning > deep) || has_diverged(at_a) || has_diverged(at_b) || contact.sensor ||
+            contact.moment == Moment::turning || a.surface || b.surface || manifold.count == 4)
+            continue;
+        const Manifold now =
+            plumb::collide(placed(a.shape, placement(at_a)), placed(b.shape, placement(at_b)),
+                           Real(0), manifold.normal);
+        // About the same side of both.
+        if (!(glm::dot(now.normal, manifold.normal) > Real(0.4)))
+            continue;
+        for (int k = 0; k < now.count && manifold.count < 4; ++k) {
+            const ManifoldPoint &point = now.points[static_cast<std::size_t>(k)];
+            if (point.separation > -deep)
+                continue;
+            const auto added = static_cast<std::size_t>(manifold.count);
+            manifold.points[added] = point;
+            set_anchor(contact, added, at_a, at_b);
+            const ContactAnchor &anchor = contact.anchors[added];
+            const auto is_beside = [&](const ContactAnchor &other) {
+                return glm::distance(other.core_a, anchor.core_a) <= deep ||
+                       glm::distance(other.core_b, anchor.core_b) <= deep;
+            };
+            if (std::ranges::any_of(std::span(contact.anchors).first(added), is_beside))
+                continue; // the contact has it already
+            manifold.points[added].separation = separation_now(contact, added);
+            contact.impulses[added] = Vec3{Real(0)};
+            contact.moment = Moment::touch;
+            ++manifold.count;
+            any = true;
+        }
+    }
+    return any;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -83,7 +83,12 @@ void World::step(TaskPool *tasks, StepTimes *times) {
                 advance();
             }
             constexpr int most_tries = 8;
-            for (int tries = 1; tries < most_tries && find_surprises(); ++tries) {
+            int missed = 0;
+            constexpr int most_missed = 2; // more do not make it better
+            const auto try_again = [&] {
+                return find_surprises() || (missed++ < most_missed && find_missed_points());
+            };
+            for (int tries = 1; tries < most_tries && try_again(); ++tries) {
                 scratch_.impacts.resize(impacts);
                 report_.impacts = before.impacts;
                 report_.unresolved_impacts = before.unresolved_impacts;

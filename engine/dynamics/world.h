@@ -243,6 +243,9 @@ class World {
     void add_contact(const Candidate &candidate, std::uint32_t triangle,
                      const ContactMemory *before, const FoundManifold &found,
                      std::vector<Contact> &out) const;
+    void set_anchor(Contact &contact, std::size_t point, const Motion &a, const Motion &b) const;
+    // Of a point, from its anchor (m).
+    Real separation_now(const Contact &contact, std::size_t point) const;
     void note_fixed_neighbors() const;
     // Without what a fixed body's neighbours cover (inner_edges.h).
     void drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
@@ -251,6 +254,7 @@ class World {
     const Motion &going(std::uint32_t body) const;
     Real least_half_width(const Body &body) const;
     bool find_surprises();
+    bool find_missed_points();
     Real contact_reach(const Candidate &candidate) const;
     Real moving_width(const Candidate &candidate) const;
     // How far its spin moves its surface at most, a radian (m).
