@@ -23,9 +23,9 @@ constexpr Real held_compliance = Real(1e-3);
 // same time, hang on it, too.
 void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
     if (joint.moves_a)
-        apply(context.body(joint.a), joint.rows, joint.rows.r_a, -impulse);
+        apply(context.bodies[joint.a], joint.rows, joint.rows.r_a, -impulse);
     if (joint.moves_b)
-        apply(context.body(joint.b), joint.rows, joint.rows.r_b, impulse);
+        apply(context.bodies[joint.b], joint.rows, joint.rows.r_b, impulse);
 }
 
 Vec3 memory_of(const StepContext &context, const JointConstraint &constraint) {
@@ -61,8 +61,10 @@ bool solve_group(StepContext &context, const JointGroup &group, const JointPass 
                 side += pushed((pass.held_share / pass.h) * joint.rows.error, pass.push_velocity) +
                         system.softening(place) * joint.impulse;
             sides[place - group.first] = -side;
-            const Real most = tolerance * size_of(joint.rows) / pass.h;
-            holds = holds && glm::dot(side, side) <= most * most;
+            if (holds) {
+                const Real most = tolerance * size_of(joint.rows) / pass.h;
+                holds = glm::dot(side, side) <= most * most;
+            }
         }
         if (holds)
             return true;

@@ -16,12 +16,19 @@ namespace {
 // K of a point-to-point constraint: (1/ma + 1/mb) 1 - [ra] Ia^-1 [ra] - [rb] Ib^-1 [rb]
 // (Catto 2009, "Modeling and Solving Constraints", slide 52, in 3D).
 Mat3 point_matrix(const SolverBody &a, const SolverBody &b, const Vec3 &r_a, const Vec3 &r_b) {
-    const Mat3 ra = cross_matrix(r_a);
-    const Mat3 rb = cross_matrix(r_b);
-    Mat3 linear{Real(0)};
+    Mat3 k{Real(0)};
     for (int i = 0; i < 3; ++i)
-        linear[i][i] = a.inv_mass[i] + b.inv_mass[i];
-    return linear - ra * a.inv_inertia * ra - rb * b.inv_inertia * rb;
+        k[i][i] = a.inv_mass[i] + b.inv_mass[i];
+    const auto subtract = [&](const Mat3 &inv_inertia, const Vec3 &r) {
+        const Mat3 crossed{glm::cross(r, inv_inertia[0]), glm::cross(r, inv_inertia[1]),
+                           glm::cross(r, inv_inertia[2])};
+        k[0] -= r.z * crossed[1] - r.y * crossed[2];
+        k[1] -= r.x * crossed[2] - r.z * crossed[0];
+        k[2] -= r.y * crossed[0] - r.x * crossed[1];
+    };
+    subtract(a.inv_inertia, r_a);
+    subtract(b.inv_inertia, r_b);
+    return k;
 }
 
 // K between two rows: u^T K v (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers").
@@ -44,21 +51,6 @@ Mat3 inverse_of(Mat3 k) {
     const Real scale = std::exp2(static_cast<Real>(-std::ilogb(trace)));
     k *= scale;
     return scale * glm::inverse(k + locked_compliance(k));
-}
-
-// The mean velocity over h, because it turns, of the end of an arm that starts as r: the chord of
-// its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
-Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
-    const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);
-    Real along = Real(1) - squared / Real(6) * (Real(1) - squared / Real(20));
-    Real inward = Real(0.5) - squared / Real(24) * (Real(1) - squared / Real(30));
-    if (squared > Real(0.04)) { // the series' next terms show
-        const Real angle = std::sqrt(squared);
-        along = std::sin(angle) / angle;
-        inward = (Real(1) - std::cos(angle)) / squared;
-    }
-    const Vec3 turning = glm::cross(angular_velocity, r);
-    return along * turning + (inward * h) * glm::cross(angular_velocity, turning);
 }
 
 // The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
@@ -132,30 +124,37 @@ Real size_of(const RowBlock &rows) {
                : glm::length(rows.r_a) + glm::length(rows.r_b) + rows.swing_length;
 }
 
-Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
-                  const JointPass &pass) {
-    if (rows.kind == RowKind::angular) {
-        const Vec3 turning = b.angular_velocity - a.angular_velocity;
-        Vec3 v{Real(0)};
+// The chord of its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
+Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
+    const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);
+    Real along = Real(1) - squared / Real(6) * (Real(1) - squared / Real(20));
+    Real inward = Real(0.5) - squared / Real(24) * (Real(1) - squared / Real(30));
+    if (squared > Real(0.04)) { // the series' next terms show
+        const Real angle = std::sqrt(squared);
+        along = std::sin(angle) / angle;
+        inward = (Real(1) - std::cos(angle)) / squared;
+    }
+    const Vec3 turning = glm::cross(angular_velocity, r);
+    return along * turning + (inward * h) * glm::cross(angular_velocity, turning);
+}
+
+Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                    const JointPass &pass) {
+    Vec3 v{Real(0)};
+    const auto along = [&](const Vec3 &way) {
         for (int i = 0; i < rows.count; ++i)
-            v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], turning);
+            v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], way);
+    };
+    if (rows.kind == RowKind::angular) {
+        along(b.angular_velocity - a.angular_velocity);
         return v;
     }
-    Vec3 relative = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
-    if (pass.at_the_end) {
-        // The mean over h of the anchors' relative velocity.
-        const Vec3 now = relative;
-        relative =
-            (b.velocity - a.velocity) + (chord_velocity(b.angular_velocity, rows.r_b, pass.h) -
-                                         chord_velocity(a.angular_velocity, rows.r_a, pass.h));
-        if (rows.turns_with_a)
-            relative += chord_velocity(-a.angular_velocity, pass.h * now, pass.h);
+    Vec3 relative = point_velocity(rows, a, b, pass);
+    if (pass.at_the_end && rows.turns_with_a) {
+        const Vec3 now = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+        relative += chord_velocity(-a.angular_velocity, pass.h * now, pass.h);
     }
-    if (rows.kind == RowKind::point)
-        return relative;
-    Vec3 v{Real(0)};
-    for (int i = 0; i < rows.count; ++i)
-        v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], relative);
+    along(relative);
     if (pass.at_the_end && rows.swing_length > Real(0)) {
         // How much longer the line between the anchors becomes while they swing aside.
         const Real distance = rows.swing_length;
@@ -164,22 +163,6 @@ Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b
         v.x += squared / (distance + std::sqrt(distance * distance - squared)) / pass.h;
     }
     return v;
-}
-
-Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse) {
-    if (rows.kind == RowKind::point)
-        return impulse;
-    Vec3 sum = impulse.x * rows.axes[0];
-    for (int i = 1; i < rows.count; ++i)
-        sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
-    return sum;
-}
-
-void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
-    if (rows.kind == RowKind::angular)
-        body.apply_angular_impulse(world_impulse(rows, impulse));
-    else
-        body.apply_impulse(world_impulse(rows, impulse), arm);
 }
 
 Vec3 pushed(const Vec3 &bias, Real most) {

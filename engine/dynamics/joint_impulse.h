@@ -4,6 +4,8 @@
 #include "engine/dynamics/body.h"
 #include "engine/dynamics/joint_constraint.h"
 
+#include <glm/geometric.hpp>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 // So much to add to K, a symmetric matrix that is not negative, that next to no impulse goes along
@@ -12,13 +14,41 @@ namespace plumb::inline PLUMB_PRECISION {
 Mat3 locked_compliance(const Mat3 &k);
 // K^-1 of the rows. What nothing can move has none: 0.
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b);
-// How fast the rows' errors grow; at the end of pass.h where the pass says so.
-Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
-                  const JointPass &pass);
+// The mean velocity over h, because it turns, of the end of an arm that starts as r.
+Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h);
+// How fast the anchors part; at the end of pass.h where the pass says so.
+inline Vec3 point_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                           const JointPass &pass) {
+    if (!pass.at_the_end)
+        return b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+    return (b.velocity - a.velocity) + (chord_velocity(b.angular_velocity, rows.r_b, pass.h) -
+                                        chord_velocity(a.angular_velocity, rows.r_a, pass.h));
+}
+// The same of rows along or about axes.
+Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                    const JointPass &pass);
+// How fast the rows' errors grow.
+inline Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                         const JointPass &pass) {
+    return rows.kind == RowKind::point ? point_velocity(rows, a, b, pass)
+                                       : axial_velocity(rows, a, b, pass);
+}
 // What an impulse along the rows is in the world: a force's, or an angular one.
-Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse);
+inline Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse) {
+    if (rows.kind == RowKind::point)
+        return impulse;
+    Vec3 sum = impulse.x * rows.axes[0];
+    for (int i = 1; i < rows.count; ++i)
+        sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
+    return sum;
+}
 // Of an impulse along the rows, at an arm of the body's.
-void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse);
+inline void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
+    if (rows.kind == RowKind::angular)
+        body.apply_angular_impulse(world_impulse(rows, impulse));
+    else
+        body.apply_impulse(world_impulse(rows, impulse), arm);
+}
 // No faster than `most`.
 Vec3 pushed(const Vec3 &bias, Real most);
 // What a pass adds to the rows' impulse.
