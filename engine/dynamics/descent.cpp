@@ -32,22 +32,6 @@ Vec3 turned_since_start(const DescentBody &own, Real h) {
 
 // ---- what acts on what
 
-} // namespace
-
-std::size_t joint_count(const StepContext &context) {
-    return context.active.joints.size() + (context.active.holds_grab ? 1 : 0);
-}
-
-// The blocks of the k-th active joint, or of the grab.
-std::span<JointConstraint> blocks_of(StepContext &context, std::size_t k) {
-    SolverScratch &s = context.scratch;
-    const std::size_t last =
-        k + 1 < s.first_blocks.size() ? s.first_blocks[k + 1] : s.joints.size();
-    return std::span(s.joints).subspan(s.first_blocks[k], last - s.first_blocks[k]);
-}
-
-namespace {
-
 // Calls use(of a body or particle, use) for all that acts on anything, in a fixed order.
 template <typename OfBody, typename OfParticle>
 void for_each_use(StepContext &context, OfBody &&of_body, OfParticle &&of_particle) {
@@ -162,21 +146,6 @@ Vec3 way_of(const StepContext &context, const ParticleContactConstraint &row, Re
     return in_basis(h * context.particles[contact.particle].velocity -
                         way_at(context.bodies[contact.body], row.arm, h),
                     contact.normal, row.tangents);
-}
-
-void refresh_joint(StepContext &context, std::size_t k) {
-    const std::span<JointConstraint> blocks = blocks_of(context, k);
-    std::vector<RowBlock> &rows = context.scratch.rows.front();
-    rows.clear();
-    RowWriter writer(rows);
-    const SolverBody &a = context.body(blocks.front().a);
-    const SolverBody &b = context.body(blocks.front().b);
-    if (blocks.front().joint == JointConstraint::grab)
-        emit_rows(context.grab, a, b, writer);
-    else
-        emit_rows(context.model.joints[blocks.front().joint], a, b, writer);
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-        blocks[i].rows = rows[i];
 }
 
 AugmentedBlock &augmented(StepContext &context, const JointConstraint &joint) {

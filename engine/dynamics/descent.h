@@ -55,11 +55,6 @@ struct StepContext;
 void gather_uses(StepContext &context);
 std::span<const DescentUse> uses_of(const DescentUses &uses, std::size_t i);
 
-// Active joints and the grab.
-std::size_t joint_count(const StepContext &context);
-// The blocks of the k-th of these, at the poses of the last refresh_joint; none where it has none.
-std::span<JointConstraint> blocks_of(StepContext &context, std::size_t k);
-void refresh_joint(StepContext &context, std::size_t k);
 AugmentedBlock &augmented(StepContext &context, const JointConstraint &joint);
 // How far what a motor drives has come in the substep (m or rad); 0 for other rows.
 Real driven(StepContext &context, const JointConstraint &joint, Real h);

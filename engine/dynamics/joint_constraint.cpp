@@ -1,6 +1,5 @@
 #include "engine/dynamics/joint_constraint.h"
 
-#include "engine/core/collect.h"
 #include "engine/dynamics/joint_impulse.h"
 #include "engine/dynamics/method.h"
 
@@ -202,31 +201,36 @@ void weigh_again(StepContext &context) {
 constexpr std::size_t joints_a_part = 16;
 constexpr std::size_t groups_a_part = 1;
 
-// Calls use(joint, a, b, block) for the rows of the joints `first` to `last - 1` that hold, in
-// order; the grab comes after the last joint.
-template <typename Use>
-void emit(StepContext &context, std::size_t first, std::size_t last, std::vector<RowBlock> &rows,
-          Use &&use) {
-    RowWriter writer(rows);
-    const std::size_t count = context.active.joints.size();
-    for (std::size_t k = first; k < last && k < count; ++k) {
-        const std::uint32_t i = context.active.joints[k];
-        const Joint &joint = context.model.joints[i];
-        rows.clear();
-        emit_rows(joint, context.body(joint.a), context.body(joint.b), writer);
-        for (const RowBlock &block : rows)
-            use(i, joint.a, joint.b, block);
-    }
-    if (last > count && context.active.holds_grab) {
-        rows.clear();
-        emit_rows(context.grab, context.world_frame, context.body(context.grab.body), writer);
-        for (const RowBlock &block : rows)
-            use(JointConstraint::grab, Joint::world, context.grab.body, block);
+// Appends a joint's blocks, or writes those that it has.
+class NewBlocks final : public RowWriter {
+  public:
+    explicit NewBlocks(std::vector<JointConstraint> &blocks) : blocks_(blocks) {}
+
+  private:
+    RowBlock &next() override { return blocks_.emplace_back().rows; }
+    std::vector<JointConstraint> &blocks_;
+};
+class SameBlocks final : public RowWriter {
+  public:
+    explicit SameBlocks(JointConstraint *first) : next_(first) {}
+
+  private:
+    RowBlock &next() override { return (next_++)->rows; }
+    JointConstraint *next_;
+};
+
+void emit(StepContext &context, std::size_t k, RowWriter &rows) {
+    if (k < context.active.joints.size()) {
+        const Joint &joint = context.model.joints[context.active.joints[k]];
+        emit_rows(joint, context.body(joint.a), context.body(joint.b), rows);
+    } else {
+        emit_rows(context.grab, context.world_frame, context.body(context.grab.body), rows);
     }
 }
 
-std::size_t joints_and_grab(const StepContext &context) {
-    return context.active.joints.size() + (context.active.holds_grab ? 1 : 0);
+void weigh_alone(StepContext &context, JointConstraint &joint) {
+    if (!joint.is_held)
+        joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
 }
 
 // Factors the groups that are held, and of which `is_due` says so.
@@ -258,57 +262,75 @@ Real spring_recall(const RowBlock &rows, Real h) {
 
 } // namespace
 
+std::size_t joint_count(const StepContext &context) {
+    return context.active.joints.size() + (context.active.holds_grab ? 1 : 0);
+}
+
+std::span<JointConstraint> blocks_of(StepContext &context, std::size_t k) {
+    SolverScratch &s = context.scratch;
+    const std::size_t last =
+        k + 1 < s.first_blocks.size() ? s.first_blocks[k + 1] : s.joints.size();
+    return std::span(s.joints).subspan(s.first_blocks[k], last - s.first_blocks[k]);
+}
+
 void prepare_joints(StepContext &context) {
-    std::vector<JointConstraint> &constraints = context.scratch.joints;
-    constraints.clear();
+    std::vector<JointConstraint> &blocks = context.scratch.joints;
+    blocks.clear();
     context.scratch.joint_system.release();
-    if (context.active.joints.empty() && !context.active.holds_grab)
-        return;
+    context.scratch.first_blocks.clear();
     const auto is_dynamic = [&](std::uint32_t body) {
         return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
     };
-    const std::size_t count = joints_and_grab(context);
-    context.scratch.rows.resize(part_count(context.tasks, count, joints_a_part));
-    context.scratch.first_blocks.clear();
-    for (std::size_t k = 0; k < count; ++k) {
-        context.scratch.first_blocks.push_back(static_cast<std::uint32_t>(constraints.size()));
-        emit(context, k, k + 1, context.scratch.rows.front(),
-             [&](std::uint32_t joint, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
-                 JointConstraint &out = constraints.emplace_back();
-                 out.joint = joint;
-                 out.a = a;
-                 out.b = b;
-                 out.moves_a = is_dynamic(a);
-                 out.moves_b = is_dynamic(b);
-                 out.rows = block;
-                 out.impulse = memory_of(context, out);
-             });
+    NewBlocks rows(blocks);
+    for (std::size_t k = 0; k < joint_count(context); ++k) {
+        context.scratch.first_blocks.push_back(static_cast<std::uint32_t>(blocks.size()));
+        emit(context, k, rows);
+        const bool is_grab = k == context.active.joints.size();
+        const std::uint32_t index = is_grab ? JointConstraint::grab : context.active.joints[k];
+        for (JointConstraint &block : blocks_of(context, k)) {
+            block.joint = index;
+            block.a = is_grab ? Joint::world : context.model.joints[index].a;
+            block.b = is_grab ? context.grab.body : context.model.joints[index].b;
+            block.moves_a = is_dynamic(block.a);
+            block.moves_b = is_dynamic(block.b);
+            block.impulse = memory_of(context, block);
+        }
     }
 }
 
+void refresh_joint(StepContext &context, std::size_t k) {
+    SameBlocks rows(context.scratch.joints.data() + context.scratch.first_blocks[k]);
+    emit(context, k, rows);
+}
+
 void refresh_joints(StepContext &context) {
-    if (context.scratch.joints.empty())
-        return;
-    const auto refresh = [&](std::size_t begin, std::size_t end, std::size_t part) {
-        JointConstraint *next = context.scratch.joints.data() + context.scratch.first_blocks[begin];
-        emit(context, begin, end, context.scratch.rows[part],
-             [&](std::uint32_t, std::uint32_t a, std::uint32_t b, const RowBlock &block) {
-                 next->rows = block;
-                 if (!next->is_held)
-                     next->mass = mass_of(block, context.body(a), context.body(b));
-                 ++next;
-             });
+    const auto refresh = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            refresh_joint(context, k);
+            for (JointConstraint &block : blocks_of(context, k))
+                weigh_alone(context, block);
+        }
     };
-    for_counted_parts(context.tasks, joints_and_grab(context), joints_a_part, refresh);
+    for_parts(context.tasks, joint_count(context), joints_a_part, refresh);
     factor_groups(context, [](const JointGroup &) { return true; });
     weigh_with_groups(context, false);
 }
 
-void refresh_changed_joints(StepContext &context) {
+void weigh_joints(StepContext &context) {
+    const std::span<JointConstraint> joints = context.scratch.joints;
+    for_parts(context.tasks, joints.size(), joints_a_part, [&](std::size_t begin, std::size_t end) {
+        for (JointConstraint &joint : joints.subspan(begin, end - begin))
+            weigh_alone(context, joint);
+    });
+    factor_groups(context, [](const JointGroup &) { return true; });
+    weigh_with_groups(context, false);
+}
+
+void weigh_changed_joints(StepContext &context) {
     JointSystem &system = context.scratch.joint_system;
     for (JointConstraint &joint : context.scratch.joints)
-        if (!joint.is_held && is_changed(context, joint))
-            joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
+        if (is_changed(context, joint))
+            weigh_alone(context, joint);
     // A group that has changed has changed all of its bodies.
     factor_groups(context, [&](const JointGroup &group) {
         return is_changed(context, context.scratch.joints[system.block(group.first)]);

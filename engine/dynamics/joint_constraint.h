@@ -66,14 +66,22 @@ Real size_of(const RowBlock &rows);
 // (scratch.changed).
 void follow_loads(StepContext &context, Real h);
 
-// Blocks of the joints that are alive and not broken, in order, then of the grab; poses are read by
-// refresh_joints.
+// Blocks of the joints that are alive and not broken, in order, then of the grab, at the present
+// poses.
 void prepare_joints(StepContext &context);
-// Axes, arms, errors and masses at the present poses, once in each substep: a joint that turns far
-// within a step is only as true as its lever arms.
+// Active joints and the grab.
+std::size_t joint_count(const StepContext &context);
+// The blocks of the k-th of these; none where it has none.
+std::span<JointConstraint> blocks_of(StepContext &context, std::size_t k);
+// Its axes, arms and errors at the present poses.
+void refresh_joint(StepContext &context, std::size_t k);
+// Of all, and their masses, once in each substep: a joint that turns far within a step is only as
+// true as its lever arms.
 void refresh_joints(StepContext &context);
-// The same, where nothing moved since then: of those bodies alone that follow_loads changed.
-void refresh_changed_joints(StepContext &context);
+// Their masses alone, where nothing moved since they were prepared or refreshed.
+void weigh_joints(StepContext &context);
+// The same, of those bodies alone that follow_loads changed.
+void weigh_changed_joints(StepContext &context);
 // Warm starting, as for contacts.
 void remember_joints(StepContext &context);
 void recall_joints(StepContext &context, Real share, Springs springs);

@@ -94,7 +94,7 @@ void emit_limits_and_motor(const Joint &joint, const RowBlock &row, Real place,
 
 Real joint_error(const Joint &joint, const Motion &a, const Motion &b) {
     std::vector<RowBlock> blocks;
-    RowWriter writer(blocks);
+    NewRows writer(blocks);
     emit_rows(joint, a, b, writer);
     Real squared = Real(0);
     for (const RowBlock &block : blocks)

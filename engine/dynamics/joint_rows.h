@@ -38,12 +38,11 @@ struct RowBlock {
     bool turns_with_a = false;
 };
 
-// Collects the blocks of one joint.
+// Where the blocks of a joint are written: new ones, or those of the same joint at other poses.
 class RowWriter {
   public:
-    explicit RowWriter(std::vector<RowBlock> &blocks) : blocks_(blocks) {}
     RowBlock &add(RowKind kind, RowBounds bounds, int count, std::size_t first_memory) {
-        RowBlock &block = blocks_.emplace_back();
+        RowBlock &block = next();
         block.kind = kind;
         block.bounds = bounds;
         block.count = count;
@@ -51,12 +50,25 @@ class RowWriter {
         return block;
     }
 
+  protected:
+    ~RowWriter() = default;
+
   private:
+    virtual RowBlock &next() = 0;
+};
+
+// Appends them.
+class NewRows final : public RowWriter {
+  public:
+    explicit NewRows(std::vector<RowBlock> &blocks) : blocks_(blocks) {}
+
+  private:
+    RowBlock &next() override { return blocks_.emplace_back(); }
     std::vector<RowBlock> &blocks_;
 };
 
 // A joint at the present poses of its bodies (the world's is the identity): always the same blocks
-// in the same order.
+// in the same order, of which the same members are written.
 void emit_rows(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
 void emit_rows(const Grab &grab, const Motion &world, const Motion &body, RowWriter &rows);
 

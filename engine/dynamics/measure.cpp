@@ -169,7 +169,7 @@ World::JointLoad World::joint_load(std::uint32_t joint) const {
     const Joint &one = joints()[joint];
     const JointMemory &memory = state_.joints[joint];
     std::vector<RowBlock> blocks;
-    RowWriter writer(blocks);
+    NewRows writer(blocks);
     emit_rows(one, joint_motion(one.a), joint_motion(one.b), writer);
     JointLoad load;
     const auto rate = static_cast<Real>(substeps_of(island_body(one.a, one.b)) / settings_.dt);

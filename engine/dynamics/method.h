@@ -31,7 +31,7 @@ struct SolverScratch {
     std::vector<ContactConstraint> contacts;
     ContactSchedule schedule;
     std::vector<JointConstraint> joints;
-    std::vector<std::vector<RowBlock>> rows; // that a part of a loop emits
+    std::vector<RowBlock> rows;              // of one joint
     std::vector<std::uint32_t> first_blocks; // of each active joint and the grab, in `joints`
     JointSystem joint_system;
     std::vector<Vec3> sides;                     // of its equations, one for each place

@@ -81,9 +81,9 @@ void advance_soft_step(StepContext &context) {
     for (int substep = 0; substep < settings.substeps; ++substep) {
         follow_loads(context, h);
         if (substep == 0)
-            refresh_joints(context);
+            weigh_joints(context);
         else // the poses are those of the substep before
-            refresh_changed_joints(context);
+            weigh_changed_joints(context);
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
         remember_joints(context);

@@ -117,9 +117,9 @@ template <typename Use> void for_each_block(StepContext &context, Use &&use) {
         SolverBody &a = context.body(joint.a);
         SolverBody &b = context.body(joint.b);
         use(joint, a, b, [&] {
-            std::vector<RowBlock> &rows = s.rows.front();
+            std::vector<RowBlock> &rows = s.rows;
             rows.clear();
-            RowWriter writer(rows);
+            NewRows writer(rows);
             if (joint.joint == JointConstraint::grab)
                 emit_rows(context.grab, a, b, writer);
             else
