@@ -21,13 +21,16 @@ Vec3 nearer(const Vec3 &axial, Real most, const Vec3 &inertia) {
 
 } // namespace
 
-void GeometricStiffness::add(const Vec3 &force, const Vec3 &arm) {
+void GeometricStiffness::add_bound(const Vec3 &force, const Vec3 &arm) {
+    most += glm::length(force) * glm::length(arm);
+}
+
+void GeometricStiffness::add_tensor(const Vec3 &force, const Vec3 &arm) {
     const Real along = glm::dot(force, arm);
     for (int i = 0; i < 3; ++i) {
         tensor[i] -= Real(0.5) * (arm[i] * force + force[i] * arm);
         tensor[i][i] += along;
     }
-    most += glm::length(force) * glm::length(arm);
 }
 
 Vec3 axial_stiffness(const GeometricStiffness &stiffness, const Vec3 &inertia,

@@ -12,7 +12,13 @@ struct GeometricStiffness {
     Mat3 tensor{Real(0)}; // world, N m
     Real most = Real(0);  // the sum of |F| |r|: no eigenvalue is larger (N m)
 
-    void add(const Vec3 &force, const Vec3 &arm);
+    void add(const Vec3 &force, const Vec3 &arm) {
+        add_bound(force, arm);
+        add_tensor(force, arm);
+    }
+    // In parts: for a ball, or where `most` is little enough, that does.
+    void add_bound(const Vec3 &force, const Vec3 &arm);
+    void add_tensor(const Vec3 &force, const Vec3 &arm);
 };
 
 // About each of a body's principal axes, of which `inertia` are the moments (kg m^2) and `rotation`

@@ -183,7 +183,9 @@ void World::note_joint_needs(const IslandGroup &group) {
         const Vec3 force = static_cast<Real>(group.substeps / settings_.dt) *
                            world_impulse(joint.rows, joint.impulse);
         for_ends(joint, [&](std::uint32_t body, const Vec3 &arm) {
-            s.stiffness[body].add(force, arm);
+            s.stiffness[body].add_bound(force, arm);
+            if (!is_isotropic(model_->bodies[body].inertia))
+                s.stiffness[body].add_tensor(force, arm);
             inverse += largest(s.bodies[body].inv_mass);
             is_together = is_together || is_solved_together(body);
         });
@@ -203,25 +205,30 @@ void World::note_joint_needs(const IslandGroup &group) {
 }
 
 // How fast joints' forces turn their bodies, and how fast these turn.
-void World::note_turn_needs() {
+void World::note_turn_needs(const IslandGroup &group) {
     Scratch &s = scratch_;
+    for (const std::uint32_t i : group.moving) {
+        const Body &body = model_->bodies[i];
+        if (body.kind != BodyKind::dynamic || !(s.stiffness[i].most > Real(0)))
+            continue;
+        const auto squared = static_cast<double>(squared_rate(
+            axial_stiffness(s.stiffness[i], body.inertia, s.bodies[i].rotation), body.inertia));
+        const double rate =
+            settings_.dt / (is_solved_together(i) ? followed_together : followed_alone);
+        s.loads[i] = std::max(s.loads[i], squared * rate * rate);
+    }
+    const double turn = settings_.dt / followed_turn;
+    // Only about what stands still: a chain that whips would be stiffened in the midst of it.
     for (const JointConstraint &joint : s.solver.joints)
-        for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
-            if (model_->bodies[body].kind != BodyKind::dynamic ||
-                !(s.stiffness[body].most > Real(0)))
-                return;
-            const Vec3 &inertia = model_->bodies[body].inertia;
-            const auto squared = static_cast<double>(squared_rate(
-                axial_stiffness(s.stiffness[body], inertia, s.bodies[body].rotation), inertia));
-            const double rate =
-                settings_.dt / (is_solved_together(body) ? followed_together : followed_alone);
-            // Only about what stands still: a chain that whips would be stiffened in the midst of
-            // it.
-            const double turn = moves(joint.a) && moves(joint.b) ? 0 : settings_.dt / followed_turn;
-            const Vec3 &spin = s.bodies[body].angular_velocity;
-            s.loads[body] = std::max({s.loads[body], squared * rate * rate,
-                                      static_cast<double>(glm::dot(spin, spin)) * turn * turn});
-        });
+        if (!moves(joint.a) || !moves(joint.b))
+            for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
+                if (model_->bodies[body].kind != BodyKind::dynamic ||
+                    !(s.stiffness[body].most > Real(0)))
+                    return;
+                const Vec3 &spin = s.bodies[body].angular_velocity;
+                s.loads[body] = std::max(s.loads[body],
+                                         static_cast<double>(glm::dot(spin, spin)) * turn * turn);
+            });
 }
 
 // What joints solved together did not follow is stepped again, finer. What has been torn apart is a
@@ -260,7 +267,7 @@ void World::note_needs(const IslandGroup &group) {
         s.loads[i] = 0;
     note_contact_needs(group);
     note_joint_needs(group);
-    note_turn_needs();
+    note_turn_needs(group);
     note_let_go(group);
     for (const std::uint32_t i : group.moving)
         s.paces[i].wanted = count_of(std::sqrt(s.loads[i]));

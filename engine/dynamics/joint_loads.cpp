@@ -24,19 +24,28 @@ bool is_torn(const RowBlock &rows) {
     return !(glm::dot(rows.error, rows.error) <= most * most);
 }
 
-// What the impulses of the last substep do to the bodies at their ends.
-void find_stiffness(const StepContext &context, Real h,
-                    std::vector<GeometricStiffness> &stiffness) {
-    stiffness.resize(context.bodies.size());
+// Calls use(body, force, arm) for what the impulses of the last substep do to the bodies at their
+// ends.
+template <typename Use> void for_forces(const StepContext &context, Real h, Use &&use) {
     for (const JointConstraint &joint : context.scratch.joints) {
         if (joint.rows.kind == RowKind::angular)
             continue;
         const Vec3 force = world_impulse(joint.rows, joint.impulse) / h;
         if (joint.moves_a)
-            stiffness[joint.a].add(-force, joint.rows.r_a);
+            use(joint.a, -force, joint.rows.r_a);
         if (joint.moves_b)
-            stiffness[joint.b].add(force, joint.rows.r_b);
+            use(joint.b, force, joint.rows.r_b);
     }
+}
+
+// Whether so much of a stiffness may be more than a substep follows; its bound alone says so of
+// most bodies.
+Real followed_rate(Real h) {
+    return h * h / (followed * followed);
+}
+bool may_be_too_stiff(const GeometricStiffness &stiffness, const Vec3 &inertia, Real h) {
+    constexpr Real nearly = Real(0.99); // for rounding
+    return !(squared_rate(Vec3{followed_rate(h) * stiffness.most}, inertia) < nearly);
 }
 
 // For the present substep; a body that bears less again is as it was. Says whether anything
@@ -46,34 +55,57 @@ bool raise_inertia(SolverBody &motion, const Body &body, const GeometricStiffnes
     // What cannot move as a joint asks (a locked axis) bears ever more, the heavier it is made.
     constexpr Real most = Real(1e3);
     const Vec3 needed =
-        (h * h / (followed * followed)) * axial_stiffness(stiffness, body.inertia, motion.rotation);
-    // The inertia of a body that is not a ball was found anew when it turned.
-    if (!(squared_rate(needed, body.inertia) > Real(1)) && !is_isotropic(body.inertia))
-        return false;
-    Body heavier = body;
-    for (int axis = 0; axis < 3; ++axis)
-        heavier.inv_inertia[axis] = std::min(
-            body.inv_inertia[axis], Real(1) / std::min(needed[axis], most * body.inertia[axis]));
+        followed_rate(h) * axial_stiffness(stiffness, body.inertia, motion.rotation);
+    Vec3 inverse = body.inv_inertia;
+    if (squared_rate(needed, body.inertia) > Real(1)) {
+        for (int axis = 0; axis < 3; ++axis)
+            inverse[axis] = std::min(inverse[axis],
+                                     Real(1) / std::min(needed[axis], most * body.inertia[axis]));
+    } else if (!is_isotropic(body.inertia)) {
+        return false; // it was found anew when the body turned
+    }
     const Mat3 before = motion.inv_inertia;
-    motion.inv_inertia = solver_inverse_inertia(heavier, motion.rotation);
+    motion.inv_inertia = solver_inverse_inertia(body, inverse, motion.rotation);
     return motion.inv_inertia != before;
+}
+
+// Of all that joints' forces act on. Notes what changed.
+void raise_inertias(StepContext &context, Real h) {
+    std::vector<GeometricStiffness> &stiffness = context.scratch.stiffness;
+    std::vector<std::uint8_t> &changed = context.scratch.changed;
+    stiffness.resize(context.bodies.size());
+    changed.assign(context.bodies.size(), 0);
+    for_forces(context, h, [&](std::uint32_t body, const Vec3 &force, const Vec3 &arm) {
+        stiffness[body].add_bound(force, arm);
+    });
+    bool needs_tensors = false;
+    for (const std::uint32_t i : context.moving()) {
+        const Body &body = context.model.bodies[i];
+        if (body.kind != BodyKind::dynamic || !(stiffness[i].most > Real(0)))
+            continue;
+        const bool is_ball = is_isotropic(body.inertia);
+        changed[i] = is_ball || may_be_too_stiff(stiffness[i], body.inertia, h) ? 1 : 0;
+        needs_tensors = needs_tensors || (changed[i] != 0 && !is_ball);
+    }
+    if (needs_tensors)
+        for_forces(context, h, [&](std::uint32_t body, const Vec3 &force, const Vec3 &arm) {
+            if (changed[body] != 0)
+                stiffness[body].add_tensor(force, arm);
+        });
+    for (const std::uint32_t i : context.moving())
+        if (changed[i] != 0)
+            changed[i] =
+                raise_inertia(context.bodies[i], context.model.bodies[i], stiffness[i], h) ? 1 : 0;
 }
 
 } // namespace
 
 void follow_loads(StepContext &context, Real h) {
-    std::vector<GeometricStiffness> &stiffness = context.scratch.stiffness;
-    stiffness.clear();
+    context.scratch.stiffness.clear();
     if (context.scratch.joints.empty())
         return;
-    find_stiffness(context, h, stiffness);
+    raise_inertias(context, h);
     std::vector<std::uint8_t> &changed = context.scratch.changed;
-    changed.assign(context.bodies.size(), 0);
-    for (const std::uint32_t i : context.moving())
-        if (context.model.bodies[i].kind == BodyKind::dynamic && stiffness[i].most > Real(0))
-            changed[i] =
-                raise_inertia(context.bodies[i], context.model.bodies[i], stiffness[i], h) ? 1 : 0;
-
     JointSystem &system = context.scratch.joint_system;
     for (JointGroup &group : system.groups()) {
         group.is_held = true;

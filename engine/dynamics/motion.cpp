@@ -147,8 +147,8 @@ Vec3 gravity_on(const Body &body, const Vec3 &gravity) {
 
 // With some rotations locked the others turn against the inertia's block of their own axes alone:
 // its inverse, and zeros elsewhere.
-Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation) {
-    const Mat3 free = world_inverse_inertia(rotation, body.inv_inertia);
+Mat3 solver_inverse_inertia(const Body &body, const Vec3 &inv_inertia, const Quat &rotation) {
+    const Mat3 free = world_inverse_inertia(rotation, inv_inertia);
     if (!body.has_locks)
         return free;
     std::array<bool, 3> locked{body.locked[3], body.locked[4], body.locked[5]};
@@ -164,6 +164,10 @@ Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation) {
         if (locked[static_cast<std::size_t>(i)])
             inverse[i][i] = Real(0);
     return inverse;
+}
+
+Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation) {
+    return solver_inverse_inertia(body, body.inv_inertia, rotation);
 }
 
 bool has_gyroscopic_spin(const Body &body) {

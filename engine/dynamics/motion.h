@@ -43,6 +43,8 @@ Vec3 gravity_on(const Body &body, const Vec3 &gravity);
 
 // The inverse inertia in world axes, without what a locked rotation keeps from turning.
 Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation);
+// The same, with other principal moments than the body's.
+Mat3 solver_inverse_inertia(const Body &body, const Vec3 &inv_inertia, const Quat &rotation);
 
 // Whether the spin of a body on which nothing acts is more than a constant world vector. One with a
 // locked rotation is held to the axes that it has left.

@@ -176,7 +176,7 @@ class World {
     void group_islands();
     void note_contact_needs(const IslandGroup &group);
     void note_joint_needs(const IslandGroup &group);
-    void note_turn_needs();
+    void note_turn_needs(const IslandGroup &group);
     void note_let_go(const IslandGroup &group);
     bool is_solved_together(std::uint32_t body) const;
     void note_needs(const IslandGroup &group);
