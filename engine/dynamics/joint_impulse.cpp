@@ -46,6 +46,9 @@ Mat3 inverse_of(Mat3 k) {
     const Real trace = k[0][0] + k[1][1] + k[2][2];
     if (!(trace > Real(0)))
         return Mat3{Real(0)};
+    constexpr Real small = Real(1e-6);
+    if (trace > small && trace < Real(1) / small)
+        return glm::inverse(k + locked_compliance(k));
     // The determinant of what is very heavy would be too small a number. By a power of two: that
     // rounds nothing.
     const Real scale = std::exp2(static_cast<Real>(-std::ilogb(trace)));
