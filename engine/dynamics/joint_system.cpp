@@ -171,22 +171,28 @@ bool JointSystem::eliminate(const std::vector<std::uint32_t> &members,
     return true;
 }
 
-JointSystem::Effect JointSystem::effect_of(StepContext &context, const JointConstraint &joint,
-                                           bool is_b) {
-    const RowBlock &rows = joint.rows;
-    Effect out;
+void JointSystem::find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
+                              Effect &out) {
     out.body = is_b ? joint.b : joint.a;
-    out.sign = is_b ? Real(1) : Real(-1);
-    out.arm = is_b ? rows.r_b : rows.r_a;
     if (out.body == Joint::world)
-        return out;
+        return;
+    const RowBlock &rows = joint.rows;
     const SolverBody &body = context.bodies[out.body];
-    out.inv_mass = body.inv_mass;
     out.is_linear = rows.kind != RowKind::angular;
     out.is_point = rows.kind == RowKind::point;
-    if (out.is_point)
-        out.angular = out.sign * cross_matrix(out.arm);
-    for (int i = 0; i < rows.count && !out.is_point; ++i) {
+    out.sign = is_b ? Real(1) : Real(-1);
+    out.arm = is_b ? rows.r_b : rows.r_a;
+    out.inv_mass = body.inv_mass;
+    if (out.is_point) {
+        const Mat3 &inverse = body.inv_inertia;
+        const Vec3 arm = out.sign * out.arm;
+        out.turned = {arm.z * inverse[1] - arm.y * inverse[2],
+                      arm.x * inverse[2] - arm.z * inverse[0],
+                      arm.y * inverse[0] - arm.x * inverse[1]};
+        return;
+    }
+    out.linear = out.angular = out.moved = Mat3{Real(0)};
+    for (int i = 0; i < rows.count; ++i) {
         const Vec3 axis = out.sign * rows.axes[static_cast<std::size_t>(i)];
         out.angular[i] = out.is_linear ? glm::cross(out.arm, axis) : axis;
         if (out.is_linear) {
@@ -195,7 +201,6 @@ JointSystem::Effect JointSystem::effect_of(StepContext &context, const JointCons
         }
     }
     out.turned = body.inv_inertia * out.angular;
-    return out;
 }
 
 // u^T M^-1 v for one body; `u` gives the rows of the result.
@@ -224,7 +229,8 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Real com
     const std::vector<JointConstraint> &joints = context.scratch.joints;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         const JointConstraint &joint = joints[order_[place]];
-        effects_[place] = {effect_of(context, joint, false), effect_of(context, joint, true)};
+        find_effect(context, joint, false, effects_[place][0]);
+        find_effect(context, joint, true, effects_[place][1]);
     }
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         const int count = joints[order_[place]].rows.count;

@@ -58,25 +58,23 @@ class JointSystem {
     void solve(const JointGroup &group, std::span<Vec3> sides) const;
 
   private:
-    struct Entry { // below the diagonal, of one column
-        std::uint32_t row = 0;
-        std::uint32_t value = 0;
-    };
     // What the rows of a block do to one of its bodies, and what comes of that: the columns are
     // their linear and angular parts.
     struct Effect {
-        std::uint32_t body = 0;
+        std::uint32_t body = 0; // of the world, that alone is set
         bool is_linear = false; // has linear parts
         bool is_point = false;  // linear: the sign alone; angular: the arm's cross product with it
         Real sign = Real(1);
         Vec3 arm{Real(0)};
         Vec3 inv_mass{Real(0)};
+        Mat3 turned{Real(0)}; // inverse inertia times angular
+        // Of others than points.
         Mat3 linear{Real(0)};
         Mat3 angular{Real(0)};
-        Mat3 moved{Real(0)};  // inverse mass times linear
-        Mat3 turned{Real(0)}; // inverse inertia times angular
+        Mat3 moved{Real(0)}; // inverse mass times linear
     };
-    static Effect effect_of(StepContext &context, const JointConstraint &joint, bool is_b);
+    static void find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
+                            Effect &out);
     static void add_coupling(const Effect &u, const Effect &v, Mat3 &sum);
     bool eliminate(const std::vector<std::uint32_t> &members,
                    std::vector<std::vector<std::uint32_t>> &neighbours);
