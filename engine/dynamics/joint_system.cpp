@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <iterator>
-#include <set>
 #include <utility>
 
 #include <glm/matrix.hpp>
@@ -58,7 +58,14 @@ void JointSystem::arrange(StepContext &context) {
     target_start_.assign(1, 0);
     group_of_body_.assign(context.bodies.size(), none);
 
-    std::vector<std::vector<std::uint32_t>> blocks_of(context.bodies.size());
+    // All lists are kept for their memory.
+    const auto clear_lists = [](std::vector<std::vector<std::uint32_t>> &lists, std::size_t count) {
+        lists.resize(std::max(lists.size(), count));
+        for (std::size_t i = 0; i < count; ++i)
+            lists[i].clear();
+    };
+    clear_lists(blocks_of_, context.bodies.size());
+    clear_lists(neighbours_, joints.size());
     const auto bodies_of = [&](std::uint32_t block) {
         return std::array{joints[block].a, joints[block].b};
     };
@@ -66,20 +73,21 @@ void JointSystem::arrange(StepContext &context) {
         if (is_rigid(joints[i]))
             for (const std::uint32_t body : bodies_of(i))
                 if (is_dynamic(body))
-                    blocks_of[body].push_back(i);
-    std::vector<std::vector<std::uint32_t>> neighbours(joints.size());
+                    blocks_of_[body].push_back(i);
     std::vector<std::uint8_t> is_seen(joints.size(), 0);
+    std::vector<std::uint32_t> members;
+    place_of_.resize(joints.size());
     for (std::uint32_t seed = 0; seed < joints.size(); ++seed) {
         if (is_seen[seed] != 0 || !is_rigid(joints[seed]))
             continue;
-        std::vector<std::uint32_t> members{seed};
+        members.assign(1, seed);
         is_seen[seed] = 1;
         std::size_t pairs = 0;
         for (std::size_t next = 0; next < members.size(); ++next)
             for (const std::uint32_t body : bodies_of(members[next]))
                 if (is_dynamic(body)) {
-                    pairs += blocks_of[body].size();
-                    for (const std::uint32_t other : blocks_of[body])
+                    pairs += blocks_of_[body].size();
+                    for (const std::uint32_t other : blocks_of_[body])
                         if (is_seen[other] == 0) {
                             is_seen[other] = 1;
                             members.push_back(other);
@@ -90,16 +98,16 @@ void JointSystem::arrange(StepContext &context) {
         for (const std::uint32_t member : members)
             for (const std::uint32_t body : bodies_of(member))
                 if (is_dynamic(body))
-                    for (const std::uint32_t other : blocks_of[body])
+                    for (const std::uint32_t other : blocks_of_[body])
                         if (other != member)
-                            neighbours[member].push_back(other);
+                            neighbours_[member].push_back(other);
         for (const std::uint32_t member : members) {
-            std::ranges::sort(neighbours[member]);
-            neighbours[member].erase(
-                std::unique(neighbours[member].begin(), neighbours[member].end()),
-                neighbours[member].end());
+            std::ranges::sort(neighbours_[member]);
+            neighbours_[member].erase(
+                std::unique(neighbours_[member].begin(), neighbours_[member].end()),
+                neighbours_[member].end());
         }
-        if (!eliminate(members, neighbours))
+        if (!eliminate(members))
             continue;
         for (const std::uint32_t member : members)
             for (const std::uint32_t body : bodies_of(member))
@@ -115,47 +123,54 @@ void JointSystem::arrange(StepContext &context) {
 
 // Orders one group by least degree and finds what fills in; false, and nothing done, when that is
 // too much.
-bool JointSystem::eliminate(const std::vector<std::uint32_t> &members,
-                            std::vector<std::vector<std::uint32_t>> &neighbours) {
-    std::set<std::pair<std::size_t, std::uint32_t>> queue;
+bool JointSystem::eliminate(const std::vector<std::uint32_t> &members) {
+    const auto first = static_cast<std::uint32_t>(order_.size());
+    std::vector<std::uint32_t> joined;
+    queue_.clear();
+    const auto enqueue = [&](std::uint32_t block) {
+        queue_.emplace_back(neighbours_[block].size(), block);
+        std::ranges::push_heap(queue_, std::ranges::greater{});
+    };
     for (const std::uint32_t member : members)
-        queue.emplace(neighbours[member].size(), member);
-    std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> columns;
+        enqueue(member);
     std::size_t work = 0;
-    while (!queue.empty()) {
-        const std::uint32_t pivot = queue.begin()->second;
-        queue.erase(queue.begin());
-        const std::vector<std::uint32_t> around = neighbours[pivot];
-        work += around.size() * (around.size() + 1) / 2;
-        if (work > work_a_block * members.size())
+    while (!queue_.empty()) {
+        std::ranges::pop_heap(queue_, std::ranges::greater{});
+        const auto [degree, pivot] = queue_.back();
+        queue_.pop_back();
+        std::vector<std::uint32_t> &around = neighbours_[pivot];
+        if (degree != around.size())
+            continue; // has been enqueued again, or is done
+        work += degree * (degree + 1) / 2;
+        if (work > work_a_block * members.size()) {
+            order_.resize(first);
+            column_start_.resize(first + 1);
+            rows_.resize(column_start_.back());
             return false;
-        for (const std::uint32_t one : around) {
-            queue.erase({neighbours[one].size(), one});
-            std::vector<std::uint32_t> joined;
-            std::ranges::set_union(neighbours[one], around, std::back_inserter(joined));
-            std::erase_if(joined, [&](std::uint32_t i) { return i == one || i == pivot; });
-            neighbours[one] = std::move(joined);
-            queue.emplace(neighbours[one].size(), one);
         }
-        columns.emplace_back(pivot, around);
+        for (const std::uint32_t one : around) {
+            joined.clear();
+            std::ranges::set_union(neighbours_[one], around, std::back_inserter(joined));
+            std::erase_if(joined, [&](std::uint32_t i) { return i == one || i == pivot; });
+            std::swap(neighbours_[one], joined);
+            enqueue(one);
+        }
+        order_.push_back(pivot);
+        rows_.insert(rows_.end(), around.begin(), around.end());
+        column_start_.push_back(static_cast<std::uint32_t>(rows_.size()));
+        around.clear();
     }
 
-    const auto first = static_cast<std::uint32_t>(order_.size());
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> place_of; // block, place
-    for (std::uint32_t i = 0; i < columns.size(); ++i)
-        place_of.emplace_back(columns[i].first, first + i);
-    std::ranges::sort(place_of);
-    for (const auto &[pivot, around] : columns) {
-        order_.push_back(pivot);
-        std::vector<std::uint32_t> rows;
-        for (const std::uint32_t one : around)
-            rows.push_back(
-                std::ranges::lower_bound(place_of, std::pair{one, std::uint32_t{0}})->second);
-        std::ranges::sort(rows);
-        rows_.insert(rows_.end(), rows.begin(), rows.end());
-        column_start_.push_back(static_cast<std::uint32_t>(rows_.size()));
-    }
     const auto last = static_cast<std::uint32_t>(order_.size());
+    for (std::uint32_t place = first; place < last; ++place)
+        place_of_[order_[place]] = place;
+    for (std::uint32_t place = first; place < last; ++place) {
+        const auto column = std::span(rows_).subspan(
+            column_start_[place], column_start_[place + 1] - column_start_[place]);
+        for (std::uint32_t &row : column)
+            row = place_of_[row];
+        std::ranges::sort(column);
+    }
     for (std::uint32_t place = first; place < last; ++place) {
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
             targets_.push_back(rows_[i] | on_diagonal);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -76,8 +77,7 @@ class JointSystem {
     static void find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
                             Effect &out);
     static void add_coupling(const Effect &u, const Effect &v, Mat3 &sum);
-    bool eliminate(const std::vector<std::uint32_t> &members,
-                   std::vector<std::vector<std::uint32_t>> &neighbours);
+    bool eliminate(const std::vector<std::uint32_t> &members);
 
     bool is_arranged_ = false;
     std::vector<std::uint64_t> key_; // of the arrangement: pairs of bodies
@@ -88,6 +88,12 @@ class JointSystem {
     std::vector<std::uint32_t> rows_;         // of the entries, column by column, ascending
     std::vector<std::uint32_t> targets_;      // which value each product of elimination changes
     std::vector<std::uint32_t> target_start_;
+    // While it is arranged: of each body its blocks; of each block those that it shares bodies with
+    // or comes to by elimination, and its place; blocks by how many those are.
+    std::vector<std::vector<std::uint32_t>> blocks_of_;
+    std::vector<std::vector<std::uint32_t>> neighbours_;
+    std::vector<std::uint32_t> place_of_;
+    std::vector<std::pair<std::size_t, std::uint32_t>> queue_;
     std::vector<std::array<Effect, 2>> effects_; // of each place
     std::vector<Mat3> softening_;
     std::vector<Mat3> diagonal_; // of K, then D^-1
