@@ -18,13 +18,15 @@ namespace {
 // joints that say the same twice, too little to be seen.
 constexpr Real held_compliance = Real(1e-3);
 
-// What does not move by forces is not written to: joints of other bodies, that are solved at the
-// same time, hang on it, too.
+// An impulse along a joint's rows. What does not move by forces is not written to: joints of other
+// bodies, that are solved at the same time, hang on it, too.
 void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
+    const RowBlock &rows = joint.rows;
+    const Vec3 along = world_impulse(rows, impulse);
     if (joint.moves_a)
-        apply(context.bodies[joint.a], joint.rows, joint.rows.r_a, -impulse);
+        apply(context.bodies[joint.a], rows, rows.r_a, -along);
     if (joint.moves_b)
-        apply(context.bodies[joint.b], joint.rows, joint.rows.r_b, impulse);
+        apply(context.bodies[joint.b], rows, rows.r_b, along);
 }
 
 Vec3 memory_of(const StepContext &context, const JointConstraint &constraint) {
@@ -107,10 +109,11 @@ Real find_answer(StepContext &context, const JointConstraint &joint, const Joint
     };
     SolverBody a = struck(joint.a);
     SolverBody b = struck(joint.b);
+    const Vec3 along = world_impulse(joint.rows, impulse);
     if (joint.moves_a)
-        apply(a, joint.rows, joint.rows.r_a, -impulse);
+        apply(a, joint.rows, joint.rows.r_a, -along);
     if (joint.moves_b)
-        apply(b, joint.rows, joint.rows.r_b, impulse);
+        apply(b, joint.rows, joint.rows.r_b, along);
     const SolverBody still;
     const auto after = [&](std::uint32_t body) -> const SolverBody & {
         return body == Joint::world ? still : body == joint.a ? a : body == joint.b ? b : still;

@@ -56,6 +56,12 @@ Mat3 inverse_of(Mat3 k) {
     return scale * glm::inverse(k + locked_compliance(k));
 }
 
+Softness spring_softness(const RowBlock &rows, const JointPass &pass) {
+    const Real time =
+        pass.springs == Springs::midpoint ? spring_share(rows, pass.h) * pass.h : pass.h;
+    return make_soft(rows.frequency, rows.damping_ratio, time);
+}
+
 // The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
 // and -1 for an upper one.
 Real limit_change(const JointConstraint &joint, Real speed, const Softness &softness,
@@ -176,11 +182,7 @@ Vec3 pushed(const Vec3 &bias, Real most) {
 Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
                     const JointPass &pass) {
     const RowBlock &rows = joint.rows;
-    const Real spring_time =
-        pass.springs == Springs::midpoint ? spring_share(rows, pass.h) * pass.h : pass.h;
-    const Softness softness = joint.is_spring()
-                                  ? make_soft(rows.frequency, rows.damping_ratio, spring_time)
-                                  : pass.softness;
+    const Softness softness = joint.is_spring() ? spring_softness(rows, pass) : pass.softness;
     const Vec3 v = row_velocity(rows, a, b, pass);
     const Real most =
         joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;

@@ -42,12 +42,12 @@ inline Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse) {
         sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
     return sum;
 }
-// Of an impulse along the rows, at an arm of the body's.
+// Such an impulse, at an arm of the body's.
 inline void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
     if (rows.kind == RowKind::angular)
-        body.apply_angular_impulse(world_impulse(rows, impulse));
+        body.apply_angular_impulse(impulse);
     else
-        body.apply_impulse(world_impulse(rows, impulse), arm);
+        body.apply_impulse(impulse, arm);
 }
 // No faster than `most`.
 Vec3 pushed(const Vec3 &bias, Real most);
