@@ -136,7 +136,8 @@ bool JointSystem::eliminate(const std::vector<std::uint32_t> &members) {
     std::size_t work = 0;
     while (!queue_.empty()) {
         std::ranges::pop_heap(queue_, std::ranges::greater{});
-        const auto [degree, pivot] = queue_.back();
+        const std::size_t degree = queue_.back().first;
+        const std::uint32_t pivot = queue_.back().second;
         queue_.pop_back();
         std::vector<std::uint32_t> &around = neighbours_[pivot];
         if (degree != around.size())
