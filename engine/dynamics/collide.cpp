@@ -190,12 +190,13 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     Contact &contact = begin_contact(candidate, triangle, out);
     contact.manifold = found.manifold;
     contact.moment = found.moment;
+    contact.is_turning = found.is_turning;
     contact.origin = origin_of(contact.manifold.normal, found.a, found.b);
     set_rounding(contact, *model_);
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         set_anchor(contact, index, found.a, found.b);
-        if (found.moment != Moment::start)
+        if (found.moment != Moment::start || found.is_turning)
             contact.manifold.points[index].separation = separation_now(contact, index);
     }
     contact.is_new = before == nullptr;
@@ -296,7 +297,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
     const Motion &motion_b = state_.motions[candidate.key.b];
     const bool is_predicted = method_->info.looks_ahead && !a.sensor && !b.sensor &&
                               way_of(candidate) > predicted_from(a, b);
-    const bool is_turning = turn_together(candidate.key.a, candidate.key.b);
+    const bool is_turning = is_turned(candidate);
     if (!a.surface && !b.surface) {
         const ContactMemory *before = find_memory(state_, candidate.key);
         if (!is_turning && keeps_contacts() && keep_contact(candidate, before, out))
@@ -304,12 +305,11 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         const Vec3 guess = before == nullptr ? Vec3{Real(0)} : before->origin.normal;
         FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin, guess),
                             motion_a, motion_b};
-        if (is_turning)
-            found.moment = Moment::turning;
-        else if (found.manifold.count > 0 && is_predicted && !touches(found.manifold))
+        if (found.manifold.count > 0 && is_predicted && !touches(found.manifold))
             found = predicted_manifold(candidate, found.manifold.normal);
         else if (found.manifold.count > 0 && is_predicted)
             guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
+        found.is_turning = is_turning;
         drop_inner_edges(candidate, ContactKey::no_triangle, found);
         add_contact(candidate, ContactKey::no_triangle, before, found, out);
         return;
@@ -334,10 +334,9 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                                 motion_a, motion_b};
             if (!solid_first)
                 found.manifold.normal = -found.manifold.normal;
-            if (is_turning)
-                found.moment = Moment::turning;
-            else if (is_predicted && !touches(found.manifold))
+            if (is_predicted && !touches(found.manifold))
                 found = predicted_manifold(candidate, found.manifold.normal, triangle);
+            found.is_turning = is_turning;
             drop_inner_edges(candidate, triangle, found);
             ContactKey key = candidate.key;
             key.triangle = triangle;

@@ -51,9 +51,8 @@ struct ContactOrigin {
     Quat rotation_b = identity_rotation;
 };
 
-// start: of the step. turning: of every substep, for what turns together. touch: where the two will
-// meet.
-enum class Moment { start, turning, touch };
+// start: of the step. touch: where the two will meet.
+enum class Moment { start, touch };
 
 // Two colliders that touch, or are about to, as found in this step or kept from an earlier one.
 // Separations are those of the present poses.
@@ -66,6 +65,7 @@ struct Contact {
     bool sensor = false;           // pushes nothing
     bool is_new = false;           // nothing is remembered of it
     Moment moment = Moment::start; // of the step, whose poses its normal and anchors are of
+    bool is_turning = false;       // goes through the substeps with a body that the scene turns
     Manifold manifold;
     ContactOrigin origin;
     // Radius of a surface that rolls: of a ball or capsule, of a cylinder on its side (m).
@@ -83,7 +83,7 @@ struct ContactEnds {
     std::uint32_t b = 0;
     std::uint8_t points = 0;
     bool is_sensor = false;
-    bool is_turning = false; // Moment::turning
+    bool is_turning = false; // Contact::is_turning
 };
 
 // What is remembered of a loaded contact from step to step: its points, known by feature, with

@@ -139,7 +139,8 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
 
 bool is_ahead(const StepContext &context, const ContactBlock &block) {
     return std::any_of(block.contacts, block.contacts + block.used, [&](std::uint32_t contact) {
-        return context.contacts[contact].moment != Moment::start;
+        return context.contacts[contact].moment != Moment::start ||
+               context.contacts[contact].is_turning;
     });
 }
 
@@ -260,7 +261,7 @@ bool has_other_arms(const StepContext &context, const Contact &contact, std::uin
            has_other_arms(context, body, contact.restitution > Real(0));
 }
 bool has_other_arms(const StepContext &context, const Contact &contact) {
-    return contact.moment != Moment::turning &&
+    return !contact.is_turning &&
            (has_other_arms(context, contact, contact.key.a, contact.collider_a) ||
             has_other_arms(context, contact, contact.key.b, contact.collider_b));
 }
@@ -296,7 +297,7 @@ void turn_contact_columns(StepContext &context, Real t) {
         for (ContactBlock &block : blocks)
             for (std::size_t lane = 0; block.ahead != ContactBlock::none && lane < block.used;
                  ++lane)
-                if (context.contacts[block.contacts[lane]].moment == Moment::turning)
+                if (context.contacts[block.contacts[lane]].is_turning)
                     turn_lane(context, block, lane, t);
     });
 }
@@ -411,7 +412,7 @@ void store_contact_columns(StepContext &context) {
                 const Real kept = remembered_share(block, lane);
                 for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
                     contact.impulses[k] = next_impulse(block.points[k], lane, kept);
-                if (contact.moment == Moment::turning)
+                if (contact.is_turning)
                     express_anew(contact, get(block.normal, lane), get(block.t1, lane));
             }
     });

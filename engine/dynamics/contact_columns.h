@@ -83,7 +83,7 @@ struct ContactSchedule {
     std::vector<ContactBlock> blocks;
     std::vector<StartArms> start_arms;
     std::vector<std::uint32_t> colour_ends; // of blocks; those after the last stand for themselves
-    bool any_turning = false;               // Moment::turning
+    bool any_turning = false;               // Contact::is_turning
     std::vector<Lane> lanes;
     std::vector<std::uint32_t> contacts;        // of each lane of each block, in the context
     std::vector<std::uint64_t> colours_of_body; // bit c: colour c has a contact of it

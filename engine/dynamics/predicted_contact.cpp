@@ -261,7 +261,7 @@ bool World::find_missed_points() {
             glm::length(at_a.turned) * a.extent + glm::length(at_b.turned) * b.extent;
         Manifold &manifold = contact.manifold;
         if (!(turning > deep) || has_diverged(at_a) || has_diverged(at_b) || contact.sensor ||
-            contact.moment == Moment::turning || a.surface || b.surface || manifold.count == 4)
+            contact.is_turning || a.surface || b.surface || manifold.count == 4)
             continue;
         const Manifold now =
             plumb::collide(placed(a.shape, placement(at_a)), placed(b.shape, placement(at_b)),

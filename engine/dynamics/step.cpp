@@ -38,15 +38,28 @@ class PhaseTimer {
 
 } // namespace
 
-// Whether one of the two is moved by the scene, turns, and the other turns with it.
-bool World::turn_together(std::uint32_t a, std::uint32_t b) const {
+// Whether one of the two is moved by the scene and turns, and the other turns with it, or would be
+// left far off the place where its surface was when the step began.
+bool World::is_turned(const Candidate &candidate) const {
+    const std::uint32_t a = candidate.key.a;
+    const std::uint32_t b = candidate.key.b;
+    const bool is_a = model_->bodies[a].kind == BodyKind::kinematic;
+    if (!method_->info.looks_ahead || (!is_a && model_->bodies[b].kind != BodyKind::kinematic))
+        return false;
     const Vec3 &spin_a = state_.motions[a].angular_velocity;
     const Vec3 &spin_b = state_.motions[b].angular_velocity;
-    const bool is_driven = model_->bodies[a].kind == BodyKind::kinematic ||
-                           model_->bodies[b].kind == BodyKind::kinematic;
-    return method_->info.looks_ahead && is_driven &&
-           glm::dot(spin_a, spin_b) >
-               Real(0.5) * std::max(glm::dot(spin_a, spin_a), glm::dot(spin_b, spin_b));
+    const Real squared = is_a ? glm::dot(spin_a, spin_a) : glm::dot(spin_b, spin_b);
+    if (squared == Real(0))
+        return false;
+    if (glm::dot(spin_a, spin_b) >
+        Real(0.5) * std::max(glm::dot(spin_a, spin_a), glm::dot(spin_b, spin_b)))
+        return true;
+    // Of a circle's chord and its arc: t^2 / 2 of the radius.
+    constexpr Real far = Real(0.02);
+    const auto dt = static_cast<Real>(settings_.dt);
+    const Real extent =
+        model_->colliders[is_a ? candidate.collider_a : candidate.collider_b].extent;
+    return Real(0.5) * squared * dt * dt * extent > far * moving_width(candidate);
 }
 
 // All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
@@ -172,7 +185,7 @@ void World::note_ends() {
             const Contact &contact = s.contacts[i];
             s.ends[i] = {contact.key.a, contact.key.b,
                          static_cast<std::uint8_t>(contact.manifold.count), contact.sensor,
-                         contact.moment == Moment::turning};
+                         contact.is_turning};
         }
     });
 }

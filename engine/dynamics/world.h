@@ -27,6 +27,7 @@ struct FoundManifold {
     Motion a;
     Motion b;
     Moment moment = Moment::start;
+    bool is_turning = false;
 };
 
 // Three things: the model (what only an edit changes), the state (all that survives a step), and
@@ -217,7 +218,7 @@ class World {
     void add_particles(Measures &m) const;
     double particle_energy() const;
 
-    bool turn_together(std::uint32_t a, std::uint32_t b) const;
+    bool is_turned(const Candidate &candidate) const;
     bool needs_contacts() const;
     bool is_asked(std::uint32_t body) const;
     bool place_collider(std::uint32_t i) const;

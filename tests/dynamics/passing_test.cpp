@@ -118,6 +118,48 @@ TEST(SoftStepPassing, ABoxDoesNotPassAThinWall) {
             }
 }
 
+// A closed drum of twelve planks. In a step it turns by up to a quarter of a radian: the plane of a
+// plank is then elsewhere, and what rides on it would be pressed through.
+TEST(SoftStepPassing, WhatIsInATurningDrumStaysInIt) {
+    constexpr double half_angle = pi / 12, radius = 1.9, thick = 0.05;
+    for (const auto &[spin, rate] :
+         {std::pair{10.0, 60.0}, std::pair{15.0, 60.0}, std::pair{20.0, 120.0}})
+        for (const Shape &shape : {Shape{ball(0.1)}, Shape{ball(0.05)}, Shape{block(V{0.1})},
+                                   Shape{upright_capsule(0.1, 0.1)}}) {
+            StepSettings settings = settings_for("soft_step");
+            settings.dt = 1 / rate;
+            World world("soft_step", settings);
+            BodyDef drum;
+            drum.kind = BodyKind::kinematic;
+            for (int i = 0; i < 12; ++i) {
+                const double angle = 2 * half_angle * i;
+                Box plank = block(V{thick, 0.55, 1});
+                plank.center = narrow((radius + thick) * V{std::cos(angle), std::sin(angle), 0});
+                plank.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
+                drum.colliders.emplace_back().shape = plank;
+            }
+            for (const double z : {-1.05, 1.05}) {
+                Box lid = block(V{2, 2, thick});
+                lid.center = narrow(V{0, 0, z});
+                drum.colliders.emplace_back().shape = lid;
+            }
+            drum.angular_velocity = narrow(V{0, 0, spin});
+            world.add_body(with_material(drum, 0.5, 0));
+            std::vector<BodyId> inside;
+            for (int i = 0; i < 8; ++i)
+                inside.push_back(world.add_body(with_material(
+                    dynamic_body(shape, 1, V{-0.7 + 0.45 * (i % 4), -0.8 + 0.45 * (i / 4), 0}), 0.5,
+                    0)));
+            run(world, int(1.5 * rate));
+            for (const BodyId id : inside) {
+                const V p = position_of(world, id);
+                EXPECT_LT(std::hypot(p.x, p.y), radius / std::cos(half_angle))
+                    << spin << ' ' << rate << ' ' << shape.index();
+                EXPECT_LT(std::abs(p.z), 1);
+            }
+        }
+}
+
 // On a fixed axle, from less than a twentieth of a turn in a step to half of one.
 TEST(SoftStepPassing, ASpinningRodDoesNotPassAPost) {
     for (const double spin : {10.0, 30.0, 94.0, 180.0})
