@@ -41,6 +41,11 @@ struct RowBlock {
 // Where the blocks of a joint are written: new ones, or those of the same joint at other poses.
 class RowWriter {
   public:
+    RowWriter() = default;
+    virtual ~RowWriter() = default;
+    RowWriter(const RowWriter &) = delete;
+    RowWriter &operator=(const RowWriter &) = delete;
+
     RowBlock &add(RowKind kind, RowBounds bounds, int count, std::size_t first_memory) {
         RowBlock &block = next();
         block.kind = kind;
@@ -49,9 +54,6 @@ class RowWriter {
         block.first_memory = first_memory;
         return block;
     }
-
-  protected:
-    ~RowWriter() = default;
 
   private:
     virtual RowBlock &next() = 0;

@@ -244,9 +244,9 @@ class World {
     void add_contact(const Candidate &candidate, std::uint32_t triangle,
                      const ContactMemory *before, const FoundManifold &found,
                      std::vector<Contact> &out) const;
-    void set_anchor(Contact &contact, std::size_t point, const Motion &a, const Motion &b) const;
+    void set_anchor(Contact &contact, std::size_t k, const Motion &a, const Motion &b) const;
     // Of a point, from its anchor (m).
-    Real separation_now(const Contact &contact, std::size_t point) const;
+    Real separation_now(const Contact &contact, std::size_t k) const;
     void note_fixed_neighbors() const;
     // Without what a fixed body's neighbours cover (inner_edges.h).
     void drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
@@ -259,8 +259,8 @@ class World {
     Real contact_reach(const Candidate &candidate) const;
     Real moving_width(const Candidate &candidate) const;
     // How far its spin moves its surface at most, a radian (m).
-    Real extent_of(std::uint32_t body) const;
-    Real turning_reach(std::uint32_t body) const;
+    Real extent_of(std::uint32_t index) const;
+    Real turning_reach(std::uint32_t index) const;
     Real way_of(const Candidate &candidate) const;
     void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                       Manifold &manifold) const;
