@@ -31,7 +31,6 @@ struct SolverScratch {
     std::vector<ContactConstraint> contacts;
     ContactSchedule schedule;
     std::vector<JointConstraint> joints;
-    std::vector<RowBlock> rows;              // of one joint
     std::vector<std::uint32_t> first_blocks; // of each active joint and the grab, in `joints`
     JointSystem joint_system;
     std::vector<Vec3> sides;                     // of its equations, one for each place

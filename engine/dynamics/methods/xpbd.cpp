@@ -109,25 +109,11 @@ void solve_spring(JointConstraint &joint, SolverBody &a, SolverBody &b, int row,
 
 // Calls use(joint, a, b, refresh) for each block; refresh() reads its rows at the present poses.
 template <typename Use> void for_each_block(StepContext &context, Use &&use) {
-    SolverScratch &s = context.scratch;
-    std::size_t block = 0;
-    for (std::size_t i = 0; i < s.joints.size(); ++i) {
-        JointConstraint &joint = s.joints[i];
-        block = i > 0 && s.joints[i - 1].joint == joint.joint ? block + 1 : 0;
-        SolverBody &a = context.body(joint.a);
-        SolverBody &b = context.body(joint.b);
-        use(joint, a, b, [&] {
-            std::vector<RowBlock> &rows = s.rows;
-            rows.clear();
-            NewRows writer(rows);
-            if (joint.joint == JointConstraint::grab)
-                emit_rows(context.grab, a, b, writer);
-            else
-                emit_rows(context.model.joints[joint.joint], a, b, writer);
-            joint.rows = rows[block];
-        });
-    }
-    context.report.constraint_passes += s.joints.size();
+    for (std::size_t k = 0; k < joint_count(context); ++k)
+        for (JointConstraint &joint : blocks_of(context, k))
+            use(joint, context.body(joint.a), context.body(joint.b),
+                [&] { refresh_joint(context, k); });
+    context.report.constraint_passes += context.scratch.joints.size();
 }
 
 void solve_joint_poses(StepContext &context, Real h) {
