@@ -90,10 +90,15 @@ bool DynamicTree::update(Leaf leaf, const Aabb &box, const Vec3 &way) {
     check_finite_box(box);
     if (plumb::holds(node(leaf).box, box))
         return false;
-    unlink(leaf);
     Aabb fat = fattened(box);
     fat.min += glm::min(way, Vec3{Real(0)});
     fat.max += glm::max(way, Vec3{Real(0)});
+    if (is_still_near(leaf, fat)) {
+        node(leaf).box = fat;
+        refit_upwards(node(leaf).parent);
+        return true;
+    }
+    unlink(leaf);
     node(leaf).box = fat;
     link(leaf);
     return true;
@@ -177,6 +182,20 @@ int DynamicTree::slot_in_parent(Index index) const {
     return node(node(index).parent).children[0] == index ? 0 : 1;
 }
 
+DynamicTree::Index DynamicTree::sibling_of(Index index) const {
+    return node(node(index).parent).children[static_cast<std::size_t>(1 - slot_in_parent(index))];
+}
+
+// Whether a leaf with another box is still well placed beside its sibling: refitting the boxes
+// above it, with rotations, costs a quarter of looking for a better place (Kopta et al. 2012,
+// "Fast, effective BVH updates for animated scenes").
+bool DynamicTree::is_still_near(Leaf leaf, const Aabb &box) const {
+    constexpr Real may_grow = Real(1.5);
+    const Index parent = node(leaf).parent;
+    return parent != none && half_area(joined(node(sibling_of(leaf)).box, box)) <=
+                                 may_grow * half_area(node(parent).box);
+}
+
 void DynamicTree::link(Leaf leaf) {
     if (root_ == none) {
         root_ = leaf;
@@ -203,7 +222,7 @@ void DynamicTree::unlink(Leaf leaf) {
         root_ = none;
         return;
     }
-    const Index sibling = node(parent).children[static_cast<std::size_t>(1 - slot_in_parent(leaf))];
+    const Index sibling = sibling_of(leaf);
     const Index grandparent = node(parent).parent;
     node(sibling).parent = grandparent;
     node(leaf).parent = none;
@@ -231,8 +250,7 @@ void DynamicTree::refit_upwards(Index index) {
 }
 
 // Swaps a child with a grandchild on the other side when that makes the inner box that changes
-// smaller. Only that box and the heights above it change (Kopta et al. 2012, "Fast, effective BVH
-// updates for animated scenes").
+// smaller. Only that box and the heights above it change (Kopta et al. 2012).
 void DynamicTree::rotate(Index index) {
     const Node &here = node(index);
     Real best_gain = Real(0);

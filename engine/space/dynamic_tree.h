@@ -35,7 +35,7 @@ class DynamicTree {
     Leaf insert(const Aabb &box, std::uint32_t user);
     // A leaf that is not in the tree fails a check, here and below. Its number may be used again.
     void remove(Leaf leaf);
-    // Returns whether the leaf had to be moved in the tree: its fat box no longer held the new one.
+    // Returns whether the leaf got a new fat box: the old one no longer held the new box.
     // The new fat box reaches farther by `way`, along which the box is expected to go on.
     bool update(Leaf leaf, const Aabb &box, const Vec3 &way = Vec3{Real(0)});
 
@@ -185,6 +185,8 @@ class DynamicTree {
     void refit(Index index);
     void rotate(Index index);
     int slot_in_parent(Index index) const;
+    Index sibling_of(Index index) const;
+    bool is_still_near(Leaf leaf, const Aabb &box) const;
 
     Real margin_ = Real(0);
     std::vector<Node> nodes_;
