@@ -190,10 +190,11 @@ DynamicTree::Index DynamicTree::sibling_of(Index index) const {
 // above it, with rotations, costs a quarter of looking for a better place (Kopta et al. 2012,
 // "Fast, effective BVH updates for animated scenes").
 bool DynamicTree::is_still_near(Leaf leaf, const Aabb &box) const {
-    constexpr Real may_grow = Real(1.5);
-    const Index parent = node(leaf).parent;
-    return parent != none && half_area(joined(node(sibling_of(leaf)).box, box)) <=
-                                 may_grow * half_area(node(parent).box);
+    constexpr Real most = Real(1.5);
+    if (node(leaf).parent == none)
+        return false;
+    const Aabb &beside = node(sibling_of(leaf)).box;
+    return half_area(joined(beside, box)) <= most * (half_area(beside) + half_area(box));
 }
 
 void DynamicTree::link(Leaf leaf) {
