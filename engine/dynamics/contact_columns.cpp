@@ -18,23 +18,6 @@ constexpr std::uint32_t most_points = 4;
 // What finds no colour is solved alone.
 constexpr std::uint32_t alone = colours * most_points;
 
-int offset_of(const SolverBody &body, const Vec3 &member) {
-    return static_cast<int>(&member.x - &body.position.x);
-}
-
-BodyReals reals_of(std::span<SolverBody> bodies) {
-    static_assert(sizeof(SolverBody) % sizeof(Real) == 0);
-    if (bodies.empty())
-        return {};
-    const SolverBody &first = bodies.front();
-    return {&bodies.front().position.x,
-            offset_of(first, first.velocity),
-            offset_of(first, first.angular_velocity),
-            offset_of(first, first.moved),
-            offset_of(first, first.turned),
-            offset_of(first, first.inv_inertia[0])};
-}
-
 bool is_dynamic(const StepContext &context, std::uint32_t body) {
     return context.model.bodies[body].kind == BodyKind::dynamic;
 }
@@ -100,13 +83,12 @@ void colour(StepContext &context) {
 
 void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,
                std::uint32_t index) {
-    constexpr std::size_t stride = sizeof(SolverBody) / sizeof(Real);
     const Contact &contact = context.contacts[index];
     const SolverBody &a = context.bodies[contact.key.a];
     const SolverBody &b = context.bodies[contact.key.b];
     block.contacts[lane] = index;
-    block.body_a.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.a * stride);
-    block.body_b.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.b * stride);
+    block.body_a.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.a * BodyReals::stride);
+    block.body_b.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.b * BodyReals::stride);
     const auto bit = static_cast<std::uint16_t>(1U << lane);
     for (const std::uint32_t body : {contact.key.a, contact.key.b})
         block.inertia_turns =

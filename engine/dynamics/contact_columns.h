@@ -3,6 +3,7 @@
 // (a colouring of the contact graph), so that the answer is the same at any width.
 #pragma once
 
+#include "engine/dynamics/body_reals.h"
 #include "engine/dynamics/columns.h"
 #include "engine/dynamics/contact_constraint.h"
 
@@ -88,16 +89,6 @@ struct ContactSchedule {
     std::vector<std::uint32_t> contacts;        // of each lane of each block, in the context
     std::vector<std::uint64_t> colours_of_body; // bit c: colour c has a contact of it
     std::vector<std::uint32_t> bucket_sizes;
-};
-
-// Where the kernels find what they need of a body; `bodies` is its first Real.
-struct BodyReals {
-    Real *bodies = nullptr;
-    int velocity = 0; // offsets in Reals
-    int angular_velocity = 0;
-    int moved = 0;
-    int turned = 0;
-    int inv_inertia = 0;
 };
 
 void prepare_contact_columns(StepContext &context);

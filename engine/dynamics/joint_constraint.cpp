@@ -232,8 +232,13 @@ void emit(StepContext &context, std::size_t k, RowWriter &rows) {
 }
 
 void weigh_alone(StepContext &context, JointConstraint &joint) {
-    if (!joint.is_held)
+    if (!joint.is_held && !joint.in_columns)
         joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
+}
+
+bool is_in_columns(StepContext &context, std::size_t k) {
+    const std::span<const JointConstraint> blocks = blocks_of(context, k);
+    return !blocks.empty() && blocks.front().in_columns;
 }
 
 // Factors the groups that are held, and of which `is_due` says so.
@@ -280,6 +285,8 @@ void prepare_joints(StepContext &context) {
     std::vector<JointConstraint> &blocks = context.scratch.joints;
     blocks.clear();
     context.scratch.joint_system.release();
+    context.scratch.joint_schedule.blocks.clear();
+    context.scratch.joint_schedule.level_ends.clear();
     context.scratch.first_blocks.clear();
     const auto is_dynamic = [&](std::uint32_t body) {
         return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
@@ -309,12 +316,15 @@ void refresh_joint(StepContext &context, std::size_t k) {
 void refresh_joints(StepContext &context) {
     const auto refresh = [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
+            if (is_in_columns(context, k))
+                continue;
             refresh_joint(context, k);
             for (JointConstraint &block : blocks_of(context, k))
                 weigh_alone(context, block);
         }
     };
     for_parts(context.tasks, joint_count(context), joints_a_part, refresh);
+    refresh_joint_columns(context);
     factor_groups(context, [](const JointGroup &) { return true; });
     weigh_with_groups(context, false);
 }
@@ -325,6 +335,7 @@ void weigh_joints(StepContext &context) {
         for (JointConstraint &joint : joints.subspan(begin, end - begin))
             weigh_alone(context, joint);
     });
+    weigh_joint_columns(context, false);
     factor_groups(context, [](const JointGroup &) { return true; });
     weigh_with_groups(context, false);
 }
@@ -334,6 +345,7 @@ void weigh_changed_joints(StepContext &context) {
     for (JointConstraint &joint : context.scratch.joints)
         if (is_changed(context, joint))
             weigh_alone(context, joint);
+    weigh_joint_columns(context, true);
     // A group that has changed has changed all of its bodies.
     factor_groups(context, [&](const JointGroup &group) {
         return is_changed(context, context.scratch.joints[system.block(group.first)]);
@@ -346,6 +358,7 @@ void remember_joints(StepContext &context) {
         joint.remembered = joint.impulse;
         joint.impulse = Vec3{Real(0)};
     }
+    remember_joint_columns(context);
 }
 
 Real spring_share(const RowBlock &rows, Real h) {
@@ -355,8 +368,9 @@ Real spring_share(const RowBlock &rows, Real h) {
 
 void recall_joints(StepContext &context, Real share, Springs springs) {
     const Real h = context.substep();
+    recall_joint_columns(context, share);
     for (JointConstraint &joint : context.scratch.joints) {
-        if (springs == Springs::skip && joint.is_spring())
+        if (joint.in_columns || (springs == Springs::skip && joint.is_spring()))
             continue;
         const bool is_midpoint = springs == Springs::midpoint && joint.is_spring();
         const Vec3 recalled =
@@ -377,6 +391,14 @@ void repeat_springs(StepContext &context) {
         }
 }
 
+void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &pass) {
+    const Vec3 change = impulse_change(joint, context.body(joint.a), context.body(joint.b), pass);
+    joint.impulse += change;
+    apply(context, joint, change);
+    if (joint.is_weighed && change != Vec3{Real(0)})
+        answer(context, joint, change);
+}
+
 // Groups come first, to see whether they hold, and again after other joints have changed what they
 // did.
 void solve_joints(StepContext &context, const JointPass &pass) {
@@ -395,17 +417,14 @@ void solve_joints(StepContext &context, const JointPass &pass) {
         if (held() != before)
             weigh_again(context);
     }
+    solve_joint_columns(context, pass);
     bool is_changed = !pass.at_the_end;
     for (JointConstraint &joint : context.scratch.joints) {
-        if (joint.is_held || (pass.springs == Springs::skip && joint.is_spring()) ||
+        if (joint.is_held || joint.in_columns ||
+            (pass.springs == Springs::skip && joint.is_spring()) ||
             (pass.skips_motors && joint.rows.bounds == RowBounds::motor))
             continue;
-        const Vec3 change =
-            impulse_change(joint, context.body(joint.a), context.body(joint.b), pass);
-        joint.impulse += change;
-        apply(context, joint, change);
-        if (joint.is_weighed && change != Vec3{Real(0)})
-            answer(context, joint, change);
+        solve_joint(context, joint, pass);
         is_changed = true;
     }
     const auto solve = [&](std::size_t begin, std::size_t end) {

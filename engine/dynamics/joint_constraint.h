@@ -25,6 +25,7 @@ struct JointConstraint {
     Vec3 impulse{Real(0)};    // accumulated in this substep, on b (N s, N m s)
     Vec3 remembered{Real(0)}; // of the substep before
     bool is_held = false;     // solved with its group in this substep (JointSystem)
+    bool in_columns = false;  // in this step (JointSchedule)
     bool is_weighed = false;  // by what groups make of its bodies: they answer each of its impulses
     bool is_spring() const { return rows.frequency > Real(0); }
 };
@@ -88,6 +89,8 @@ void recall_joints(StepContext &context, Real share, Springs springs);
 // Applies what springs do in the rest of the substep, after Springs::midpoint.
 void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);
+// One alone.
+void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &pass);
 // What the joints of a group answer to an impact: changes velocities so that the joints hold them.
 // Nothing for JointSystem::none, or a group that is not held.
 void answer_impact(StepContext &context, std::uint32_t group);

@@ -7,6 +7,7 @@
 #include "engine/dynamics/descent.h"
 #include "engine/dynamics/events.h"
 #include "engine/dynamics/geometric_stiffness.h"
+#include "engine/dynamics/joint_columns.h"
 #include "engine/dynamics/joint_constraint.h"
 #include "engine/dynamics/joint_system.h"
 #include "engine/dynamics/method_info.h"
@@ -32,6 +33,7 @@ struct SolverScratch {
     ContactSchedule schedule;
     std::vector<JointConstraint> joints;
     std::vector<std::uint32_t> first_blocks; // of each active joint and the grab, in `joints`
+    JointSchedule joint_schedule;
     JointSystem joint_system;
     std::vector<Vec3> sides;                     // of its equations, one for each place
     std::vector<GeometricStiffness> stiffness;   // of each body, by the last substep's impulses

@@ -12,12 +12,12 @@ class ParticleContacts : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, ParticleContacts, testing::ValuesIn(particle_contact_methods()),
                          name_of);
 
-constexpr double radius = 0.05;
-constexpr double mass = 0.1;
+constexpr double particle_radius = 0.05;
+constexpr double particle_mass = 0.1;
 
 ParticleDef grain_at(const V &position, const V &velocity = V{0}) {
-    ParticleDef def = moving_particle(position, velocity, mass);
-    def.radius = Real(radius);
+    ParticleDef def = moving_particle(position, velocity, particle_mass);
+    def.radius = Real(particle_radius);
     return def;
 }
 
@@ -90,9 +90,9 @@ TEST_P(ParticleContacts, ComeToRestOnEveryShape) {
     for (const Stand &stand : stands()) {
         World world(GetParam(), settings_for(GetParam()));
         world.add_body(stand.body);
-        world.add_particle(grain_at(V{0, stand.top + radius + 0.3, 0}));
+        world.add_particle(grain_at(V{0, stand.top + particle_radius + 0.3, 0}));
         run(world, 120);
-        EXPECT_NEAR(particle_position(world, 0).y, stand.top + radius, 2e-4) << stand.name;
+        EXPECT_NEAR(particle_position(world, 0).y, stand.top + particle_radius, 2e-4) << stand.name;
         EXPECT_LT(glm::length(particle_velocity(world, 0)), 1e-5) << stand.name;
     }
 }
@@ -140,12 +140,12 @@ TEST_P(ParticleContacts, FrictionHoldsAndSlidesOnASlope) {
         const V normal{std::sin(angle), std::cos(angle), 0};
         World world(GetParam(), settings_for(GetParam()));
         world.add_body(ground(mu, 0, normal));
-        ParticleDef def = grain_at(radius * normal);
+        ParticleDef def = grain_at(particle_radius * normal);
         def.material.friction = Real(mu);
         world.add_particle(def);
         run(world, 60);
         const V down{std::cos(angle), -std::sin(angle), 0};
-        const double way = glm::dot(particle_position(world, 0) - radius * normal, down);
+        const double way = glm::dot(particle_position(world, 0) - particle_radius * normal, down);
         // Known failing: AVBD's contacts of particles begin anew in each substep, and slip by what
         // its passes leave of gravity's way.
         const double left = GetParam() == "avbd" ? left_by_avbd(world) * gravity : 0;
@@ -191,7 +191,8 @@ TEST_P(ParticleContacts, KeepMomenta) {
         EXPECT_NE(spin_of(world, world.body_id(0)), spin);
         // Known failing: AVBD puts one after the other where it should be, so momenta are kept only
         // as far as its passes end: each particle brings 3 m/s, and is sent back.
-        const double left = GetParam() == "avbd" ? left_by_avbd(world) * 6 * 2 * 3 * mass : 0;
+        const double left =
+            GetParam() == "avbd" ? left_by_avbd(world) * 6 * 2 * 3 * particle_mass : 0;
         EXPECT_LT(glm::distance(after.linear_momentum, before.linear_momentum),
                   200 * epsilon + left);
         // XPBD loses spin, and corrects poses by arms and turns of first order: 9e-5 at most here,
@@ -343,7 +344,7 @@ TEST(ParticleSleep, FollowsTheParticles) {
     world.add_body(ground(0.5, 0));
     const BodyId box = world.add_body(dynamic_body(block(V{0.3, 0.2, 0.3}), 5, V{0, 0.2, 0}));
     const BodyId tied = world.add_body(dynamic_body(block(V{0.3, 0.2, 0.3}), 5, V{3, 0.2, 0}));
-    world.add_particle(grain_at(V{0, 0.4 + radius, 0}));
+    world.add_particle(grain_at(V{0, 0.4 + particle_radius, 0}));
     world.add_particle(particle_at(V{3, 2, 0}, 0.2));
     world.add_spring(spring(of_world(V{3, 2.5, 0}), of_particle(1), 0.5, 200, 5));
     world.add_spring(spring(of_particle(1), of_body(tied, V{0, 0.2, 0}), 1.6, 20, 1));

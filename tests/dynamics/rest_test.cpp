@@ -97,8 +97,8 @@ TEST(Rest, ASlopeJustTooSteepGivesTheClosedFormsWay) {
     }
 }
 
-// The contacts of one colour share no body, and its springs no particle: their order, and how many
-// the processor works on at once, does not matter.
+// The contacts of one colour share no body, as the joints of one level, and its springs no particle:
+// their order, and how many the processor works on at once, does not matter.
 TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
     const auto hash_at = [](std::int64_t target) {
         hwy::SetSupportedTargetsForTest(target);
@@ -118,6 +118,7 @@ TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
                             .mass = 1,
                             .stiffness = stiffness,
                             .damping = 0.1});
+        add_joined_net(world, 7, {0, 5, 0});
         run(world, 120);
         return world.hash();
     };

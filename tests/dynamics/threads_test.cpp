@@ -10,8 +10,8 @@ using namespace trial;
 class Threads : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Threads, testing::ValuesIn(contact_methods()), name_of);
 
-// A heap that falls together, under a net: many times more pairs, and springs, than a part of the
-// loop over them takes.
+// A heap that falls together, under nets: many times more pairs, joints and springs than a part of
+// the loop over them takes.
 World heap(const std::string &method) {
     Random random(9);
     World world(method, settings_for(method));
@@ -32,6 +32,8 @@ World heap(const std::string &method) {
         }
         last = id;
     }
+    if (find_method(method)->info.joints)
+        add_joined_net(world, 9, {0, 5, 0});
     if (find_method(method)->info.springs)
         add_net(world, {.n = 17,
                         .side = 4,

@@ -105,6 +105,41 @@ inline void set_length(JointDef &joint, Real length) {
     joint.min_length = joint.max_length = length;
 }
 
+// Balls of 1 kg on ball joints, level, n by n, half a metre apart, which meet nothing of each
+// other; held by two corners. The joints in four turns, of which none shares a ball.
+inline void add_joined_net(World &world, int n, const V &corner) {
+    const auto first = static_cast<std::uint32_t>(world.bodies().size());
+    for (int i = 0; i < n * n; ++i) {
+        BodyDef def = dynamic_body(Sphere{Vec3{0}, Real(0.1)}, 1,
+                                   corner + V{0.5 * (i % n), 0, 0.5 * (i / n)});
+        def.colliders[0].filter = {0, 1};
+        world.add_body(def);
+    }
+    const auto join = [&](int from, int step, const V &way) {
+        JointDef joint;
+        joint.a = world.body_id(first + static_cast<std::uint32_t>(from));
+        joint.b = world.body_id(first + static_cast<std::uint32_t>(from + step));
+        joint.anchor_a_local = narrow(0.5 * way);
+        joint.anchor_b_local = narrow(-0.5 * way);
+        world.add_joint(joint);
+    };
+    for (const int odd : {0, 1})
+        for (int i = 0; i < n * n; ++i) {
+            if (i % n + 1 < n && i % n % 2 == odd)
+                join(i, 1, {0.5, 0, 0});
+        }
+    for (const int odd : {0, 1})
+        for (int i = 0; i + n < n * n; ++i)
+            if (i / n % 2 == odd)
+                join(i, n, {0, 0, 0.5});
+    for (const int i : {0, n - 1}) {
+        JointDef joint;
+        joint.b = world.body_id(first + static_cast<std::uint32_t>(i));
+        joint.anchor_a_local = world.pose_of(joint.b.index).position;
+        world.add_joint(joint);
+    }
+}
+
 // What the solver remembers of the first rows of a joint (N s).
 inline V impulse_of(const World &world, std::size_t joint) {
     const auto &impulses = world.state().joints[joint].impulses;

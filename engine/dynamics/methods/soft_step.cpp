@@ -77,6 +77,7 @@ void advance_soft_step(StepContext &context) {
     prepare_joints(context);
     prepare_particles(context, SpringRule::midpoint);
     context.scratch.joint_system.arrange(context);
+    prepare_joint_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         follow_loads(context, h);
@@ -122,6 +123,7 @@ void advance_soft_step(StepContext &context) {
                 solve_particle_contacts(context, {.loaded_only = true}, h);
             solve_contact_columns(context, relax_bias, h);
         }
+        store_joint_columns(context); // for what the next substep makes of their loads
         if (has_particles)
             restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
     }
