@@ -18,7 +18,7 @@ LIBRARIES = [
     (r"toml\+\+/|toml\.hpp", r"engine/scene/file/table\.h", 1),
     (r"tiny_obj_loader", r"engine/scene/[^/]+\.cpp", 1),
     (r"hwy/", r"engine/(geometry|space)/[^/]+|engine/math/wide_vector-inl\.h"
-     r"|engine/dynamics/(columns-inl\.h|(contact|spring)_kernels\.cpp)|"
+     r"|engine/dynamics/(columns-inl\.h|(contact|joint|spring)_kernels\.cpp)|"
      r"tests/(geometry|space|dynamics)/[^/]+", None),
     (r"Eigen/", r"engine/dynamics/methods/backward_euler\.cpp", 1),
     (r"benchmark/", r"app/lab/timing\.cpp", 1),

@@ -29,9 +29,10 @@ STEPS = 20
 PARTS = {
     "broad phase": [r"DynamicTree::", r"World::place_colliders"],
     "contact detection": [r"World::collide_candidate"],
-    "contact solver": [r"kernels::.*solve_blocks", r"kernels::.*recall"],
+    "contact solver": [r"kernels::.*solve_blocks", r"kernels::.*recall_blocks"],
     "joints": [r"::solve_group", r"JointSystem::factor", r"JointSystem::solve",
-               r"JointSystem::eliminate", r"::emit_point\("],
+               r"JointSystem::eliminate", r"::emit_point\(", r"kernels::.*solve_joints",
+               r"::find_levels"],
     "particles and cloth": [r"World::find_particle_contacts", r"World::collide_particle",
                             r"World::load_particles", r"World::end_particles", r"solve_springs",
                             r"solve_particle_contacts"],

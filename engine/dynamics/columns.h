@@ -18,6 +18,14 @@ struct alignas(64) Column {
 struct Columns3 {
     Column x, y, z;
 };
+inline void set(Columns3 &columns, std::size_t lane, const Vec3 &v) {
+    columns.x.lanes[lane] = v.x;
+    columns.y.lanes[lane] = v.y;
+    columns.z.lanes[lane] = v.z;
+}
+inline Vec3 get(const Columns3 &columns, std::size_t lane) {
+    return {columns.x.lanes[lane], columns.y.lanes[lane], columns.z.lanes[lane]};
+}
 // A symmetric matrix.
 struct ColumnsSymmetric {
     Column xx, yy, zz, xy, xz, yz;

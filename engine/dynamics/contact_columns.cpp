@@ -22,16 +22,6 @@ bool is_dynamic(const StepContext &context, std::uint32_t body) {
     return context.model.bodies[body].kind == BodyKind::dynamic;
 }
 
-void set(Columns3 &columns, std::size_t lane, const Vec3 &v) {
-    columns.x.lanes[lane] = v.x;
-    columns.y.lanes[lane] = v.y;
-    columns.z.lanes[lane] = v.z;
-}
-
-Vec3 get(const Columns3 &columns, std::size_t lane) {
-    return {columns.x.lanes[lane], columns.y.lanes[lane], columns.z.lanes[lane]};
-}
-
 void set(ColumnsSymmetric &columns, std::size_t lane, const Mat3 &m) {
     columns.xx.lanes[lane] = m[0][0];
     columns.yy.lanes[lane] = m[1][1];

@@ -15,18 +15,10 @@ namespace {
 constexpr std::size_t least_a_level = 4;
 constexpr std::uint32_t none = UINT32_MAX;
 
-void set(Columns3 &columns, std::size_t lane, const Vec3 &v) {
-    columns.x.lanes[lane] = v.x;
-    columns.y.lanes[lane] = v.y;
-    columns.z.lanes[lane] = v.z;
-}
 void set(ColumnsMatrix &columns, std::size_t lane, const Mat3 &m) {
     set(columns.x, lane, m[0]);
     set(columns.y, lane, m[1]);
     set(columns.z, lane, m[2]);
-}
-Vec3 get(const Columns3 &columns, std::size_t lane) {
-    return {columns.x.lanes[lane], columns.y.lanes[lane], columns.z.lanes[lane]};
 }
 Mat3 get(const ColumnsMatrix &columns, std::size_t lane) {
     return {get(columns.x, lane), get(columns.y, lane), get(columns.z, lane)};
@@ -125,10 +117,13 @@ void weigh_left(StepContext &context, JointBlock &block) {
 }
 
 template <class Use> void for_blocks(StepContext &context, Use &&use) {
-    for_blocks(context.tasks, std::span(context.scratch.joint_schedule.blocks), use);
+    if (std::vector<JointBlock> &blocks = context.scratch.joint_schedule.blocks; !blocks.empty())
+        for_blocks(context.tasks, std::span(blocks), use);
 }
 template <class Use> void for_levels(StepContext &context, Use &&use) {
     JointSchedule &schedule = context.scratch.joint_schedule;
+    if (schedule.blocks.empty())
+        return;
     for_colours(context.tasks, std::span(schedule.blocks), schedule.level_ends, use);
 }
 
@@ -148,6 +143,8 @@ void prepare_joint_columns(StepContext &context) {
     JointSchedule &schedule = context.scratch.joint_schedule;
     schedule.blocks.clear();
     schedule.level_ends.clear();
+    if (context.scratch.joints.empty())
+        return;
     const std::size_t found = find_levels(context, schedule);
     if (found == 0 || found < least_a_level * schedule.next_lanes.size())
         return;

@@ -97,8 +97,8 @@ TEST(Rest, ASlopeJustTooSteepGivesTheClosedFormsWay) {
     }
 }
 
-// The contacts of one colour share no body, as the joints of one level, and its springs no particle:
-// their order, and how many the processor works on at once, does not matter.
+// The contacts of one colour share no body, as the joints of one level, and its springs no
+// particle: their order, and how many the processor works on at once, does not matter.
 TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
     const auto hash_at = [](std::int64_t target) {
         hwy::SetSupportedTargetsForTest(target);
