@@ -3,6 +3,7 @@
 
 #include "engine/dynamics/body.h"
 
+#include <cstddef>
 #include <span>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -24,6 +25,8 @@ struct BodyReals {
 
 inline BodyReals reals_of(std::span<SolverBody> bodies) {
     static_assert(sizeof(SolverBody) % sizeof(Real) == 0);
+    // Kernels write both as one row.
+    static_assert(offsetof(Motion, angular_velocity) == offsetof(Motion, velocity) + sizeof(Vec3));
     if (bodies.empty())
         return {};
     SolverBody &body = bodies.front();

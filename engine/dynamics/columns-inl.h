@@ -13,6 +13,9 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <cstdint>
+
 HWY_BEFORE_NAMESPACE();
 namespace plumb::inline PLUMB_PRECISION {
 namespace columns::HWY_NAMESPACE {
@@ -91,6 +94,105 @@ HWY_INLINE void scatter(const Vector &v, Real *first, int offset, const IndexCol
         to[2] = out[2][k];
     }
 }
+
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE Vector gather_rows(const Real *first, int offset, const IndexColumn &index,
+                              std::size_t lane) {
+    return gather(first, offset, load(index, lane));
+}
+HWY_INLINE void scatter_rows(const Vector &v, const Vector &next, Real *first, int offset,
+                             const IndexColumn &index, unsigned writes, std::size_t lane) {
+    scatter(v, first, offset, index, writes, lane);
+    scatter(next, first, offset + 3, index, writes, lane);
+}
+
+#else
+
+// Rows of four Reals and lanes of blocks of four, one for the other: where Reals are float and
+// vectors hold whole blocks. Gathering and scattering single Reals costs as much as all arithmetic
+// of a contact (AMD Zen 4).
+template <typename D>
+constexpr bool has_blocks = sizeof(hn::TFromD<D>) == 4 && sizeof(hn::Vec<D>) >= 16;
+
+// The rows of every fourth lane.
+template <typename D>
+HWY_INLINE hn::Vec<D> load_rows(D d, const Real *from, const IndexColumn::Index *index) {
+    if constexpr (sizeof(hn::Vec<D>) == 16) {
+        return hn::LoadU(d, from + *index);
+    } else {
+        constexpr hn::Half<D> half{};
+        return hn::Combine(d, load_rows(half, from, index + hn::Lanes(half)),
+                           load_rows(half, from, index));
+    }
+}
+
+// Of each block of four lanes.
+template <typename D>
+HWY_INLINE void transpose(D d, hn::Vec<D> &a, hn::Vec<D> &b, hn::Vec<D> &c, hn::Vec<D> &e) {
+    constexpr hn::Repartition<std::uint64_t, D> pairs{};
+    const auto lower_ab = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
+    const auto lower_ce = hn::BitCast(pairs, hn::InterleaveLower(d, c, e));
+    const auto upper_ab = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
+    const auto upper_ce = hn::BitCast(pairs, hn::InterleaveUpper(d, c, e));
+    a = hn::BitCast(d, hn::InterleaveLower(pairs, lower_ab, lower_ce));
+    b = hn::BitCast(d, hn::InterleaveUpper(pairs, lower_ab, lower_ce));
+    c = hn::BitCast(d, hn::InterleaveLower(pairs, upper_ab, upper_ce));
+    e = hn::BitCast(d, hn::InterleaveUpper(pairs, upper_ab, upper_ce));
+}
+
+// As gather(), of what at least one Real follows.
+template <typename D = Tag>
+HWY_INLINE Vector gather_rows(const Real *first, int offset, const IndexColumn &index,
+                              std::size_t lane) {
+    if constexpr (has_blocks<D>) {
+        constexpr D d{};
+        const Real *from = first + offset;
+        const IndexColumn::Index *at = index.lanes + lane;
+        hn::Vec<D> x = load_rows(d, from, at);
+        hn::Vec<D> y = load_rows(d, from, at + 1);
+        hn::Vec<D> z = load_rows(d, from, at + 2);
+        hn::Vec<D> unused = load_rows(d, from, at + 3);
+        transpose(d, x, y, z, unused);
+        return {x, y, z};
+    } else {
+        return gather(first, offset, load(index, lane));
+    }
+}
+
+// As scatter(), of two vectors one after the other.
+template <typename D = Tag>
+HWY_INLINE void scatter_rows(const Vector &v, const Vector &next, Real *first, int offset,
+                             const IndexColumn &index, unsigned writes, std::size_t lane) {
+    if constexpr (has_blocks<D>) {
+        constexpr D d{};
+        HWY_ALIGN Real four[4][column_lanes];
+        HWY_ALIGN Real two[4][column_lanes];
+        const auto store_rows = [&](hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> c, hn::Vec<D> e,
+                                    Real(*to)[column_lanes]) HWY_ATTR {
+            transpose(d, a, b, c, e);
+            hn::Store(a, d, to[0]);
+            hn::Store(b, d, to[1]);
+            hn::Store(c, d, to[2]);
+            hn::Store(e, d, to[3]);
+        };
+        store_rows(v.x, v.y, v.z, next.x, four);
+        store_rows(next.y, next.z, hn::Zero(d), hn::Zero(d), two);
+        for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
+            if (((writes >> (lane + k)) & 1U) == 0)
+                continue;
+            Real *to = first + index.lanes[lane + k] + offset;
+            const std::size_t block = k / 4 * 4;
+            std::copy_n(four[k % 4] + block, 4, to);
+            std::copy_n(two[k % 4] + block, 2, to + 4);
+        }
+    } else {
+        scatter(v, first, offset, index, writes, lane);
+        scatter(next, first, offset + 3, index, writes, lane);
+    }
+}
+
+#endif
 
 } // namespace columns::HWY_NAMESPACE
 } // namespace plumb::inline PLUMB_PRECISION

@@ -37,15 +37,15 @@ struct Velocity {
     Vector linear, angular;
 };
 
-HWY_INLINE Velocity gather_velocity(const BodyReals &bodies, Indices index) {
-    return {gather(bodies.bodies, bodies.velocity, index),
-            gather(bodies.bodies, bodies.angular_velocity, index)};
+HWY_INLINE Velocity gather_velocity(const BodyReals &bodies, const IndexColumn &index,
+                                    std::size_t lane) {
+    return {gather_rows(bodies.bodies, bodies.velocity, index, lane),
+            gather_rows(bodies.bodies, bodies.angular_velocity, index, lane)};
 }
 
 HWY_INLINE void scatter_velocity(const Velocity &v, const BodyReals &bodies,
                                  const IndexColumn &index, unsigned writes, std::size_t lane) {
-    scatter(v.linear, bodies.bodies, bodies.velocity, index, writes, lane);
-    scatter(v.angular, bodies.bodies, bodies.angular_velocity, index, writes, lane);
+    scatter_rows(v.linear, v.angular, bodies.bodies, bodies.velocity, index, writes, lane);
 }
 
 // The two bodies of the contacts in the lanes of one vector.
@@ -66,8 +66,8 @@ struct Pair {
 };
 
 HWY_INLINE Pair load_pair(const ContactBlock &block, const BodyReals &bodies, std::size_t lane) {
-    return {gather_velocity(bodies, load(block.body_a, lane)),
-            gather_velocity(bodies, load(block.body_b, lane)),
+    return {gather_velocity(bodies, block.body_a, lane),
+            gather_velocity(bodies, block.body_b, lane),
             load(block.inv_mass_a, lane),
             load(block.inv_mass_b, lane),
             load(block.inv_inertia_a, lane),
@@ -126,11 +126,11 @@ void finish_block_impl(ContactBlock &block) {
 }
 
 // The columns of a symmetric matrix of three Vec3.
-HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, Indices index,
+HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, const IndexColumn &index,
                        std::size_t lane) {
-    const Vector first = gather(bodies.bodies, bodies.inv_inertia, index);
-    const Vector second = gather(bodies.bodies, bodies.inv_inertia + 3, index);
-    const Vector third = gather(bodies.bodies, bodies.inv_inertia + 6, index);
+    const Vector first = gather_rows(bodies.bodies, bodies.inv_inertia, index, lane);
+    const Vector second = gather_rows(bodies.bodies, bodies.inv_inertia + 3, index, lane);
+    const Vector third = gather_rows(bodies.bodies, bodies.inv_inertia + 6, index, lane);
     store(first.x, to.xx, lane);
     store(second.y, to.yy, lane);
     store(third.z, to.zz, lane);
@@ -146,8 +146,8 @@ HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, Indices in
 void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool remember_first) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         if (block.inertia_turns) {
-            reload(block.inv_inertia_a, bodies, load(block.body_a, lane), lane);
-            reload(block.inv_inertia_b, bodies, load(block.body_b, lane), lane);
+            reload(block.inv_inertia_a, bodies, block.body_a, lane);
+            reload(block.inv_inertia_b, bodies, block.body_b, lane);
         }
         Pair pair = load_pair(block, bodies, lane);
         const Vector n = load(block.normal, lane);
@@ -318,16 +318,14 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     const Lanes even_speed = all(even_share * bias.struck_speed);
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         Pair pair = load_pair(block, bodies, lane);
-        const Indices index_a = load(block.body_a, lane);
-        const Indices index_b = load(block.body_b, lane);
-        const Vector moved = minus(gather(bodies.bodies, bodies.moved, index_b),
-                                   gather(bodies.bodies, bodies.moved, index_a));
+        const Vector moved = minus(gather_rows(bodies.bodies, bodies.moved, block.body_b, lane),
+                                   gather_rows(bodies.bodies, bodies.moved, block.body_a, lane));
         const Vector n = load(block.normal, lane);
         const Lanes way = dot(n, moved);
         const Turned turned_a =
-            turned_by(gather(bodies.bodies, bodies.turned, index_a), n, any_far);
+            turned_by(gather_rows(bodies.bodies, bodies.turned, block.body_a, lane), n, any_far);
         const Turned turned_b =
-            turned_by(gather(bodies.bodies, bodies.turned, index_b), n, any_far);
+            turned_by(gather_rows(bodies.bodies, bodies.turned, block.body_b, lane), n, any_far);
         // The normal points at b: its surface is on the other side of its core.
         const Lanes rounding_a = start_arms ? zero : load(block.rounding_a, lane);
         const Lanes rounding_b = start_arms ? zero : hn::Neg(load(block.rounding_b, lane));

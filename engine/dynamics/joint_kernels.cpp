@@ -57,7 +57,7 @@ HWY_INLINE Mask is_body(const JointBlock::End &end, std::size_t lane) {
 // Three Reals of each lane's body; of the world, 0.
 HWY_INLINE Vector gather_end(const JointBlock::End &end, const BodyReals &bodies, int offset,
                              std::size_t lane) {
-    return choose(is_body(end, lane), gather(bodies.bodies, offset, load(end.body, lane)), zeros());
+    return choose(is_body(end, lane), gather_rows(bodies.bodies, offset, end.body, lane), zeros());
 }
 
 // Lane by lane, as a block has them.
@@ -89,8 +89,8 @@ HWY_INLINE void apply(const JointBlock::End &end, Velocity velocity, const Vecto
     const Vector turn = cross(load(end.arm, lane), impulse);
     velocity.angular = plus(velocity.angular, product(load_matrix(end.inv_inertia, lane), turn));
     const unsigned writes = end.writes & ~left;
-    scatter(velocity.linear, bodies.bodies, bodies.velocity, end.body, writes, lane);
-    scatter(velocity.angular, bodies.bodies, bodies.angular_velocity, end.body, writes, lane);
+    scatter_rows(velocity.linear, velocity.angular, bodies.bodies, bodies.velocity, end.body,
+                 writes, lane);
 }
 
 HWY_INLINE Vector negative(const Vector &v) {
