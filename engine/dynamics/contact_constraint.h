@@ -58,6 +58,8 @@ struct ContactBias {
     bool frictionless = false;
     // m/s; contacts that close faster are swept more than once (soft_step).
     Real struck_speed = std::numeric_limits<Real>::infinity();
+    // Of points against what has no inverse mass (soft_step).
+    Softness on_static{};
 };
 
 // 1 / (K along n): the effective mass of two points against each other along a unit vector.

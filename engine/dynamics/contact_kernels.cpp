@@ -301,16 +301,18 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
     return stops;
 }
 
+// Static and kinematic bodies, and those with all translations locked.
+HWY_INLINE Mask does_not_move(const Vector &inv_mass) {
+    return hn::Eq(hn::Add(inv_mass.x, hn::Add(inv_mass.y, inv_mass.z)), hn::Zero(tag));
+}
+
 void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReals &bodies,
                 const ContactBias &bias, Real inv_h, bool any_far) {
     const Lanes zero = hn::Zero(tag);
     const Lanes slop = all(bias.slop);
-    const Lanes rate = all(bias.softness.bias_rate);
     const Lanes least = all(-bias.push_velocity);
     const bool pushes = bias.push_velocity > Real(0);
     const Lanes one = all(Real(1));
-    const Lanes soft_mass = all(pushes ? bias.softness.mass_scale : Real(1));
-    const Lanes soft_impulse = all(pushes ? bias.softness.impulse_scale : Real(0));
     // Friction tips a body that the normal impulses know nothing of yet, where nothing is
     // remembered: without further sweeps what slides off at once would keep what it gains by that.
     const bool sweeps_all = block.is_new && !pushes;
@@ -318,6 +320,15 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     const Lanes even_speed = all(even_share * bias.struck_speed);
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         Pair pair = load_pair(block, bodies, lane);
+        const auto on_static =
+            hn::Or(does_not_move(pair.inv_mass_a), does_not_move(pair.inv_mass_b));
+        const auto softness = [&](Real Softness::*member) HWY_ATTR {
+            return hn::IfThenElse(on_static, all(bias.on_static.*member),
+                                  all(bias.softness.*member));
+        };
+        const Lanes rate = softness(&Softness::bias_rate);
+        const Lanes soft_mass = pushes ? softness(&Softness::mass_scale) : one;
+        const Lanes soft_impulse = pushes ? softness(&Softness::impulse_scale) : zero;
         const Vector moved = minus(gather_rows(bodies.bodies, bodies.moved, block.body_b, lane),
                                    gather_rows(bodies.bodies, bodies.moved, block.body_a, lane));
         const Vector n = load(block.normal, lane);

@@ -121,7 +121,8 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"contact_frequency_ratio", &StepSettings::contact_frequency_ratio, "", 1e-6, 1000,
      SettingGroup::soft,
      "Natural frequency of a soft contact as a fraction of the substep rate: above 1/4 the spring "
-     "is under-sampled, 1/8 lets it settle between neighbours (Catto 2024, Solver2D)."},
+     "is under-sampled, 1/8 lets it settle between neighbours; soft_step doubles it against what "
+     "does not move (Catto 2024, Solver2D)."},
     {"contact_damping_ratio", &StepSettings::contact_damping_ratio, "", 0, 1e6, SettingGroup::soft,
      "Damping of a soft contact; 1 is critical, and what soft_step takes: with more a pyramid "
      "rocks for ever."},

@@ -55,6 +55,26 @@ TEST(Rest, ATallStackStandsOnKeptContacts) {
     EXPECT_LT(height_of(fallen, 30), 10) << "found anew in each step it falls";
 }
 
+// A substep's soft pass brings half of a load's impulse back, and rests where the spring makes up
+// for it: m g h / 2 = m_eff h omega^2 depth. Two boxes give way to each other as half of one's mass
+// does; against the ground the spring is twice as stiff, omega h = pi / 2 at its defaults.
+TEST(Rest, AStackSinksAsItsSpringsSay) {
+    StepSettings settings = settings_for("soft_step");
+    settings.max_substeps = 1;
+    settings.sleep_after = 0;
+    const double h = settings.dt / settings.substeps;
+    const double on_ground = gravity * h * h / 2 / (pi / 2 * pi / 2);
+    const double between = 8 * on_ground;
+    for (const int boxes : {1, 2, 10}) {
+        World world = stack_of(boxes, settings);
+        run(world, 60 * 10);
+        const auto top = static_cast<std::uint32_t>(boxes);
+        const double sunk = box_side * (boxes - 0.5) - height_of(world, top);
+        const double expected = boxes * on_ground + boxes * (boxes - 1) / 2.0 * between;
+        EXPECT_NEAR(sunk, expected, 0.01 * expected) << boxes;
+    }
+}
+
 // As large heaps are, which would take more than their budget: a lean that contacts found anew let
 // grow doubles every second, and cubes that stand a centimetre aside in turns fall after 12 s.
 TEST(Rest, WhatGetsTooFewSubstepsStandsOnContactsKeptLonger) {

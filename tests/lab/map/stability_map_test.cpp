@@ -274,7 +274,11 @@ TEST(StabilityMap, IsTheSameForAnyNumberOfThreads) {
     const auto rows = read_csv(one);
     EXPECT_EQ(rows[0][2], "dt");
     EXPECT_EQ(rows[0][3], "body.heavy.velocity.x");
-    EXPECT_EQ(rows.size(), 1U + 2 * 8 + 2);
+    std::size_t cells = 0;
+    for (const auto &row : rows)
+        cells += row[0] == "cell" ? 1U : 0U;
+    EXPECT_EQ(cells, 2U * 8);
+    EXPECT_GT(rows.size(), 1 + cells) << "and limits";
     for (const auto &row : rows)
         EXPECT_EQ(row.size(), rows[0].size());
 }
