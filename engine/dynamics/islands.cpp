@@ -153,16 +153,12 @@ void World::share_budget() {
 // substeps they changed no stack, pyramid or pile that was tried, and chains gained energy.
 void World::choose_substeps() {
     Scratch &s = scratch_;
-    const bool chooses = chooses_substeps();
     if (s.contacts.empty() && model_->alive_joints == 0 && !s.grab.is_holding() &&
-        !model_->has_particles()) { // each by itself
+        !model_->has_particles()) {
         group_freely();
-        s.islands.needs.clear();
-        const int substeps = chooses ? settings_.substeps : 0;
-        for (const std::uint32_t i : s.moving)
-            s.paces[i].substeps = static_cast<std::uint16_t>(substeps);
         return;
     }
+    const bool chooses = chooses_substeps();
     if (chooses) {
         find_islands();
         gather_needs();
@@ -176,9 +172,13 @@ void World::choose_substeps() {
                     : std::uint16_t{0};
 }
 
-// All that moves in one group.
+// All that moves in one group, where each body is by itself.
 void World::group_freely() {
     Scratch &s = scratch_;
+    s.islands.needs.clear();
+    const int substeps = chooses_substeps() ? settings_.substeps : 0;
+    for (const std::uint32_t i : s.moving)
+        s.paces[i].substeps = static_cast<std::uint16_t>(substeps);
     s.group_count = s.moving.empty() ? 0 : 1;
     if (s.groups.empty())
         s.groups.emplace_back();

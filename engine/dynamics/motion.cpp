@@ -58,26 +58,35 @@ Vec3 rotation_vector(const Quat &rotation) {
     return about.angle * about.axis;
 }
 
-Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h) {
-    const Real squared = glm::dot(angular_velocity, angular_velocity) * (h * h);
-    if (squared == Real(0))
-        return rotation;
+namespace {
+
+// The turn of h seconds, of which rounding has left the length not quite one.
+Quat turn_in(const Vec3 &angular_velocity, Real h, Real squared_angle) {
     // Of half of the angle: its sine by the whole of it, and its cosine.
     Real sine = Real(0);
     Real cosine = Real(0);
     // Up to here what the series leave out is below rounding.
     constexpr Real near = std::numeric_limits<Real>::digits > 24 ? Real(1e-5) : Real(1e-2);
-    if (squared < near) {
-        const Real x = Real(0.25) * squared;
+    if (squared_angle < near) {
+        const Real x = Real(0.25) * squared_angle;
         sine = Real(0.5) - x * (Real(1) / 12 - x * (Real(1) / 240));
         cosine = Real(1) - x * (Real(0.5) - x * (Real(1) / 24 - x * (Real(1) / 720)));
     } else {
-        const Real angle = std::sqrt(squared);
+        const Real angle = std::sqrt(squared_angle);
         sine = std::sin(Real(0.5) * angle) / angle;
         cosine = std::cos(Real(0.5) * angle);
     }
     const Vec3 v = (sine * h) * angular_velocity;
-    return glm::normalize(Quat{cosine, v.x, v.y, v.z} * rotation);
+    return Quat{cosine, v.x, v.y, v.z};
+}
+
+} // namespace
+
+Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h) {
+    const Real squared = glm::dot(angular_velocity, angular_velocity) * (h * h);
+    if (squared == Real(0))
+        return rotation;
+    return glm::normalize(turn_in(angular_velocity, h, squared) * rotation);
 }
 
 namespace {
@@ -134,17 +143,6 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
     return std::isfinite(after) && after > Real(0) ? std::sqrt(before / after) * end : spin;
 }
 
-Vec3 gravity_on(const Body &body, const Vec3 &gravity) {
-    if (body.kind != BodyKind::dynamic)
-        return Vec3{Real(0)};
-    Vec3 felt = body.gravity_scale * gravity;
-    if (body.has_locks)
-        for (int i = 0; i < 3; ++i)
-            if (body.locked[static_cast<std::size_t>(i)])
-                felt[i] = Real(0);
-    return felt;
-}
-
 // With some rotations locked the others turn against the inertia's block of their own axes alone:
 // its inverse, and zeros elsewhere.
 Mat3 solver_inverse_inertia(const Body &body, const Vec3 &inv_inertia, const Quat &rotation) {
@@ -164,10 +162,6 @@ Mat3 solver_inverse_inertia(const Body &body, const Vec3 &inv_inertia, const Qua
         if (locked[static_cast<std::size_t>(i)])
             inverse[i][i] = Real(0);
     return inverse;
-}
-
-Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation) {
-    return solver_inverse_inertia(body, body.inv_inertia, rotation);
 }
 
 bool has_gyroscopic_spin(const Body &body) {
@@ -202,39 +196,66 @@ inline Damped damped(Real rate, Real h) {
     return rate == Real(0) ? Damped{Real(1), Real(1), h, Real(0.5) * h} : strongly_damped(rate, h);
 }
 
+// What moves a body on which nothing else acts: the same in each substep of a step. The velocity is
+// on average `mean_kept` of what it was and `mean_gain`; `late_kept` and `late_gain` more at the
+// end.
+struct Drive {
+    Real mean_kept = Real(1);
+    Real late_kept = Real(0);
+    Vec3 mean_gain{Real(0)}; // m/s, by gravity
+    Vec3 late_gain{Real(0)};
+    Vec3 gain{Real(0)}; // all of it at once
+    Real kept = Real(1);
+    Damped angular;
+    bool is_dynamic = false;
+    bool is_gyroscopic = false;
+};
+
+inline Drive drive_of(const Body &body, const Vec3 &gravity, Real h) {
+    Drive drive;
+    if (body.kind != BodyKind::dynamic)
+        return drive;
+    const Vec3 pull = gravity_on(body, gravity);
+    const Damped linear = damped(body.linear_damping, h);
+    drive.mean_kept = linear.mean_kept;
+    drive.late_kept = linear.kept - linear.mean_kept;
+    drive.kept = linear.kept;
+    drive.mean_gain = linear.mean_gained * pull;
+    drive.late_gain = (linear.gained - linear.mean_gained) * pull;
+    drive.gain = linear.gained * pull;
+    drive.angular = damped(body.angular_damping, h);
+    drive.is_dynamic = true;
+    drive.is_gyroscopic = has_gyroscopic_spin(body);
+    return drive;
+}
+
 // Mean and end of a torque-free, damped turn that begins with flight.start_spin.
-void turn_freely(FreeFlight &flight, const Body &body, Real h, int gyroscopic_iterations) {
-    const Damped angular = damped(body.angular_damping, h);
+void turn_freely(FreeFlight &flight, const Body &body, const Damped &angular, Real h,
+                 int gyroscopic_iterations) {
     const Vec3 undamped =
         gyroscopic_spin(body.inertia, flight.start_spin, h, gyroscopic_iterations);
     flight.end_spin = angular.kept * undamped;
     flight.mean_spin = angular.mean_kept * (Real(0.5) * (flight.start_spin + undamped));
 }
 
-} // namespace
-
-FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
-                        Kick kick, int gyroscopic_iterations) {
+inline FreeFlight begin_driven(SolverBody &motion, const Body &body, const Drive &drive, Real h,
+                               Kick kick, int gyroscopic_iterations) {
     FreeFlight flight;
     flight.mean_velocity = motion.velocity;
-    if (body.kind == BodyKind::dynamic) {
-        const Vec3 pull = gravity_on(body, gravity);
-        const Damped linear = damped(body.linear_damping, h);
-        flight.mean_velocity = linear.mean_kept * motion.velocity + linear.mean_gained * pull;
-        const Vec3 late = (linear.kept - linear.mean_kept) * motion.velocity +
-                          (linear.gained - linear.mean_gained) * pull;
+    if (drive.is_dynamic) {
+        const Damped &angular = drive.angular;
+        flight.mean_velocity = drive.mean_kept * motion.velocity + drive.mean_gain;
+        const Vec3 late = drive.late_kept * motion.velocity + drive.late_gain;
         flight.late_velocity = kick == Kick::around ? late : Vec3{Real(0)};
-        motion.velocity = kick == Kick::around
-                              ? flight.mean_velocity
-                              : linear.kept * motion.velocity + linear.gained * pull;
-        if (has_gyroscopic_spin(body)) {
+        motion.velocity =
+            kick == Kick::around ? flight.mean_velocity : drive.kept * motion.velocity + drive.gain;
+        if (drive.is_gyroscopic) {
             flight.start_spin =
                 turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
-            turn_freely(flight, body, h, gyroscopic_iterations);
+            turn_freely(flight, body, angular, h, gyroscopic_iterations);
             motion.angular_velocity =
                 rotated(motion.rotation, kick == Kick::around ? flight.mean_spin : flight.end_spin);
         } else if (body.angular_damping > Real(0)) {
-            const Damped angular = damped(body.angular_damping, h);
             flight.late_spin = kick == Kick::around
                                    ? (angular.kept - angular.mean_kept) * motion.angular_velocity
                                    : Vec3{Real(0)};
@@ -244,6 +265,13 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
     flight.velocity = motion.velocity;
     flight.angular_velocity = motion.angular_velocity;
     return flight;
+}
+
+} // namespace
+
+FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
+                        Kick kick, int gyroscopic_iterations) {
+    return begin_driven(motion, body, drive_of(body, gravity, h), h, kick, gyroscopic_iterations);
 }
 
 namespace {
@@ -257,19 +285,9 @@ void go(SolverBody &motion, const Vec3 &way) {
     motion.position = to;
 }
 
-// Where joints hold a body between two halves of a kick (`is_held`), the gyroscopic torque is that
-// of the spin that the solver left, or tops sink.
-void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
-               int gyroscopic_iterations, bool is_held) {
-    flight.free =
-        motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
-    const bool is_gyroscopic = body.kind == BodyKind::dynamic && has_gyroscopic_spin(body);
-    if (is_gyroscopic && !flight.free && is_held) {
-        flight.start_spin += rotated(glm::conjugate(motion.rotation),
-                                     motion.angular_velocity - flight.angular_velocity);
-        turn_freely(flight, body, h, gyroscopic_iterations);
-        motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
-    }
+// The pose after h, at the velocities that the body has now.
+inline void move_along(SolverBody &motion, const Body &body, const FreeFlight &flight, Real h,
+                       bool is_gyroscopic) {
     const Vec3 way = h * (flight.free ? flight.mean_velocity : motion.velocity);
     go(motion, way);
     motion.moved += way;
@@ -282,21 +300,46 @@ void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
         motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
 }
 
+// Where joints hold a body between two halves of a kick (`is_held`), the gyroscopic torque is that
+// of the spin that the solver left, or tops sink.
+void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
+               int gyroscopic_iterations, bool is_held) {
+    flight.free =
+        motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
+    const bool is_gyroscopic = body.kind == BodyKind::dynamic && has_gyroscopic_spin(body);
+    if (is_gyroscopic && !flight.free && is_held) {
+        flight.start_spin += rotated(glm::conjugate(motion.rotation),
+                                     motion.angular_velocity - flight.angular_velocity);
+        turn_freely(flight, body, damped(body.angular_damping, h), h, gyroscopic_iterations);
+        motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
+    }
+    move_along(motion, body, flight, h, is_gyroscopic);
+}
+
 } // namespace
 
 void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h) {
     move_held(motion, body, flight, h, 0, false);
 }
 
-void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick) {
+namespace {
+
+inline void end_driven(SolverBody &motion, const FreeFlight &flight, Kick kick,
+                       bool is_gyroscopic) {
     motion.velocity += flight.late_velocity;
     motion.angular_velocity += flight.late_spin;
-    if (body.kind != BodyKind::dynamic || !has_gyroscopic_spin(body))
+    if (!is_gyroscopic)
         return;
     if (flight.free)
         motion.angular_velocity = turned_to_rounding(motion.rotation, flight.end_spin);
     else if (kick == Kick::around)
         motion.angular_velocity += rotated(motion.rotation, flight.end_spin - flight.mean_spin);
+}
+
+} // namespace
+
+void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick) {
+    end_driven(motion, flight, kick, body.kind == BodyKind::dynamic && has_gyroscopic_spin(body));
 }
 
 namespace {
@@ -340,20 +383,62 @@ void end_flights(StepContext &context, Real h, Kick kick) {
     context.report.body_passes += flights.size();
 }
 
-void fly_freely(StepContext &context, const Vec3 &gravity, Real h) {
-    const int iterations = context.settings.gyroscopic_iterations;
+namespace {
+
+// A substep of a body that nothing holds or touches, with nothing between its two halves.
+inline void fly(SolverBody &motion, const Body &body, const Drive &drive, Real h,
+                int gyroscopic_iterations) {
+    FreeFlight flight = begin_driven(motion, body, drive, h, Kick::around, gyroscopic_iterations);
+    flight.free = true;
+    move_along(motion, body, flight, h, drive.is_gyroscopic);
+    end_driven(motion, flight, Kick::around, drive.is_gyroscopic);
+}
+
+// Whether such a body's spin stays as it is, however it turns.
+bool spins_on(const Body &body) {
+    return is_isotropic(body.inertia) && body.angular_damping == Real(0);
+}
+
+// All substeps of one whose spin stays: the same as `fly`, less what that does about spins.
+void fly_spinning_on(SolverBody &body, const Drive &drive, Real h, int substeps) {
+    SolverBody motion = body;
+    const Vec3 spin = motion.angular_velocity;
+    const Real squared = glm::dot(spin, spin) * (h * h);
+    const Quat turn = squared == Real(0) ? identity_rotation : turn_in(spin, h, squared);
+    for (int substep = 0; substep < substeps; ++substep) {
+        const Vec3 mean = drive.mean_kept * motion.velocity + drive.mean_gain;
+        const Vec3 way = h * mean;
+        motion.velocity = mean + (drive.late_kept * motion.velocity + drive.late_gain);
+        go(motion, way);
+        motion.moved += way;
+        if (squared == Real(0))
+            continue;
+        motion.turned += h * spin;
+        motion.rotation = glm::normalize(turn * motion.rotation);
+    }
+    body = motion;
+}
+
+} // namespace
+
+void fly_freely(StepContext &context, const Vec3 &gravity) {
+    const Real h = context.substep();
+    const int substeps = context.settings.substeps;
     const std::span<const std::uint32_t> moving = context.moving();
     const auto fly_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Body &body = context.model.bodies[moving[i]];
             SolverBody &motion = context.bodies[moving[i]];
-            FreeFlight flight = begin_flight(motion, body, gravity, h, Kick::around, iterations);
-            move_held(motion, body, flight, h, iterations, false);
-            end_flight(motion, body, flight, Kick::around);
+            const Drive drive = drive_of(body, gravity, h);
+            if (spins_on(body))
+                fly_spinning_on(motion, drive, h, substeps);
+            else
+                for (int substep = 0; substep < substeps; ++substep)
+                    fly(motion, body, drive, h, context.settings.gyroscopic_iterations);
         }
     };
     for_parts(context.tasks, moving.size(), bodies_a_part, fly_part);
-    context.report.body_passes += 2 * moving.size();
+    context.report.body_passes += 2 * moving.size() * static_cast<std::size_t>(substeps);
 }
 
 void kick(StepContext &context, const Vec3 &gravity, Real h) {

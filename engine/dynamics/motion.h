@@ -39,12 +39,30 @@ enum class Kick { before, around };
 
 // The acceleration of gravity that a body feels: none unless it is dynamic, and none along locked
 // axes.
-Vec3 gravity_on(const Body &body, const Vec3 &gravity);
+inline Vec3 gravity_on(const Body &body, const Vec3 &gravity) {
+    if (body.kind != BodyKind::dynamic)
+        return Vec3{Real(0)};
+    Vec3 felt = body.gravity_scale * gravity;
+    for (int i = 0; body.has_locks && i < 3; ++i)
+        if (body.locked[static_cast<std::size_t>(i)])
+            felt[i] = Real(0);
+    return felt;
+}
 
-// The inverse inertia in world axes, without what a locked rotation keeps from turning.
-Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation);
-// The same, with other principal moments than the body's.
+// Whether all three moments are the same, so that a free body's spin is constant.
+inline bool is_isotropic(const Vec3 &inertia) {
+    return inertia.x == inertia.y && inertia.y == inertia.z;
+}
+
+// The inverse inertia in world axes, without what a locked rotation keeps from turning; with other
+// principal moments than the body's.
 Mat3 solver_inverse_inertia(const Body &body, const Vec3 &inv_inertia, const Quat &rotation);
+// With its own.
+inline Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation) {
+    if (!body.has_locks && is_isotropic(body.inv_inertia))
+        return Mat3{body.inv_inertia.x};
+    return solver_inverse_inertia(body, body.inv_inertia, rotation);
+}
 
 // Whether the spin of a body on which nothing acts is more than a constant world vector. One with a
 // locked rotation is held to the axes that it has left.
@@ -85,18 +103,13 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
 struct StepContext;
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick);
 void end_flights(StepContext &context, Real h, Kick kick); // moves them, then ends the flights
-// Both, for bodies that nothing holds or touches, with nothing in between.
-void fly_freely(StepContext &context, const Vec3 &gravity, Real h);
+// Both, in all substeps, for bodies that nothing holds or touches, with nothing in between.
+void fly_freely(StepContext &context, const Vec3 &gravity);
 
 // The plain substep: gravity, damping and gyroscopic torque on the velocities, and, once the solver
 // is done, the move with the velocities that it left (semi-implicit Euler; Hairer, Lubich, Wanner
 // 2003, eq. 1.5).
 void kick(StepContext &context, const Vec3 &gravity, Real h);
 void drift(StepContext &context, Real h);
-
-// Whether all three moments are the same, so that a free body's spin is constant.
-inline bool is_isotropic(const Vec3 &inertia) {
-    return inertia.x == inertia.y && inertia.y == inertia.z;
-}
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -120,16 +120,20 @@ void World::wake_all() {
 bool World::is_at_rest(std::uint32_t index) const {
     const Body &body = model_->bodies[index];
     const Motion &motion = scratch_.bodies[index];
+    const glm::dvec3 gravity{gravity_on(body, Vec3{settings_.gravity})};
+    const double share = rest_share * settings_.dt;
+    const glm::dvec3 velocity{motion.velocity};
+    if (glm::dot(velocity, velocity) > 2 * share * share * glm::dot(gravity, gravity))
+        return false;      // far from it, as most that moves
     Real extent = Real(0); // round ones too: a spin that no eye sees is still kept
     for (std::uint32_t c = 0; c < body.collider_count; ++c) {
         const Collider &collider = model_->colliders[body.first_collider + c];
         extent = std::max(extent, collider.extent + collider.rounding);
     }
     const double width = 2 * static_cast<double>(least_half_width(body));
-    const double gravity = glm::length(glm::dvec3{gravity_on(body, Vec3{settings_.gravity})});
     const auto limit =
         static_cast<Real>(std::min(settings_.substep_tolerance * width / settings_.sleep_after,
-                                   rest_share * gravity * settings_.dt));
+                                   rest_share * glm::length(gravity) * settings_.dt));
     return glm::length(motion.velocity) + extent * glm::length(motion.angular_velocity) <= limit;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -80,48 +81,68 @@ void World::step(TaskPool *tasks, StepTimes *times) {
     const TaskPool::Awake awake(tasks);
     scratch_.tasks = tasks;
     try {
-        find_contacts(times);
-        {
-            const PhaseTimer timer(times ? &times->advance : nullptr);
-            const std::size_t impacts = scratch_.impacts.size();
-            const StepReport before = report_;
-            load_bodies();
-            advance();
-            constexpr int most_refinements = 2;
-            for (int i = 0; i < most_refinements && went_too_coarsely(); ++i) {
-                scratch_.impacts.resize(impacts);
-                report_.impacts = before.impacts;
-                report_.unresolved_impacts = before.unresolved_impacts;
-                load_bodies();
-                advance();
-            }
-            constexpr int most_tries = 8;
-            int missed = 0;
-            constexpr int most_missed = 2; // more do not make it better
-            const auto try_again = [&] {
-                return find_surprises() || (missed++ < most_missed && find_missed_points());
-            };
-            for (int tries = 1; tries < most_tries && try_again(); ++tries) {
-                scratch_.impacts.resize(impacts);
-                report_.impacts = before.impacts;
-                report_.unresolved_impacts = before.unresolved_impacts;
-                load_bodies();
-                advance();
-            }
-            scratch_.surprised.clear();
-        }
-        {
-            const PhaseTimer timer(times ? &times->finish : nullptr);
-            gather_memory();
-            gather_penalties();
-            fall_asleep();
-            finish();
-        }
+        if (is_each_alone())
+            step_each_alone(times);
+        else
+            step_together(times);
         scratch_.tasks = nullptr;
     } catch (...) {
         scratch_ = Scratch{};
         throw;
     }
+}
+
+// Whether nothing can touch, hold or pull a body, and nothing is remembered of what did.
+bool World::is_each_alone() const {
+    return !needs_contacts() && model_->joints.empty() && !model_->has_particles() &&
+           !state_.grab.is_holding() && state_.points.empty() && state_.penalties.points.empty();
+}
+
+void World::step_each_alone(StepTimes *times) {
+    const PhaseTimer timer(times ? &times->advance : nullptr);
+    Scratch &s = scratch_;
+    s.contacts.clear();
+    s.ends.clear();
+    s.candidates.clear();
+    load_motions();
+    group_freely();
+    advance_groups();
+    fall_asleep();
+    finish_motions();
+}
+
+void World::step_together(StepTimes *times) {
+    find_contacts(times);
+    {
+        const PhaseTimer timer(times ? &times->advance : nullptr);
+        const std::size_t impacts = scratch_.impacts.size();
+        const StepReport before = report_;
+        const auto try_step = [&] {
+            scratch_.impacts.resize(impacts);
+            report_.impacts = before.impacts;
+            report_.unresolved_impacts = before.unresolved_impacts;
+            load_bodies();
+            advance();
+        };
+        try_step();
+        constexpr int most_refinements = 2;
+        for (int i = 0; i < most_refinements && went_too_coarsely(); ++i)
+            try_step();
+        constexpr int most_tries = 8;
+        int missed = 0;
+        constexpr int most_missed = 2; // more do not make it better
+        const auto must_try_again = [&] {
+            return find_surprises() || (missed++ < most_missed && find_missed_points());
+        };
+        for (int tries = 1; tries < most_tries && must_try_again(); ++tries)
+            try_step();
+        scratch_.surprised.clear();
+    }
+    const PhaseTimer timer(times ? &times->finish : nullptr);
+    gather_memory();
+    gather_penalties();
+    fall_asleep();
+    finish();
 }
 
 // Of all that moves. What that touches and sleeps is woken, and looked at again.
@@ -158,7 +179,7 @@ void World::load_body(std::size_t i) {
         }
 }
 
-void World::load_bodies() {
+void World::load_motions() {
     Scratch &s = scratch_;
     s.bodies.resize(state_.motions.size());
     s.moving.clear();
@@ -169,6 +190,11 @@ void World::load_bodies() {
         for (std::size_t i = begin; i < end; ++i)
             load_body(i);
     });
+}
+
+void World::load_bodies() {
+    load_motions();
+    Scratch &s = scratch_;
     s.joints = state_.joints;
     s.grab = state_.grab;
     s.world_frame = SolverBody{};
@@ -191,14 +217,21 @@ void World::note_ends() {
 }
 
 void World::advance() {
-    Scratch &s = scratch_;
     note_ends();
     choose_substeps();
+    advance_groups();
+}
+
+void World::advance_groups() {
+    Scratch &s = scratch_;
     for (std::size_t i = 0; i < s.group_count; ++i) {
-        StepSettings settings = settings_;
-        settings.substeps = s.groups[i].substeps;
+        std::optional<StepSettings> own;
+        if (s.groups[i].substeps != settings_.substeps) {
+            own = settings_;
+            own->substeps = s.groups[i].substeps;
+        }
         StepContext context{*model_,
-                            settings,
+                            own ? *own : settings_,
                             s.bodies,
                             state_.motions,
                             s.groups[i],
@@ -330,24 +363,29 @@ void World::gather_memory() {
 }
 
 // Here nothing can fail any more.
-void World::finish() {
+void World::finish_motions() {
     Scratch &s = scratch_;
     for (const std::uint32_t i : s.moving)
         state_.motions[i] = s.bodies[i];
+    std::swap(state_.paces, s.paces);
+    ++state_.clock.step_count;
+    // Those of what slept were not looked for.
+    s.contacts_are_current = std::ranges::none_of(state_.paces, &Pace::is_asleep);
+}
+
+void World::finish() {
+    Scratch &s = scratch_;
     std::swap(state_.contacts, s.next_memory);
     std::swap(state_.points, s.next_points);
     std::swap(state_.joints, s.joints);
     std::swap(state_.penalties.points, s.next_penalties);
     std::swap(state_.penalties.joints, s.joint_penalties);
-    std::swap(state_.paces, s.paces);
     state_.grab = s.grab;
     if (model_->has_particles()) {
         std::swap(state_.particles, s.particles);
         std::swap(state_.torn, s.torn);
     }
-    ++state_.clock.step_count;
-    // Those of what slept were not looked for.
-    s.contacts_are_current = std::ranges::none_of(state_.paces, &Pace::is_asleep);
+    finish_motions();
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

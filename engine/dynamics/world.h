@@ -147,13 +147,18 @@ class World {
 
   private:
     // The phases of a step; those that are const work on scratch alone.
+    bool is_each_alone() const;
+    void step_each_alone(StepTimes *times);
+    void step_together(StepTimes *times);
     void find_contacts(StepTimes *times = nullptr);
     void find_pairs() const;
     void collide() const;
     void load_body(std::size_t i);
+    void load_motions();
     void load_bodies();
     void note_ends();
     void advance();
+    void advance_groups();
     std::uint32_t remembered_points(const Contact &contact) const;
     void remember(const Contact &contact, ContactMemory &memory);
     void gather_memory();
@@ -161,6 +166,7 @@ class World {
     void gather_penalties();
     void remember_penalties(std::span<const PointPenalty> penalties, std::size_t point_count);
     void remember_penalty(std::uint32_t joint, const JointPenalty &penalty);
+    void finish_motions();
     void finish();
 
     // Islands and their substeps (islands.cpp).

@@ -39,14 +39,13 @@ int relaxing_passes(const StepContext &context) {
 
 void advance_soft_step(StepContext &context) {
     const StepSettings &settings = context.settings;
-    const Real h = context.substep();
-    const Real rate = Real(1) / h;
     const Vec3 gravity{settings.gravity};
     if (context.active.is_free()) { // nothing of what follows would do anything
-        for (int substep = 0; substep < settings.substeps; ++substep)
-            fly_freely(context, gravity, h);
+        fly_freely(context, gravity);
         return;
     }
+    const Real h = context.substep();
+    const Real rate = Real(1) / h;
     const Softness joint_softness =
         make_soft(static_cast<Real>(settings.joint_frequency_ratio) * rate,
                   static_cast<Real>(settings.joint_damping_ratio), h);
