@@ -29,7 +29,8 @@ void for_colours(TaskPool *tasks, std::span<Block> blocks, std::span<const std::
         for_blocks(tasks, blocks.subspan(first, last - first), use);
         first = last;
     }
-    use(blocks.subspan(first));
+    if (first < blocks.size())
+        use(blocks.subspan(first));
 }
 
 } // namespace plumb

@@ -275,6 +275,8 @@ void turn_contact_columns(StepContext &context, Real t) {
 }
 
 void rearm_contact_columns(StepContext &context) {
+    if (context.scratch.schedule.blocks.empty())
+        return;
     if (!std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
             return has_other_arms(context, body, false);
         }))
@@ -352,6 +354,8 @@ void prepare_contact_columns(StepContext &context) {
 }
 
 void recall_contact_columns(StepContext &context, Real share, bool remember_first) {
+    if (context.scratch.schedule.blocks.empty())
+        return;
     const BodyReals bodies = reals_of(context.bodies);
     for_colours(context, [&](std::span<ContactBlock> blocks) {
         kernels::recall(blocks, bodies, share, remember_first);
@@ -360,6 +364,8 @@ void recall_contact_columns(StepContext &context, Real share, bool remember_firs
 }
 
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h) {
+    if (context.scratch.schedule.blocks.empty())
+        return;
     const BodyReals bodies = reals_of(context.bodies);
     const bool any_far = any_has_turned_far(context);
     const std::span<const StartArms> start_arms = context.scratch.schedule.start_arms;
