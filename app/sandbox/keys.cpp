@@ -148,7 +148,7 @@ std::optional<ActionInfo> row(Action action) {
                           Place::general, false, {ctrl('p')}};
     case Action::dismiss:
         return ActionInfo{action, "Back",
-                          "Closes help, search or messages; then lets go the selection.",
+                          "Closes help, search or messages; then clears the selection.",
                           Place::general, false, {plain(escape)}};
     case Action::quit:
         return ActionInfo{action, "Quit",
@@ -224,7 +224,7 @@ const ActionInfo *find_action(const Chord &chord) {
 std::span<const MouseInfo> mouse_gestures() {
     static constexpr std::array rows = {
         MouseInfo{"Click", "Select",
-                  "The body, particle or cloth under the pointer; beside all, none."},
+                  "The body, particle or cloth under the pointer; empty space deselects."},
         MouseInfo{"Left drag on a disc", "Move a probe", "By one of its points; R puts it back."},
         MouseInfo{"Ctrl + left drag", "Grab",
                   "Pulls what is under the pointer by the point that was grabbed."},

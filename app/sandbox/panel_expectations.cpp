@@ -98,7 +98,7 @@ void warn(const Fonts &fonts, const Colour &colour, const std::string &text) {
     ImGui::PopFont();
 }
 
-// Red when the run has come to grief, amber when it is outside what the scene expects.
+// Red when the run has failed, amber when it is outside what the scene expects.
 void lights(const PanelContext &context) {
     const Session &session = context.session;
     if (const std::optional<Trouble> trouble = session.trouble())

@@ -1,4 +1,4 @@
-// Whether the run that is going on has come to grief, as a stability map would have it.
+// Whether the run that is going on has failed, as a stability map would say.
 #pragma once
 
 #include "app/lab/map/failing.h"
@@ -20,7 +20,7 @@ struct Trouble {
 };
 
 // Looks at each step for what can be seen at hardly any cost: a state that is not finite, energy
-// that grew by more than tolerated_energy_gain, a body that passed through what stands fast; and
+// that grew by more than tolerated_energy_gain, a body that passed through a static body; and
 // now and then for contacts and joints beyond tolerated_depths that stay so.
 class TroubleWatch {
   public:

@@ -195,7 +195,7 @@ void Session::leave_recording() {
     messages_.note("From step " + std::to_string(simulation_->step_count()) +
                    " on this is no longer the recorded run.");
     replay_.reset();
-    if (held_) // by a hand that lets go of it no more
+    if (held_) // nobody will release it
         apply(ReleaseGrab{});
 }
 
@@ -219,7 +219,7 @@ void Session::note_held(const Command &command) {
     }
 }
 
-// The state may be one in which something was held, and is held by nobody now.
+// The restored state may hold a grab that no pointer holds any more: it is released.
 void Session::let_go_of_all() {
     grab_.reset();
     pulled_to_.reset();

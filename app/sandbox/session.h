@@ -105,7 +105,7 @@ class Session {
     // Since when the run has been outside the tolerance of one of them (s); nothing while none is
     // missed.
     [[nodiscard]] std::optional<double> missed_since(std::size_t expectation) const;
-    // What the run has come to grief by: see TroubleWatch.
+    // How the run has failed: see TroubleWatch.
     [[nodiscard]] std::optional<Trouble> trouble() const;
     // Something other than steps has changed the run after its start (another method or setting, a
     // shot, a grab): the expectations tell of what happened, not of what `check` would say.

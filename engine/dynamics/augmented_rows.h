@@ -48,7 +48,7 @@ void begin_point(AugmentedPoint &point, Real separation, const Stiffening &stiff
 PointForce force_of(const AugmentedPoint &point, const Vec3 &way, Real friction);
 // The dual update (eqs. 11 and 12).
 void end_pass(AugmentedPoint &point, const Vec3 &way, Real friction, const Stiffening &stiffening);
-// What it hands on: where friction holds, the slip goes on.
+// What is kept for the next step: where friction holds, the slip.
 void end_point(AugmentedPoint &point, const Vec3 &way, Real friction);
 
 // ---- joints

@@ -12,8 +12,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Of the width of the smaller body: the farthest that speculative_distance and kept_travel go. What
-// is a hair's breadth for a crate is more than a match is thick.
+// Of the width of the smaller body: the farthest that speculative_distance and kept_travel go: a
+// margin that is small for a crate may be more than the thickness of a match.
 constexpr Real speculative_share = Real(0.2);
 constexpr Real kept_share = Real(0.05);
 

@@ -184,7 +184,7 @@ std::uint64_t World::hash() const {
     }
     for (std::size_t i = 0; i < model_->springs.size(); ++i) {
         if (state_.torn[i] != 0)
-            continue; // pulls no more: a hole, as that of a removed body is
+            continue; // exerts no force: a hole, as that of a removed body is
         const Spring &spring = model_->springs[i];
         for (const SpringEnd &end : {spring.a, spring.b}) {
             const bool is_body = end.kind == SpringEnd::Kind::body;

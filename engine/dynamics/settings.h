@@ -63,7 +63,7 @@ enum class SettingGroup {
     soft,        // contacts and joints as springs
     push,        // overlap taken back no faster than so
     threshold,   // what is too slow to bounce
-    impacts,     // bounces, with each impact handed on
+    impacts,     // bounces, propagated from contact to contact
     gyroscopic,  // an implicit gyroscopic term
     penalty      // rows that stiffen while they err
 };
@@ -143,7 +143,7 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "solver would stop the body before it bounces; a little early does no harm, as the rebound "
      "accounts for the gap."},
     {"impact_sweeps", &StepSettings::impact_sweeps, "", 0, 10000, SettingGroup::impacts,
-     "How often an impact may be handed on from contact to contact within one substep; 0: nothing "
+     "How often an impact may be propagated from contact to contact within one substep; 0: nothing "
      "bounces."},
     {"impact_passes", &StepSettings::impact_passes, "", 1, 10000, SettingGroup::impacts,
      "Gauss-Seidel passes by which the points of one manifold share an impact; four corners of a "

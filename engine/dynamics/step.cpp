@@ -162,7 +162,7 @@ void World::find_contacts(StepTimes *times) {
 
 void World::load_body(std::size_t i) {
     Scratch &s = scratch_;
-    if (s.paces[i].is_asleep()) // nobody asks for it
+    if (s.paces[i].is_asleep()) // not read in this step
         return;
     const Body &body = model_->bodies[i];
     SolverBody &out = s.bodies[i];

@@ -44,7 +44,7 @@ struct SpringDesc {
     double damping = 0;     // N s/m
     // It tears when longer than (1 + tear_strain) * rest_length; 0: never.
     double tear_strain = 0;
-    bool torn = false; // state: pulls no more
+    bool torn = false; // state: exerts no force any more
 };
 
 // A sheet of particles that share its mass evenly, held together by springs. Either a grid in the

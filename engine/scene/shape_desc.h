@@ -113,7 +113,7 @@ template <typename... Kinds> const ShapeFile *shape_file(const std::variant<Kind
 double volume(const ShapeDesc &shape);
 
 // The smallest distance between two parallel planes that hold the shape between them (m); infinite
-// for a plane and for surfaces, which are as wide as one likes; 0 for points without a solid hull.
+// for a plane and for surfaces, which are unbounded; 0 for points without a solid hull.
 double smallest_width(const ShapeDesc &shape);
 
 // The axis-aligned box around a shape that is turned and then moved to `position` (m); infinite for

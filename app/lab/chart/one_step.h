@@ -34,7 +34,7 @@ class OneStepStates {
 
     // Runs the scene as accurate_run has it, with 64 steps of 4 substeps a frame. A frame is the
     // scene's dt, or as many of them as make 1/60 s. Throws std::invalid_argument when nothing in
-    // the scene moves, when it ends before its first frame, or when that run comes to grief.
+    // the scene moves, when it ends before its first frame, or when that run fails.
     OneStepStates(const SceneDesc &scene, const OneStepOptions &options);
 
     // Of one frame from each state. What a solver remembers of the step before (loads, stiffnesses)

@@ -1,4 +1,4 @@
-// Bodies that pass through what stands fast.
+// Bodies that pass through static ones.
 #pragma once
 
 #include "engine/scene/simulation.h"
