@@ -25,11 +25,12 @@ AWAKE = "--set sleep_after=0"
 PROBLEMS = [
     Problem("mass_on_spring", "springs", "A mass on a spring",
             "Three masses swing on springs of 0.5, 1 and 2 Hz, and nothing brakes them. How fast does "
-            "the error of the period fall with dt, and what does a swing cost that is true in period, "
-            "height and energy?",
-            ("--convergence --expect period", ""),
-            notes="Of the first chart several methods err alike, so that their curves lie on each "
-            "other."),
+            "the error of the place after 2.3 periods fall with dt, and what does a swing cost that "
+            "is true in period, height and energy?",
+            ("--convergence --expect 'after 2.3 periods' --methods explicit_euler,"
+             "semi_implicit_euler,stormer_verlet,velocity_verlet,rk4,backward_euler", ""),
+            notes="The first chart is of the methods that are smooth in dt; those that solve "
+            "constraints are of first order in springs, but for soft step, which is of second."),
     Problem("spring_limit", "springs, how stiff", "How stiff a spring may be",
             "A spring that nothing brakes, of 1 to 32 Hz: up to which dt does it stay bounded? Theory "
             "(dashed) says ω dt = 2 for the symplectic methods and 2√2 for Runge-Kutta 4.",
@@ -47,14 +48,19 @@ PROBLEMS = [
             "as the closed form says, for 7 s, and neither sink nor rise?"),
     Problem("heavy_chain", "a chain with a heavy end", "A chain with a heavy end",
             "Ten light links carry a ball a hundred times as heavy. Do the links stay together, and "
-            "does the chain swing without losing its energy?"),
+            "does the chain swing without losing its energy? The map is of balls of 1 to 1000 kg.",
+            area="--x dt=1/240..1/30:4log --y body.weight.mass=1..1000:4log --methods "
+            "soft_step,tgs_soft,sequential_impulses,xpbd"),
     Problem("ten_box_stack", "a stack", "A stack",
-            "Ten boxes stand on each other. Do they stay where they are, and hardly sink in?",
-            (AWAKE,), tune=AWAKE),
+            "Ten boxes stand on each other. Do they stay where they are, and hardly sink in? The map "
+            "is of 5 to 20 boxes; where the tenth is not there, nothing may sink in.",
+            (AWAKE,), "--x dt=1/240..1/30:4log --y body.box.repeat.count=5,10,15,20 --methods "
+            f"soft_step,tgs_soft,sequential_impulses,nncg {AWAKE}", AWAKE),
     Problem("slope_holds", "friction that holds", "Friction that holds",
             "A box lies on a slope that is just not steep enough for it to slide. Does it stay within "
-            "2 mm for 10 s?",
-            (AWAKE,), tune=AWAKE),
+            "2 mm for 10 s? The map is of other coefficients of friction: 0.49 is what just holds.",
+            (AWAKE,), "--x material.wood.friction=0.47..0.53:7 --y dt=1/240..1/30:4log --methods "
+            f"soft_step,tgs_soft,sequential_impulses,xpbd {AWAKE}", AWAKE),
     Problem("bounce_half", "restitution", "Restitution",
             "A ball falls and bounces with half its speed each time. Does it come up as high as it "
             "should, twice, and then lie still?",
@@ -80,6 +86,32 @@ PROBLEMS = [
             "states of one accurate run?",
             (f"--one-step {AWAKE}",), tune=AWAKE),
 ]
+SIMBENCHMARK = "SimBenchmark (Kang, Hwangbo 2018)"
+ENZENHOEFER = "Enzenhoefer, Andrews, Teichmann, Kövecses 2018"
+DT_SWEEP = ("--sweep dt=1/240..1/30 --repeats 1",)
+PROBLEMS += [Problem(scene, kind, title, f"{asked} Here dt is swept. After {source}.", DT_SWEEP, tune=None)
+             for source, scene, kind, title, asked in (
+    (SIMBENCHMARK, "rolling", "published: rolling", "Rolling on a sled",
+     "Balls roll on a sled that is pulled along it and at 45 degrees. Do they go as friction in a "
+     "round cone has them?"),
+    (SIMBENCHMARK, "bouncing", "published: bouncing", "Bouncing balls",
+     "Balls that lose nothing are dropped. Is their energy kept?"),
+    (SIMBENCHMARK, "666", "published: a heap of balls", "666",
+     "Layers of balls fall into a heap and run apart. Does nothing sink in?"),
+    (SIMBENCHMARK, "elastic_666", "published: elastic balls", "Elastic 666",
+     "The same of balls that lose nothing. Is their energy kept?"),
+    (SIMBENCHMARK, "kapla", "published: a tower", "Kapla tower",
+     "A tower of 102 planks: does it stand?"),
+    (ENZENHOEFER, "static_stability", "published: leaning stacks", "Static stability",
+     "Two stacks lean, at 0.9 and at 1.1 of what statics allows. Does the one stand and the other "
+     "fall?"),
+    (ENZENHOEFER, "closed_loop", "published: a closed loop", "Closed loop",
+     "A bar on two cranks, more constrained than it needs to be: does it swing with its period?"),
+    (ENZENHOEFER, "grasping", "published: grasping", "Grasping",
+     "Two fingers hold a crate by friction, and two others press too little. Does the one stay and "
+     "the other slip?"),
+    (ENZENHOEFER, "long_chain", "published: a long chain", "Long chain",
+     "A chain of 60 links is let go level. Do its links stay together?"))]
 QUICK = "--repeats 1 --sweep substeps=1,4 --methods soft_step,sequential_impulses"
 
 

@@ -98,6 +98,41 @@ std::string short_reason(const ChartRun &run) {
     return run.failure.starts_with("not finite") ? "not finite" : "check failed";
 }
 
+// A line a series: "Explicit Euler, 1, 2, 4: not finite", or of one run all that is known.
+class FailedSeries {
+  public:
+    void add(const std::string &series, const std::string &point, const std::string &reason,
+             const std::string &why) {
+        const auto known = std::ranges::find(all_, series, &Entry::series);
+        if (known == all_.end()) {
+            all_.push_back({series, point, why, {reason}});
+            return;
+        }
+        known->points += ", " + point;
+        if (std::ranges::find(known->reasons, reason) == known->reasons.end())
+            known->reasons.push_back(reason);
+        known->why.clear();
+    }
+    [[nodiscard]] std::vector<std::string> lines() const {
+        std::vector<std::string> lines;
+        for (const Entry &entry : all_) {
+            std::string why = entry.why;
+            if (why.empty())
+                for (const std::string &reason : entry.reasons)
+                    why += (why.empty() ? "" : " or ") + reason;
+            lines.push_back(entry.series + ", " + entry.points + ": " + why);
+        }
+        return lines;
+    }
+
+  private:
+    struct Entry {
+        std::string series, points, why;
+        std::vector<std::string> reasons;
+    };
+    std::vector<Entry> all_;
+};
+
 // "4", or "4 (Soft step), 1 (Runge-Kutta 4)" where methods differ: each value once.
 std::string values_by_method(const SceneChart &chart, SettingNumber number) {
     std::vector<std::pair<std::string, std::string>> groups; // value, titles
@@ -168,6 +203,12 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         content.budget_label = chart.budget == 1 ? "60 Hz" : "budget";
     }
     const std::vector<FittedOrder> orders = fitted_orders(chart);
+    // Where many failed, so that their crosses stand close, the list says why.
+    constexpr std::ptrdiff_t few = 6;
+    const bool says_why = std::ranges::count_if(chart.runs, [](const ChartRun &run) {
+                              return !std::isfinite(run.error);
+                          }) <= few;
+    FailedSeries failed;
     std::string curve;
     SweepPoint others; // the point less its first axis: each has its own line
     for (const ChartRun &run : chart.runs) {
@@ -197,15 +238,16 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         mark.pareto = run.pareto;
         const std::string point = sweep_label(chart.sweep, run.point);
         if (mark.failed) {
-            mark.label = (chart.convergence ? "" : point + " ") + short_reason(run);
-            content.failures.push_back(content.series.back().name + ", " + point + ": " +
-                                       run.failure);
+            const std::string reason = short_reason(run);
+            mark.label = chart.convergence ? reason : says_why ? point + " " + reason : point;
+            failed.add(content.series.back().name, point, reason, run.failure);
         } else if (!chart.convergence) {
             mark.label = point + worst.suffix(run);
         }
         mark.series = content.series.size() - 1;
         content.marks.push_back(std::move(mark));
     }
+    content.failures = failed.lines();
 
     // What was not swept, where it is the same for all.
     std::string settings;

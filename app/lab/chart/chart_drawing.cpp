@@ -196,8 +196,8 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     };
     // What may be long comes last.
     list("Worst expectation", content.worst);
-    list("Not on this chart", content.left_out);
     list("Failed", content.failures);
+    list("Not on this chart", content.left_out);
 }
 
 } // namespace

@@ -185,8 +185,18 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         const glm::vec2 text = text_size(content.limit_label, label_text);
         const float left = field.min.x + 10, right = field.max.x - 10 - text.x;
         const float above = *layout.limit_line - 4 - text.y, below = *layout.limit_line + 4;
-        layout.limit_text = best_place({box_at(right, above, text), box_at(right, below, text),
-                                        box_at(left, above, text), box_at(left, below, text)});
+        std::vector<PixelBox> places;
+        constexpr int columns = 24;
+        // The ends first.
+        for (const int column : {columns, 0}) {
+            const float x = left + (right - left) * static_cast<float>(column) / columns;
+            places.insert(places.end(), {box_at(x, above, text), box_at(x, below, text)});
+        }
+        for (int column = columns - 1; column > 0; --column) {
+            const float x = left + (right - left) * static_cast<float>(column) / columns;
+            places.insert(places.end(), {box_at(x, above, text), box_at(x, below, text)});
+        }
+        layout.limit_text = best_place(places);
     }
     if (floor_shows) {
         layout.floor_line = y_of(*content.floor);

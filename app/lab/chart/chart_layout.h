@@ -51,7 +51,7 @@ struct ChartContent {
     std::vector<ChartSeries> series;
     std::vector<ChartMark> marks;
     std::vector<std::string> worst;    // the expectations that are the worst of some run
-    std::vector<std::string> failures; // of each failed run, which and why
+    std::vector<std::string> failures; // a line a series with failed runs: which and why
     std::vector<std::string> left_out; // methods that are not here, and why
     std::vector<std::string> footer;
 };

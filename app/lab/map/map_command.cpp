@@ -8,10 +8,14 @@
 #include "app/lab/map/map_resume.h"
 #include "app/lab/map/theory.h"
 #include "app/lab/partial_table.h"
+#include "app/lab/provenance.h"
 #include "app/lab/run/method_choice.h"
+#include "app/lab/run/run_text.h"
+#include "app/lab/run/sweep.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
 
+#include <algorithm>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -20,8 +24,51 @@ namespace plumb {
 
 namespace {
 
+// Of a setting, "4", or "4 (soft_step), 1 (rk4)" where methods differ.
+std::string values_by_method(const StabilityMap &map, SettingNumber number) {
+    std::vector<std::pair<std::string, std::string>> groups; // value, methods
+    for (const MethodMap &of_method : map.methods) {
+        const std::string value = setting_label(number, setting_value(of_method.settings, number));
+        const auto group =
+            std::ranges::find(groups, value, &std::pair<std::string, std::string>::first);
+        if (group == groups.end())
+            groups.emplace_back(value, of_method.method->name);
+        else
+            group->second.append(", ").append(of_method.method->name);
+    }
+    if (groups.size() == 1)
+        return groups.front().first;
+    std::string each;
+    for (const auto &[value, methods] : groups)
+        each.append(each.empty() ? "" : ", ").append(value).append(" (" + methods + ")");
+    return each;
+}
+
+// Settings that are not on an axis, where they are not each method's defaults, and what made it.
+std::string made_with(const StabilityMap &map) {
+    std::string text;
+    const auto add = [&](const std::string &part) { text += (text.empty() ? "" : "  ·  ") + part; };
+    for (const SettingNumber number : setting_numbers()) {
+        const bool is_said = std::ranges::any_of(map.methods, [&](const MethodMap &of_method) {
+            return reads(*of_method.method, number.setting()) &&
+                   setting_value(of_method.settings, number) !=
+                       setting_value(of_method.method->defaults, number);
+        });
+        const std::string_view name = number.setting().name;
+        if (map.x.setting != number && map.y.setting != number &&
+            (is_said || name == "dt" || name == "substeps"))
+            add(setting_name(number) + " " + values_by_method(map, number));
+    }
+    add(std::string(precision_name(map.precision)) + " precision");
+    add(machine());
+    add("commit " + build_commit());
+    return text;
+}
+
 void write_picture(const MapCommand &command, const StabilityMap &map, std::ostream &err) {
     MapPicture picture{map, theory_of(map, command.options.base), grouped_reasons(map.left_out)};
+    picture.footer.insert(picture.footer.end(), map.unjudged.begin(), map.unjudged.end());
+    picture.footer.push_back(made_with(map));
     if (!command.command.empty())
         picture.footer.push_back(command.command);
     std::filesystem::path place = command.image;

@@ -27,10 +27,10 @@ std::vector<std::string> map_key_columns(const StabilityMap &map) {
 }
 
 KnownRows read_map_csv(std::istream &in, const std::string &fingerprint) {
-    constexpr std::size_t columns = 14;
+    constexpr std::size_t read = 13; // then settings and where it was made; the run comes last
     KnownRows known;
     for (std::vector<std::string> row = read_csv_row(in); !row.empty(); row = read_csv_row(in)) {
-        if (row.size() != columns || row[13] != fingerprint)
+        if (row.size() <= read || row.back() != fingerprint)
             continue;
         const std::optional<Failing> failing = find_failing(row[6]);
         const auto x = csv_number(row[2]), y = csv_number(row[3]), low = csv_number(row[4]),

@@ -1,7 +1,10 @@
 #include "app/lab/map/stability_map.h"
 
+#include "app/lab/chart/chart_columns.h"
 #include "app/lab/csv.h"
+#include "app/lab/provenance.h"
 #include "app/lab/run/method_choice.h"
+#include "app/lab/run/run_text.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -40,9 +43,23 @@ void write_map_csv(std::ostream &out, const StabilityMap &map) {
     CsvWriter csv(out);
     csv.cell("kind").cell("method").cell(map.x.name).cell(map.y.name);
     for (const char *column : {"low", "high", "why", "what", "held_below", "time",
-                               "max_penetration", "max_joint_drift", "max_energy_gain", "run"})
+                               "max_penetration", "max_joint_drift", "max_energy_gain"})
         csv.cell(column);
+    std::vector<SettingNumber> settings; // those of the axes have their own columns
+    for (const SettingNumber number : setting_numbers())
+        if (map.x.setting != number && map.y.setting != number)
+            settings.push_back(number);
+    for (const SettingNumber number : settings)
+        csv.cell(setting_column(number));
+    csv.cell("precision").cell("machine").cell("commit").cell("run");
     csv.end_row();
+    const std::string here = machine(), commit = build_commit();
+    const auto end_row = [&](const MethodMap &of_method) {
+        for (const SettingNumber number : settings)
+            csv.cell(setting_value(of_method.settings, number));
+        csv.cell(precision_name(map.precision)).cell(here).cell(commit);
+        csv.cell(map.fingerprint).end_row();
+    };
     for (const MethodMap &of_method : map.methods) {
         for (std::size_t row = 0; row < map.y.values.size(); ++row)
             for (std::size_t column = 0; column < map.x.values.size(); ++column) {
@@ -54,14 +71,15 @@ void write_map_csv(std::ostream &out, const StabilityMap &map) {
                 csv.cell(x).cell(x).cell(info_of(run->failing.failing).name);
                 csv.cell(run->failing.what).cell("").cell(run->time).cell(run->max_penetration);
                 csv.cell(run->max_joint_drift).cell(run->max_energy_gain);
-                csv.cell(map.fingerprint).end_row();
+                end_row(of_method);
             }
         for (const MapLimit &limit : of_method.limits) {
             csv.cell("limit").cell(of_method.method->name);
             csv.cell(between(map.x, limit.low, limit.high)).cell(limit.y);
             csv.cell(limit.low).cell(limit.high).cell(info_of(limit.failing.failing).name);
             csv.cell(limit.failing.what).cell(limit.held_below);
-            csv.cell("").cell("").cell("").cell("").cell(map.fingerprint).end_row();
+            csv.cell("").cell("").cell("").cell("");
+            end_row(of_method);
         }
     }
 }
@@ -86,6 +104,8 @@ void print(std::ostream &out, const StabilityMap &map) {
         if (seen.contains(info.failing))
             out << "  " << info.letter << "  " << info.meaning << '\n';
     for (const std::string &what : missed)
+        out << "  " << what << '\n';
+    for (const std::string &what : map.unjudged)
         out << "  " << what << '\n';
     for (const std::string &why : grouped_reasons(map.left_out))
         out << "  left out: " << why << '\n';

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -87,6 +88,40 @@ MapAxis settled(const SceneText &text, const MapAxis &axis, const RunOptions &ba
         point.is_fine(std::floor(high), 0))
         return in_whole_numbers(axis);
     return axis;
+}
+
+// "stands, where body.box.repeat.count = 5": expectations that the scene has, and these of its
+// variants have not; the others judge those.
+std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap &map,
+                                       const RunOptions &base) {
+    std::vector<std::string> unjudged;
+    const auto add_along = [&](const MapAxis &axis) {
+        if (axis.setting)
+            return;
+        MapAxis none;
+        none.setting = SettingNumber{};
+        const Point point(text, axis, none, base);
+        std::map<std::string, std::string> where;
+        for (const double value : axis.values) {
+            const SceneDesc variant = point.scene(value, 0);
+            if (variant.expects.empty() && !map.scene.expects.empty())
+                throw std::invalid_argument("with " + axis.name + "=" + value_label(axis, value) +
+                                            " nothing is left that the scene expects: give an "
+                                            "expectation that is not of one of the bodies");
+            for (const ExpectDesc &expect : map.scene.expects)
+                if (std::ranges::find(variant.expects, expect.name, &ExpectDesc::name) ==
+                    variant.expects.end()) {
+                    std::string &values = where[expect.name];
+                    values += (values.empty() ? "" : ", ") + value_label(axis, value);
+                }
+        }
+        for (const auto &[name, values] : where)
+            unjudged.push_back("\"" + name + "\" is of a body that is not there with " + axis.name +
+                               " = " + values + ", and left out there");
+    };
+    add_along(map.x);
+    add_along(map.y);
+    return unjudged;
 }
 
 // Runs work items on all threads, and says how far they are.
@@ -247,9 +282,17 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     map.y = settled(scene, y, options.base);
     for (const MethodInfo *method : methods_for(map.scene, options.methods, map.left_out))
         map.methods.push_back({method, {}, {}});
+    for (MethodMap &of_method : map.methods) {
+        RunOptions run = options.base;
+        run.method = std::string(of_method.method->name);
+        const ResolvedRun resolved = resolve_run(map.scene, run);
+        of_method.settings = resolved.settings;
+        map.precision = resolved.precision;
+    }
     if (map.methods.empty())
         throw std::invalid_argument("no method can run this scene");
 
+    map.unjudged = find_unjudged(scene, map, options.base);
     Runner runner(scene, map, options);
     std::vector<CellItem> cells; // that are not known
     for (MethodMap &of_method : map.methods) {

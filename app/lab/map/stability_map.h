@@ -42,6 +42,7 @@ struct MethodMap {
     const MethodInfo *method = nullptr;
     std::vector<std::optional<MapRun>> cells; // row by row, the lowest y first; empty: not run
     std::vector<MapLimit> limits;             // row by row, then along x
+    StepSettings settings{};                  // but for those on an axis
 };
 
 struct StabilityMap {
@@ -49,7 +50,9 @@ struct StabilityMap {
     MapAxis x, y;
     std::vector<MethodMap> methods;
     std::vector<std::string> left_out; // why, of each method that cannot run the scene
-    std::string fingerprint;           // see map_resume.h; may be empty
+    std::vector<std::string> unjudged; // what is expected of bodies that some cells do not have
+    Precision precision = Precision::single;
+    std::string fingerprint; // see map_resume.h; may be empty
     bool interrupted = false;
 
     [[nodiscard]] const std::optional<MapRun> &cell(const MethodMap &map, std::size_t column,

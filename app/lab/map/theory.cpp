@@ -25,18 +25,29 @@ constexpr std::array spring_limits{
     SpringLimit{2 * std::numbers::sqrt2, "2√2", {"rk4"}},
 };
 
+// Naive impulses have contacts of what overlaps alone; all others know what comes nearer.
+bool waits_for_overlap(const MethodInfo &method) {
+    return method.name == "naive_impulses";
+}
+
 struct FlownAxis {
-    std::string body;
+    std::string body; // the name in the file, which its copies begin with
     int axis = 0;
 };
 
-// "body.ball.velocity.x" of a body of that name.
-std::optional<FlownAxis> flown_axis(const SceneDesc &scene, const MapAxis &axis) {
-    for (const BodyDesc &body : scene.bodies)
-        for (int component = 0; component < 3; ++component)
-            if (axis.name == "body." + body.name + ".velocity." + "xyz"[component])
-                return FlownAxis{body.name, component};
-    return std::nullopt;
+// "body.ball.velocity.x"
+std::optional<FlownAxis> flown_axis(const MapAxis &axis) {
+    constexpr std::string_view head = "body.", tail = ".velocity.";
+    const std::string_view name = axis.name;
+    const std::size_t end = name.rfind(tail);
+    if (!name.starts_with(head) || end == std::string_view::npos || end <= head.size() ||
+        end + tail.size() + 1 != name.size())
+        return std::nullopt;
+    const std::size_t component = std::string_view("xyz").find(name.back());
+    if (component == std::string_view::npos)
+        return std::nullopt;
+    return FlownAxis{std::string(name.substr(head.size(), end - head.size())),
+                     static_cast<int>(component)};
 }
 
 double restitution_of(const SceneDesc &scene, const BodyDesc &body) {
@@ -112,11 +123,64 @@ std::optional<StruckBody> struck_before_wall(const SceneDesc &scene, const std::
                       0.5 * (behind.near + behind.far) - 0.5 * (target.near + target.far)};
 }
 
+std::optional<double> way_into_wall(const SceneDesc &scene, const std::string &thrown, int axis) {
+    const BodyDesc *wall =
+        only_body(scene, [](const BodyDesc &body) { return body.kind != BodyKind::dynamic; });
+    if (wall == nullptr || wall->kind != BodyKind::fixed || has_plane(*wall) ||
+        !scene.joints.empty())
+        return std::nullopt;
+    std::optional<double> way;
+    for (const BodyDesc &body : scene.bodies) {
+        if (&body == wall)
+            continue;
+        const bool is_thrown = body.name == thrown || body.name.starts_with(thrown + "_");
+        if (!is_thrown || body.velocity[axis] == 0 ||
+            !in_line(body.velocity, glm::dvec3(0), axis) ||
+            !stands_across(bounds(*wall), bounds(body), axis) || restitution_of(scene, body) > 0)
+            return std::nullopt;
+        const bool forwards = body.velocity[axis] > 0;
+        const Span own(bounds(body), axis, forwards), ahead(bounds(*wall), axis, forwards);
+        const double own_way = 0.5 * (ahead.far - ahead.near + own.far - own.near);
+        if (own.far > ahead.near || (way && std::abs(*way - own_way) > 1e-9 * own_way))
+            return std::nullopt;
+        way = own_way;
+    }
+    return way;
+}
+
 bool swings_by_itself(const SceneDesc &scene, const std::string &spring) {
+    return lone_oscillator(scene, spring).has_value() && scene.springs.front().damping == 0;
+}
+
+std::optional<Oscillator> lone_oscillator(const SceneDesc &scene, const std::string &spring) {
     if (scene.springs.size() != 1 || !scene.cloths.empty() || !scene.joints.empty())
-        return false;
+        return std::nullopt;
     const SpringDesc &only = scene.springs.front();
-    return only.name == spring && only.damping == 0 && only.a.empty() != only.b.empty();
+    if (only.name != spring || only.a.empty() == only.b.empty())
+        return std::nullopt;
+    const auto particle =
+        std::ranges::find(scene.particles, only.a.empty() ? only.b : only.a, &ParticleDesc::name);
+    if (particle == scene.particles.end() || particle->pinned)
+        return Oscillator{};
+    return Oscillator{std::sqrt(only.stiffness / particle->mass), particle->mass};
+}
+
+std::optional<double> longest_damped_step(std::string_view method, double omega, double rate) {
+    if (method == "explicit_euler" && rate < 2 * omega)
+        return rate / (omega * omega); // |1 + h lambda|^2 = 1 - h rate + h^2 omega^2
+    if (method == "semi_implicit_euler")
+        return 4 / (std::sqrt(rate * rate + 4 * omega * omega) + rate);
+    if (rate < 2 * omega)
+        return std::nullopt;
+    const double fastest = 0.5 * (rate + std::sqrt(rate * rate - 4 * omega * omega));
+    if (method == "explicit_euler")
+        return 2 / fastest;
+    if (method == "stormer_verlet")
+        return 2 / rate;
+    constexpr double rk4 = 2.785293563405282; // 1 - z + z^2/2 - z^3/6 + z^4/24 = 1
+    if (method == "rk4")
+        return rk4 / fastest;
+    return std::nullopt;
 }
 
 namespace {
@@ -141,8 +205,76 @@ struct DtAxis {
     }
 };
 
+// "coil", of an axis "spring.coil.TAIL".
+std::optional<std::string> spring_of(const MapAxis &axis, std::string_view tail) {
+    const std::string_view name = axis.name, head = "spring.";
+    if (!name.starts_with(head) || !name.ends_with(tail) ||
+        name.size() <= head.size() + tail.size())
+        return std::nullopt;
+    return std::string(name.substr(head.size(), name.size() - head.size() - tail.size()));
+}
+
+int substeps_of(const StabilityMap &map, const MethodInfo &method, const RunOptions &base) {
+    RunOptions run = base;
+    run.method = std::string(method.name);
+    return resolve_run(map.scene, run).settings.substeps;
+}
+
+void add_thrown(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes) {
+    const std::optional<FlownAxis> flown = flown_axis(axes.other);
+    if (!flown)
+        return;
+    const std::optional<double> way = way_into_wall(map.scene, flown->body, flown->axis);
+    if (!way)
+        return;
+    TheoryCurve curve;
+    curve.name = "theory: v dt = (thickness + size) / 2, to beyond the wall's middle unseen";
+    for (const MethodMap &of_method : map.methods)
+        if (waits_for_overlap(*of_method.method))
+            curve.methods.push_back(of_method.method);
+    if (curve.methods.empty())
+        return;
+    curve.points = axes.curve([&](double dt) { return *way / dt; });
+    curves.push_back(std::move(curve));
+}
+
+void add_damped_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map,
+                       const DtAxis &axes, const RunOptions &base) {
+    const std::optional<std::string> name = spring_of(axes.other, ".damping");
+    const std::optional<Oscillator> swing = name ? lone_oscillator(map.scene, *name) : std::nullopt;
+    if (!swing || !(swing->mass > 0))
+        return;
+    for (const MethodMap &of_method : map.methods) {
+        const int substeps = substeps_of(map, *of_method.method, base);
+        TheoryCurve curve;
+        const double low = axes.other.values.front(), high = axes.other.values.back();
+        for (int i = 0; i <= curve_points; ++i) {
+            const double share = static_cast<double>(i) / curve_points;
+            // Beyond both ends, for the halves of the outer cells.
+            const double damping =
+                low > 0 ? 0.5 * low * std::pow(4 * high / low, share) : 1.5 * high * share;
+            if (const std::optional<double> h = longest_damped_step(
+                    of_method.method->name, swing->omega, damping / swing->mass))
+                curve.points.push_back(axes.point(substeps * *h, damping));
+        }
+        if (curve.points.empty())
+            continue;
+        const std::string_view method = of_method.method->name;
+        curve.name = "theory: ";
+        if (substeps > 1)
+            curve.name += std::to_string(substeps) + " × ";
+        curve.name += method == "rk4"                   ? "2.785 / λ"
+                      : method == "stormer_verlet"      ? "2 m / c"
+                      : method == "semi_implicit_euler" ? "4 / (√(c² / m² + 4 ω²) + c / m)"
+                                                        : "2 / λ, or c / k where it swings";
+        curve.name.append(" (").append(method).append(")");
+        curve.methods = {of_method.method};
+        curves.push_back(std::move(curve));
+    }
+}
+
 void add_struck(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes) {
-    const std::optional<FlownAxis> flown = flown_axis(map.scene, axes.other);
+    const std::optional<FlownAxis> flown = flown_axis(axes.other);
     if (!flown)
         return;
     const std::optional<StruckBody> struck =
@@ -152,7 +284,8 @@ void add_struck(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
     TheoryCurve curve;
     curve.name = "theory: struck to the wall's middle in one step";
     for (const MethodMap &of_method : map.methods)
-        if (of_method.method->contacts && !of_method.method->looks_ahead)
+        if (of_method.method->contacts && !of_method.method->looks_ahead &&
+            !waits_for_overlap(*of_method.method))
             curve.methods.push_back(of_method.method);
     if (curve.methods.empty())
         return;
@@ -162,21 +295,19 @@ void add_struck(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
 
 void add_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes,
                 const RunOptions &base) {
-    const std::string_view name = axes.other.name, head = "spring.", tail = ".frequency";
-    if (!name.starts_with(head) || !name.ends_with(tail) ||
-        name.size() <= head.size() + tail.size() ||
-        !swings_by_itself(map.scene, std::string(name.substr(
-                                         head.size(), name.size() - head.size() - tail.size()))))
+    const std::optional<std::string> name = spring_of(axes.other, ".frequency");
+    if (!name || !swings_by_itself(map.scene, *name))
         return;
+    for (const MethodMap &of_method : map.methods)
+        if (of_method.method->name == "explicit_euler")
+            curves.push_back({"theory: stable at no dt (explicit_euler)", {of_method.method}, {}});
     // Those of one limit and as many substeps share a curve.
     for (const SpringLimit &limit : spring_limits) {
         std::map<int, std::vector<const MethodInfo *>> by_substeps;
         for (const MethodMap &of_method : map.methods) {
             if (std::ranges::find(limit.methods, of_method.method->name) == limit.methods.end())
                 continue;
-            RunOptions run = base;
-            run.method = std::string(of_method.method->name);
-            by_substeps[resolve_run(map.scene, run).settings.substeps].push_back(of_method.method);
+            by_substeps[substeps_of(map, *of_method.method, base)].push_back(of_method.method);
         }
         for (const auto &[substeps, methods] : by_substeps) {
             std::string label = "theory: ω dt = ";
@@ -202,7 +333,9 @@ std::vector<TheoryCurve> theory_of(const StabilityMap &map, const RunOptions &ba
     const DtAxis axes{is_dt(map.x), is_dt(map.x) ? map.x : map.y, is_dt(map.x) ? map.y : map.x};
     std::vector<TheoryCurve> curves;
     add_struck(curves, map, axes);
+    add_thrown(curves, map, axes);
     add_spring(curves, map, axes, base);
+    add_damped_spring(curves, map, axes, base);
     return curves;
 }
 

@@ -3,6 +3,8 @@
 
 #include "app/lab/map/map_layout.h"
 
+#include <string_view>
+
 namespace plumb {
 
 // A body that is struck towards a wall.
@@ -17,6 +19,29 @@ struct StruckBody {
 [[nodiscard]] std::optional<StruckBody> struck_before_wall(const SceneDesc &scene,
                                                            const std::string &striker, int axis);
 
+// m: half of the wall's thickness and half of the size, along one of the world's axes (0 to 2), of
+// what is thrown at it: a body of that name or its copies, all as large, without rebound, straight
+// at the only static body. Nothing for scenes that are not so.
+[[nodiscard]] std::optional<double> way_into_wall(const SceneDesc &scene, const std::string &thrown,
+                                                  int axis);
+
+// Of the only spring of a scene, between the world and what nothing else holds: a particle's
+// angular frequency (rad/s) and mass (kg), both 0 of anything else.
+struct Oscillator {
+    double omega = 0, mass = 0;
+};
+[[nodiscard]] std::optional<Oscillator> lone_oscillator(const SceneDesc &scene,
+                                                        const std::string &spring);
+
+// The longest stable step (s) of x'' = -omega^2 x - rate x', where theory has one in closed form:
+// of explicit Euler everywhere, none above 0 without damping (rate = 0); of semi-implicit Euler
+// everywhere; of Störmer-Verlet, which takes its kick's velocity from half a step of it, and RK4
+// where it is overdamped, rate >= 2 omega (rad/s). From |eigenvalues of the step's matrix| <= 1
+// (Jury's conditions); with lambda the faster of the two decays explicit Euler has 2 / lambda and
+// RK4 2.785 / lambda (Hairer, Wanner 1996, sec. IV.2).
+[[nodiscard]] std::optional<double> longest_damped_step(std::string_view method, double omega,
+                                                        double rate);
+
 // Of the only spring of a scene, undamped, between the world and what nothing else holds: a map's
 // axis "spring.NAME.frequency", over dt or substeps.
 [[nodiscard]] bool swings_by_itself(const SceneDesc &scene, const std::string &spring);
@@ -28,11 +53,17 @@ struct StruckBody {
 // they do then, sees what approaches a wall, but not what is struck towards it during the step;
 // beyond the middle it pushes that out behind. With a gap of half the wall's thickness and half the
 // body's size this is v dt = thickness + size. The striker, who follows, may press the body through
-// from less if the solver does not converge.
+// from less if the solver does not converge. Naive impulses, which have contacts of what overlaps
+// alone, have no curve there: the striker reaches into the body, and they lose it at some fifth.
+//
+// Over dt and the speed of what is thrown at a wall, of naive impulses: v dt = (thickness + size) /
+// 2. What overlaps the wall when a step begins is stopped and pushed out by the side that is
+// nearer: up to there each start is seen in time, above it some pass.
 //
 // Over dt and the frequency of such a spring, of the explicit methods that are stable up to some
 // omega h, h the substep: 2 of the symplectic ones, 2 sqrt(2) of RK4 (Hairer, Lubich, Wanner 2006,
-// sec. I.5.2 and Hairer, Wanner 1996, sec. IV.2).
+// sec. I.5.2 and Hairer, Wanner 1996, sec. IV.2). Explicit Euler, stable at none, has a curve
+// without points. Over dt and the damping of such a spring: longest_damped_step.
 [[nodiscard]] std::vector<TheoryCurve> theory_of(const StabilityMap &map,
                                                  const RunOptions &base = {});
 

@@ -1,6 +1,7 @@
 #include "app/lab/tune/starts.h"
 
 #include "engine/core/random.h"
+#include "engine/scene/cloth.h"
 #include "engine/scene/file/change.h"
 
 #include <algorithm>
@@ -11,10 +12,28 @@ namespace plumb {
 
 namespace {
 
+double size_of(const glm::dvec3 &p, double width) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), width});
+}
+
+void shift(glm::dvec3 &position, double width, Random &random) {
+    const double size = size_of(position, width);
+    for (int axis = 0; axis < 3; ++axis)
+        position[axis] += random.next_in(-1, 1) * start_shift * size;
+}
+
+void shift(ClothDesc &cloth, Random &random) {
+    const auto count = static_cast<std::uint32_t>(particle_count(cloth));
+    if (cloth.particles.empty())
+        for (std::uint32_t i = 0; i < count; ++i)
+            cloth.particles.push_back(start_of(cloth, i));
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (!std::ranges::binary_search(cloth.pins, i))
+            shift(cloth.particles[i].position, 2 * cloth.radius, random);
+}
+
 void shift(BodyDesc &body, Random &random) {
-    const glm::dvec3 &p = body.position;
-    const double size =
-        std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), smallest_width(body)});
+    const double size = size_of(body.position, smallest_width(body));
     for (int axis = 0; axis < 3; ++axis) {
         const double by = random.next_in(-1, 1) * start_shift * size;
         if (body.locked[static_cast<std::size_t>(axis)])
@@ -49,6 +68,11 @@ std::vector<SceneDesc> starts_of(const SceneText &text, int others) {
         for (BodyDesc &body : start.bodies)
             if (body.kind == BodyKind::dynamic)
                 shift(body, random);
+        for (ParticleDesc &particle : start.particles)
+            if (!particle.pinned)
+                shift(particle.position, 2 * particle.radius, random);
+        for (ClothDesc &cloth : start.cloths)
+            shift(cloth, random);
     }
     return starts;
 }

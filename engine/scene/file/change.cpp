@@ -182,6 +182,7 @@ SceneFileResult parse_scene(std::string_view text, const std::string &path,
     for (const ChangedNumber &number : changed)
         change(*root, number);
     Reading reading(path, known_methods);
+    reading.counts_may_differ = !changed.empty();
     read_scene(reading, Table(reading.report, *root, "the top level of a scene", scene_keys));
     return {std::move(reading.scene), reading.report.in_file_order()};
 }

@@ -22,8 +22,9 @@ struct ChangedNumber {
 
 // As parse_scene, with these numbers in place of those of the text; a plain number may also be one
 // that the text leaves to its default. Throws std::invalid_argument, saying what would be right,
-// for a path that names no number. A value that is out of place is an error of the result, as if it
-// stood in the file; whole numbers are taken for such.
+// for a path that names no number. What is expected of one of a repeated body's copies that are not
+// there with these numbers is left out. A value that is out of place is an error of the result, as
+// if it stood in the file; whole numbers are taken for such.
 SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             const std::vector<std::string> &known_methods,
                             std::span<const ChangedNumber> changed);

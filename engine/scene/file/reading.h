@@ -49,6 +49,7 @@ struct Reading {
     std::size_t particle_count = 0;          // those of cloths among them
     std::size_t spring_count = 0;            // likewise
     int missing_bodies = 0;
+    bool counts_may_differ = false; // what is expected of copies that are not there is left out
     bool said_too_many = false;
 };
 

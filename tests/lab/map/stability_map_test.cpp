@@ -5,6 +5,7 @@
 #include "app/lab/map/theory.h"
 #include "tests/lab/csv_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -100,10 +101,17 @@ double theory_dt(double speed) {
 }
 
 TEST(StabilityMap, WhatIsStruckPassesAWallWhereTheoryHasItUnlessTheMethodLooksAhead) {
-    const StabilityMap map = map_of(struck, "dt=0.005..0.08:9log", "body.heavy.velocity.x=6,12,24",
-                                    {"soft_step", "tgs_soft", "sequential_impulses"}, nullptr, 0.5);
-    ASSERT_EQ(map.methods.size(), 3U);
+    const StabilityMap map =
+        map_of(struck, "dt=0.005..0.08:9log", "body.heavy.velocity.x=6,12,24",
+               {"soft_step", "tgs_soft", "sequential_impulses", "naive_impulses"}, nullptr, 0.5);
+    ASSERT_EQ(map.methods.size(), 4U);
     for (const MethodMap &of_method : map.methods) {
+        if (of_method.method->name == "naive_impulses") {
+            // Which knows nothing of what approaches, and for which that is no limit.
+            ASSERT_FALSE(of_method.limits.empty());
+            EXPECT_LT(of_method.limits.front().high, 0.6 * theory_dt(of_method.limits.front().y));
+            continue;
+        }
         const bool looks = of_method.method->looks_ahead;
         EXPECT_EQ(looks, of_method.method->name == "soft_step");
         for (std::size_t row = 0; row < 3; ++row)
@@ -157,7 +165,7 @@ TEST(StabilityMap, AConvergedMethodPassesAWallJustWhereTheoryHasIt) {
 
 TEST(StabilityMap, TheoryIsReadFromTheScene) {
     const StabilityMap map = map_of(struck, "dt=0.01,0.02", "body.heavy.velocity.x=6,12",
-                                    {"soft_step", "tgs_soft"}, nullptr, 0.1);
+                                    {"soft_step", "tgs_soft", "naive_impulses"}, nullptr, 0.1);
     const std::vector<TheoryCurve> curves = theory_of(map);
     ASSERT_EQ(curves.size(), 1U);
     ASSERT_EQ(curves[0].methods.size(), 1U);
@@ -199,17 +207,23 @@ source = "linear stability"
     for (const int substeps : {1, 3}) {
         MapOptions options;
         options.methods = {"soft_step", "semi_implicit_euler", "stormer_verlet", "velocity_verlet",
-                           "rk4",       "backward_euler"};
+                           "rk4",       "backward_euler",      "explicit_euler"};
         options.base.settings = parse_setting("substeps=" + std::to_string(substeps));
         const StabilityMap map =
-            map_scene({"scene.toml", spring}, parse_map_axis("dt=1/60..1/4:5log"),
+            map_scene({"scene.toml", spring}, parse_map_axis("dt=1/60..1/4:9log"),
                       parse_map_axis("spring.coil.frequency=4,8"), options);
         std::map<const MethodInfo *, std::vector<glm::dvec2>> theory;
         for (const TheoryCurve &curve : theory_of(map, options.base))
             for (const MethodInfo *method : curve.methods)
                 theory[method] = curve.points;
-        EXPECT_EQ(theory.size(), 4U);
+        EXPECT_EQ(theory.size(), 5U);
         for (const MethodMap &of_method : map.methods) {
+            if (of_method.method->name == "explicit_euler") {
+                EXPECT_TRUE(theory[of_method.method].empty()) << "stable at no step";
+                for (const auto &cell : of_method.cells)
+                    EXPECT_NE(cell->failing.failing, Failing::none);
+                continue;
+            }
             if (!theory.contains(of_method.method)) {
                 EXPECT_TRUE(of_method.limits.empty()) << of_method.method->name;
                 continue;
@@ -218,9 +232,9 @@ source = "linear stability"
             for (const glm::dvec2 &point : theory[of_method.method])
                 EXPECT_NEAR(2 * std::numbers::pi * point.y * point.x, limit * substeps, 1e-12);
             for (const MapLimit &found : of_method.limits)
-                // A cell is a factor of 2, cut into 32 parts.
+                // A cell is a factor of 15^(1/8), cut into 32 parts.
                 EXPECT_NEAR(2 * std::numbers::pi * found.y * between(map.x, found.low, found.high),
-                            limit * substeps, 0.02 * limit * substeps)
+                            limit * substeps, 0.01 * limit * substeps)
                     << of_method.method->name;
             EXPECT_FALSE(of_method.limits.empty());
         }
@@ -242,6 +256,135 @@ TEST(StabilityMap, ASpringWithDampingOrANeighbourHasNoTheory) {
     spring.a = "";
     scene.springs.resize(2);
     EXPECT_FALSE(swings_by_itself(scene, "coil"));
+}
+
+// Along the spring x'' = -omega^2 x - (c / m) x': the longest stable step is where an eigenvalue of
+// the step leaves the unit circle.
+TEST(StabilityMap, ADampedSpringIsThrownWhereTheoryHasIt) {
+    constexpr const char *spring = R"(
+[world]
+gravity = [0, 0, 0]
+[[particle]]
+name = "bob"
+mass = 2
+position = [0, -1.001, 0]
+[[spring]]
+name = "coil"
+b = "bob"
+anchor_a = [0, 0, 0]
+rest_length = 1
+stiffness = 200
+damping = 0
+[[expect]]
+name = "bounded"
+quantity = "energy_error"
+reduce = "max"
+to = 20
+at_most = 300
+source = "linear stability"
+)";
+    // omega = 10, rates of 40 and 80: overdamped, the faster decays at 20 + sqrt(300) and at 40 +
+    // sqrt(1500).
+    const std::map<std::string, std::pair<double, double>> expected{
+        {"explicit_euler", {2 / 37.3205081, 2 / 78.7298335}},
+        {"rk4", {2.7852936 / 37.3205081, 2.7852936 / 78.7298335}},
+        {"semi_implicit_euler", {4 / (std::sqrt(2000.0) + 40), 4 / (std::sqrt(6800.0) + 80)}},
+        {"stormer_verlet", {2.0 / 40, 2.0 / 80}}};
+    for (const int substeps : {1, 2}) {
+        MapOptions options;
+        for (const auto &[method, limits] : expected)
+            options.methods.push_back(method);
+        options.methods.emplace_back("backward_euler");
+        options.base.settings = parse_setting("substeps=" + std::to_string(substeps));
+        const StabilityMap map =
+            map_scene({"scene.toml", spring}, parse_map_axis("dt=1/120..1/4:11log"),
+                      parse_map_axis("spring.coil.damping=80,160"), options);
+        const std::vector<TheoryCurve> curves = theory_of(map, options.base);
+        EXPECT_EQ(curves.size(), expected.size());
+        for (const TheoryCurve &curve : curves)
+            for (const glm::dvec2 &point : curve.points)
+                EXPECT_NEAR(
+                    point.x,
+                    substeps *
+                        longest_damped_step(curve.methods.at(0)->name, 10, point.y / 2).value_or(0),
+                    1e-12);
+        for (const MethodMap &of_method : map.methods) {
+            const auto known = expected.find(std::string(of_method.method->name));
+            if (known == expected.end()) {
+                EXPECT_TRUE(of_method.limits.empty());
+                continue;
+            }
+            EXPECT_EQ(of_method.limits.size(), 2U) << known->first;
+            for (const MapLimit &limit : of_method.limits) {
+                const double h = limit.y == 80 ? known->second.first : known->second.second;
+                EXPECT_NEAR(longest_damped_step(known->first, 10, limit.y / 2).value_or(0), h,
+                            1e-6 * h)
+                    << known->first;
+                EXPECT_NEAR(between(map.x, limit.low, limit.high) / (substeps * h), 1, 0.02)
+                    << known->first << ' ' << limit.y;
+            }
+        }
+    }
+    EXPECT_EQ(longest_damped_step("explicit_euler", 10, 0), 0) << "undamped at none";
+    EXPECT_NEAR(longest_damped_step("semi_implicit_euler", 10, 0).value_or(0), 2.0 / 10, 1e-12);
+    EXPECT_NEAR(longest_damped_step("explicit_euler", 10, 1).value_or(0), 0.01, 1e-12);
+}
+
+// Lanes whose balls start an eighth of that way on from each other: above 9/8 of the limit one at
+// least is not seen in time, below it none passes.
+TEST(StabilityMap, WhatIsThrownPassesAWallWhereTheoryHasIt) {
+    constexpr const char *thrown = R"(
+[world]
+gravity = [0, 0, 0]
+[[material]]
+name = "steel"
+friction = 0
+[[body]]
+name = "wall"
+shape = "box"
+kind = "static"
+half_extents = [0.05, 2, 8]
+material = "steel"
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 0.1
+material = "steel"
+position = [-1, 0, -4]
+velocity = [10, 0, 0]
+repeat = { kind = "line", count = 11, step = [-0.01875, 0, 0.8] }
+)";
+    const StabilityMap map = map_of(thrown, "dt=0.002..0.064:11log", "body.ball.velocity.x=10,20",
+                                    {"naive_impulses", "tgs_soft"}, nullptr, 0.5);
+    const std::vector<TheoryCurve> curves = theory_of(map);
+    ASSERT_EQ(curves.size(), 1U);
+    ASSERT_EQ(curves[0].methods.size(), 1U);
+    EXPECT_EQ(curves[0].methods[0]->name, "naive_impulses");
+    for (const glm::dvec2 &point : curves[0].points)
+        EXPECT_NEAR(point.x * point.y, 0.15, 1e-12);
+    for (const MethodMap &of_method : map.methods) {
+        if (of_method.method->name != "naive_impulses") {
+            EXPECT_TRUE(of_method.limits.empty());
+            continue;
+        }
+        ASSERT_EQ(of_method.limits.size(), 2U);
+        for (const MapLimit &limit : of_method.limits) {
+            EXPECT_TRUE(limit.held_below);
+            EXPECT_EQ(limit.failing.failing, Failing::passed_through);
+            const double found = limit.y * between(map.x, limit.low, limit.high);
+            EXPECT_GT(found, 0.99 * 0.15);
+            EXPECT_LT(found, 1.02 * 9 / 8 * 0.15);
+        }
+    }
+    // Not from within the wall, nor where there is another body.
+    EXPECT_TRUE(way_into_wall(map.scene, "ball", 0));
+    EXPECT_FALSE(way_into_wall(map.scene, "ball", 1));
+    SceneDesc within = map.scene;
+    within.bodies.at(1).position.x = 0;
+    EXPECT_FALSE(way_into_wall(within, "ball", 0));
+    SceneDesc other = map.scene;
+    other.bodies.at(1).name = "stone";
+    EXPECT_FALSE(way_into_wall(other, "ball", 0));
 }
 
 // Semi-implicit Euler falls by g t (t + dt) / 2: 5.085 m, the least that is true enough, it comes
@@ -274,6 +417,8 @@ TEST(StabilityMap, IsTheSameForAnyNumberOfThreads) {
     const auto rows = read_csv(one);
     EXPECT_EQ(rows[0][2], "dt");
     EXPECT_EQ(rows[0][3], "body.heavy.velocity.x");
+    for (const char *column : {"substeps", "iterations", "precision", "machine", "commit", "run"})
+        EXPECT_NE(std::ranges::find(rows[0], column), rows[0].end()) << column;
     std::size_t cells = 0;
     for (const auto &row : rows)
         cells += row[0] == "cell" ? 1U : 0U;
@@ -297,6 +442,51 @@ repeat = { kind = "stack", count = 2 }
     EXPECT_EQ(map.x.values, (std::vector<double>{1, 2, 3}));
     EXPECT_EQ(map.methods.size(), 1U);
     EXPECT_EQ(map.left_out.size(), 1U); // rk4 has no contacts
+}
+
+TEST(StabilityMap, OfACountLeavesOutWhatIsExpectedOfACopyThatIsNotThere) {
+    const std::string stack = R"(
+[[body]]
+name = "ground"
+shape = "plane"
+[[body]]
+name = "box"
+shape = "box"
+half_extents = [0.5, 0.5, 0.5]
+position = [0, 0.5, 0]
+repeat = { kind = "stack", count = 3 }
+[[expect]]
+name = "stays"
+quantity = "displacement"
+body = "box_2"
+reduce = "max"
+to = 0.2
+at_most = 0.05
+source = "statics"
+)";
+    const std::string with_another = stack + R"(
+[[expect]]
+name = "solid"
+quantity = "penetration"
+reduce = "max"
+to = 0.2
+at_most = 0.05
+source = "rigid"
+)";
+    const StabilityMap map =
+        map_of(with_another.c_str(), "dt=1/120,1/60", "body.box.repeat.count=2,4", {"soft_step"});
+    ASSERT_EQ(map.unjudged.size(), 1U);
+    EXPECT_NE(map.unjudged[0].find("\"stays\""), std::string::npos);
+    EXPECT_NE(map.unjudged[0].find("count = 2,"), std::string::npos);
+    for (const auto &cell : map.methods[0].cells)
+        EXPECT_EQ(cell->failing.failing, Failing::none) << cell->failing.what;
+    std::ostringstream text;
+    print(text, map);
+    EXPECT_NE(text.str().find(map.unjudged[0]), std::string::npos);
+    // Where nothing else is expected there is nothing to hold it to.
+    EXPECT_NE(complaint(stack.c_str(), "dt=1/120,1/60", "body.box.repeat.count=2,4")
+                  .find("nothing is left"),
+              std::string::npos);
 }
 
 TEST(StabilityMap, SaysWhatIsWrongWithAnAxis) {

@@ -2,6 +2,7 @@
 #include "tests/lab/tune/printed.h"
 
 #include "app/lab/tune/starts.h"
+#include "engine/scene/cloth.h"
 #include "engine/scene/file/change.h"
 #include "engine/scene/scene_file.h"
 
@@ -245,6 +246,40 @@ locked = ["x", "z"]
     EXPECT_EQ(bead.x, 0);
     EXPECT_EQ(bead.z, 0);
     EXPECT_NE(bead.y, 9);
+}
+
+TEST(TuneStarts, ShiftParticlesAndClothButNotTheirPins) {
+    const std::string text = R"([[particle]]
+name = "nail"
+position = [0, 2, 0]
+pinned = true
+[[particle]]
+name = "bob"
+position = [0, 1, 0]
+[[cloth]]
+name = "sheet"
+cells = [2, 2]
+position = [0, 3, 0]
+pins = [[0, 0]]
+)";
+    const std::vector<SceneDesc> starts = starts_of({"sheet.toml", text}, 2);
+    ASSERT_EQ(starts[1].particles.size(), 2U);
+    EXPECT_EQ(starts[1].particles[0].position, (glm::dvec3{0, 2, 0}));
+    const ClothDesc &still = starts[0].cloths.at(0);
+    ASSERT_EQ(starts[1].cloths.at(0).particles.size(), 9U);
+    EXPECT_EQ(starts[1].cloths[0].particles[0].position, start_of(still, 0).position);
+    const auto check_shifted = [](const glm::dvec3 &moved, const glm::dvec3 &place, double size) {
+        EXPECT_NE(moved, place);
+        for (int axis = 0; axis < 3; ++axis)
+            EXPECT_LE(std::abs(moved[axis] - place[axis]), start_shift * size);
+    };
+    for (std::size_t k = 1; k <= 2; ++k) {
+        check_shifted(starts[k].particles[1].position, {0, 1, 0}, 1);
+        for (std::uint32_t i = 1; i < 9; ++i)
+            check_shifted(starts[k].cloths[0].particles[i].position, start_of(still, i).position,
+                          3);
+    }
+    EXPECT_NE(starts[1].particles[1].position, starts[2].particles[1].position);
 }
 
 TEST(TuneStarts, ScatterOtherwise) {
