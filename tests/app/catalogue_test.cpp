@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <sstream>
 #include <vector>
 
@@ -45,28 +44,92 @@ class Scene : public testing::TestWithParam<fs::path> {};
 // speeds spins up, and steps so short that it would not are lost in float. XPBD loses swings and
 // spins, its friction is off by some per cent, and impulses are not handed on. AVBD loses swings
 // more than any, bounces as TGS Soft does, and its passes leave cloth that moves fast with more
-// energy than it had. Under naive impulses nothing rests.
-bool is_known_failing(const MethodInfo &method, const std::string &scene) {
-    static const std::map<std::string_view, std::set<std::string>> failing{
+// energy than it had. Under naive impulses nothing rests, and under naive spin nothing tumbles.
+//
+// Each with the error that it stays below, of what it misses most, in units of its tolerance: a
+// quarter above what was found. Null for what a method must meet.
+const double *known_failing(const MethodInfo &method, const std::string &scene) {
+    static const std::map<std::string_view, std::map<std::string, double>> failing{
         {"tgs_soft",
-         {"free_fall", "bounce_elastic", "bounce_half", "bouncing", "elastic_666", "newtons_cradle",
-          "passing", "struck_before_wall"}},
-        {"sequential_impulses", {"long_chain", "passing", "struck_before_wall"}},
-        {"nncg", {"passing"}},
+         {{"free_fall", 52},
+          {"bounce_elastic", 440},
+          {"bounce_half", 5.2},
+          {"bouncing", 700},
+          {"elastic_666", 21},
+          {"newtons_cradle", 30},
+          {"passing", 3.5e6},
+          {"struck_before_wall", 2},
+          {"oblique_impact", 10}}},
+        {"sequential_impulses",
+         {{"long_chain", 210},
+          {"passing", 3.5e6},
+          {"struck_before_wall", 1.8},
+          {"oblique_impact", 10}}},
+        {"nncg", {{"passing", 3.5e6}, {"oblique_impact", 10}}},
         {"xpbd",
-         {"bouncing", "grasping", "rolling", "passing", "slope_holds", "slope_slides",
-          "spinning_book", "hinge_pendulum", "newtons_cradle", "top", "twenty_box_stack"}},
+         {{"bouncing", 18},
+          {"grasping", 2.5e4},
+          {"rolling", 12},
+          {"passing", 3.5e6},
+          {"slope_holds", 1.7e4},
+          {"slope_slides", 83},
+          {"spinning_book", 120},
+          {"hinge_pendulum", 44},
+          {"newtons_cradle", 44},
+          {"top", 210},
+          {"twenty_box_stack", 440},
+          {"oblique_impact", 10}}},
         {"avbd",
-         {"bounce_elastic", "bounce_half", "bouncing", "elastic_666", "passing", "newtons_cradle",
-          "closed_loop", "long_chain", "kapla", "static_stability", "door", "hinge_pendulum",
-          "slider_fall", "flag", "hanging_cloth", "trampoline"}},
+         {{"bounce_elastic", 490},
+          {"bounce_half", 15},
+          {"bouncing", 750},
+          {"elastic_666", 23},
+          {"passing", 3.5e6},
+          {"newtons_cradle", 27},
+          {"closed_loop", 11},
+          {"long_chain", 18},
+          {"kapla", 1100},
+          {"static_stability", 3.5},
+          {"door", 2.9},
+          {"hinge_pendulum", 170},
+          {"slider_fall", 110},
+          {"flag", 200},
+          {"hanging_cloth", 17},
+          {"trampoline", 4.1},
+          {"oblique_impact", 10}}},
         {"naive_impulses",
-         {"free_fall", "bounce_elastic", "bounce_half", "bouncing", "666", "elastic_666", "kapla",
-          "static_stability", "slope_holds", "struck_before_wall", "barrel_run", "compounds",
-          "dice", "terrain", "tumbling", "pyramid", "ten_box_stack", "twenty_box_stack"}},
-        {"explicit_euler", {"spinning_book"}}};
+         {{"free_fall", 210},
+          {"bounce_elastic", 410},
+          {"bounce_half", 18},
+          {"bouncing", 670},
+          {"666", 2.3},
+          {"elastic_666", 5.2},
+          {"kapla", 9.6e5},
+          {"static_stability", 120},
+          {"slope_holds", 1400},
+          {"struck_before_wall", 450},
+          {"barrel_run", 2.9},
+          {"compounds", 170},
+          {"dice", 9000},
+          {"terrain", 2.9},
+          {"tumbling", 2.4},
+          {"pyramid", 130},
+          {"ten_box_stack", 250},
+          {"twenty_box_stack", 500},
+          {"oblique_impact", 17}}},
+        {"explicit_euler", {{"spinning_book", 220}}},
+        {"naive_spin", {{"spinning_book", 150}}}};
     const auto found = failing.find(method.name);
-    return found != failing.end() && found->second.contains(scene);
+    if (found == failing.end() || !found->second.contains(scene))
+        return nullptr;
+    return &found->second.at(scene);
+}
+
+double worst_error(const CheckOutcome &outcome) {
+    double worst = 0;
+    for (const ExpectOutcome &one : outcome.run.outcomes)
+        worst = std::max(worst, one.scaled_error);
+    return worst;
 }
 
 // The largest scenes, where there is little time, with their own method alone.
@@ -87,9 +150,10 @@ TEST_P(Scene, IsWithinItsTolerancesWithEveryMethodThatCanRunIt) {
         const CheckOutcome outcome = check_scene(scene, options, nullptr);
         std::ostringstream text;
         print(text, outcome);
-        const bool fails = is_known_failing(method, GetParam().stem().string());
-        EXPECT_EQ(exit_code(outcome), fails ? ExitCode::outside_tolerance : ExitCode::fine)
+        const double *most = known_failing(method, GetParam().stem().string());
+        EXPECT_EQ(exit_code(outcome), most ? ExitCode::outside_tolerance : ExitCode::fine)
             << text.str();
+        EXPECT_LE(worst_error(outcome), most ? *most : 1) << text.str();
         ++runs;
     }
     EXPECT_GT(runs, 0);

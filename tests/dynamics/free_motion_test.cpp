@@ -51,7 +51,8 @@ TEST_P(FreeMotion, FallsInClosedForm) {
     }
 }
 
-// The order in the substep on a brick's torque-free spin, against long double.
+// The order in the substep on a brick's torque-free spin, against long double. A known failing:
+// naive spin has none, it is as wrong at any step.
 TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
     const bool first = lag_of(GetParam()) != 0;
     const bool fourth = GetParam() == "rk4";
@@ -79,6 +80,11 @@ TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
                                             turn(exact.rotation, exact.spin))) +
                          angle_between(widened(motion.rotation), exact.rotation));
     }
+    if (GetParam() == "naive_spin") {
+        EXPECT_GT(errors[2], 1);
+        EXPECT_NEAR(errors[0] / errors[2], 1, 1e-3);
+        return;
+    }
     // Each error is C h^p (1 + O(h)) with a relative next term of |w| h: 0.02 for Euler; the others
     // are symmetric or nearly so, and single precision adds up to a tenth to rk4's finest error.
     EXPECT_NEAR(std::log2(errors[0] / errors[1]), order, fourth ? 0.5 : 0.15) << errors[0];
@@ -88,7 +94,7 @@ TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
 // A brick spun about its middle axis, 20 s: it must tumble, at constant energy. Known failing: the
 // Euler methods take the gyroscopic torque at the start of a step, which feeds the spin with
 // energy. The Verlets are second order there, and gain little. Runge-Kutta is bound by its order:
-// (|w| h)^5 a substep.
+// (|w| h)^5 a substep. Naive spin never turns over.
 TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
     World world(GetParam(), weightless(settings_for(GetParam())));
     BodyDef def = dynamic_body(block(V{0.1, 0.2, 0.4}), 2, V{0});
@@ -102,7 +108,7 @@ TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
         const V body_spin = glm::conjugate(wide(motion.rotation)) * wide(motion.angular_velocity);
         turned_over = turned_over || body_spin.y < -2.5;
     }
-    EXPECT_TRUE(turned_over);
+    EXPECT_EQ(turned_over, GetParam() != "naive_spin");
     const Measures after = world.measure();
     const double gain = after.energy() / before.energy() - 1;
     const double momentum_error = glm::distance(after.angular_momentum, before.angular_momentum) /
@@ -111,6 +117,13 @@ TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
     if (has_explicit_spin(GetParam()) && lag_of(GetParam()) != 0) {
         EXPECT_GT(std::abs(gain), 0.02); // explicit Euler loses
         EXPECT_LT(std::abs(gain), 0.5);
+        return;
+    }
+    if (GetParam() == "naive_spin")
+        return;
+    if (GetParam() == "split_spin") { // symplectic: the energy comes back
+        EXPECT_NEAR(gain, 0, 0.05 * 0.05);
+        EXPECT_LE(momentum_error, 0.1 * 1200 * 10 * epsilon);
         return;
     }
     if (has_explicit_spin(GetParam()) && GetParam() != "rk4") {
@@ -135,8 +148,10 @@ TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
 }
 
 // At a radian a substep and more, where Newton's three iterations do not reach the root any more.
+// Split spin still keeps the momentum, and with it the energy between those of the outer axes.
 TEST_P(FreeMotion, FastSpinDoesNotExplode) {
-    if (has_explicit_spin(GetParam()))
+    const bool splits = GetParam() == "split_spin";
+    if (has_explicit_spin(GetParam()) && !splits)
         GTEST_SKIP() << "explicit in the spin: bounded to |w| h of about 1";
     for (const double spin : {30.0, 100.0, 300.0, 1000.0}) {
         StepSettings settings = weightless(settings_for(GetParam()));
@@ -144,9 +159,20 @@ TEST_P(FreeMotion, FastSpinDoesNotExplode) {
         World world(GetParam(), settings);
         BodyDef def = dynamic_body(block(V{0.05, 0.2, 1}), 2, V{0});
         def.angular_velocity = narrow(spin * glm::normalize(V{0.1, 1, 0.5}));
-        world.add_body(def);
+        const BodyId id = world.add_body(def);
         const double before = world.measure().energy();
+        const V momentum = world.measure().angular_momentum;
         run(world, 600);
+        if (splits) {
+            const V inertia = wide(world.bodies()[id.index].inertia);
+            const double squared = glm::dot(momentum, momentum);
+            EXPECT_LE(glm::distance(world.measure().angular_momentum, momentum),
+                      600 * 10 * epsilon * glm::length(momentum))
+                << spin;
+            EXPECT_LE(world.measure().energy(), 1.001 * squared / (2 * inertia.z)) << spin;
+            EXPECT_GE(world.measure().energy(), 0.999 * squared / (2 * inertia.x)) << spin;
+            continue;
+        }
         if (GetParam() == "xpbd") { // its spin decays
             EXPECT_LT(world.measure().energy(), before) << spin;
             continue;

@@ -3,6 +3,8 @@
 #include "engine/core/check.h"
 #include "engine/core/random.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 
 namespace plumb {
@@ -110,6 +112,36 @@ TEST(Clock, RefusesAStepOfNoLength) {
     EXPECT_THROW(StepClock(0.0), CheckFailure);
     StepClock clock(0.1);
     EXPECT_THROW(clock.set_dt(-1), CheckFailure);
+}
+
+// How far a spring of 20 rad/s swings in 20 s of its own time, let go 1 m from rest, by
+// semi-implicit Euler, which is stable up to w dt = 2.
+double greatest_swing(double dt, int steps) {
+    double x = 1;
+    double v = 0;
+    double greatest = 1;
+    for (int i = 0; i < steps; ++i) {
+        v -= 400 * x * dt;
+        x += v * dt;
+        greatest = std::max(greatest, std::abs(x));
+    }
+    return greatest;
+}
+
+// A known failing of clocks that stretch their steps for a higher rate: at eight times the speed
+// w dt is 2.7, and the spring explodes. This one takes more steps, and the motion is the same.
+TEST(Clock, TakesMoreStepsAtAHigherSpeedNotLargerOnes) {
+    constexpr double dt = 1.0 / 60;
+    EXPECT_GT(greatest_swing(8 * dt, 150), 1e6);
+
+    StepClock clock(dt);
+    clock.set_speed(8);
+    int steps = 0;
+    for (int frame = 0; frame < 150; ++frame)
+        steps += clock.advance(second / 60);
+    EXPECT_NEAR(steps, 1200, 1);
+    EXPECT_EQ(clock.dt(), dt);
+    EXPECT_LT(greatest_swing(clock.dt(), steps), 1.1);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/scene/simulation.h"
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -62,7 +63,43 @@ TEST_P(ContactLaw, ABoxAtRestKeepsThemAll) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, ContactLaw,
-                         testing::Values("soft_step", "tgs_soft", "sequential_impulses", "nncg"));
+                         testing::Values("soft_step", "tgs_soft", "sequential_impulses", "nncg",
+                                         "avbd"));
+
+// A known failing: XPBD's friction is off by some per cent (here 3.5 % of what there is to lose).
+// What it has of forces keeps the laws, and at rest nothing is off.
+TEST(ContactLaw, XpbdBrakesALittleTooHard) {
+    const auto simulation = box("xpbd", "velocity = [2.4, 0, 1.8]\n");
+    for (int i = 0; i < 60; ++i)
+        simulation->step();
+    const Measures now = simulation->measure();
+    const double power = 0.5 * 2 * 9.81 * (3 - 0.5 * 9.81 * 0.25);
+    EXPECT_GT(std::abs(now.contact_power / -power - 1), 0.02);
+    EXPECT_LT(std::abs(now.contact_power / -power - 1), 0.05);
+    EXPECT_LT(now.dissipation_residual, 1e-3 * power);
+    EXPECT_LT(now.cone_residual, 1e-9);
+    EXPECT_LT(now.signorini_residual, 1e-2);
+    const auto resting = box("xpbd", "");
+    for (int i = 0; i < 240; ++i)
+        resting->step();
+    EXPECT_LT(resting->measure().signorini_residual, 1e-4);
+    EXPECT_NEAR(resting->measure().contact_power, 0, 1e-4);
+}
+
+// A known failing: gravity comes after naive impulses, so a box at rest falls anew in each step and
+// is struck back, at some watts; its friction stays in the cone.
+TEST(ContactLaw, NaiveImpulsesPushWhatDoesNotRest) {
+    for (const char *motion : {"velocity = [2.4, 0, 1.8]\n", ""}) {
+        const auto simulation = box("naive_impulses", motion);
+        for (int i = 0; i < 60; ++i)
+            simulation->step();
+        const Measures now = simulation->measure();
+        EXPECT_GT(now.signorini_residual, 0.1);
+        EXPECT_LT(now.signorini_residual, 2);
+        EXPECT_LT(now.cone_residual, 1e-9);
+        EXPECT_LT(now.dissipation_residual, 0.1);
+    }
+}
 
 TEST(ContactLaw, WithoutContactsThereIsNothing) {
     const auto simulation = box("soft_step", "velocity = [0, 5, 0]\n");

@@ -19,7 +19,9 @@
     METHOD(stormer_verlet)                                                                         \
     METHOD(velocity_verlet)                                                                        \
     METHOD(rk4)                                                                                    \
-    METHOD(backward_euler)
+    METHOD(backward_euler)                                                                         \
+    METHOD(naive_spin)                                                                             \
+    METHOD(split_spin)
 
 namespace plumb::inline PLUMB_PRECISION {
 

@@ -25,6 +25,7 @@ const std::map<std::string, std::string> &not_tuned() {
         {"flag", cloth},
         {"hanging_cloth", cloth},
         {"trampoline", cloth},
+        {"catenary", particles},
         {"soft_rope", particles},
         {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
         {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};

@@ -1,0 +1,42 @@
+// The frame of methods that differ in nothing but how a free body turns.
+#pragma once
+
+#include "engine/dynamics/method.h"
+
+#include <cmath>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// The substeps of free bodies: half a kick, half of the damping, the move, and the same in reverse
+// (Strang 1968, eq. 5; exact under gravity alone, second order with damping).
+// `turn(motion, body, h)` advances rotation and angular velocity by h seconds (torque-free); bodies
+// whose spin is constant turn by it as they are.
+template <typename Turn> void advance_free_bodies(StepContext &context, const Turn &turn) {
+    const Real h = context.substep();
+    const Vec3 gravity{context.settings.gravity};
+    for (const std::uint32_t i : context.moving()) {
+        SolverBody &motion = context.bodies[i];
+        const Body &body = context.model.bodies[i];
+        const bool is_dynamic = body.kind == BodyKind::dynamic;
+        const Vec3 push = (Real(0.5) * h) * gravity_on(body, gravity);
+        const Real kept = is_dynamic ? std::exp(Real(-0.5) * h * body.linear_damping) : Real(1);
+        const Real spin_kept =
+            is_dynamic ? std::exp(Real(-0.5) * h * body.angular_damping) : Real(1);
+        const bool is_gyroscopic = is_dynamic && has_gyroscopic_spin(body);
+        for (int substep = 0; substep < context.settings.substeps; ++substep) {
+            motion.velocity = kept * (motion.velocity + push);
+            motion.angular_velocity *= spin_kept;
+            motion.position += h * motion.velocity;
+            if (is_gyroscopic)
+                turn(motion, body, h);
+            else
+                motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
+            motion.velocity = kept * motion.velocity + push;
+            motion.angular_velocity *= spin_kept;
+        }
+    }
+    context.report.body_passes +=
+        context.moving().size() * static_cast<std::size_t>(context.settings.substeps);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,99 @@
+// Where the simple methods fail that books teach, and the engine's do not: side by side.
+#include "engine/dynamics/motion.h"
+#include "tests/dynamics/rigid_spin.h"
+#include "tests/dynamics/worlds.h"
+
+#include <glm/gtc/quaternion.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+// A ball of 0.2 m moves a metre in a step, at a wall of 2 cm: known only by what overlaps as a step
+// begins, it is never met.
+double farthest_behind_a_wall(const std::string &method) {
+    World world(method, weightless(settings_for(method)));
+    world.add_body(fixed_body(block(V{0.01, 1, 1})));
+    const BodyId id = world.add_body(dynamic_body(ball(0.1), 1, V{-2.5, 0, 0}, V{60, 0, 0}));
+    double farthest = -2.5;
+    for (int i = 0; i < 60; ++i) {
+        world.step(nullptr);
+        farthest = std::max(farthest, position_of(world, id).x);
+    }
+    return farthest;
+}
+
+TEST(BookFailings, AFastBallPassesAThinWall) {
+    EXPECT_GT(farthest_behind_a_wall("naive_impulses"), 50);
+    EXPECT_NEAR(farthest_behind_a_wall("soft_step"), -0.11, 1e-3);
+}
+
+// How far a cube of 1000 kg is from its place upon one of 1 kg after 4 s.
+double heavy_sinks(const std::string &method) {
+    World world(method, settings_for(method));
+    world.add_body(ground(0.5, 0));
+    world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 0.5, 0}));
+    const BodyId heavy = world.add_body(dynamic_body(block(V{0.5}), 1000, V{0, 1.5, 0}));
+    run(world, 240);
+    return glm::distance(position_of(world, heavy), V{0, 1.5, 0});
+}
+
+TEST(BookFailings, HeavyFallsThroughLight) {
+    EXPECT_GT(heavy_sinks("naive_impulses"), 0.5);
+    EXPECT_GT(heavy_sinks("sequential_impulses"), 0.5);
+    EXPECT_LT(heavy_sinks("soft_step"), 2e-3);
+}
+
+// The speed that is left after a second, of 1 m/s.
+double left_by_factor(double per_step, int steps) {
+    double speed = 1;
+    for (int i = 0; i < steps; ++i)
+        speed *= per_step;
+    return speed;
+}
+double left_by_rate(double rate, int steps) {
+    StepSettings settings = weightless(settings_for("soft_step"));
+    settings.dt = 1.0 / steps;
+    World world("soft_step", settings);
+    BodyDef def = dynamic_body(ball(0.5), 1, V{0}, V{1, 0, 0});
+    def.linear_damping = Real(rate);
+    const BodyId id = world.add_body(def);
+    run(world, steps);
+    return velocity_of(world, id).x;
+}
+
+// Damping of 2 % a step is one thing at 60 Hz and another at 240; as a rate it is the same.
+TEST(BookFailings, DampingByAFactorDependsOnTheStep) {
+    const double coarse = left_by_factor(0.98, 60);
+    EXPECT_GT(coarse, 30 * left_by_factor(0.98, 240));
+    const double rate = -60 * std::log(0.98);
+    for (const int steps : {30, 60, 240})
+        EXPECT_NEAR(left_by_rate(rate, steps), coarse, 4000 * epsilon);
+}
+
+// A body that turns at a constant spin about no axis of its own, for 2 s: three angles to which
+// the spin is added are wrong at any step, quaternions right.
+TEST(BookFailings, OrientationAsSummedEulerAngles) {
+    const V spin{1, 2, 0.5};
+    for (const int steps : {100, 10000}) {
+        const double h = 2.0 / steps;
+        V angles{0};
+        Quat rotation = identity_rotation;
+        for (int i = 0; i < steps; ++i) {
+            angles += h * spin;
+            rotation = turned(rotation, narrow(spin), Real(h));
+        }
+        const glm::dquat summed = glm::angleAxis(angles.z, V{0, 0, 1}) *
+                                  glm::angleAxis(angles.y, V{0, 1, 0}) *
+                                  glm::angleAxis(angles.x, V{1, 0, 0});
+        const double size = glm::length(spin);
+        const V v = std::sin(size) / size * spin;
+        const WideQuat exact{std::cos(size), v.x, v.y, v.z};
+        EXPECT_GT(angle_between({summed.w, summed.x, summed.y, summed.z}, exact), 0.5);
+        EXPECT_LE(angle_between(widened(rotation), exact), 4 * steps * epsilon);
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
