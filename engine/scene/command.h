@@ -3,6 +3,7 @@
 // engine/scene/real/world_simulation.cpp.
 #pragma once
 
+#include "engine/dynamics/grab_spring.h"
 #include "engine/scene/scene_desc.h"
 
 #include <string>
@@ -71,11 +72,14 @@ struct GrabBody {
     glm::dvec3 point{0}; // in the body's frame
     glm::dvec3 target{0};
     double max_force = 0; // N
+    GrabSpring spring{};
     template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
         visit("body", self.body);
         visit("point", self.point);
         visit("target", self.target);
         visit("max_force", self.max_force);
+        visit("frequency", self.spring.frequency);
+        visit("damping_ratio", self.spring.damping_ratio);
     }
 };
 
@@ -85,10 +89,13 @@ struct GrabParticle {
     std::string particle;
     glm::dvec3 target{0};
     double max_force = 0; // N
+    GrabSpring spring{};
     template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
         visit("particle", self.particle);
         visit("target", self.target);
         visit("max_force", self.max_force);
+        visit("frequency", self.spring.frequency);
+        visit("damping_ratio", self.spring.damping_ratio);
     }
 };
 

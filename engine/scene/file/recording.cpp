@@ -41,7 +41,7 @@ struct Fields {
 
     void read(std::string_view key, std::string &field) { field = table.string(key).value_or(""); }
     void read(std::string_view key, double &field) {
-        field = table.number(key, finite).value_or(0);
+        field = table.number(key, finite).value_or(field);
     }
     void read(std::string_view key, glm::dvec3 &field) {
         field = table.vector(key, finite).value_or(field);
