@@ -13,8 +13,11 @@
 namespace plumb {
 
 // `name` is the command's in a recording; each_field(command, visit) calls visit(key, field) for
-// all that it says. Bodies are named; all places and vectors are the world's unless they say
-// otherwise.
+// all that it says, visit(key, field, or_default) for what a recording may leave out. Bodies are
+// named; all places and vectors are the world's unless they say otherwise.
+
+struct OrDefault {};
+inline constexpr OrDefault or_default{};
 
 // Its name must be free.
 struct AddBody {
@@ -78,8 +81,8 @@ struct GrabBody {
         visit("point", self.point);
         visit("target", self.target);
         visit("max_force", self.max_force);
-        visit("frequency", self.spring.frequency);
-        visit("damping_ratio", self.spring.damping_ratio);
+        visit("frequency", self.spring.frequency, or_default);
+        visit("damping_ratio", self.spring.damping_ratio, or_default);
     }
 };
 
@@ -94,8 +97,8 @@ struct GrabParticle {
         visit("particle", self.particle);
         visit("target", self.target);
         visit("max_force", self.max_force);
-        visit("frequency", self.spring.frequency);
-        visit("damping_ratio", self.spring.damping_ratio);
+        visit("frequency", self.spring.frequency, or_default);
+        visit("damping_ratio", self.spring.damping_ratio, or_default);
     }
 };
 

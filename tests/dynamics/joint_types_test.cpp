@@ -1,4 +1,5 @@
 // Hinges, sliders, fixed joints, ropes, springs, motors, limits: against closed forms.
+#include "engine/core/check.h"
 #include "tests/dynamics/avbd_passes.h"
 #include "tests/dynamics/worlds.h"
 
@@ -332,8 +333,7 @@ TEST_P(JointTypes, AGrabPullsWithItsOwnSpring) {
     World world(GetParam(), settings_for(GetParam()));
     const BodyId id = world.add_body(dynamic_body(block(V{0.25}), 2, V{0}));
     for (const GrabSpring spring : {GrabSpring{0, 1}, GrabSpring{-1, 1}, GrabSpring{5, -1}})
-        EXPECT_THROW(world.grab(id, Vec3{Real(0)}, Vec3{Real(0)}, Real(1), spring),
-                     std::invalid_argument);
+        EXPECT_THROW(world.grab(id, Vec3{Real(0)}, Vec3{Real(0)}, Real(1), spring), CheckFailure);
 }
 
 } // namespace

@@ -295,10 +295,12 @@ TEST(Recording, AGrabHasTheSpringThatIsGiven) {
     const RecordingResult rest = parse_recording(silent, "heap.toml");
     ASSERT_TRUE(rest.ok()) << format_message("heap.toml", rest.messages.front());
     for (const RecordedCommand &command : rest.recording.commands) {
-        if (const auto *body = std::get_if<GrabBody>(&command.command))
+        if (const auto *body = std::get_if<GrabBody>(&command.command)) {
             EXPECT_EQ(body->spring.damping_ratio, 1);
-        if (const auto *particle = std::get_if<GrabParticle>(&command.command))
+        }
+        if (const auto *particle = std::get_if<GrabParticle>(&command.command)) {
             EXPECT_EQ(particle->spring.frequency, 5);
+        }
     }
 }
 
