@@ -75,6 +75,7 @@ void methods_as_json(std::ostream &out) {
                    {"title", json_string(m.title)},
                    {"contacts", json_bool(m.contacts)},
                    {"joints", json_bool(m.joints)},
+                   {"springs", json_bool(m.springs)},
                    {"source", json_string(m.source)}});
     array.end();
 }
@@ -119,10 +120,20 @@ void scenes_as_text(const std::vector<SceneEntry> &catalogue, std::ostream &out)
     }
 }
 
+// What it can run: "contacts, joints, springs".
+std::string what_runs(const MethodInfo &method) {
+    std::string what = method.contacts ? "contacts" : "free bodies";
+    if (method.joints)
+        what += ", joints";
+    if (method.springs)
+        what += ", springs";
+    return what;
+}
+
 void methods_as_text(std::ostream &out) {
     for (const MethodInfo &m : method_infos())
-        out << std::left << std::setw(22) << m.name << std::setw(22) << m.title
-            << (m.contacts ? "contacts, joints" : "free bodies     ") << "  " << m.source << '\n';
+        out << std::left << std::setw(22) << m.name << std::setw(22) << m.title << std::setw(27)
+            << what_runs(m) << m.source << '\n';
 }
 
 } // namespace

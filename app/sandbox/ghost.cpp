@@ -1,5 +1,8 @@
 #include "app/sandbox/ghost.h"
 
+#include "app/lab/run/accurate_run.h"
+
+#include <chrono>
 #include <exception>
 #include <stdexcept>
 #include <utility>
@@ -14,13 +17,24 @@ namespace {
 // A ghost with a shorter step takes so many for one of the other's, and no more: it shall not
 // stall the play.
 constexpr int most_steps = 64;
+constexpr double reference_allowance = 8e-3; // s, half of a picture at 60 Hz
+
+RunOptions reference_run(const SceneDesc &scene, double dt) {
+    return accurate_run(scene, {}, dt / 4, 16);
+}
 
 } // namespace
 
-Ghost::Ghost(const Simulation &beside, const std::string &method) {
+Ghost::Ghost(const Simulation &beside, const std::string &method)
+    : is_reference_(method == reference_ghost),
+      allowance_(is_reference_ ? reference_allowance : 0) {
+    const SceneDesc scene = beside.describe();
     RunOptions options;
-    options.method = method;
-    simulation_ = Simulation::create(beside.describe(), options, nullptr);
+    if (is_reference_)
+        options = reference_run(scene, beside.settings().dt);
+    else
+        options.method = method;
+    simulation_ = Simulation::create(scene, options, nullptr);
     simulation_->read(present_, {});
     previous_ = present_;
 }
@@ -32,11 +46,32 @@ void Ghost::begin_step() {
 
 void Ghost::catch_up(const Simulation &beside) {
     std::swap(previous_, present_);
-    const double half = 0.5 * simulation_->settings().dt;
+    step_towards(beside);
+    simulation_->read(present_, {});
+}
+
+void Ghost::go_on(const Simulation &beside) {
+    if (lag(beside) == 0)
+        return;
+    step_towards(beside);
+    simulation_->read(present_, {});
+    previous_ = present_;
+}
+
+double Ghost::lag(const Simulation &beside) const {
+    const double behind = beside.time() - simulation_->time();
+    return failure_.empty() && behind > 0.5 * simulation_->settings().dt ? behind : 0;
+}
+
+void Ghost::step_towards(const Simulation &beside) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    const auto is_late = [&] {
+        return is_reference_ &&
+               std::chrono::duration<double>(Clock::now() - start).count() >= allowance_;
+    };
     try {
-        for (int i = 0; i < most_steps && failure_.empty(); ++i) {
-            if (simulation_->time() + half > beside.time())
-                break;
+        for (int i = 0; i < most_steps && lag(beside) > 0 && !is_late(); ++i) {
             simulation_->step();
             if (!simulation_->report().finite)
                 fail("no longer finite");
@@ -44,7 +79,6 @@ void Ghost::catch_up(const Simulation &beside) {
     } catch (const std::exception &failure) {
         fail(failure.what());
     }
-    simulation_->read(present_, {});
 }
 
 bool Ghost::go_back() {
@@ -58,7 +92,7 @@ bool Ghost::go_back() {
     return true;
 }
 
-void Ghost::apply(const Command &command) {
+void Ghost::apply(const Simulation &beside, const Command &command) {
     if (std::holds_alternative<SetMethod>(command))
         return;
     Command mine = command;
@@ -68,6 +102,8 @@ void Ghost::apply(const Command &command) {
         if (settings->settings.empty())
             return;
     }
+    if (is_reference_ && lag(beside) > 0)
+        return fail("something was done while it lagged");
     try {
         simulation_->apply(mine);
         simulation_->read(present_, {});

@@ -266,6 +266,17 @@ void add_fixed(DrawList &list, const Seen &seen) {
     }
 }
 
+// As long as contact forces are drawn.
+void add_force(DrawList &list, const Seen &seen) {
+    const double weight = seen.around.weight;
+    const double force = glm::length(seen.joint.force);
+    if (weight > 0 && force > 0)
+        add_joint_arrow(list, seen.moving_anchor(),
+                        seen.sign() * std::min(2.0, 0.3 * std::sqrt(force / weight)) / force *
+                            seen.joint.force,
+                        colours::contact);
+}
+
 void add_sign(DrawList &list, const Seen &seen) {
     switch (seen.joint.type) {
     case JointType::ball: // the anchors' dots say all
@@ -355,7 +366,9 @@ void draw_joints(DrawList &list, std::span<const JointView> joints,
             continue; // its ends alone, in the colour of what is wrong
         if (joint.type != JointType::slider)
             add_line(list, joint.anchor_a, joint.anchor_b, 3);
-        add_sign(list, Seen(joint, surroundings));
+        const Seen seen(joint, surroundings);
+        add_sign(list, seen);
+        add_force(list, seen);
     }
 }
 

@@ -15,6 +15,7 @@ struct JointSurroundings {
     std::span<const BodyState> poses; // of the bodies, as they are shown
     std::span<const double> reach;    // of each body's shape from its origin, m; 0: no matter
     glm::dvec3 gravity{0, -9.81, 0};
+    double weight = 0; // N, by which forces are scaled; 0: they are not drawn
 };
 
 // The frame's, moved along with the bodies as they are shown.
@@ -34,7 +35,9 @@ void draw_spring(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, doubl
 void draw_wire(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double radius);
 
 // How each joint holds its bodies: its anchors, and what its type adds (a hinge's axis and arc, a
-// slider's rail, a fixed joint's cross), with limits and motor.
+// slider's rail, a fixed joint's cross), with limits and motor; and the force on the body that it
+// holds, at its anchor there, 0.3 m for the weight and growing with the square root, to 2 m at
+// most.
 void draw_joints(DrawList &list, std::span<const JointView> joints,
                  const JointSurroundings &surroundings);
 

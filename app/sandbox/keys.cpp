@@ -92,7 +92,7 @@ std::optional<ActionInfo> row(Action action) {
                           Place::view, false, {plain('c')}};
     case Action::toggle_joints:
         return ActionInfo{action, "Joints",
-                          "Joints and their anchors.",
+                          "Joints, their anchors and forces.",
                           Place::view, false, {plain('j')}};
     case Action::toggle_wireframe:
         return ActionInfo{action, "Wireframe",

@@ -17,7 +17,8 @@ void measures_panel(PanelContext &context) {
     value_row("Angular momentum", number(glm::length(measures.angular_momentum), "kg m²/s"));
     value_row("Deepest penetration", number(measures.max_penetration * 1e3, "mm"));
     value_row("Worst joint error", number(measures.max_joint_drift * 1e3, "mm"));
-    if (const Ghost *ghost = context.session.ghost())
+    const Ghost *ghost = context.session.ghost();
+    if (ghost && ghost->lag(*context.session.simulation()) == 0)
         value_row(
             "Ghost, farthest",
             number(ghost->farthest(*context.session.simulation(), context.session.present()).metres,

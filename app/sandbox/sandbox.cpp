@@ -266,6 +266,7 @@ void Sandbox::advance(std::int64_t nanoseconds) {
     follow_simulation();
     if (clock_.paused() || session_.stopped()) {
         pace_.clear();
+        session_.let_ghost_go_on();
     } else {
         const double dt = clock_.dt();
         const int taken = take_due_steps(nanoseconds);
@@ -387,7 +388,7 @@ void Sandbox::toggle_ghost() {
         return why_not(method, session_.scene()).empty();
     };
     std::string method = view_.ghost_method;
-    if (method.empty() || !is_able(*find_method_info(method))) {
+    if (method.empty() || (method != reference_ghost && !is_able(*find_method_info(method)))) {
         const auto other = std::ranges::find_if(method_infos(), [&](const MethodInfo &info) {
             return info.name != session_.simulation()->method().name && is_able(info);
         });

@@ -164,7 +164,7 @@ bool Session::obey_replay() {
         for (std::size_t i = given; i < replay_->given(); ++i) {
             note_held(recording_->commands[i].command);
             if (ghost_)
-                ghost_->apply(recording_->commands[i].command);
+                ghost_->apply(*simulation_, recording_->commands[i].command);
         }
         if (given < replay_->given())
             troubles_->brought_in(*simulation_, simulation_->energy() - energy);
@@ -322,7 +322,7 @@ void Session::apply(const Command &command) {
     simulation_->apply(command);
     note_held(command);
     if (ghost_)
-        ghost_->apply(command);
+        ghost_->apply(*simulation_, command);
     if (troubles_)
         troubles_->brought_in(*simulation_, simulation_->energy() - energy);
     if (recorder_)
@@ -381,12 +381,17 @@ bool Session::set_ghost(const std::string &method) {
         ghost_.emplace(*simulation_, method);
         ghost_method_ = method;
         if (held_) // which is no part of a scene
-            ghost_->apply(*held_);
+            ghost_->apply(*simulation_, *held_);
         return true;
     } catch (const std::exception &failure) {
         messages_.note("No ghost: " + reason(failure));
         return false;
     }
+}
+
+void Session::let_ghost_go_on() {
+    if (ghost_ && simulation_)
+        ghost_->go_on(*simulation_);
 }
 
 bool Session::plot(const QuantityName &name) {

@@ -123,6 +123,8 @@ class Session {
     // when the run does, and where it is taken back to before it was there. Empty: none. False,
     // with a message, for a method that cannot run the scene.
     bool set_ghost(const std::string &method);
+    // Lets a ghost that lags come nearer while nothing is stepped.
+    void let_ghost_go_on();
     [[nodiscard]] const Ghost *ghost() const { return ghost_ ? &*ghost_ : nullptr; }
 
     // From the next step on; of a grab that goes on, only the target may change. Nothing: lets go.

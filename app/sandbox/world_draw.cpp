@@ -194,14 +194,14 @@ std::optional<glm::dvec3> held_place(const Grab &grab, const std::vector<BodySta
 }
 
 void add_joints(DrawList &list, const Simulation &simulation, const Frame &frame,
-                const std::vector<BodyState> &poses, bool all) {
+                const std::vector<BodyState> &poses, bool all, double weight) {
     const std::vector<JointView> joints = joints_at(frame, poses);
     if (joints.empty())
         return;
     std::vector<double> reaches;
     for (std::size_t body = 0; body < simulation.body_count(); ++body)
         reaches.push_back(reach(simulation.body_info(body)));
-    const JointSurroundings surroundings{poses, reaches, simulation.settings().gravity};
+    const JointSurroundings surroundings{poses, reaches, simulation.settings().gravity, weight};
     draw_links(list, joints, surroundings);
     if (all)
         draw_joints(list, joints, surroundings);
@@ -237,11 +237,11 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
         particles.size() == frame.particles.size() ? particles : frame.particles;
     draw_soft_parts(list, {simulation.soft_parts(), shown, shown_particles, frame.torn},
                     options.selected_particle, options.hovered_particle);
-    add_joints(list, simulation, frame, shown, options.joints);
+    const double mass = options.contacts || options.joints ? typical_mass(simulation) : 0;
+    const double weight = mass * glm::length(simulation.settings().gravity);
+    add_joints(list, simulation, frame, shown, options.joints, weight);
     if (options.contacts) {
-        const double mass = typical_mass(simulation);
-        add_contacts(list, simulation, frame, shown,
-                     mass * glm::length(simulation.settings().gravity));
+        add_contacts(list, simulation, frame, shown, weight);
         add_impacts(list, options.impacts, mass);
     }
     if (options.bounds)

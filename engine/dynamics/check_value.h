@@ -14,4 +14,9 @@ inline void check_not_negative(const char *name, Real value) {
                 name << " must be finite and not negative, got " << value);
 }
 
+inline void check_positive(const char *name, Real value) {
+    PLUMB_CHECK(std::isfinite(value) && value > Real(0),
+                name << " must be finite and positive, got " << value);
+}
+
 } // namespace plumb::inline PLUMB_PRECISION

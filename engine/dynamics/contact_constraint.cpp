@@ -196,7 +196,7 @@ void note_loads(StepContext &context) {
     for (ContactConstraint &contact : context.scratch.contacts)
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
-            point.largest = std::max(point.largest, point.impulse.x);
+            point.pushed += point.impulse.x;
         }
 }
 
@@ -207,18 +207,24 @@ void restitute(StepContext &context, Real threshold) {
         SolverBody &a = context.bodies[contact.a];
         SolverBody &b = context.bodies[contact.b];
         bool bounced = false;
+        std::array<Real, 4> normal_impulse{}; // of all of the step
         for (int k = 0; k < contact.count; ++k) {
-            ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
-            if (point.approach > -threshold || point.largest == Real(0))
+            const auto index = static_cast<std::size_t>(k);
+            ContactPointConstraint &point = contact.points[index];
+            if (point.approach > -threshold || point.pushed == Real(0))
                 continue;
             const Real speed = glm::dot(relative_velocity(a, b, point), contact.normal);
             const Real change = -point.normal_mass * (speed + contact.restitution * point.approach);
             const Real total = std::max(point.impulse.x + change, Real(0));
             apply_pair_impulse(a, b, point, (total - point.impulse.x) * contact.normal);
+            normal_impulse[index] = point.pushed + (total - point.impulse.x);
             point.impulse.x = total;
             bounced = true;
         }
-        context.report.impacts += bounced ? 1 : 0;
+        if (bounced) {
+            ++context.report.impacts;
+            record_impact(context, contact, normal_impulse);
+        }
     }
 }
 

@@ -29,7 +29,7 @@ struct ContactPointConstraint {
     Vec3 impulse{Real(0)};    // accumulated in this substep: normal, t1, t2 (N s)
     Vec3 remembered{Real(0)}; // of the substep before
     Real approach = Real(0);  // relative normal velocity at the start of the step (m/s)
-    Real largest = Real(0);   // normal impulse of any substep so far (N s)
+    Real pushed = Real(0);    // normal impulse of all substeps so far (N s)
 };
 
 struct StepContext;
@@ -95,6 +95,11 @@ void store_contacts(StepContext &context);
 void note_approach(StepContext &context);
 void note_loads(StepContext &context);
 void restitute(StepContext &context, Real threshold);
+
+// Notes a bounce, at the middle of where it acts, by the normal impulse of each point (N s); no
+// impulse: none.
+void record_impact(StepContext &context, const ContactConstraint &contact,
+                   const std::array<Real, 4> &normal_impulse);
 
 // Bounces: every contact with restitution that would be struck within the next h gets Newton's
 // impact law, one pair of bodies after another, until none approaches: so an impact runs through a

@@ -200,6 +200,8 @@ std::uint64_t World::hash() const {
         hash.add(std::uint64_t{state_.grab.particle});
         add(hash, state_.grab.target);
         hash.add(state_.grab.max_force);
+        hash.add(state_.grab.frequency);
+        hash.add(state_.grab.damping_ratio);
         hash.add(state_.grab.held_mass);
     }
     if (state_.grab.is_holding()) {
@@ -207,6 +209,8 @@ std::uint64_t World::hash() const {
         add(hash, state_.grab.point_local);
         add(hash, state_.grab.target);
         hash.add(state_.grab.max_force);
+        hash.add(state_.grab.frequency);
+        hash.add(state_.grab.damping_ratio);
         add(hash, state_.grab.impulse);
     }
     return hash.value();

@@ -37,24 +37,6 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
     return {true, std::sqrt(back_squared), height / -speed};
 }
 
-// The impact at the middle of where it acts.
-void record(StepContext &context, const ContactConstraint &contact,
-            const std::array<Real, 4> &normal_impulse) {
-    Impact impact;
-    impact.key = context.contacts[contact.contact].key;
-    impact.normal = contact.normal;
-    Vec3 sum{Real(0)};
-    for (int k = 0; k < contact.count; ++k) {
-        const auto index = static_cast<std::size_t>(k);
-        impact.impulse += normal_impulse[index];
-        sum += normal_impulse[index] * contact.points[index].r_a;
-    }
-    if (!(impact.impulse > Real(0)))
-        return;
-    impact.position = context.bodies[contact.a].position + sum / impact.impulse;
-    context.impacts.push_back(impact);
-}
-
 // The joints of the two bodies, as far as they are solved together, answer each impulse: what is
 // struck is then as heavy as they make it.
 class Answers {
@@ -199,7 +181,7 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
             solve_friction(contact, point, a, b, contact.friction * normal_impulse[index]);
             joints.give();
         }
-    record(context, contact, normal_impulse);
+    record_impact(context, contact, normal_impulse);
     // Until they touch they go on as before: the new velocities act from there on, with the arms of
     // then. Without that the two would lose angular momentum. What joints hold stays with them.
     if (context.contacts[contact.contact].moment == Moment::touch && pull == Real(0) &&
@@ -221,6 +203,23 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
 }
 
 } // namespace
+
+void record_impact(StepContext &context, const ContactConstraint &contact,
+                   const std::array<Real, 4> &normal_impulse) {
+    Impact impact;
+    impact.key = context.contacts[contact.contact].key;
+    impact.normal = contact.normal;
+    Vec3 sum{Real(0)};
+    for (int k = 0; k < contact.count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        impact.impulse += normal_impulse[index];
+        sum += normal_impulse[index] * contact.points[index].r_a;
+    }
+    if (!(impact.impulse > Real(0)))
+        return;
+    impact.position = context.bodies[contact.a].position + sum / impact.impulse;
+    context.impacts.push_back(impact);
+}
 
 void resolve_impacts(StepContext &context, Real h) {
     bool any = context.settings.impact_sweeps > 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/body.h"
+#include "engine/dynamics/grab_spring.h"
 
 #include <array>
 #include <optional>
@@ -88,14 +89,17 @@ struct Grab {
     Vec3 point_local{Real(0)};           // in the mass frame
     Vec3 target{Real(0)};                // world
     Real max_force = Real(0);            // N
-    Real frequency = Real(5);            // Hz
-    Real damping_ratio = Real(1);
-    Vec3 impulse{Real(0)}; // what the solver remembers (N s); of a body
+    Real frequency = Real(0);            // of its GrabSpring (Hz)
+    Real damping_ratio = Real(0);        // likewise
+    Vec3 impulse{Real(0)};               // what the solver remembers (N s); of a body
     // A particle is held as if it bore the mass of all that its springs lead to (kg).
     Real held_mass = Real(0);
 
     bool is_holding() const { return body != UINT32_MAX; }
     bool holds_particle() const { return particle != UINT32_MAX; }
 };
+
+// One that holds nothing yet. Throws unless all of it is finite and the spring is one.
+Grab grab_of(const Vec3 &target, Real max_force, const GrabSpring &spring);
 
 } // namespace plumb::inline PLUMB_PRECISION

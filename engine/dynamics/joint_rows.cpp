@@ -92,28 +92,30 @@ void emit_limits_and_motor(const Joint &joint, const RowBlock &row, Real place,
     }
 }
 
-Real joint_error(const Joint &joint, const Motion &a, const Motion &b) {
+JointError joint_error(const Joint &joint, const Motion &a, const Motion &b) {
     std::vector<RowBlock> blocks;
     NewRows writer(blocks);
     emit_rows(joint, a, b, writer);
-    Real squared = Real(0);
-    for (const RowBlock &block : blocks)
+    JointError squared;
+    for (const RowBlock &block : blocks) {
+        Real &sum = block.kind == RowKind::angular ? squared.angular : squared.linear;
         switch (block.bounds) {
         case RowBounds::equal:
             for (int i = 0; i < block.count; ++i)
-                squared += block.error[i] * block.error[i];
+                sum += block.error[i] * block.error[i];
             break;
         case RowBounds::at_least:
-            squared += std::min(block.error.x, Real(0)) * std::min(block.error.x, Real(0));
+            sum += std::min(block.error.x, Real(0)) * std::min(block.error.x, Real(0));
             break;
         case RowBounds::at_most:
-            squared += std::max(block.error.x, Real(0)) * std::max(block.error.x, Real(0));
+            sum += std::max(block.error.x, Real(0)) * std::max(block.error.x, Real(0));
             break;
         case RowBounds::motor:
         case RowBounds::pull:
             break;
         }
-    return std::sqrt(squared);
+    }
+    return {std::sqrt(squared.linear), std::sqrt(squared.angular)};
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

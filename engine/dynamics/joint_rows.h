@@ -110,8 +110,13 @@ Quat relative_turn(const Joint &joint, const Motion &a, const Motion &b);
 // The velocity of anchor b against a's material at the same place (m/s, world).
 Vec3 anchor_velocity(const Joint &joint, const Motion &a, const Motion &b);
 
-// How far the joint's own rows, limits included, are from holding (m; angles times the distance of
-// one metre).
-Real joint_error(const Joint &joint, const Motion &a, const Motion &b);
+// How far a joint's own rows, limits included, are from holding: the length of the errors of those
+// along lines and of those about axes.
+struct JointError {
+    Real linear = Real(0); // m
+    Real angular =
+        Real(0); // rad; of a hinge's axes the sine, of frames twice that of half the turn
+};
+JointError joint_error(const Joint &joint, const Motion &a, const Motion &b);
 
 } // namespace plumb::inline PLUMB_PRECISION

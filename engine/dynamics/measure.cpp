@@ -160,9 +160,14 @@ Vec3 World::anchor_b(const Joint &joint) const {
     return motion.position + motion.rotation * joint.anchor_b_local;
 }
 
-Real World::joint_error(std::uint32_t joint) const {
+JointError World::joint_errors(std::uint32_t joint) const {
     const Joint &one = joints()[joint];
     return plumb::joint_error(one, joint_motion(one.a), joint_motion(one.b));
+}
+
+Real World::joint_error(std::uint32_t joint) const {
+    const JointError error = joint_errors(joint);
+    return std::sqrt(error.linear * error.linear + error.angular * error.angular);
 }
 
 World::JointLoad World::joint_load(std::uint32_t joint) const {

@@ -13,7 +13,7 @@ struct Measures {
     glm::dvec3 angular_momentum{0}; // kg m^2/s about the world's origin
     double max_penetration = 0;     // m, the deepest contact point at the present poses
     double mean_penetration = 0;    // m, mean over contact points that penetrate
-    double max_joint_drift = 0;     // m, the worst joint error
+    double max_joint_drift = 0;     // m, the worst joint error; 1 rad counts as 1 m
     double mean_joint_drift = 0;    // m
     double max_strain = 0;          // |length / rest length - 1|, the largest of springs not torn
     // How far the contacts of bodies are from the laws of contact, by the forces of the last

@@ -3,6 +3,7 @@
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -122,18 +123,30 @@ void turn_arms(const StepContext &context, const ContactConstraint &contact,
     point.r_b = b.rotation * point.core_b - (point.rounding - rounding_a) * contact.normal;
 }
 
-// Calls use(contact, point, a, b) for each point, once its arms are those of the present poses.
-template <typename Use> void for_each_point(StepContext &context, Use &&use) {
+// Calls use(contact, k, a, b) for each point, once its arms are those of the present poses, and
+// done(contact) after the last of each contact.
+template <typename Use, typename Done>
+void for_each_point(StepContext &context, Use &&use, Done &&done) {
     for (ContactConstraint &contact : context.scratch.contacts) {
         SolverBody &a = context.bodies[contact.a];
         SolverBody &b = context.bodies[contact.b];
-        for (int k = 0; k < contact.count; ++k) {
-            ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
-            turn_arms(context, contact, point, a, b);
-            use(contact, point, a, b);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+            turn_arms(context, contact, contact.points[k], a, b);
+            use(contact, k, a, b);
         }
+        done(contact);
     }
     context.report.constraint_passes += context.scratch.contacts.size();
+}
+
+// Calls use(contact, point, a, b) likewise.
+template <typename Use> void for_each_point(StepContext &context, Use &&use) {
+    for_each_point(
+        context,
+        [&](ContactConstraint &contact, std::size_t k, SolverBody &a, SolverBody &b) {
+            use(contact, contact.points[k], a, b);
+        },
+        [](const ContactConstraint &) {});
 }
 
 Vec3 speed_between(const SolverBody &a, const SolverBody &b, const ContactPointConstraint &point) {
@@ -172,10 +185,11 @@ void solve_contact_poses(StepContext &context, Real h) {
 
 void solve_contact_velocities(StepContext &context, Real h) {
     const auto threshold = static_cast<Real>(context.settings.restitution_threshold);
-    for_each_point(context, [&](const ContactConstraint &contact, ContactPointConstraint &point,
-                                SolverBody &a, SolverBody &b) {
+    std::array<Real, 4> bounced{}; // the normal impulse of each point of a contact that bounces
+    const auto solve = [&](const ContactConstraint &contact, ContactPointConstraint &point,
+                           SolverBody &a, SolverBody &b) -> Real {
         if (point.impulse.x == Real(0))
-            return;
+            return Real(0);
         const auto inverse_along = [&](const Vec3 &n) {
             return inverse_effective_mass(a, b, point.r_a, point.r_b, n);
         };
@@ -190,9 +204,22 @@ void solve_contact_velocities(StepContext &context, Real h) {
         add_tangential(point.impulse, h * friction, contact.tangents);
         const Real wanted = wanted_speed(point.approach, contact.restitution, threshold);
         const Real speed = glm::dot(speed_between(a, b, point), contact.normal);
-        apply((wanted - speed) / inverse_along(contact.normal) * contact.normal);
-        context.report.impacts += wanted > Real(0) ? 1 : 0;
-    });
+        const Real change = (wanted - speed) / inverse_along(contact.normal);
+        apply(change * contact.normal);
+        return wanted > Real(0) ? point.impulse.x / h + change : Real(0);
+    };
+    for_each_point(
+        context,
+        [&](ContactConstraint &contact, std::size_t k, SolverBody &a, SolverBody &b) {
+            bounced[k] = solve(contact, contact.points[k], a, b);
+        },
+        [&](const ContactConstraint &contact) {
+            if (bounced != std::array<Real, 4>{}) {
+                ++context.report.impacts;
+                record_impact(context, contact, bounced);
+            }
+            bounced = {};
+        });
 }
 
 // ---- particles

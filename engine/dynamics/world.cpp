@@ -425,20 +425,19 @@ void World::apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point) {
                                glm::cross(point - motion.position, impulse);
 }
 
-void World::grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force) {
+void World::grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force,
+                 const GrabSpring &spring) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
-    PLUMB_CHECK(is_finite(point_local) && is_finite(target), "a grab must be finite");
-    check_not_negative("a grab's force", max_force);
+    PLUMB_CHECK(is_finite(point_local), "a grab must be finite");
+    const Grab grab = grab_of(target, max_force, spring);
     const Body &body = bodies()[id.index];
     if (body.kind != BodyKind::dynamic)
         return;
     wake(id.index);
-    state_.grab = Grab{};
+    state_.grab = grab;
     state_.grab.body = id.index;
     state_.grab.point_local =
         body.has_mass_frame ? to_world_point(into(body.mass_frame), point_local) : point_local;
-    state_.grab.target = target;
-    state_.grab.max_force = max_force;
 }
 
 void World::move_grab(const Vec3 &target) {

@@ -84,13 +84,15 @@ class World {
     void apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point);
     // Holds a point of a dynamic body (in its own frame) at the target, until release or until the
     // body is removed; a second grab replaces the first. Others ignore it.
-    void grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force);
+    void grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force,
+              const GrabSpring &spring = {});
     void move_grab(const Vec3 &target); // nothing held: does nothing
     void release();
     // Puts a particle somewhere, as a tool or a test does. A pinned one stays at rest there.
     void set_particle(std::uint32_t index, const Vec3 &position, const Vec3 &velocity);
     // As grab, of a particle that is not pinned; a pinned one is not held.
-    void grab_particle(std::uint32_t index, const Vec3 &target, Real max_force);
+    void grab_particle(std::uint32_t index, const Vec3 &target, Real max_force,
+                       const GrabSpring &spring = {});
     // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
     // are known by feature; a contact that the next step does not find again is forgotten.
     void remember_contact(const ContactKey &key, const ContactOrigin &origin,
@@ -124,7 +126,9 @@ class World {
 
     Measures measure() const;
     double energy() const; // kinetic and potential, J
-    // How far a joint's rows are from holding (m; angles in rad count as metres).
+    // How far a joint's rows are from holding, and the length of both together, in which an error
+    // of 1 rad counts as one of 1 m.
+    JointError joint_errors(std::uint32_t joint) const;
     Real joint_error(std::uint32_t joint) const;
     // What it bore in the last substep: force at the anchor and torque, on b, in world axes.
     struct JointLoad {

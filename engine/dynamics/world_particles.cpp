@@ -25,11 +25,6 @@ constexpr double particle_rest_share = 4e-3;
 constexpr double followed_swing = 1.25;
 constexpr double followed_damping = 16;
 
-void check_positive(const char *name, Real value) {
-    PLUMB_CHECK(std::isfinite(value) && value > Real(0),
-                name << " must be finite and positive, got " << value);
-}
-
 void check_motion(const Vec3 &position, const Vec3 &velocity) {
     PLUMB_CHECK(is_finite(position) && is_finite(velocity), "a particle's motion must be finite");
 }
@@ -95,10 +90,10 @@ void World::set_particle(std::uint32_t index, const Vec3 &position, const Vec3 &
 }
 
 // As it would be if a body hung on it: what it is tied to by springs comes along.
-void World::grab_particle(std::uint32_t index, const Vec3 &target, Real max_force) {
+void World::grab_particle(std::uint32_t index, const Vec3 &target, Real max_force,
+                          const GrabSpring &pull) {
     PLUMB_CHECK(index < model_->particles.size(), "there is no particle " << index);
-    PLUMB_CHECK(is_finite(target), "a grab must be finite");
-    check_not_negative("a grab's force", max_force);
+    const Grab grab = grab_of(target, max_force, pull);
     if (model_->particles[index].inv_mass == Real(0))
         return;
     Islands tied;
@@ -114,10 +109,8 @@ void World::grab_particle(std::uint32_t index, const Vec3 &target, Real max_forc
     for (std::uint32_t i = 0; i < model_->particles.size(); ++i)
         if (tied.root_of(i) == root && model_->particles[i].inv_mass > Real(0))
             mass += model_->particles[i].mass;
-    state_.grab = Grab{};
+    state_.grab = grab;
     state_.grab.particle = index;
-    state_.grab.target = target;
-    state_.grab.max_force = max_force;
     state_.grab.held_mass = mass;
 }
 

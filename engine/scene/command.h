@@ -3,6 +3,7 @@
 // engine/scene/real/world_simulation.cpp.
 #pragma once
 
+#include "engine/dynamics/grab_spring.h"
 #include "engine/scene/scene_desc.h"
 
 #include <string>
@@ -12,8 +13,11 @@
 namespace plumb {
 
 // `name` is the command's in a recording; each_field(command, visit) calls visit(key, field) for
-// all that it says. Bodies are named; all places and vectors are the world's unless they say
-// otherwise.
+// all that it says, visit(key, field, or_default) for what a recording may leave out. Bodies are
+// named; all places and vectors are the world's unless they say otherwise.
+
+struct OrDefault {};
+inline constexpr OrDefault or_default{};
 
 // Its name must be free.
 struct AddBody {
@@ -71,11 +75,14 @@ struct GrabBody {
     glm::dvec3 point{0}; // in the body's frame
     glm::dvec3 target{0};
     double max_force = 0; // N
+    GrabSpring spring{};
     template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
         visit("body", self.body);
         visit("point", self.point);
         visit("target", self.target);
         visit("max_force", self.max_force);
+        visit("frequency", self.spring.frequency, or_default);
+        visit("damping_ratio", self.spring.damping_ratio, or_default);
     }
 };
 
@@ -85,10 +92,13 @@ struct GrabParticle {
     std::string particle;
     glm::dvec3 target{0};
     double max_force = 0; // N
+    GrabSpring spring{};
     template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
         visit("particle", self.particle);
         visit("target", self.target);
         visit("max_force", self.max_force);
+        visit("frequency", self.spring.frequency, or_default);
+        visit("damping_ratio", self.spring.damping_ratio, or_default);
     }
 };
 

@@ -134,8 +134,10 @@ constexpr std::array all_quantities{
     QuantityInfo{
         "joint_drift", "m",
         [](const Measures &now, const SceneStart &) { return now.max_joint_drift; },
-        "largest error of any joint: distance between the anchors (of a slider: across its axis), "
-        "or how far it is beyond its least or greatest length (distance)"},
+        "largest error of any joint: the distance between the anchors (of a slider: across its "
+        "axis), or that beyond its least or greatest length (distance); with it, as the other leg "
+        "of a right angle, the tilt of a hinge, the turn of a slider or fixed joint, and what is "
+        "beyond a limit, 1 rad as 1 m"},
     QuantityInfo{
         "signorini_residual", "W",
         [](const Measures &now, const SceneStart &) { return now.signorini_residual; },

@@ -31,6 +31,14 @@ struct ParticleState {
 struct ContactView {
     std::size_t body_a = 0;
     std::size_t body_b = 0;
+    std::size_t child_a = 0; // which collider of each body, as in BodyInfo
+    std::size_t child_b = 0;
+    // Of the mesh or height field, when one of them is.
+    std::optional<std::size_t> triangle;
+    // Names the pair of features that made the point, the same as long as they last. Only within
+    // one contact.
+    std::uint32_t feature = 0;
+    bool is_sensor = false;       // one of them is: it pushes nothing
     glm::dvec3 position{0};       // world
     glm::dvec3 normal{0};         // from a to b
     double separation = 0;        // m
@@ -57,7 +65,7 @@ struct JointView {
     double frequency = 0;              // Hz; 0: rigid
     double break_force = 0;            // N; 0: never
     bool broken = false;
-    double drift = 0;       // m, by which the anchors miss what they are held to
+    double drift = 0;       // m, by which the anchors miss what they are held to, limits included
     double angle_drift = 0; // rad, likewise of the frames
     // Of all rows, on b, mean over the last substep: at its anchor (N), and about it (N m). World.
     glm::dvec3 force{0};

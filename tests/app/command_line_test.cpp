@@ -184,6 +184,11 @@ TEST(CommandLine, ListNamesScenesMethodsAndKeys) {
     const ProgramResult methods = run_program("list --methods");
     EXPECT_EQ(methods.exit_code, 0);
     EXPECT_TRUE(has(methods.out, "soft_step")) << methods.out;
+    for (const char *line :
+         {"soft_step             Soft step             contacts, joints, springs  ",
+          "naive_impulses        Naive impulses        contacts                   Szauer",
+          "rk4                   Runge-Kutta 4         free bodies, springs       "})
+        EXPECT_TRUE(has(methods.out, line)) << line << '\n' << methods.out;
     const ProgramResult keys = run_program("list --keys");
     EXPECT_EQ(keys.exit_code, 0);
     EXPECT_TRUE(has(keys.out, "Ctrl+Q")) << keys.out;

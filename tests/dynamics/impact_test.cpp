@@ -28,6 +28,83 @@ TEST(TgsSoft, BouncesToTheSquareOfItsRestitution) {
     }
 }
 
+// A ball that falls on the ground is struck once, and the impulse is what turned it round: all that
+// its momentum changed by in that step, but for gravity. By Newton's law it is m (1 + e) v.
+class Bounce : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Bounce, testing::ValuesIn(contact_methods()), name_of);
+
+TEST_P(Bounce, IsRecordedWithItsImpulse) {
+    const double mass = 2, restitution = 0.5, height = 1;
+    World world(GetParam(), settings_for(GetParam()));
+    world.add_body(ground(0, restitution));
+    const BodyId id = world.add_body(
+        with_material(dynamic_body(ball(0.1), mass, V{0, 0.1 + height, 0}), 0, restitution));
+    const double dt = world.settings().dt;
+    const double speed = std::sqrt(2 * gravity * height);
+    // A step early or late is g dt of the speed. What looks ahead by whole steps strikes it as far
+    // above the ground as it goes in one, with the energy that it has there.
+    const double early = world.settings().impact_lookahead * speed * dt;
+    const bool looks_far = GetParam() == "sequential_impulses" || GetParam() == "nncg";
+    const auto lost_by = [&](double fast) {
+        return fast - std::sqrt(fast * fast - 2 * gravity * early);
+    };
+    const double error = mass * (looks_far ? lost_by(speed) + lost_by(restitution * speed)
+                                           : (1 + restitution) * gravity * dt);
+    int impacts = 0;
+    for (int i = 0; i < 40; ++i) {
+        const double before = velocity_of(world, id).y;
+        world.step(nullptr);
+        EXPECT_EQ(world.report().impacts, world.impacts().size());
+        for (const auto &impact : world.impacts()) {
+            ++impacts;
+            const double change = velocity_of(world, id).y - before + gravity * dt;
+            // AVBD's poses are not where its forces alone would have them.
+            EXPECT_NEAR(double(impact.impulse), mass * change,
+                        (GetParam() == "avbd" ? 0.02 : 1e-4) * mass * change);
+            EXPECT_NEAR(double(impact.impulse), mass * (1 + restitution) * speed, error);
+            EXPECT_EQ(impact.key.a, 0u);
+            EXPECT_EQ(impact.key.b, id.index);
+            EXPECT_NEAR(double(glm::distance(impact.normal, narrow(V{0, 1, 0}))), 0, 1e-6);
+            EXPECT_NEAR(position_of(world, id).x, double(impact.position.x), 1e-6);
+            EXPECT_LT(std::abs(double(impact.position.y)), 1.1 * speed * dt);
+        }
+    }
+    EXPECT_EQ(impacts, 1);
+}
+
+// Where it is struck at several points, it is one impact. Known failing: naive impulses share it
+// out among the points, and have not handed out all of it when their passes end, so that it strikes
+// again.
+TEST_P(Bounce, OfABoxIsOneForAllItsPoints) {
+    World world(GetParam(), settings_for(GetParam()));
+    world.add_body(ground(0, 0.5));
+    const BodyId id =
+        world.add_body(with_material(dynamic_body(block(V{0.2}), 1, V{0, 0.21, 0}), 0, 0.5));
+    world.set_motion(id, {narrow(V{0, 0.21, 0}), identity_rotation}, narrow(V{0, -4, 0}),
+                     Vec3{Real(0)});
+    const double dt = world.settings().dt;
+    std::size_t impacts = 0;
+    double first = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double before = velocity_of(world, id).y;
+        world.step(nullptr);
+        EXPECT_EQ(world.report().impacts, world.impacts().size());
+        for (const auto &impact : world.impacts()) {
+            const double change = velocity_of(world, id).y - before + gravity * dt;
+            EXPECT_NEAR(double(impact.impulse), change, (GetParam() == "avbd" ? 0.02 : 1e-4) * 6);
+            if (++impacts == 1)
+                first = double(impact.impulse);
+        }
+    }
+    if (GetParam() == "naive_impulses") {
+        EXPECT_EQ(impacts, 2u);
+        EXPECT_LT(first, 0.7 * 1.5 * 4);
+    } else {
+        EXPECT_EQ(impacts, 1u);
+        EXPECT_NEAR(first, 1.5 * 4, 1.5 * gravity * dt);
+    }
+}
+
 BodyDef any_body(Random &random, const V &position) {
     const double mass = random.next_in(0.5, 5);
     BodyDef def = dynamic_body(any_shape(random), mass, position);

@@ -1,4 +1,5 @@
 // Hinges, sliders, fixed joints, ropes, springs, motors, limits: against closed forms.
+#include "engine/core/check.h"
 #include "tests/dynamics/avbd_passes.h"
 #include "tests/dynamics/worlds.h"
 
@@ -307,6 +308,32 @@ TEST_P(JointTypes, AGrabHoldsWithItsForceAndNoMore) {
         run(world, 120);
         EXPECT_NEAR(position_of(world, id).y, 0.25, 5e-3);
     }
+}
+
+// What it holds sags by g / w^2; without damping it swings about there at first by as much.
+TEST_P(JointTypes, AGrabPullsWithItsOwnSpring) {
+    for (const double frequency : {1.0, 3.0}) {
+        World world(GetParam(), settings_for(GetParam()));
+        const BodyId id = world.add_body(dynamic_body(block(V{0.25}), 2, V{0}));
+        world.grab(id, Vec3{Real(0)}, Vec3{Real(0)}, Real(1e4), {frequency, 0});
+        const double sag = gravity / std::pow(2 * pi * frequency, 2);
+        double lowest = 0;
+        for (int i = 0; i < 60 / frequency; ++i) { // a period
+            world.step(nullptr);
+            lowest = std::min(lowest, position_of(world, id).y);
+        }
+        const double swings = position_of(world, id).y - lowest;
+        EXPECT_LT(lowest, -1.3 * sag) << "it is not damped";
+        EXPECT_GT(lowest, -2.2 * sag);
+        EXPECT_GT(swings, 0.5 * sag) << "it comes up again";
+        world.grab(id, Vec3{Real(0)}, Vec3{Real(0)}, Real(1e4), {frequency, 1});
+        run(world, 240);
+        EXPECT_NEAR(position_of(world, id).y, -sag, 0.02 * sag + 1e-4);
+    }
+    World world(GetParam(), settings_for(GetParam()));
+    const BodyId id = world.add_body(dynamic_body(block(V{0.25}), 2, V{0}));
+    for (const GrabSpring spring : {GrabSpring{0, 1}, GrabSpring{-1, 1}, GrabSpring{5, -1}})
+        EXPECT_THROW(world.grab(id, Vec3{Real(0)}, Vec3{Real(0)}, Real(1), spring), CheckFailure);
 }
 
 } // namespace

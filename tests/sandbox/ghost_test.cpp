@@ -93,6 +93,57 @@ TEST(Ghost, WhatIsDoneToTheOneIsDoneToTheOtherAndTheRunIsAsItWas) {
     EXPECT_EQ(hash(true), hash(false));
 }
 
+// Beside explicit Euler it is where a falling ball is: the distance is the error of the run.
+TEST(Ghost, TheReferenceTellsHowFarTheRunIsFromTheTruth) {
+    SceneDesc scene = drop();
+    scene.world.method = "explicit_euler";
+    Session session;
+    ASSERT_TRUE(session.open(scene));
+    ASSERT_TRUE(session.set_ghost(reference_ghost));
+    ASSERT_TRUE(session.ghost()->is_reference());
+    EXPECT_EQ(session.ghost()->simulation().method().name, "rk4");
+    const StepSettings &settings = session.simulation()->settings();
+    for (int i = 0; i < 60; ++i)
+        ASSERT_TRUE(session.step());
+    while (session.ghost()->lag(*session.simulation()) > 0)
+        session.let_ghost_go_on();
+    EXPECT_NEAR(session.ghost()->present().bodies[0].position.y, 100 - 9.81 / 2, 1e-9);
+    EXPECT_NEAR(distance(session).metres, 0.5 * 9.81 * settings.dt / settings.substeps, 1e-9);
+    ASSERT_TRUE(session.restart());
+    ASSERT_NE(session.ghost(), nullptr);
+    EXPECT_TRUE(session.ghost()->is_reference());
+}
+
+// With no time it stays behind and says by how much; what is done then ends it.
+TEST(Ghost, AReferenceWithoutTimeLags) {
+    SceneDesc scene = drop();
+    scene.world.method = "soft_step";
+    const auto run = Simulation::create(scene, {}, nullptr);
+    Ghost ghost(*run, reference_ghost);
+    ghost.allow(0);
+    const auto step = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+            ghost.begin_step();
+            run->step();
+            ghost.catch_up(*run);
+        }
+    };
+    step(6);
+    EXPECT_NEAR(ghost.lag(*run), 0.1, 1e-9);
+    EXPECT_EQ(ghost.simulation().step_count(), 0u);
+    ghost.allow(1e9);
+    ghost.go_on(*run);
+    EXPECT_EQ(ghost.lag(*run), 0);
+    EXPECT_EQ(ghost.simulation().step_count(), 24u) << "a quarter of the step";
+    EXPECT_LT(ghost.farthest(*run, run->read()).metres, 1e-9);
+    ghost.apply(*run, ApplyImpulse{"ball", {1, 0, 0}, {0, 100, 0}});
+    EXPECT_EQ(ghost.failure(), "");
+    ghost.allow(0);
+    step(1);
+    ghost.apply(*run, ApplyImpulse{"ball", {1, 0, 0}, {0, 100, 0}});
+    EXPECT_NE(ghost.failure(), "");
+}
+
 TEST(Ghost, OfAMethodThatCannotRunTheSceneThereIsNone) {
     Session session;
     ASSERT_TRUE(session.open(std::filesystem::path(PLUMB_SOURCE_DIR) /

@@ -136,6 +136,36 @@ TEST(JointDraw, ABrokenJointShowsItsEndsAlone) {
     EXPECT_EQ(signs(view).points.at(0).colour, colours::contact);
 }
 
+// 0.3 m for the weight, twice as long for four times it; at the anchor of what is held.
+TEST(JointDraw, AnArrowIsTheForceOnWhatIsHeld) {
+    const double weight = 20;
+    const JointSurroundings scaled{one_pose, reach, {0, -9.81, 0}, weight};
+    const auto arrows = [&](const JointView &view) {
+        DrawList list;
+        draw_joints(list, std::array{view}, scaled);
+        return list;
+    };
+    JointView ball = joint(JointType::ball);
+    ball.anchor_b = {1, 0, 0};
+    ball.force = {0, weight, 0};
+    EXPECT_TRUE(has_line(arrows(ball), {1, 0, 0}, {1, 0.3f, 0}));
+    ball.force *= 4;
+    EXPECT_TRUE(has_line(arrows(ball), {1, 0, 0}, {1, 0.6f, 0}));
+    ball.force *= 1e4;
+    EXPECT_TRUE(has_line(arrows(ball), {1, 0, 0}, {1, 2, 0}));
+    // A body that is held by the world as the second: what acts on the world acts back on it.
+    JointView hung = joint(JointType::ball);
+    std::swap(hung.body_a, hung.body_b);
+    hung.anchor_a = {1, 0, 0};
+    hung.force = {0, -weight, 0};
+    EXPECT_TRUE(has_line(arrows(hung), {1, 0, 0}, {1, 0.3f, 0}));
+    const std::size_t with = arrows(ball).lines.size();
+    ball.force = {0, 0, 0};
+    EXPECT_EQ(arrows(ball).lines.size() + 3, with) << "a shaft and two barbs";
+    ball.force = {0, weight, 0};
+    EXPECT_EQ(signs(ball).lines.size() + 3, with) << "nothing to scale it by";
+}
+
 TEST(JointDraw, NothingNotFiniteComesOfWhatIsDegenerate) {
     for (const JointType type : {JointType::ball, JointType::distance, JointType::hinge,
                                  JointType::slider, JointType::fixed}) {

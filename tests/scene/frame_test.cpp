@@ -1,6 +1,11 @@
 // Everything that is seen of a simulation comes from one call.
 #include "engine/scene/simulation.h"
 
+#include <memory>
+#include <set>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 namespace plumb {
@@ -96,6 +101,119 @@ TEST(Frame, IsReadAnew) {
     EXPECT_EQ(frame.bodies.size(), 4u); // holes included
     simulation->read(frame, {});
     EXPECT_TRUE(frame.contacts.empty());
+}
+
+// A ball and a hinge that the world holds, put where the joint would not have it: one error is in
+// metres, the other in radians.
+TEST(Frame, ErrorsOfAJointAreALengthAndAnAngle) {
+    for (const JointType type : {JointType::hinge, JointType::fixed}) {
+        SceneDesc scene;
+        BodyDesc &body = scene.bodies.emplace_back();
+        body.name = "door";
+        body.colliders.emplace_back().shape = BoxDesc{{0.5, 0.5, 0.5}};
+        JointDesc &joint = scene.joints.emplace_back();
+        joint.name = "joint";
+        joint.type = type;
+        joint.body_b = "door";
+        const auto simulation = Simulation::create(scene, {}, nullptr);
+        const auto error_at = [&](const glm::dvec3 &place, const glm::dquat &turn) {
+            simulation->apply(SetMotion{"door", place, turn, {}, {}});
+            const JointView view = simulation->read({.joints = true}).joints.at(0);
+            return std::pair{view.drift, view.angle_drift};
+        };
+        const double angle = 0.1;
+        const glm::dquat tilt = glm::angleAxis(angle, glm::dvec3(0, 0.6, 0.8));
+        const auto apart = error_at({0.03, 0, 0.04}, {1, 0, 0, 0});
+        EXPECT_NEAR(apart.first, 0.05, 1e-6);
+        EXPECT_NEAR(apart.second, 0, 1e-6);
+        const auto tilted = error_at({0, 0, 0}, tilt);
+        EXPECT_NEAR(tilted.first, 0, 1e-6);
+        EXPECT_NEAR(tilted.second, angle, angle * angle * angle / 6 + 1e-6);
+        const auto both = error_at({0.03, 0, 0.04}, tilt);
+        EXPECT_NEAR(both.first, 0.05, 1e-6);
+        EXPECT_NEAR(both.second, angle, angle * angle * angle / 6 + 1e-6);
+        // A hinge turns about its own axis, x.
+        const auto turned = error_at({0, 0, 0}, glm::angleAxis(angle, glm::dvec3(1, 0, 0)));
+        EXPECT_NEAR(turned.second, type == JointType::hinge ? 0 : angle, 2e-4);
+        EXPECT_NEAR(simulation->measure().max_joint_drift, turned.second, 1e-6);
+    }
+}
+
+// A dumbbell with a ball on each triangle of a mesh, and one of them within a sensor.
+TEST(Frame, ContactsSayWhatTouches) {
+    SceneDesc scene;
+    BodyDesc &ground = scene.bodies.emplace_back();
+    ground.name = "ground";
+    ground.kind = BodyKind::fixed;
+    MeshData quad; // two triangles, parted along x = z
+    quad.vertices = {{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}};
+    quad.triangles = {{0, 1, 2}, {0, 2, 3}};
+    MeshDesc mesh;
+    mesh.data = std::make_shared<const MeshData>(quad);
+    ground.colliders.emplace_back().shape = mesh;
+    BodyDesc &dumbbell = scene.bodies.emplace_back();
+    dumbbell.name = "dumbbell";
+    dumbbell.position = {0, 0.25, 0};
+    for (const double side : {-1.0, 1.0}) {
+        ColliderDesc &ball = dumbbell.colliders.emplace_back();
+        ball.shape = SphereDesc{0.25};
+        ball.position = {side, 0, -0.5 * side};
+    }
+    BodyDesc &gate = scene.bodies.emplace_back();
+    gate.name = "gate";
+    gate.kind = BodyKind::fixed;
+    gate.position = {1, 0.5, -0.5};
+    gate.colliders.emplace_back().shape = BoxDesc{{0.3, 0.3, 0.3}};
+    gate.colliders.front().sensor = true;
+    const auto simulation = Simulation::create(scene, {}, nullptr);
+    for (int i = 0; i < 10; ++i)
+        simulation->step();
+    int on_ground = 0;
+    int in_gate = 0;
+    for (const ContactView &contact : simulation->read({.contacts = true}).contacts) {
+        if (contact.is_sensor) {
+            EXPECT_EQ(contact.body_a, 1u);
+            EXPECT_EQ(contact.body_b, 2u);
+            EXPECT_EQ(contact.child_a, 1u);
+            EXPECT_EQ(contact.normal_force, 0);
+            EXPECT_FALSE(contact.triangle);
+            ++in_gate;
+            continue;
+        }
+        EXPECT_EQ(contact.body_a, 0u);
+        EXPECT_EQ(contact.child_a, 0u);
+        // The ball at -1 is on the side of z > x, where the first triangle is.
+        EXPECT_EQ(contact.triangle, contact.child_b) << contact.position.x;
+        EXPECT_EQ(contact.position.x > 0, contact.child_b == 1);
+        ++on_ground;
+    }
+    EXPECT_EQ(on_ground, 2);
+    EXPECT_EQ(in_gate, 1);
+}
+
+// The corners of a box that lies flat are four features, and stay the same from step to step.
+TEST(Frame, FeaturesOfPointsLast) {
+    SceneDesc scene;
+    for (const char *name : {"floor", "box"}) {
+        BodyDesc &body = scene.bodies.emplace_back();
+        body.name = name;
+        body.kind = scene.bodies.size() == 1 ? BodyKind::fixed : BodyKind::dynamic;
+        const double half = scene.bodies.size() == 1 ? 3 : 0.5;
+        body.colliders.emplace_back().shape = BoxDesc{glm::dvec3(half)};
+        body.position = {0, scene.bodies.size() == 1 ? -3 : 0.5, 0};
+    }
+    const auto simulation = Simulation::create(scene, {}, nullptr);
+    std::set<std::uint32_t> first;
+    for (int i = 0; i < 20; ++i) {
+        simulation->step();
+        std::set<std::uint32_t> features;
+        for (const ContactView &contact : simulation->read({.contacts = true}).contacts)
+            features.insert(contact.feature);
+        EXPECT_EQ(features.size(), 4u);
+        if (i == 0)
+            first = features;
+        EXPECT_EQ(features, first);
+    }
 }
 
 } // namespace plumb

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -77,7 +78,7 @@ std::vector<std::pair<std::uint64_t, Command>> commands() {
     return {
         {0, ApplyImpulse{"crate_3", {30, 0.1, 1.0 / 3}, {0, 3, 0}}},
         {5, AddBody{shot("ball")}},
-        {9, GrabBody{"club", {0, 1, 0.1}, {2, 4, 1}, 5e5}},
+        {9, GrabBody{"club", {0, 1, 0.1}, {2, 4, 1}, 5e5, {1.0 / 3, 0.25}}},
         {12, MoveGrab{{2.5, 4, 1.0 / 7}}},
         {15, RemoveBody{"crate_0"}},
         {15, AddBody{shot("crate_0")}}, // into the hole, under the name that is free now
@@ -86,7 +87,7 @@ std::vector<std::pair<std::uint64_t, Command>> commands() {
         {25, SetMethod{"sequential_impulses"}},
         {25, SetSettings{settings}},
         {30, RemoveBody{"bob"}}, // and its joint
-        {32, GrabParticle{"mote", {6, 3, 1.0 / 3}, 50}},
+        {32, GrabParticle{"mote", {6, 3, 1.0 / 3}, 50, {7, 0.5}}},
         {40, ApplyImpulse{"ball", {0, 0.5, 0}, {0, 0, 0}}},
     };
 }
@@ -266,6 +267,43 @@ TEST(Recording, ASceneIsNone) {
     EXPECT_FALSE(parse_recording("]", "heap.toml").ok());
 }
 
+// What a file does not say of a grab's spring is as it is by itself; what it says is kept.
+TEST(Recording, AGrabHasTheSpringThatIsGiven) {
+    const std::string text = write_recording(recorded(scene()));
+    const RecordingResult read = parse_recording(text, "heap.toml");
+    ASSERT_TRUE(read.ok()) << format_message("heap.toml", read.messages.front());
+    int grabs = 0;
+    for (const RecordedCommand &command : read.recording.commands) {
+        if (const auto *body = std::get_if<GrabBody>(&command.command)) {
+            EXPECT_EQ(body->spring.frequency, 1.0 / 3);
+            EXPECT_EQ(body->spring.damping_ratio, 0.25);
+            ++grabs;
+        }
+        if (const auto *particle = std::get_if<GrabParticle>(&command.command)) {
+            EXPECT_EQ(particle->spring.frequency, 7);
+            EXPECT_EQ(particle->spring.damping_ratio, 0.5);
+            ++grabs;
+        }
+    }
+    EXPECT_EQ(grabs, 2);
+
+    std::string silent;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (line != "damping_ratio = 0.25" && line != "frequency = 7")
+            silent += line + '\n';
+    const RecordingResult rest = parse_recording(silent, "heap.toml");
+    ASSERT_TRUE(rest.ok()) << format_message("heap.toml", rest.messages.front());
+    for (const RecordedCommand &command : rest.recording.commands) {
+        if (const auto *body = std::get_if<GrabBody>(&command.command)) {
+            EXPECT_EQ(body->spring.damping_ratio, 1);
+        }
+        if (const auto *particle = std::get_if<GrabParticle>(&command.command)) {
+            EXPECT_EQ(particle->spring.frequency, 5);
+        }
+    }
+}
+
 // Nothing happens, and the reason is said, when a command cannot be obeyed.
 TEST(Commands, ThatCannotBeObeyedChangeNothing) {
     const auto simulation = Simulation::create(scene(), {}, nullptr);
@@ -281,7 +319,8 @@ TEST(Commands, ThatCannotBeObeyedChangeNothing) {
              AddBody{bad}, AddBody{shot("bob")}, RemoveBody{"bell"},
              SetMotion{"bob", {nan, 0, 0}, {1, 0, 0, 0}, {}, {}},
              SetMotion{"bell", {}, {1, 0, 0, 0}, {}, {}}, ApplyImpulse{"bob", {nan, 0, 0}, {}},
-             GrabBody{"bob", {}, {}, -1}, GrabBody{"bob", {nan, 0, 0}, {}, 1},
+             GrabBody{"bob", {}, {}, -1}, GrabBody{"bob", {}, {}, 1, {0, 1}},
+             GrabBody{"bob", {}, {}, 1, {5, nan}}, GrabBody{"bob", {nan, 0, 0}, {}, 1},
              MoveGrab{{0, nan, 0}}, SetMethod{"rk4"}, SetMethod{"soft_stop"},
              SetSettings{settings}}) {
         EXPECT_THROW(simulation->apply(command), std::invalid_argument) << command.index();

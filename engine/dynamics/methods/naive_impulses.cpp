@@ -12,6 +12,7 @@
 #include "engine/dynamics/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include <glm/geometric.hpp>
@@ -103,6 +104,21 @@ void strike_all(StepContext &context) {
     context.report.constraint_passes += context.scratch.contacts.size();
 }
 
+// What struck in this substep and is elastic: that bounces, however slow it is.
+void record_bounces(StepContext &context) {
+    for (const ContactConstraint &contact : context.scratch.contacts) {
+        if (contact.restitution == Real(0))
+            continue;
+        std::array<Real, 4> normal_impulse{};
+        for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k)
+            normal_impulse[k] = contact.points[k].impulse.x;
+        if (normal_impulse == std::array<Real, 4>{})
+            continue;
+        ++context.report.impacts;
+        record_impact(context, contact, normal_impulse);
+    }
+}
+
 void advance_naive_impulses(StepContext &context) {
     const StepSettings &settings = context.settings;
     const Real h = context.substep();
@@ -114,6 +130,7 @@ void advance_naive_impulses(StepContext &context) {
         remember_contacts(context); // begins from zero
         for (int i = 0; i < settings.iterations; ++i)
             strike_all(context);
+        record_bounces(context);
         project(context);
         kick(context, gravity, h);
         drift(context, h);

@@ -38,10 +38,15 @@ struct Fields {
             read(key, field);
         complete = complete && reading.report.error_count() == errors;
     }
+    template <typename Field> void operator()(std::string_view key, Field &field, OrDefault) {
+        if (table.has(key))
+            return (*this)(key, field);
+        used.push_back(key);
+    }
 
     void read(std::string_view key, std::string &field) { field = table.string(key).value_or(""); }
     void read(std::string_view key, double &field) {
-        field = table.number(key, finite).value_or(0);
+        field = table.number(key, finite).value_or(field);
     }
     void read(std::string_view key, glm::dvec3 &field) {
         field = table.vector(key, finite).value_or(field);
@@ -91,8 +96,8 @@ std::optional<Command> read_fields(Fields &fields, std::size_t which) {
 std::vector<std::string_view> command_keys() {
     std::vector<std::string_view> keys{"step", "do"};
     const auto collect = [&](auto... commands) {
-        (commands.each_field(commands,
-                             [&](std::string_view key, const auto &) { keys.push_back(key); }),
+        (commands.each_field(commands, [&](std::string_view key, const auto &,
+                                           OrDefault = {}) { keys.push_back(key); }),
          ...);
     };
     [&]<std::size_t... index>(std::index_sequence<index...>) {
@@ -169,7 +174,9 @@ struct PartLines {
     std::string tables; // they come after all values
 
     void operator()(std::string_view key, const std::string &field) { line(key, string(field)); }
-    void operator()(std::string_view key, double field) { line(key, shortest(field)); }
+    void operator()(std::string_view key, double field, OrDefault = {}) {
+        line(key, shortest(field));
+    }
     void operator()(std::string_view key, const glm::dvec3 &field) { line(key, array3(field)); }
     void operator()(std::string_view key, const glm::dquat &field) { line(key, rotation(field)); }
     void operator()(std::string_view key, const GivenSettings &field) {

@@ -16,11 +16,20 @@ void read_contacts(const World &world, std::vector<ContactView> &views) {
             const auto index = static_cast<std::size_t>(k);
             const ManifoldPoint &point = contact.manifold.points[index];
             const Vec3 &impulse = contact.impulses[index];
-            views.push_back({contact.key.a, contact.key.b, glm::dvec3{point.position},
-                             glm::dvec3{contact.manifold.normal},
-                             static_cast<double>(point.separation),
-                             static_cast<double>(impulse.x) * rate,
-                             rate * glm::dvec3{impulse.y * basis.t1 + impulse.z * basis.t2}});
+            ContactView &view = views.emplace_back();
+            view.body_a = contact.key.a;
+            view.body_b = contact.key.b;
+            view.child_a = contact.key.child_a;
+            view.child_b = contact.key.child_b;
+            if (contact.key.triangle != ContactKey::no_triangle)
+                view.triangle = contact.key.triangle;
+            view.feature = point.feature;
+            view.is_sensor = contact.sensor;
+            view.position = glm::dvec3{point.position};
+            view.normal = glm::dvec3{contact.manifold.normal};
+            view.separation = static_cast<double>(point.separation);
+            view.normal_force = static_cast<double>(impulse.x) * rate;
+            view.friction_force = rate * glm::dvec3{impulse.y * basis.t1 + impulse.z * basis.t2};
         }
     }
 }
@@ -46,7 +55,9 @@ JointView joint_view(const World &world, const JointDesc &desc, std::uint32_t i)
     view.frequency = desc.frequency;
     view.break_force = desc.break_force;
     view.broken = world.state().joints[i].broken;
-    view.drift = static_cast<double>(world.joint_error(i));
+    const JointError error = world.joint_errors(i);
+    view.drift = static_cast<double>(error.linear);
+    view.angle_drift = static_cast<double>(error.angular);
     const JointPlace place = place_of(joint, a, b);
     view.position = static_cast<double>(place.position);
     view.speed = static_cast<double>(place.speed);

@@ -202,7 +202,7 @@ void WorldSimulation::obey(const ApplyImpulse &command) {
 
 void WorldSimulation::obey(const GrabBody &command) {
     world_.grab(id_of(index_of(command.body)), Vec3{command.point}, Vec3{command.target},
-                static_cast<Real>(command.max_force));
+                static_cast<Real>(command.max_force), command.spring);
 }
 
 void WorldSimulation::obey(const GrabParticle &command) {
@@ -210,7 +210,7 @@ void WorldSimulation::obey(const GrabParticle &command) {
     if (!particle)
         throw std::invalid_argument("there is no particle \"" + command.particle + '"');
     world_.grab_particle(static_cast<std::uint32_t>(*particle), Vec3{command.target},
-                         static_cast<Real>(command.max_force));
+                         static_cast<Real>(command.max_force), command.spring);
 }
 
 void WorldSimulation::obey(const SetMethod &command) {

@@ -23,6 +23,7 @@ const std::map<std::string, std::string> &not_tuned() {
         {"book_cloth", cloth},
         {"cloth_over_sphere", cloth},
         {"flag", cloth},
+        {"hammock", cloth},
         {"hanging_cloth", cloth},
         {"trampoline", cloth},
         {"catenary", particles},

@@ -1,0 +1,12 @@
+// How stiffly a grab pulls, the same in either precision.
+#pragma once
+
+namespace plumb {
+
+// A damped spring of the mass that it holds.
+struct GrabSpring {
+    double frequency = 5;     // Hz, > 0
+    double damping_ratio = 1; // >= 0
+};
+
+} // namespace plumb
