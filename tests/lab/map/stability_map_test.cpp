@@ -200,7 +200,7 @@ frequency = 1
 name = "bounded"
 quantity = "energy_error"
 reduce = "max"
-to = 3
+to = 10
 at_most = 300
 source = "linear stability"
 )";
@@ -210,7 +210,7 @@ source = "linear stability"
                            "rk4",       "backward_euler",      "explicit_euler"};
         options.base.settings = parse_setting("substeps=" + std::to_string(substeps));
         const StabilityMap map =
-            map_scene({"scene.toml", spring}, parse_map_axis("dt=1/60..1/4:9log"),
+            map_scene({"scene.toml", spring}, parse_map_axis("dt=1/60..1/4:17log"),
                       parse_map_axis("spring.coil.frequency=4,8"), options);
         std::map<const MethodInfo *, std::vector<glm::dvec2>> theory;
         for (const TheoryCurve &curve : theory_of(map, options.base))
@@ -232,7 +232,7 @@ source = "linear stability"
             for (const glm::dvec2 &point : theory[of_method.method])
                 EXPECT_NEAR(2 * std::numbers::pi * point.y * point.x, limit * substeps, 1e-12);
             for (const MapLimit &found : of_method.limits)
-                // A cell is a factor of 15^(1/8), cut into 32 parts.
+                // A cell is a factor of 15^(1/16), cut into 32 parts.
                 EXPECT_NEAR(2 * std::numbers::pi * found.y * between(map.x, found.low, found.high),
                             limit * substeps, 0.01 * limit * substeps)
                     << of_method.method->name;

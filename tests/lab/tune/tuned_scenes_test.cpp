@@ -28,6 +28,8 @@ const std::map<std::string, std::string> &not_tuned() {
         {"trampoline", cloth},
         {"catenary", particles},
         {"soft_rope", particles},
+        {"two_masses",
+         "springs that are pushed together buckle when begun a hair beside their line"},
         {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
         {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};
     return why;
