@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, ContactLaw,
 
 // A known failing: XPBD's friction is off by some per cent (here 3.5 % of what there is to lose).
 // What it has of forces keeps the laws, and at rest nothing is off.
-TEST(ContactLaw, XpbdBrakesALittleTooHard) {
+TEST(ContactLaw, XpbdsFrictionIsOff) {
     const auto simulation = box("xpbd", "velocity = [2.4, 0, 1.8]\n");
     for (int i = 0; i < 60; ++i)
         simulation->step();
