@@ -140,14 +140,27 @@ void recall_contacts(StepContext &context, Real share) {
     context.report.constraint_passes += context.scratch.contacts.size();
 }
 
+void refresh_separations(StepContext &context) {
+    for (ContactConstraint &contact : context.scratch.contacts) {
+        const SolverBody &a = context.bodies[contact.a];
+        const SolverBody &b = context.bodies[contact.b];
+        for (int k = 0; k < contact.count; ++k) {
+            ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
+            point.separation = present_separation(contact, point, a, b);
+        }
+    }
+}
+
 void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
     context.report.constraint_passes += context.scratch.contacts.size();
     for (ContactConstraint &contact : context.scratch.contacts) {
         SolverBody &a = context.bodies[contact.a];
         SolverBody &b = context.bodies[contact.b];
+        const bool is_on_static = a.inv_mass == Vec3{Real(0)} || b.inv_mass == Vec3{Real(0)};
+        const Softness &softness = is_on_static ? bias.on_static : bias.softness;
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
-            const Real separation = present_separation(contact, point, a, b);
+            const Real separation = point.separation;
             Real target = Real(0); // velocity to be added to the relative normal velocity
             Real mass_scale = Real(1);
             Real impulse_scale = Real(0);
@@ -155,9 +168,9 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
                 target = separation / h;
             } else if (bias.push_velocity > Real(0)) {
                 const Real depth = std::min(separation + bias.slop, Real(0));
-                target = std::max(bias.softness.bias_rate * depth, -bias.push_velocity);
-                mass_scale = bias.softness.mass_scale;
-                impulse_scale = bias.softness.impulse_scale;
+                target = std::max(softness.bias_rate * depth, -bias.push_velocity);
+                mass_scale = softness.mass_scale;
+                impulse_scale = softness.impulse_scale;
             }
             const Real speed = glm::dot(relative_velocity(a, b, point), contact.normal);
             const Real change = -point.normal_mass * mass_scale * (speed + target) -

@@ -26,10 +26,11 @@ struct ContactPointConstraint {
     // maximal dissipation. With K's inverse the four corners of a box brace against each other
     // sideways and lose 6 % of their grip.
     Real tangent_mass = Real(0);
-    Vec3 impulse{Real(0)};    // accumulated in this substep: normal, t1, t2 (N s)
-    Vec3 remembered{Real(0)}; // of the substep before
-    Real approach = Real(0);  // relative normal velocity at the start of the step (m/s)
-    Real pushed = Real(0);    // normal impulse of all substeps so far (N s)
+    Vec3 impulse{Real(0)};     // accumulated in this substep: normal, t1, t2 (N s)
+    Vec3 remembered{Real(0)};  // of the substep before
+    Real separation = Real(0); // refresh_separations (m)
+    Real approach = Real(0);   // relative normal velocity at the start of the step (m/s)
+    Real pushed = Real(0);     // normal impulse of all substeps so far (N s)
 };
 
 struct StepContext;
@@ -58,7 +59,7 @@ struct ContactBias {
     bool frictionless = false;
     // m/s; contacts that close faster are swept more than once (soft_step).
     Real struck_speed = std::numeric_limits<Real>::infinity();
-    // Of points against what has no inverse mass (soft_step).
+    // Of penetrating points against what has no inverse mass.
     Softness on_static{};
 };
 
@@ -80,6 +81,8 @@ void prepare_contacts(StepContext &context, Prepare which = Prepare::all);
 // The separation of a point at the present poses (m).
 Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
                         const SolverBody &a, const SolverBody &b);
+// At the present poses, for solve_contacts: these stay as they are in its passes.
+void refresh_separations(StepContext &context);
 // Warm starting: a substep begins by remembering what the one before accumulated, and recalls it,
 // all at once or in shares: adds it to the accumulated impulses and applies it.
 void remember_contacts(StepContext &context);

@@ -78,6 +78,38 @@ TEST(SequentialImpulses, FiveCubesRest) {
     }
 }
 
+// Through the velocities the push is warm started as if it were load, and they rock.
+TEST(SequentialImpulses, FiveCubesRockWithBaumgartesBiasInTheirVelocities) {
+    const auto kinetic_energy_after_30_s = [](int split_impulse) {
+        StepSettings settings = settings_for("sequential_impulses");
+        settings.split_impulse = split_impulse;
+        World world("sequential_impulses", settings);
+        world.add_body(ground(0.5, 0));
+        for (int i = 0; i < 5; ++i)
+            world.add_body(dynamic_body(block(V{0.5}), 1000, V{0, 0.5 + i, 0}));
+        run(world, 1800);
+        return world.measure().kinetic_energy;
+    };
+    EXPECT_LT(kinetic_energy_after_30_s(1), 1e-3);
+    EXPECT_GT(kinetic_energy_after_30_s(0), 1);
+}
+
+// A stack of ten asks for twice the usual ten iterations.
+TEST(SequentialImpulses, TenCubesFallAtTheDefaults) {
+    const auto top_after_20_s = [](int iterations) {
+        StepSettings settings = settings_for("sequential_impulses");
+        settings.iterations = iterations;
+        World world("sequential_impulses", settings);
+        world.add_body(ground(0.5, 0));
+        for (int i = 0; i < 10; ++i)
+            world.add_body(dynamic_body(block(V{0.5}), 1000, V{0, 0.5 + i, 0}));
+        run(world, 1200);
+        return static_cast<double>(world.motions().back().position.y);
+    };
+    EXPECT_LT(top_after_20_s(10), 9);
+    EXPECT_GT(top_after_20_s(20), 9.4);
+}
+
 TEST(SequentialImpulses, CarryTheWeightOfFive) {
     StepSettings settings = settings_for("sequential_impulses");
     settings.iterations = 100;

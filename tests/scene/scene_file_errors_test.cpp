@@ -32,7 +32,7 @@ title = @"b"
          R"([world]
 @zzzzzz = 1
 )",
-         {R"(unknown key "zzzzzz" in [world]; there are gravity, dt, substeps, max_substeps, substep_tolerance, substep_budget, sleep_after, iterations, speculative_distance, kept_travel, penetration_slop, baumgarte, contact_frequency_ratio, contact_damping_ratio, joint_frequency_ratio, joint_damping_ratio, push_velocity, restitution_threshold, impact_lookahead, impact_sweeps and 10 more)"}},
+         {R"(unknown key "zzzzzz" in [world]; there are gravity, dt, substeps, max_substeps, substep_tolerance, substep_budget, sleep_after, iterations, speculative_distance, kept_travel, penetration_slop, baumgarte, split_impulse, contact_frequency_ratio, contact_damping_ratio, joint_frequency_ratio, joint_damping_ratio, push_velocity, restitution_threshold, impact_lookahead and 11 more)"}},
         {"UnknownTable",
          R"([@lights]
 )",

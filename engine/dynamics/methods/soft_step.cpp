@@ -2,11 +2,11 @@
 // out of the velocities again. Catto 2024, "Solver2D" (there TGS Soft); Macklin et al. 2019, "Small
 // Steps in Physics Simulation", for why substeps beat iterations.
 //
-// What is different here: gravity comes in two halves, before the move and after it, each with
-// its half of the remembered impulses; joints are solved for the poses at the substep's end, and
-// relaxed with their lever arms there. That is the order of RATTLE (Andersen 1983), a scheme of
-// second order, at the price of one more pass over the bodies: a pendulum keeps its energy, which
-// the plain scheme loses at the rate omega^2 h.
+// This is not the method that article calls Soft Step. What is different here: gravity comes in two
+// halves, before the move and after it, each with its half of the remembered impulses; joints are
+// solved for the poses at the substep's end, and relaxed with their lever arms there. That is the
+// order of RATTLE (Andersen 1983), a scheme of second order, at the price of one more pass over the
+// bodies: a pendulum keeps its energy, which the plain scheme loses at the rate omega^2 h.
 //
 // And joints that hang together without many loops are solved together, as long as the substep can
 // follow them; contacts of what rests are kept as they were found (kept_travel), those of what
