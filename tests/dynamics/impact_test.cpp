@@ -6,8 +6,8 @@ namespace {
 
 using namespace trial;
 
-class Impact : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Impact, testing::ValuesIn(impact_methods()), name_of);
+class Impacts : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Impacts, testing::ValuesIn(impact_methods()), name_of);
 
 // TGS Soft bounces once, at the end of a step, and so from a place up to v dt away.
 TEST(TgsSoft, BouncesToTheSquareOfItsRestitution) {
@@ -156,7 +156,7 @@ Collision collide_two(const std::string &method, Random &random, double friction
 
 // Equal and opposite impulses: momentum is kept to the rounding of each impulse's application, of
 // which a solver makes about 4 points x 30 passes for each substep of a touch that lasts a few.
-TEST_P(Impact, KeepsLinearMomentum) {
+TEST_P(Impacts, KeepsLinearMomentum) {
     Random random(1);
     int met = 0;
     for (int trial = 0; trial < 200; ++trial) {
@@ -172,7 +172,7 @@ TEST_P(Impact, KeepsLinearMomentum) {
 
 // Balls that meet off centre and rub. With one substep the two arms of an impulse end in one point,
 // so angular momentum is kept to rounding as well.
-TEST_P(Impact, BallsKeepAngularMomentumInOneSubstep) {
+TEST_P(Impacts, BallsKeepAngularMomentumInOneSubstep) {
     Random random(2);
     for (int trial = 0; trial < 200; ++trial) {
         StepSettings settings = weightless(settings_for(GetParam()));
@@ -204,7 +204,7 @@ TEST_P(Impact, BallsKeepAngularMomentumInOneSubstep) {
 // inertias turns under the gyroscopic torque of the spin that it had before. The mean loss of the
 // same 200 plastic collisions falls in proportion to the substep, whichever way that is made
 // smaller.
-TEST_P(Impact, AngularMomentumConvergesWithTheSubstep) {
+TEST_P(Impacts, AngularMomentumConvergesWithTheSubstep) {
     std::vector<double> losses;
     for (const int refinement : {1, 4, 16}) {
         Random random(3);
@@ -223,7 +223,7 @@ TEST_P(Impact, AngularMomentumConvergesWithTheSubstep) {
 }
 
 // Newton's law cannot gain energy for restitution up to 1, and balls keep to it.
-TEST_P(Impact, BallsNeverGainEnergy) {
+TEST_P(Impacts, BallsNeverGainEnergy) {
     Random random(4);
     for (int trial = 0; trial < 300; ++trial) {
         const double restitution = 0.25 * random.next_index(5);
@@ -251,7 +251,7 @@ TEST_P(Impact, BallsNeverGainEnergy) {
 // share an impact by a limited number of passes, which shows where it is elastic and smooth. The
 // worst of 300 collisions each, as measured: 0.9 % of the energy in one such collision and 0.015 %
 // otherwise by soft_step; 1.3 % and 0.3 % by sequential impulses, with its longer substep.
-TEST_P(Impact, TumblingBodiesGainLittleEnergy) {
+TEST_P(Impacts, TumblingBodiesGainLittleEnergy) {
     const bool soft = GetParam() == "soft_step";
     for (const double friction : {0.0, 0.5})
         for (const double restitution : {0.0, 0.5, 1.0}) {
@@ -275,7 +275,7 @@ TEST_P(Impact, TumblingBodiesGainLittleEnergy) {
 // Two balls without friction: along the line of centres the velocities after are
 // (m1 u1 + m2 u2 -+ m e (u1 - u2)) / (m1 + m2), across they stay. The line of centres at contact is
 // known only to v h, so the balls are laid just apart and one substep is taken.
-TEST_P(Impact, BallsInClosedForm) {
+TEST_P(Impacts, BallsInClosedForm) {
     Random random(6);
     for (int trial = 0; trial < 200; ++trial) {
         const double m1 = random.next_in(0.5, 20), m2 = random.next_in(0.5, 20);
@@ -306,7 +306,7 @@ TEST_P(Impact, BallsInClosedForm) {
 
 // Elastic, equal masses, met off centre in full flight: the two fly apart at a right angle whatever
 // the line of centres was.
-TEST_P(Impact, EqualBallsPartAtARightAngle) {
+TEST_P(Impacts, EqualBallsPartAtARightAngle) {
     for (const double offset : {0.05, 0.1, 0.2, 0.3}) {
         World world(GetParam(), weightless(settings_for(GetParam())));
         const BodyId a = world.add_body(
@@ -326,7 +326,7 @@ TEST_P(Impact, EqualBallsPartAtARightAngle) {
 }
 
 // n balls in, n balls out, the rest stand still: five that touch, and no gravity.
-TEST_P(Impact, CradleHandsOn) {
+TEST_P(Impacts, CradleHandsOn) {
     for (int in = 1; in <= 4; ++in) {
         World world(GetParam(), weightless(settings_for(GetParam())));
         std::vector<BodyId> balls;
@@ -350,7 +350,7 @@ TEST_P(Impact, CradleHandsOn) {
 
 // Dropped from h0, a ball comes back to e^2 h0, whatever the step: the impact law accounts for the
 // gap. Read off as energy, which stands for the apex between two steps.
-TEST_P(Impact, BounceHeights) {
+TEST_P(Impacts, BounceHeights) {
     for (const double restitution : {0.3, 0.5, 0.8, 1.0})
         for (const double dt : {1.0 / 60, 1.0 / 50, 1.0 / 90}) {
             StepSettings settings = settings_for(GetParam());
@@ -385,7 +385,7 @@ TEST_P(Impact, BounceHeights) {
 }
 
 // A box on its flat side bounces like a ball and does not begin to turn.
-TEST_P(Impact, ABoxBouncesFlat) {
+TEST_P(Impacts, ABoxBouncesFlat) {
     World world(GetParam(), settings_for(GetParam()));
     world.add_body(ground(0.5, 1));
     const BodyId id = world.add_body(
@@ -397,7 +397,7 @@ TEST_P(Impact, ABoxBouncesFlat) {
 }
 
 // Slower than the threshold: no bounce, so that things come to rest.
-TEST_P(Impact, SlowImpactsDoNotBounce) {
+TEST_P(Impacts, SlowImpactsDoNotBounce) {
     World world(GetParam(), weightless(settings_for(GetParam())));
     world.add_body(ground(0, 1));
     const BodyId id = world.add_body(

@@ -9,8 +9,8 @@
 namespace plumb {
 
 // How far a body or particle is shifted at most along each axis, as a share of the largest of its
-// coordinates and its least width: some roundings of a float, which nothing that is expected of a scene should
-// hang on.
+// coordinates and its least width: some roundings of a float, which nothing that is expected of a
+// scene should hang on.
 inline constexpr double start_shift = 1e-6;
 
 // The scene as it stands first, then `others` with each dynamic body shifted at random along the

@@ -5,7 +5,8 @@
 // As there contacts are twice as stiff against what does not move. What differs: lever arms are
 // those of the step's start, as in that article's Soft Step (turned with their bodies, they make
 // balls that roll gain a tenth of their speed, and 2.7 times of it over tiles); and the frequencies
-// are shares of the substep rate, without a cap in hertz.
+// are shares of the substep rate, without a cap in hertz. Bounces, joints' frequency and damping,
+// and the push velocity are ours.
 #include "engine/dynamics/method.h"
 
 namespace plumb::inline PLUMB_PRECISION {
