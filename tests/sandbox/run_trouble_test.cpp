@@ -112,7 +112,7 @@ position = [0, 0.5, 0]
 name = "heavy"
 shape = "box"
 half_extents = [0.5, 0.5, 0.5]
-mass = 1000000
+mass = 1000
 position = [0, 1.5, 0]
 )",
                                         "heap.toml")
