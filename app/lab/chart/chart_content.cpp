@@ -239,7 +239,9 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         const std::string point = sweep_label(chart.sweep, run.point);
         if (mark.failed) {
             const std::string reason = short_reason(run);
-            mark.label = chart.convergence ? reason : says_why ? point + " " + reason : point;
+            mark.label = chart.convergence ? reason : point;
+            if (says_why && !chart.convergence)
+                mark.label.append(" ").append(reason);
             failed.add(content.series.back().name, point, reason, run.failure);
         } else if (!chart.convergence) {
             mark.label = point + worst.suffix(run);

@@ -116,8 +116,13 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
                 }
         }
         for (const auto &[name, values] : where)
-            unjudged.push_back("\"" + name + "\" is of a body that is not there with " + axis.name +
-                               " = " + values + ", and left out there");
+            unjudged.push_back(std::string("\"")
+                                   .append(name)
+                                   .append("\" is of a body that is not there with ")
+                                   .append(axis.name)
+                                   .append(" = ")
+                                   .append(values)
+                                   .append(", and left out there"));
     };
     add_along(map.x);
     add_along(map.y);

@@ -48,8 +48,8 @@ SceneDesc with_seed(const SceneText &text, const SceneDesc &scene, std::uint64_t
     try {
         std::vector<ChangedNumber> changed = text.changed;
         changed.push_back({"world.seed", static_cast<double>(seed)});
-        SceneFileResult result = parse_scene(text.text, text.path.string(), {}, changed);
-        return result.ok() ? std::move(result.scene) : scene;
+        const SceneFileResult result = parse_scene(text.text, text.path.string(), {}, changed);
+        return result.ok() ? result.scene : scene;
     } catch (const std::invalid_argument &) { // it has no [world]
         return scene;
     }
