@@ -121,6 +121,10 @@ std::uint64_t World::hash() const {
     for (const char c : method_->info.name)
         hash.add(static_cast<std::uint64_t>(c));
     hash.add(state_.clock.step_count);
+    if (state_.clock.steps_before > 0) { // else time follows from the steps
+        hash.add(state_.clock.steps_before);
+        hash.add(state_.clock.time_before);
+    }
     // Bodies are named by their rank among the living, so that holes do not count.
     std::vector<std::uint64_t> rank(bodies().size());
     std::uint64_t alive = 0;

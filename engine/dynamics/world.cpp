@@ -457,10 +457,32 @@ void World::set_pace(BodyId id, const Pace &pace) {
         state_.paces[id.index].rested = 0;
 }
 
-void World::set_step_count(std::uint64_t count) {
-    state_.clock.step_count = count;
-    state_.clock.time_before = 0;
-    state_.clock.steps_before = 0;
+void World::set_clock(const StateClock &clock) {
+    PLUMB_CHECK(clock.steps_before <= clock.step_count, "dt was changed after "
+                                                            << clock.steps_before << " of "
+                                                            << clock.step_count << " steps");
+    PLUMB_CHECK(std::isfinite(clock.time_before) && clock.time_before >= 0,
+                "dt was changed at " << clock.time_before << " s");
+    state_.clock = clock;
+}
+
+void World::hold(const Grab &grab) {
+    PLUMB_CHECK(is_finite(grab.point_local) && is_finite(grab.impulse) &&
+                    std::isfinite(grab.held_mass) && grab.held_mass >= Real(0),
+                "a grab must be finite");
+    PLUMB_CHECK(!grab.is_holding() || (grab.body < bodies().size() && bodies()[grab.body].alive),
+                "there is no body " << grab.body);
+    PLUMB_CHECK(!grab.holds_particle() || grab.particle < model_->particles.size(),
+                "there is no particle " << grab.particle);
+    // Checks the rest.
+    grab_of(grab.target, grab.max_force,
+            {static_cast<double>(grab.frequency), static_cast<double>(grab.damping_ratio)});
+    const bool can_hold =
+        grab.is_holding()
+            ? bodies()[grab.body].kind == BodyKind::dynamic
+            : grab.holds_particle() && model_->particles[grab.particle].inv_mass > Real(0);
+    if (can_hold)
+        state_.grab = grab;
 }
 
 void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,

@@ -106,8 +106,12 @@ class World {
     std::uint64_t step_count() const { return state_.clock.step_count; }
     // For a world that continues a saved one, when its bodies and joints are there again.
     void set_pace(BodyId id, const Pace &pace);
-    // For a world that continues a saved one; all its steps count as of the present dt.
-    void set_step_count(std::uint64_t count);
+    // For a world that continues a saved one. Fails a check unless dt was last changed at a time
+    // that is finite and not negative, and after no more steps than were taken.
+    void set_clock(const StateClock &clock);
+    // Likewise: takes a grab up again, with what the solver remembers of it. What cannot be held is
+    // not held, as with `grab`.
+    void hold(const Grab &grab);
     // Simulated time (s): step k is where it should be.
     double time() const {
         const StateClock &clock = state_.clock;

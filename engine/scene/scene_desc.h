@@ -146,6 +146,19 @@ struct ContactStateDesc {
     std::vector<Point> points;
 };
 
+// A held grab, of a body or of a particle: one of the two names is empty.
+struct GrabStateDesc {
+    std::string body;
+    std::string particle;
+    glm::dvec3 point_local{0}; // of a body: in its mass frame (m)
+    glm::dvec3 target{0};      // m
+    double max_force = 0;      // N
+    double frequency = 0;      // of its spring (Hz)
+    double damping_ratio = 0;
+    glm::dvec3 impulse{0}; // of a body: what the solver remembers (N s)
+    double held_mass = 0;  // of a particle: as if it bore so much (kg)
+};
+
 enum class Precision { single, dual }; // "float", "double" in files
 
 struct WorldDesc {
@@ -175,6 +188,10 @@ struct SceneDesc {
     std::vector<ExpectDesc> expects;
     // The state a saved scene continues from.
     std::uint64_t step_count = 0;
+    // When dt was last changed: after so many steps, at that time (s).
+    std::uint64_t dt_since_step = 0;
+    double dt_since_time = 0;
+    std::optional<GrabStateDesc> grab;
     std::vector<ContactStateDesc> contacts;
 };
 

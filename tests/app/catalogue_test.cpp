@@ -168,7 +168,20 @@ TEST_P(Scene, HasSomethingToHoldItTo) {
                                     [](const ProbeDesc &probe) { return !probe.expects.empty(); }));
 }
 
-// The state, written as a scene and loaded again, hashes the same and goes on the same.
+// Of the first thing that moves, if any does.
+std::optional<Command> grab_of_first(const SceneDesc &scene) {
+    for (const BodyDesc &body : scene.bodies)
+        if (body.kind == BodyKind::dynamic)
+            return GrabBody{
+                body.name, {0.01, 0.02, 0}, body.position + glm::dvec3{0.1, 0.2, 0}, 100};
+    for (const ParticleDesc &particle : scene.particles)
+        if (!particle.pinned)
+            return GrabParticle{particle.name, particle.position + glm::dvec3{0, 0.2, 0}, 100};
+    return std::nullopt;
+}
+
+// The state, written as a scene and loaded again, hashes the same and goes on the same: what is
+// held, too, and the time at which dt was changed.
 TEST_P(Scene, GoesOnTheSameFromASavedFile) {
     const auto together = static_cast<std::uint64_t>(std::max(40, trials(100))); // steps
     const SceneDesc scene = loaded(GetParam());
@@ -183,7 +196,20 @@ TEST_P(Scene, GoesOnTheSameFromASavedFile) {
             std::unique_ptr<Simulation> simulation;
         };
         std::vector<Copy> copies;
+        const std::optional<Command> grab = grab_of_first(scene);
+        const auto for_all = [&](auto act) {
+            act(*original);
+            for (const Copy &copy : copies)
+                act(*copy.simulation);
+        };
         for (std::uint64_t step = 0; step <= 100 + together; ++step) {
+            if (step == 20 && grab)
+                for_all([&](Simulation &simulation) { simulation.apply(*grab); });
+            if (step == 60) {
+                GivenSettings shorter;
+                shorter.give(&StepSettings::dt, original->settings().dt / 2);
+                for_all([&](Simulation &simulation) { simulation.apply(SetSettings{shorter}); });
+            }
             if (step == 0 || step == 1 || step == 30 || step == 100) {
                 const std::string text = write_scene(original->describe());
                 const SceneFileResult again = parse_scene(text, GetParam().string());
@@ -195,6 +221,7 @@ TEST_P(Scene, GoesOnTheSameFromASavedFile) {
                     ASSERT_EQ(copy.simulation->hash(), original->hash())
                         << method.name << ", saved at step " << copy.saved_at << ", at step "
                         << step;
+                    ASSERT_EQ(copy.simulation->time(), original->time());
                 }
             std::erase_if(copies,
                           [&](const Copy &copy) { return step == copy.saved_at + together; });

@@ -142,7 +142,7 @@ World loaded(const World &from) {
     for (std::size_t i = 0; i < ids.size(); ++i)
         if (from.bodies()[i].alive)
             world.set_pace(ids[i], from.state().paces[i]);
-    world.set_step_count(from.step_count());
+    world.set_clock(from.state().clock);
     return world;
 }
 
@@ -299,7 +299,7 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
     }
     EXPECT_GT(loaded_points, 30);
     World changed = before;
-    changed.set_step_count(before.step_count() + 1);
+    changed.set_clock({before.step_count() + 1, 0, 0});
     EXPECT_NE(changed.hash(), before.hash());
     changed = before;
     changed.set_method("sequential_impulses");

@@ -157,6 +157,34 @@ step = @-1
 @steps = 1
 )",
          {R"(unknown key "steps" in [state]; did you mean "step"?)"}},
+        {"StateClock",
+         R"([state]
+step = 3
+dt_since_step = @4
+)",
+         {"dt was changed after step 4 of 3; it must be at most `step`"}},
+        {"GrabOfNothing",
+         two + R"(@[state.grab]
+target = [0, 0, 0]
+)",
+         {"[state.grab] has none of body, particle; a grab holds one body, or one particle",
+          "[state.grab] has no max_force; the greatest force, in N"}},
+        {"GrabOfTwo",
+         two + R"([state.grab]
+body = "a"
+@particle = "p"
+target = [0, 0, 0]
+max_force = 1
+)",
+         {"[state.grab] has both body and particle; keep one of them"}},
+        {"GrabOfUnknownParticle",
+         two + R"([state.grab]
+particle = @"p"
+target = [0, 0, 0]
+max_force = 1
+held_mass = @-1
+)",
+         {R"(there is no particle "p")", "held_mass is -1; it must be a number from 0 to 1e9"}},
         {"ContactUnknownBody",
          two + R"([[state.contact]]
 body_a = "a"

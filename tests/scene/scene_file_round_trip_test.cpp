@@ -143,7 +143,12 @@ std::vector<std::string> words(const SceneDesc &scene) {
         w.add(e.from), w.add(e.to), w.number(static_cast<std::uint64_t>(e.relation));
         w.add(e.value), w.add(e.tolerance), w.add(e.estimate), w.add(e.source);
     }
-    w.number(scene.step_count);
+    w.number(scene.step_count), w.number(scene.dt_since_step), w.add(scene.dt_since_time);
+    if (const GrabStateDesc grab = scene.grab.value_or(GrabStateDesc{}); scene.grab) {
+        w.add(grab.body), w.add(grab.particle), w.add(grab.point_local), w.add(grab.target);
+        w.add(grab.max_force), w.add(grab.frequency), w.add(grab.damping_ratio);
+        w.add(grab.impulse), w.add(grab.held_mass);
+    }
     for (const ContactStateDesc &c : scene.contacts) {
         w.add(c.body_a), w.add(c.body_b);
         w.add(c.normal), w.add(c.offset), w.add(c.rotation_a), w.add(c.rotation_b);
@@ -191,6 +196,12 @@ class Scenes {
         for (int i = 0; i < 3; ++i)
             scene.expects.push_back(expect(scene));
         scene.step_count = one_in(3) ? random_.next_u64() : random_.next_index(1000);
+        if (scene.step_count > 0 && one_in(2)) {
+            scene.dt_since_step = 1 + (random_.next_u64() % scene.step_count);
+            scene.dt_since_time = positive();
+        }
+        if (one_in(2))
+            scene.grab = grab(scene);
         for (std::uint32_t i = random_.next_index(3); i > 0; --i) {
             ContactStateDesc contact;
             contact.body_a = scene.bodies[0].name;
@@ -440,6 +451,23 @@ class Scenes {
         const double a = value(key);
         const double b = value(key);
         j.*member = {std::min(a, b), std::max(a, b)};
+    }
+
+    GrabStateDesc grab(const SceneDesc &scene) {
+        GrabStateDesc g;
+        if (one_in(2)) {
+            g.body = scene.bodies[random_.next_index(4)].name;
+            g.point_local = vector();
+            g.impulse = vector();
+        } else {
+            g.particle = scene.particles[random_.next_index(3)].name;
+            g.held_mass = positive();
+        }
+        g.target = vector();
+        g.max_force = positive();
+        g.frequency = positive();
+        g.damping_ratio = positive();
+        return g;
     }
 
     ParticleDesc particle(const SceneDesc &scene) {

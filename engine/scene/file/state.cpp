@@ -1,3 +1,5 @@
+#include "engine/dynamics/grab_spring.h"
+#include "engine/scene/file/particle.h"
 #include "engine/scene/file/reading.h"
 
 #include <limits>
@@ -104,12 +106,60 @@ void read_contact(Reading &reading, const toml::table &source) {
     reading.scene.contacts.push_back(std::move(contact));
 }
 
+// What is not to be held, a static body or a pinned particle, is not, as with a grab.
+void read_grab(Reading &reading, const toml::table &source) {
+    static constexpr std::array<std::string_view, 9> keys{
+        "body",      "particle",      "point",   "target",   "max_force",
+        "frequency", "damping_ratio", "impulse", "held_mass"};
+    const Table table(reading.report, source, "[state.grab]", keys);
+    GrabStateDesc grab;
+    const std::string_view held =
+        table.one_of({"body", "particle"}, true, "a grab holds one body, or one particle");
+    if (held == "body") {
+        if (const std::optional<std::size_t> body = find_body(reading, table, "body"))
+            grab.body = reading.scene.bodies[*body].name;
+        table.refuse({"held_mass"}, "a body is held by its own mass", "leave it out");
+        grab.point_local = table.vector("point", moderate).value_or(grab.point_local);
+        grab.impulse = table.vector("impulse", moderate).value_or(grab.impulse);
+    } else if (held == "particle") {
+        grab.particle = table.string("particle").value_or("");
+        if (!is_particle(reading, grab.particle))
+            table.error("particle", "there is no particle " + in_quotes(grab.particle));
+        table.refuse({"point", "impulse"}, "a particle is held as a point, by a spring",
+                     "leave it out");
+        grab.held_mass = table.number("held_mass", not_negative).value_or(grab.held_mass);
+    }
+    if (table.require("target", "[x, y, z] in m"))
+        grab.target = table.vector("target", moderate).value_or(grab.target);
+    if (table.require("max_force", "the greatest force, in N"))
+        grab.max_force = table.number("max_force", not_negative).value_or(grab.max_force);
+    const GrabSpring spring;
+    grab.frequency = table.number("frequency", positive).value_or(spring.frequency);
+    grab.damping_ratio = table.number("damping_ratio", not_negative).value_or(spring.damping_ratio);
+    reading.scene.grab = std::move(grab);
+}
+
+void read_clock(Reading &reading, const Table &table) {
+    SceneDesc &scene = reading.scene;
+    scene.step_count = table.natural("step").value_or(0);
+    scene.dt_since_step = table.natural("dt_since_step").value_or(0);
+    scene.dt_since_time = table.number("dt_since_time", not_negative).value_or(0);
+    if (scene.dt_since_step > scene.step_count)
+        table.error("dt_since_step",
+                    "dt was changed after step " + std::to_string(scene.dt_since_step) + " of " +
+                        std::to_string(scene.step_count),
+                    "it must be at most `step`");
+}
+
 } // namespace
 
 void read_state(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 2> keys{"step", "contact"};
+    static constexpr std::array<std::string_view, 5> keys{"step", "dt_since_step", "dt_since_time",
+                                                          "grab", "contact"};
     const Table table(reading.report, source, "[state]", keys);
-    reading.scene.step_count = table.natural("step").value_or(0);
+    read_clock(reading, table);
+    if (const toml::table *grab = table_at(reading.report, table, "grab"))
+        read_grab(reading, *grab);
     for_each(
         reading.report, table, "contact",
         [&](const toml::table &contact) { read_contact(reading, contact); }, "state.contact");

@@ -318,11 +318,33 @@ class SceneWriter {
         line("source", string(expect.source));
     }
 
+    void write_grab(const GrabStateDesc &grab) {
+        header("[state.grab]");
+        if (!grab.body.empty()) {
+            line("body", string(grab.body));
+            line("point", array3(grab.point_local));
+            line("impulse", array3(grab.impulse));
+        } else {
+            line("particle", string(grab.particle));
+            line("held_mass", shortest(grab.held_mass));
+        }
+        line("target", array3(grab.target));
+        line("max_force", shortest(grab.max_force));
+        line("frequency", shortest(grab.frequency));
+        line("damping_ratio", shortest(grab.damping_ratio));
+    }
+
     void write_state(const SceneDesc &scene) {
-        if (scene.step_count == 0 && scene.contacts.empty())
+        if (scene.step_count == 0 && scene.contacts.empty() && !scene.grab)
             return;
         header("[state]");
         line("step", natural(scene.step_count));
+        if (scene.dt_since_step > 0) {
+            line("dt_since_step", natural(scene.dt_since_step));
+            line("dt_since_time", shortest(scene.dt_since_time));
+        }
+        if (scene.grab)
+            write_grab(*scene.grab);
         for (const ContactStateDesc &contact : scene.contacts) {
             std::string features;
             std::string impulses;

@@ -34,6 +34,7 @@ class WorldSimulation final : public Simulation {
         book_->scene.bodies.clear();
         book_->scene.joints.clear();
         book_->scene.contacts.clear();
+        book_->scene.grab.reset();
         for (const BodyDesc &body : scene.bodies)
             insert(body);
         for (const JointDesc &joint : scene.joints)
@@ -50,7 +51,9 @@ class WorldSimulation final : public Simulation {
                                                 static_cast<std::uint16_t>(pace.wanted),
                                                 static_cast<std::uint16_t>(pace.rested)});
         }
-        world_.set_step_count(scene.step_count);
+        world_.set_clock({scene.step_count, scene.dt_since_time, scene.dt_since_step});
+        if (scene.grab)
+            hold(*scene.grab);
     }
 
     void step(StepTimes *times) override { world_.step(tasks_, times); }
@@ -161,6 +164,8 @@ class WorldSimulation final : public Simulation {
     void insert(const ParticleInfo &info);
     void insert(const SpringInfo &info);
     void remember(const ContactStateDesc &desc);
+    void hold(const GrabStateDesc &desc);
+    void describe_grab(SceneDesc &out) const;
     void describe_soft_parts(SceneDesc &out) const;
 
     TaskPool *tasks_;
@@ -357,6 +362,40 @@ void WorldSimulation::remember(const ContactStateDesc &desc) {
     world_.remember_contact(key, origin, points, penalties);
 }
 
+void WorldSimulation::hold(const GrabStateDesc &desc) {
+    Grab grab;
+    if (!desc.body.empty())
+        grab.body = id_of(desc.body).index;
+    if (const std::optional<std::size_t> particle = soft_.find_particle(desc.particle))
+        grab.particle = static_cast<std::uint32_t>(*particle);
+    grab.point_local = Vec3{desc.point_local};
+    grab.target = Vec3{desc.target};
+    grab.max_force = static_cast<Real>(desc.max_force);
+    grab.frequency = static_cast<Real>(desc.frequency);
+    grab.damping_ratio = static_cast<Real>(desc.damping_ratio);
+    grab.impulse = Vec3{desc.impulse};
+    grab.held_mass = static_cast<Real>(desc.held_mass);
+    world_.hold(grab);
+}
+
+void WorldSimulation::describe_grab(SceneDesc &out) const {
+    const Grab &grab = world_.state().grab;
+    if (!grab.is_holding() && !grab.holds_particle())
+        return;
+    GrabStateDesc &desc = out.grab.emplace();
+    if (grab.is_holding())
+        desc.body = book_->infos[grab.body].name;
+    else
+        desc.particle = soft_.particle_name(grab.particle);
+    desc.point_local = glm::dvec3{grab.point_local};
+    desc.target = glm::dvec3{grab.target};
+    desc.max_force = static_cast<double>(grab.max_force);
+    desc.frequency = static_cast<double>(grab.frequency);
+    desc.damping_ratio = static_cast<double>(grab.damping_ratio);
+    desc.impulse = glm::dvec3{grab.impulse};
+    desc.held_mass = static_cast<double>(grab.held_mass);
+}
+
 SceneDesc WorldSimulation::describe() const {
     const World &world = world_;
     SceneDesc out = book_->scene;
@@ -364,6 +403,9 @@ SceneDesc WorldSimulation::describe() const {
     out.joints.clear();
     out.contacts.clear();
     out.step_count = world.step_count();
+    out.dt_since_step = world.state().clock.steps_before;
+    out.dt_since_time = world.state().clock.time_before;
+    describe_grab(out);
     set_run(out.world, method(), world.settings());
     std::erase_if(out.expects, [this](const ExpectDesc &expect) {
         return !expect.body.empty() && !book_->index_of.contains(expect.body) &&
