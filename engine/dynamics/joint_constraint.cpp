@@ -381,6 +381,23 @@ void recall_joints(StepContext &context, Real share, Springs springs) {
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
+void foresee_turns(StepContext &context, Real h) {
+    constexpr Real most_share = Real(0.02); // of the arms: what turns 0.2 rad leaves its circle by
+    for (JointConstraint &joint : context.scratch.joints) {
+        const RowBlock &rows = joint.rows;
+        joint.turning = Vec3{Real(0)};
+        const Real squared_most = most_share * most_share *
+                                  (glm::dot(rows.r_a, rows.r_a) + glm::dot(rows.r_b, rows.r_b) +
+                                   rows.swing_length * rows.swing_length);
+        if (rows.kind == RowKind::angular || rows.bounds == RowBounds::motor || joint.is_spring() ||
+            glm::dot(rows.error, rows.error) > squared_most)
+            continue;
+        const Vec3 bend = half_bend(rows, context.body(joint.a), context.body(joint.b), h);
+        const Real squared = h * h * glm::dot(bend, bend);
+        joint.turning = squared > squared_most ? std::sqrt(squared_most / squared) * bend : bend;
+    }
+}
+
 void repeat_springs(StepContext &context) {
     const Real h = context.substep();
     for (JointConstraint &joint : context.scratch.joints)

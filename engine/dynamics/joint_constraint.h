@@ -24,6 +24,9 @@ struct JointConstraint {
     Mat3 mass{Real(0)};       // inverse of K; one row: [0][0] alone
     Vec3 impulse{Real(0)};    // accumulated in this substep, on b (N s, N m s)
     Vec3 remembered{Real(0)}; // of the substep before
+    // How much faster its errors grow in the mean of the substep than at its start, because the
+    // bodies turn (m/s, rad/s): of foresee_turns alone.
+    Vec3 turning{Real(0)};
     bool is_held = false;     // solved with its group in this substep (JointSystem)
     bool in_columns = false;  // in this step (JointSchedule)
     bool is_weighed = false;  // by what groups make of its bodies: they answer each of its impulses
@@ -86,6 +89,10 @@ void weigh_changed_joints(StepContext &context);
 // Warm starting, as for contacts.
 void remember_joints(StepContext &context);
 void recall_joints(StepContext &context, Real share, Springs springs);
+// For passes whose rows agree in their velocities alone: an anchor that goes straight on leaves its
+// circle by h^2 v^2 / 2r, and is pulled back to it along the chord beforehand, at the velocities of
+// now. What is torn, or turns too far for this term of second order, is left to the bias.
+void foresee_turns(StepContext &context, Real h);
 // Applies what springs do in the rest of the substep, after Springs::midpoint.
 void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);

@@ -174,6 +174,27 @@ Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody 
     return v;
 }
 
+Vec3 half_bend(const RowBlock &rows, const SolverBody &a, const SolverBody &b, Real h) {
+    const auto towards_axis = [](const Vec3 &w, const Vec3 &r) {
+        return glm::cross(w, glm::cross(w, r));
+    };
+    const Vec3 bend =
+        Real(0.5) * h *
+        (towards_axis(b.angular_velocity, rows.r_b) - towards_axis(a.angular_velocity, rows.r_a));
+    if (rows.kind == RowKind::point)
+        return bend;
+    const Vec3 parting = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+    const Vec3 seen = rows.turns_with_a ? bend - h * glm::cross(a.angular_velocity, parting) : bend;
+    Vec3 v{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], seen);
+    if (rows.swing_length > Real(0)) {
+        const Real along = glm::dot(rows.axes[0], parting);
+        v.x += Real(0.5) * h * (glm::dot(parting, parting) - along * along) / rows.swing_length;
+    }
+    return v;
+}
+
 Vec3 pushed(const Vec3 &bias, Real most) {
     const Real speed = glm::length(bias);
     return speed > most ? (most / speed) * bias : bias;
@@ -183,7 +204,7 @@ Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const Sol
                     const JointPass &pass) {
     const RowBlock &rows = joint.rows;
     const Softness softness = joint.is_spring() ? spring_softness(rows, pass) : pass.softness;
-    const Vec3 v = row_velocity(rows, a, b, pass);
+    const Vec3 v = row_velocity(rows, a, b, pass) + joint.turning;
     const Real most =
         joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
     const auto towards = [&](const Vec3 &error) {

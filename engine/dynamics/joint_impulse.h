@@ -33,6 +33,9 @@ inline Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const Solver
     return rows.kind == RowKind::point ? point_velocity(rows, a, b, pass)
                                        : axial_velocity(rows, a, b, pass);
 }
+// How much faster they grow in the mean of h than at its start, because the bodies turn: half of h
+// times the second derivative of errors along lines, v^T H v (to first order in h).
+Vec3 half_bend(const RowBlock &rows, const SolverBody &a, const SolverBody &b, Real h);
 // What an impulse along the rows is in the world: a force's, or an angular one.
 inline Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse) {
     if (rows.kind == RowKind::point)

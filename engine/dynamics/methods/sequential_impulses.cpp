@@ -1,8 +1,8 @@
 // Sequential impulses: projected Gauss-Seidel on velocities with accumulated, warm-started
 // impulses, and Baumgarte's bias against drift. Catto 2005, "Iterative Dynamics with Temporal
 // Coherence"; Catto 2006, "Fast and Simple Physics using Sequential Impulses". With pseudo
-// velocities against penetration: impulse_substeps.h says why. Impacts that are propagated in
-// sweeps and the implicit gyroscopic term are ours.
+// velocities against penetration, and joints whose turns are foreseen: impulse_substeps.h says why.
+// That, impacts that are propagated in sweeps and the implicit gyroscopic term are ours.
 #include "engine/dynamics/impulse_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {
