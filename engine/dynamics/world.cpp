@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <glm/common.hpp>
@@ -237,7 +238,10 @@ void World::remove_body(BodyId id) {
     body.collider_room = gone.collider_room;
     state_.motions[id.index] = Motion{};
     state_.paces[id.index] = Pace{};
-    model.free_bodies.push_back(id.index);
+    // The first hole is filled first, so that where a new body goes depends on where holes are
+    // alone.
+    model.free_bodies.insert(
+        std::ranges::upper_bound(model.free_bodies, id.index, std::ranges::greater{}), id.index);
 }
 
 bool World::is_alive(BodyId id) const {
