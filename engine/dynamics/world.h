@@ -76,7 +76,7 @@ class World {
 
     // The pose of the body's own frame.
     Transform pose_of(std::uint32_t body) const;
-    // Sets pose and velocity of a body, as a tool or a test does.
+    // Sets pose and velocity of a body, as a tool or a test does. A fixed one has no velocity.
     void set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
                     const Vec3 &angular_velocity);
     // Changes a dynamic body's velocity at once: `impulse` in N s at a world point. Others ignore

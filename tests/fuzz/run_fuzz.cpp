@@ -75,6 +75,8 @@ class Run {
 
     // ---- the scene
 
+    std::string scene_body() { return "b" + std::to_string(input_.below(next_body_)); }
+
     ShapeDesc shape(bool is_fixed) {
         switch (input_.below(is_fixed ? 8 : 5)) {
         case 0:
@@ -144,7 +146,7 @@ class Run {
             collider.sensor = input_.below(8) == 0;
             collider.filter = {static_cast<int>(input_.below(3)), input_.below(8)};
         }
-        if (body.kind == BodyKind::dynamic && input_.below(2) == 0)
+        if (body.kind == BodyKind::dynamic) // that of its volume could be beyond a file's limits
             body.mass = size();
         body.position = point();
         body.orientation = rotation();
@@ -162,8 +164,9 @@ class Run {
         JointDesc joint;
         joint.name = "j" + std::to_string(index);
         joint.type = static_cast<JointType>(input_.below(5));
-        joint.body_a = input_.below(3) == 0 ? "" : body();
-        joint.body_b = body();
+        joint.body_b = scene_body();
+        if (const std::string other = scene_body(); other != joint.body_b)
+            joint.body_a = other;
         joint.anchor_a_local = point();
         joint.anchor_b_local = point();
         if (joint.type == JointType::distance) {
@@ -203,9 +206,10 @@ class Run {
             ParticleDesc particle;
             particle.name = "p" + std::to_string(i);
             particle.position = point();
-            particle.velocity = point();
             particle.mass = size();
             particle.pinned = input_.below(4) == 0;
+            if (!particle.pinned)
+                particle.velocity = point();
             scene.particles.push_back(particle);
         }
         for (std::uint32_t i = 0; i < particles; ++i) {
@@ -215,7 +219,7 @@ class Run {
             if (input_.below(2) == 0 && i > 0)
                 spring.b = "p" + std::to_string(i - 1);
             else if (input_.below(2) == 0)
-                spring.b = body();
+                spring.b = scene_body();
             if (spring.b.empty() || spring.b[0] == 'b')
                 spring.anchor_b_local = point();
             spring.rest_length = size();
