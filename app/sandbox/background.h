@@ -34,8 +34,8 @@ template <typename Result> class Background {
   public:
     Background() = default;
     ~Background() { stop(); } // and waits, also for what was stopped before
-    Background(Background &&) = default;
-    Background &operator=(Background &&) = default;
+    Background(Background &&) noexcept = default;
+    Background &operator=(Background &&) noexcept = default;
     Background(const Background &) = delete;
     Background &operator=(const Background &) = delete;
 

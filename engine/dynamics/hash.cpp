@@ -66,7 +66,7 @@ void add(StateHash &hash, const Collider &collider) {
     hash.add(collider.material.friction);
     hash.add(collider.material.restitution);
     hash.add(std::uint64_t{collider.filter.layer} << 32 | collider.filter.ignores);
-    hash.add(std::uint64_t{collider.sensor});
+    hash.add(static_cast<std::uint64_t>(collider.sensor));
 }
 
 void add(StateHash &hash, const Body &body) {
@@ -75,7 +75,7 @@ void add(StateHash &hash, const Body &body) {
     hash.add(body.mass);
     add(hash, body.inertia);
     for (const bool locked : body.locked)
-        hash.add(std::uint64_t{locked});
+        hash.add(static_cast<std::uint64_t>(locked));
     hash.add(body.gravity_scale);
     hash.add(body.linear_damping);
     hash.add(body.angular_damping);
@@ -98,11 +98,12 @@ void add(StateHash &hash, const Joint &joint) {
     hash.add(joint.max_length);
     const JointLimits limits = joint.limits.value_or(JointLimits{});
     const JointMotor motor = joint.motor.value_or(JointMotor{});
-    hash.add(std::uint64_t{joint.limits.has_value()} << 1 | std::uint64_t{joint.motor.has_value()});
+    hash.add(static_cast<std::uint64_t>(joint.limits.has_value()) << 1 |
+             static_cast<std::uint64_t>(joint.motor.has_value()));
     for (const Real value : {limits.lower, limits.upper, motor.speed, motor.max_force,
                              joint.frequency, joint.damping_ratio, joint.break_force})
         hash.add(value);
-    hash.add(std::uint64_t{joint.collide_connected});
+    hash.add(static_cast<std::uint64_t>(joint.collide_connected));
 }
 
 // None at all are as good as zeros.
@@ -153,7 +154,7 @@ std::uint64_t World::hash() const {
         add(hash, joint);
         for (const Real impulse : state_.joints[i].impulses)
             hash.add(impulse);
-        hash.add(std::uint64_t{state_.joints[i].broken});
+        hash.add(static_cast<std::uint64_t>(state_.joints[i].broken));
         if (i < state_.penalties.joints.size())
             add_penalties(hash, state_.penalties.joints[i]);
     }

@@ -16,7 +16,7 @@ struct Model {
     std::vector<Joint> joints;       // holes included
     std::vector<Particle> particles; // never removed
     std::vector<Spring> springs;     // likewise
-    std::vector<std::uint32_t> free_bodies;
+    std::vector<std::uint32_t> free_bodies; // descending
     std::vector<std::uint32_t> free_joints;
     // Pairs of bodies that a joint keeps from colliding, (lesser << 32 | greater), ascending; a
     // pair comes as often as there are such joints.

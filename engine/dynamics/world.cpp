@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <glm/common.hpp>
@@ -164,9 +165,7 @@ BodyId World::add_body(const BodyDef &def) {
     add_colliders(def, body, slot);
 
     const BodyId id{slot, body.generation};
-    const bool is_fixed = def.kind == BodyKind::fixed;
-    set_motion(id, def.pose, is_fixed ? Vec3{Real(0)} : def.velocity,
-               is_fixed ? Vec3{Real(0)} : def.angular_velocity);
+    set_motion(id, def.pose, def.velocity, def.angular_velocity);
     if (def.mass_pose) {
         state_.motions[slot].position = def.mass_pose->position;
         state_.motions[slot].rotation = def.mass_pose->rotation;
@@ -237,7 +236,10 @@ void World::remove_body(BodyId id) {
     body.collider_room = gone.collider_room;
     state_.motions[id.index] = Motion{};
     state_.paces[id.index] = Pace{};
-    model.free_bodies.push_back(id.index);
+    // The first hole is filled first, so that where a new body goes depends on where holes are
+    // alone.
+    model.free_bodies.insert(
+        std::ranges::upper_bound(model.free_bodies, id.index, std::ranges::greater{}), id.index);
 }
 
 bool World::is_alive(BodyId id) const {
@@ -387,14 +389,16 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
     check_velocity(velocity, angular_velocity);
     check_pose(pose);
     const Body &body = bodies()[id.index];
+    Motion &motion = state_.motions[id.index];
+    motion = {pose.position, pose.rotation, velocity, angular_velocity};
+    if (body.kind == BodyKind::fixed)
+        motion.velocity = motion.angular_velocity = Vec3{Real(0)};
     // What sleeps is not looked at when something that does not move is put there.
-    if (body.kind != BodyKind::dynamic && velocity == Vec3{Real(0)} &&
-        angular_velocity == Vec3{Real(0)})
+    if (body.kind != BodyKind::dynamic && motion.velocity == Vec3{Real(0)} &&
+        motion.angular_velocity == Vec3{Real(0)})
         wake_all();
     else
         wake(id.index);
-    Motion &motion = state_.motions[id.index];
-    motion = {pose.position, pose.rotation, velocity, angular_velocity};
     if (body.has_mass_frame) {
         motion.position += pose.rotation * body.mass_frame.position;
         motion.rotation = glm::normalize(pose.rotation * body.mass_frame.rotation);

@@ -76,7 +76,7 @@ class World {
 
     // The pose of the body's own frame.
     Transform pose_of(std::uint32_t body) const;
-    // Sets pose and velocity of a body, as a tool or a test does.
+    // Sets pose and velocity of a body, as a tool or a test does. A fixed one has no velocity.
     void set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
                     const Vec3 &angular_velocity);
     // Changes a dynamic body's velocity at once: `impulse` in N s at a world point. Others ignore
@@ -92,7 +92,7 @@ class World {
     void set_particle(std::uint32_t index, const Vec3 &position, const Vec3 &velocity);
     // As grab, of a particle that is not pinned; a pinned one is not held.
     void grab_particle(std::uint32_t index, const Vec3 &target, Real max_force,
-                       const GrabSpring &spring = {});
+                       const GrabSpring &pull = {});
     // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
     // are known by feature; a contact that the next step does not find again is forgotten.
     void remember_contact(const ContactKey &key, const ContactOrigin &origin,
@@ -205,7 +205,7 @@ class World {
     bool wake_touched(const std::vector<Contact> &contacts);
     void wake(std::uint32_t body);
     void wake_all();
-    bool is_at_rest(std::uint32_t body) const;
+    bool is_at_rest(std::uint32_t index) const;
     void fall_asleep();
 
     // Particles and springs (world_particles.cpp, find_particle_contacts.cpp).

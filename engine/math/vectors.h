@@ -49,10 +49,10 @@ template <int N> Real largest_magnitude(const VecN<N> &v) {
 }
 
 // v times the power of two that brings its largest component to [1, 2): without rounding, but for
-// components too small to matter. Zero stays zero.
+// components too small to matter. Zero stays zero, and what is not finite as it is.
 template <int N> VecN<N> rescaled(VecN<N> v) {
     const Real largest = largest_magnitude<N>(v);
-    if (largest == Real(0))
+    if (largest == Real(0) || !std::isfinite(largest))
         return v;
     const int exponent = std::ilogb(largest);
     for (int i = 0; i < N; ++i)

@@ -37,7 +37,8 @@ struct RemoveBody {
     }
 };
 
-// Puts a body somewhere else, or gives it another velocity; what the body has locked stays 0.
+// Puts a body somewhere else, or gives it another velocity; what the body has locked stays 0, and
+// so does what is static.
 struct SetMotion {
     static constexpr std::string_view name = "move";
     std::string body;

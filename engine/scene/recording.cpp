@@ -1,11 +1,47 @@
 #include "engine/scene/recording.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace plumb {
 
+namespace {
+
+// A body that holds the place of a removed one, and meets nothing.
+BodyDesc placeholder(const std::string &name) {
+    BodyDesc body;
+    body.name = name;
+    body.kind = BodyKind::fixed;
+    ColliderDesc &collider = body.colliders.emplace_back();
+    collider.shape = SphereDesc{0.5};
+    collider.sensor = true;
+    return body;
+}
+
+} // namespace
+
+// Bodies that are added fill the holes that removed ones left, and come earlier in the solver's
+// order for it. A scene has no holes: the recording makes them anew.
 Recorder::Recorder(const Simulation &simulation) {
     recording_.scene = simulation.describe();
+    std::vector<BodyDesc> &bodies = recording_.scene.bodies;
+    for (std::size_t i = 0; i < simulation.body_count(); ++i) {
+        if (simulation.body_info(i).alive)
+            continue;
+        const std::string name = simulation.free_name("removed_" + std::to_string(i));
+        bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(i), placeholder(name));
+        recording_.commands.push_back({recording_.first_step(), RemoveBody{name}, 0});
+    }
+    if (recording_.commands.empty())
+        return;
+    // A method that knows no contacts refuses such a scene, and not what is left of it.
+    const MethodInfo &method = simulation.method();
+    if (!method.contacts) {
+        const WorldDesc other;
+        set_run(recording_.scene.world, *find_method_info(other.method), simulation.settings());
+        recording_.commands.push_back(
+            {recording_.first_step(), SetMethod{std::string(method.name)}, 0});
+    }
 }
 
 void Recorder::add(const Simulation &simulation, const Command &command) {

@@ -2,6 +2,7 @@
 #include "tests/app/program.h"
 
 #include "engine/scene/recording.h"
+#include "engine/scene/scene_file.h"
 
 #include <algorithm>
 
@@ -40,6 +41,44 @@ TEST(Replay, EndsWithTheHashThatWasRecorded) {
         EXPECT_EQ(again.out.substr(0, 16), hash.out.substr(0, 16)) << again.out;
         EXPECT_TRUE(has(again.out, "step 30")) << again.out;
     }
+}
+
+// Of a run from whose middle on was recorded, after bodies had gone; and of one that goes on from
+// the scene that was written then.
+TEST(Replay, OfTheMiddleOfARunAfterABodyWasRemoved) {
+    const TemporaryFolder folder;
+    const SceneFileResult read = parse_scene(stack, "stack.toml");
+    ASSERT_TRUE(read.ok());
+    const auto simulation = Simulation::create(read.scene, {}, nullptr);
+    const auto step = [&](int count) {
+        for (int i = 0; i < count; ++i)
+            simulation->step();
+    };
+    step(10);
+    simulation->apply(RemoveBody{"crate_1"});
+    step(10);
+    folder.write("later.toml", write_scene(simulation->describe()));
+    Recorder recorder(*simulation);
+    BodyDesc crate = read.scene.bodies.back();
+    crate.name = "crate_9";
+    crate.position = {0.1, 4, 0};
+    simulation->apply(AddBody{crate});
+    recorder.add(*simulation, AddBody{crate});
+    for (int i = 0; i < 40; ++i) {
+        recorder.before_step(*simulation);
+        simulation->step();
+    }
+    folder.write("middle.toml", write_recording(recorder.recording(*simulation)));
+    const ProgramResult middle = run_program("replay --no-window middle.toml", folder.path());
+    EXPECT_EQ(middle.exit_code, 0) << middle.err;
+    EXPECT_EQ(middle.out.substr(0, 16), hash_text(simulation->hash())) << middle.out;
+
+    const ProgramResult run = run_program(
+        "run later.toml --gl osmesa --size 16x16 --frames 11 --record run.toml", folder.path());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const ProgramResult again = run_program("replay --no-window run.toml", folder.path());
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_TRUE(has(again.out, "step 30")) << again.out;
 }
 
 TEST(Replay, SaysAtWhichStepItFirstDiffers) {

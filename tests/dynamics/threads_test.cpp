@@ -1,6 +1,8 @@
 // Steps shared out to many threads: the same bits as with one. Under ThreadSanitizer this is what
 // it looks at.
-#include "tests/dynamics/particles.h"
+#include "tests/dynamics/all_sorts.h"
+
+#include <array>
 
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
@@ -76,6 +78,85 @@ TEST_P(Threads, ShareAStepWithoutARace) {
 
 TEST_P(Threads, ShareItInTheSmallestPartsWithoutARace) {
     share_steps(GetParam(), TaskPool::Parts::single);
+}
+
+// Surfaces, hulls, cylinders, compounds, sensors, joints of all types, cloth, a grab and holes.
+class ThreadsOfAllSorts : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, ThreadsOfAllSorts, testing::ValuesIn(all_methods()), name_of);
+
+TEST_P(ThreadsOfAllSorts, GiveTheSameBits) {
+    World alone = world_of_all_sorts(GetParam(), 96);
+    std::vector<World> shared(5, alone);
+    TaskPool one(1), two(2), seven(7);
+    TaskPool two_fine(2, TaskPool::Parts::single), seven_fine(7, TaskPool::Parts::single);
+    const std::array<TaskPool *, 5> pools{&one, &two, &seven, &two_fine, &seven_fine};
+    const MethodInfo &info = alone.method().info;
+    const Random random(3);
+    for (int step = 0; step < 12; ++step) {
+        alone.step(nullptr);
+        for (std::size_t k = 0; k < shared.size(); ++k) {
+            shared[k].step(pools[k]);
+            ASSERT_EQ(shared[k].hash(), alone.hash()) << "step " << step << ", pool " << k;
+        }
+        shared.push_back(alone);
+        for (World &world : shared) {
+            if (step == 3) {
+                world.remove_body(world.body_id(20));
+                if (info.springs)
+                    world.grab_particle(5, narrow(V{0, 3, 0}), Real(20));
+            }
+            if (step == 6) {
+                Random same = random;
+                world.add_body(one_of_all_sorts(same, 4, {0, 2, 0}));
+                world.set_motion(world.body_id(30), {narrow(V{0, 1, 0}), identity_rotation},
+                                 narrow(V{20, 0, 0}), narrow(V{0, 9, 0}));
+            }
+        }
+        alone = std::move(shared.back());
+        shared.pop_back();
+    }
+    if (info.contacts) {
+        EXPECT_GT(alone.report().contacts, 60U);
+    }
+    if (info.contacts && info.springs) {
+        EXPECT_GT(alone.report().particle_contacts, 10U);
+    }
+    if (info.joints) {
+        EXPECT_GT(alone.report().joints, 40U);
+    }
+}
+
+// With sleep, and islands of their own substeps: bodies fall asleep, and are woken by what falls
+// on them.
+TEST_P(ThreadsOfAllSorts, GiveTheSameBitsWhereBodiesSleep) {
+    World alone(GetParam(), settings_for(GetParam()));
+    StepSettings settings = alone.settings();
+    settings.sleep_after = 0.05;
+    settings.substep_tolerance = 0.02;
+    alone.set_settings(settings);
+    alone.add_body(ground(0.6, 0));
+    for (int i = 0; i < 48; ++i)
+        alone.add_body(dynamic_body(block(V{0.2}), 1,
+                                    V{0.5 * (i % 6), 0.2 + 0.4 * (i / 6 % 2), 0.5 * (i / 12)}));
+    for (int i = 0; i < 3; ++i)
+        alone.add_body(dynamic_body(ball(0.2), 3, V{1.0 * i, 2.0 + i, 0.6}));
+    World shared = alone;
+    TaskPool seven(7, TaskPool::Parts::single);
+    int asleep = 0, woken = 0;
+    for (int step = 0; step < 60; ++step) {
+        const auto before = std::ranges::count_if(alone.state().paces, &Pace::is_asleep);
+        alone.step(nullptr);
+        shared.step(&seven);
+        ASSERT_EQ(shared.hash(), alone.hash()) << "step " << step;
+        const auto after = std::ranges::count_if(alone.state().paces, &Pace::is_asleep);
+        asleep += after > before ? 1 : 0;
+        woken += after < before ? 1 : 0;
+    }
+    const auto &groups = alone.method().info.reads;
+    if (std::ranges::find(groups, SettingGroup::sleep) != groups.end()) {
+        EXPECT_GT(asleep, 0);
+        EXPECT_GT(woken, 0);
+    }
 }
 
 } // namespace

@@ -269,6 +269,22 @@ TEST(World, RaycastFindsTheNearestAndOfTwoTheFirst) {
     EXPECT_EQ(hit->body, far);
 }
 
+// A static body may be put elsewhere; it gets no velocity, which would drive what rests on it.
+TEST(World, AStaticBodyHasNoVelocity) {
+    World world("soft_step", StepSettings{});
+    BodyDef def = fixed_body(block(V{1, 0.5, 1}));
+    def.velocity = narrow(V{1, 0, 0});
+    const BodyId floor = world.add_body(def);
+    world.set_motion(floor, {narrow(V{0, -0.5, 0}), identity_rotation}, narrow(V{3, 0, 0}),
+                     narrow(V{0, 2, 0}));
+    EXPECT_EQ(position_of(world, floor), V(0, -0.5, 0));
+    EXPECT_EQ(velocity_of(world, floor), V(0));
+    EXPECT_EQ(spin_of(world, floor), V(0));
+    const BodyId box = world.add_body(dynamic_body(block(V{0.2}), 1, V{0, 0.2, 0}));
+    run(world, 30);
+    EXPECT_NEAR(position_of(world, box).x, 0, 1e-4);
+}
+
 TEST(World, ImpulsesOnDynamicBodiesAlone) {
     World world("soft_step", weightless(settings_for("soft_step")));
     const BodyId id = world.add_body(dynamic_body(ball(0.5), 4, V{1, 2, 3}));

@@ -76,6 +76,20 @@ TEST(Normalized, AnyLength) {
     EXPECT_EQ(*normalized<2>(Vec2{Real(3), Real(-4)}), (Vec2{Real(0.6), Real(-0.8)}));
 }
 
+// What has diverged has no direction, and is no mistake either.
+TEST(Normalized, WhatIsNotFiniteStaysSo) {
+    constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
+    constexpr Real infinity = std::numeric_limits<Real>::infinity();
+    for (const Real bad : {nan, infinity, -infinity})
+        for (int i = 0; i < 3; ++i) {
+            Vec3 v{Real(1), Real(2), Real(3)};
+            v[i] = bad;
+            const auto unit = normalized<3>(v);
+            ASSERT_TRUE(unit.has_value());
+            EXPECT_FALSE(std::isfinite(unit->x + unit->y + unit->z)) << bad << " at " << i;
+        }
+}
+
 // Vectors of whole numbers at tiny angles to each other: their cross and dot products are exact in
 // whole numbers, of 128 bits where 64 do not do.
 __extension__ typedef __int128 Int; // NOLINT(modernize-use-using): __extension__ needs it

@@ -214,6 +214,87 @@ TEST(Recording, CountsItsStepsFromItsScene) {
     EXPECT_EQ(first_difference(parsed(write_recording(recording))), std::nullopt);
 }
 
+// One that starts in the middle of a run knows the holes that removed bodies left: those that are
+// added fill them, and come in the same place in the solver's order.
+TEST(Recording, StartsAfterBodiesWereRemoved) {
+    for (const char *precision : {"float", "double"}) {
+        SceneDesc heap = scene(precision);
+        heap.bodies.push_back(shot("removed_2")); // a name that the recording would like to have
+        heap.bodies.back().position.y = 9;
+        const auto simulation = Simulation::create(heap, {}, nullptr);
+        const auto step = [&](int count) {
+            for (int i = 0; i < count; ++i)
+                simulation->step();
+        };
+        step(20);
+        simulation->apply(RemoveBody{"crate_3"});
+        simulation->apply(RemoveBody{"crate_1"});
+        step(5);
+        simulation->apply(RemoveBody{"bob"});
+        simulation->apply(AddBody{shot("bob")});
+        step(5);
+        simulation->apply(RemoveBody{"club"});
+        Recorder recorder(*simulation);
+        const auto obey = [&](const Command &command) {
+            simulation->apply(command);
+            recorder.add(*simulation, command);
+        };
+        for (int i = 0; i < 30; ++i) {
+            if (i % 5 == 2) {
+                BodyDesc ball = shot(("ball_" + std::to_string(i)).c_str());
+                ball.position = {0.1 * i - 1, 0.6, 0.1};
+                ball.velocity = {0, 0, 0};
+                obey(AddBody{ball});
+            }
+            if (i == 14) {
+                obey(RemoveBody{"ball_7"});
+                obey(RemoveBody{"ball_2"});
+            }
+            recorder.before_step(*simulation);
+            simulation->step();
+        }
+        const Recording recording = recorder.recording(*simulation);
+        EXPECT_EQ(recording.first_step(), 30U);
+        EXPECT_EQ(first_difference(recording), std::nullopt) << precision;
+        const Recording read = parsed(write_recording(recording));
+        EXPECT_EQ(first_difference(read), std::nullopt) << precision;
+        EXPECT_EQ(read.hashes.back(), simulation->hash());
+    }
+}
+
+// Also while a method that knows no contacts steps what is left.
+TEST(Recording, StartsAfterBodiesWereRemovedWhereNothingCollides) {
+    SceneDesc heap = scene();
+    heap.particles.clear();
+    const auto simulation = Simulation::create(heap, {}, nullptr);
+    for (int i = 0; i < 10; ++i)
+        simulation->step();
+    for (const BodyDesc &body : heap.bodies)
+        if (body.name != "bob" && body.name != "club")
+            simulation->apply(RemoveBody{body.name});
+    simulation->apply(RemoveBody{"bob"});
+    simulation->apply(SetMethod{"rk4"});
+    simulation->step();
+    Recorder recorder(*simulation);
+    const auto obey = [&](const Command &command) {
+        simulation->apply(command);
+        recorder.add(*simulation, command);
+    };
+    for (int i = 0; i < 20; ++i) {
+        if (i == 5) {
+            obey(SetMethod{"soft_step"});
+            BodyDesc ball = shot("ball");
+            ball.position = {1, 3, 0};
+            obey(AddBody{ball});
+        }
+        recorder.before_step(*simulation);
+        simulation->step();
+    }
+    const Recording recording = recorder.recording(*simulation);
+    EXPECT_EQ(first_difference(recording), std::nullopt);
+    EXPECT_EQ(first_difference(parsed(write_recording(recording))), std::nullopt);
+}
+
 TEST(Recording, MistakesAreNamedAtTheirPlace) {
     const std::string text = write_recording(recorded(scene()));
     struct Mistake {
