@@ -96,7 +96,8 @@ constexpr std::array all_quantities{
         "potential_energy", "J",
         [](const Measures &now, const SceneStart &) { return now.potential_energy; },
         "of all dynamic bodies and particles in gravity: sum of -m g.r, r from the world's "
-        "origin; and of springs that are not torn: sum of k (l - l0)^2 / 2"},
+        "origin; by attractors: sum of -m mu / |r|, r from them; and of springs that are not torn: "
+        "sum of k (l - l0)^2 / 2"},
     QuantityInfo{"energy", "J",
                  [](const Measures &now, const SceneStart &) { return now.energy(); },
                  "kinetic_energy + potential_energy"},

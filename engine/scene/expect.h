@@ -57,8 +57,8 @@ const QuantityInfo *find_quantity(std::string_view name); // null when there is 
 //   linear_momentum_error    change |p - p0|,    scale sum of m |v| at the start
 //   angular_momentum_error   change |L - L0|,    scale sum of |r x m v| + |I w| at the start
 // with E = K + U; K the kinetic energy and U = sum of -m g.r the potential energy of all dynamic
-// bodies and particles, springs' added; r from the world's origin; p, L their momenta, L about the
-// world's origin; 0 marks t = 0.
+// bodies and particles, springs' and attractors' added; r from the world's origin; p, L their
+// momenta, L about the world's origin; 0 marks t = 0.
 double relative_change(double change, double scale_at_start);
 
 enum class Reduction { last, min, max, mean, max_abs, drift, period, crossings };

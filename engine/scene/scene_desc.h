@@ -167,6 +167,7 @@ struct SceneDesc {
     std::vector<MaterialDesc> materials;
     std::vector<BodyDesc> bodies; // repeats expanded
     std::vector<JointDesc> joints;
+    std::vector<AttractorDesc> attractors;
     std::vector<ParticleDesc> particles;
     std::vector<SpringDesc> springs;
     std::vector<ClothDesc> cloths;
