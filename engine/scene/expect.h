@@ -61,7 +61,7 @@ const QuantityInfo *find_quantity(std::string_view name); // null when there is 
 // momenta, L about the world's origin; 0 marks t = 0.
 double relative_change(double change, double scale_at_start);
 
-enum class Reduction { last, min, max, mean, max_abs, drift, period, crossings };
+enum class Reduction { last, min, max, mean, max_abs, drift, period, crossings, first_crossing };
 
 struct ReductionInfo {
     std::string_view name;
@@ -85,6 +85,9 @@ const ReductionInfo *find_reduction(std::string_view name); // null when there i
 //                     linear interpolation between two samples; NaN with fewer than two crossings
 //   crossings         how often x - level changes sign; samples that lie exactly on the level count
 //                     for neither side
+//   first_crossing    when it first does so, in s from the first sample, placed as for `period`;
+//   the
+//                     last sample's time where it never does
 // `level` is by default midway between the smallest and the largest value. No samples give NaN, and
 // so does any value that is NaN.
 double reduce(std::span<const double> times, std::span<const double> values, Reduction reduction,
