@@ -237,6 +237,13 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
         particles.size() == frame.particles.size() ? particles : frame.particles;
     draw_soft_parts(list, {simulation.soft_parts(), shown, shown_particles, frame.torn},
                     options.selected_particle, options.hovered_particle);
+    for (const AttractorDesc &attractor : simulation.attractors()) {
+        DrawShape ball;
+        ball.position = glm::vec3(attractor.position);
+        ball.size = glm::vec3(static_cast<float>(attractor.radius));
+        ball.colour = colours::fixed;
+        list.shapes.push_back(ball);
+    }
     const double mass = options.contacts || options.joints ? typical_mass(simulation) : 0;
     const double weight = mass * glm::length(simulation.settings().gravity);
     add_joints(list, simulation, frame, shown, options.joints, weight);

@@ -116,7 +116,7 @@ bool World::place_collider(std::uint32_t i) const {
     const Body &body = model_->bodies[collider.body];
     s.reach[i] = {};
     if (body.kind != BodyKind::fixed)
-        s.reach[i] = {going(collider.body).velocity, gravity_on(body, Vec3{settings_.gravity}),
+        s.reach[i] = {going(collider.body).velocity, pull_on(collider.body),
                       turning_reach(collider.body)};
     if (!collider.surface)
         s.placed[i] = placed(collider.shape, Transform{motion.position, motion.rotation});

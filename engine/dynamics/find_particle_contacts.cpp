@@ -53,15 +53,15 @@ void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::s
     if (what.sensor || has_diverged(motion) || (pinned && body.kind != BodyKind::dynamic))
         return;
     const auto dt = static_cast<Real>(settings_.dt);
-    const Vec3 gravity{settings_.gravity};
-    const Vec3 falling = gravity_on(body, gravity) - (pinned ? Vec3{Real(0)} : gravity);
+    const Vec3 pull = pull_on_particle(index);
+    const Vec3 falling = pull_on(what.body) - pull;
     const Real near =
         static_cast<Real>(settings_.speculative_distance) + glm::length(falling) * dt * dt;
 
     Motion going; // of the sphere
     going.position = state_.particles[index].position;
     going.velocity =
-        state_.particles[index].velocity + (pinned ? Vec3{Real(0)} : Real(0.5) * dt * gravity);
+        state_.particles[index].velocity + (pinned ? Vec3{Real(0)} : Real(0.5) * dt * pull);
     const Vec3 arm = going.position - motion.position;
     const Real way = dt * glm::length(going.velocity - motion.velocity -
                                       glm::cross(motion.angular_velocity, arm));
@@ -122,7 +122,9 @@ void World::collide_particle(std::uint32_t index, std::size_t part,
     const ParticleMotion &motion = state_.particles[index];
     const auto dt = static_cast<Real>(settings_.dt);
     const Real fall = particle.inv_mass > Real(0)
-                          ? static_cast<Real>(glm::length(settings_.gravity)) * dt * dt
+                          ? (static_cast<Real>(glm::length(settings_.gravity)) +
+                             glm::length(attraction(model_->attractors, motion.position))) *
+                                dt * dt
                           : Real(0);
     const Real reach = particle.radius + dt * glm::length(motion.velocity) + fall +
                        static_cast<Real>(settings_.speculative_distance) / 2;

@@ -8,12 +8,13 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 // The substeps of free bodies: half a kick, half of the damping, the move, and the same in reverse
-// (Strang 1968, eq. 5; exact under gravity alone, second order with damping).
+// (Strang 1968, eq. 5; exact under uniform gravity alone, second order with damping).
 // `turn(motion, body, h)` advances rotation and angular velocity by h seconds (torque-free); bodies
 // whose spin is constant turn by it as they are.
 template <typename Turn> void advance_free_bodies(StepContext &context, const Turn &turn) {
     const Real h = context.substep();
     const Vec3 gravity{context.settings.gravity};
+    const bool is_attracted = !context.model.attractors.empty();
     for (const std::uint32_t i : context.moving()) {
         SolverBody &motion = context.bodies[i];
         const Body &body = context.model.bodies[i];
@@ -24,6 +25,8 @@ template <typename Turn> void advance_free_bodies(StepContext &context, const Tu
             is_dynamic ? std::exp(Real(-0.5) * h * body.angular_damping) : Real(1);
         const bool is_gyroscopic = is_dynamic && has_gyroscopic_spin(body);
         for (int substep = 0; substep < context.settings.substeps; ++substep) {
+            if (is_attracted)
+                attract(motion, body, context.model.attractors, Real(0.5) * h);
             motion.velocity = kept * (motion.velocity + push);
             motion.angular_velocity *= spin_kept;
             motion.position += h * motion.velocity;
@@ -33,6 +36,8 @@ template <typename Turn> void advance_free_bodies(StepContext &context, const Tu
                 motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
             motion.velocity = kept * motion.velocity + push;
             motion.angular_velocity *= spin_kept;
+            if (is_attracted)
+                attract(motion, body, context.model.attractors, Real(0.5) * h);
         }
     }
     context.report.body_passes +=

@@ -201,6 +201,10 @@ std::uint64_t World::hash() const {
              {spring.rest_length, spring.stiffness, spring.damping, spring.tear_strain})
             hash.add(value);
     }
+    for (const Attractor &attractor : model_->attractors) {
+        add(hash, attractor.position);
+        hash.add(attractor.gravitational_parameter);
+    }
     if (state_.grab.holds_particle()) {
         hash.add(std::uint64_t{state_.grab.particle});
         add(hash, state_.grab.target);

@@ -88,8 +88,13 @@ bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
     SolverBody &a = context.bodies[contact.a];
     SolverBody &b = context.bodies[contact.b];
     const Vec3 gravity{context.settings.gravity};
-    const Vec3 pull_a = gravity_on(context.model.bodies[contact.a], gravity);
-    const Vec3 pull_b = gravity_on(context.model.bodies[contact.b], gravity);
+    const auto pull_on = [&](std::uint32_t body) {
+        return gravity_on(context.model.bodies[body],
+                          gravity +
+                              attraction(context.model.attractors, context.bodies[body].position));
+    };
+    const Vec3 pull_a = pull_on(contact.a);
+    const Vec3 pull_b = pull_on(contact.b);
     const Real pull = glm::dot(pull_b - pull_a, contact.normal);
 
     const auto normal_speed = [&](const ContactPointConstraint &point) {

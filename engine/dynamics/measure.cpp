@@ -20,7 +20,8 @@ struct BodyMeasure {
     glm::dvec3 angular_momentum{0}; // about the world's origin
 };
 
-BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 &gravity) {
+BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 &gravity,
+                       std::span<const Attractor> attractors) {
     const double mass = static_cast<double>(body.mass);
     const glm::dvec3 x{motion.position};
     const glm::dvec3 v{motion.velocity};
@@ -28,8 +29,9 @@ BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 
     const glm::dvec3 spin = glm::conjugate(rotation) * glm::dvec3{motion.angular_velocity};
     const glm::dvec3 spin_momentum = glm::dvec3{body.inertia} * spin;
     return {0.5 * mass * glm::dot(v, v) + 0.5 * glm::dot(spin_momentum, spin),
-            -mass * static_cast<double>(body.gravity_scale) * glm::dot(gravity, x), mass * v,
-            mass * glm::cross(x, v) + rotation * spin_momentum};
+            mass * static_cast<double>(body.gravity_scale) *
+                (attraction_potential(attractors, x) - glm::dot(gravity, x)),
+            mass * v, mass * glm::cross(x, v) + rotation * spin_momentum};
 }
 
 // See Measures. `rate`: substeps a second, by which impulses become forces.
@@ -63,7 +65,8 @@ double World::energy() const {
     double sum = 0;
     for (std::size_t i = 0; i < bodies().size(); ++i)
         if (bodies()[i].alive && bodies()[i].kind == BodyKind::dynamic) {
-            const BodyMeasure one = measure_of(bodies()[i], state_.motions[i], settings_.gravity);
+            const BodyMeasure one =
+                measure_of(bodies()[i], state_.motions[i], settings_.gravity, model_->attractors);
             sum += one.kinetic + one.potential;
         }
     if (model_->has_particles())
@@ -99,7 +102,8 @@ Measures World::measure() const {
     for (std::size_t i = 0; i < bodies().size(); ++i) {
         if (!bodies()[i].alive || bodies()[i].kind != BodyKind::dynamic)
             continue;
-        const BodyMeasure one = measure_of(bodies()[i], state_.motions[i], settings_.gravity);
+        const BodyMeasure one =
+            measure_of(bodies()[i], state_.motions[i], settings_.gravity, model_->attractors);
         m.kinetic_energy += one.kinetic;
         m.potential_energy += one.potential;
         m.linear_momentum += one.momentum;

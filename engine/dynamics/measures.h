@@ -6,9 +6,10 @@
 namespace plumb {
 
 struct Measures {
-    double time = 0;                // s
-    double kinetic_energy = 0;      // J, of dynamic bodies and particles
-    double potential_energy = 0;    // J in gravity, 0 at the world's origin, and in springs
+    double time = 0;           // s
+    double kinetic_energy = 0; // J, of dynamic bodies and particles
+    double potential_energy =
+        0; // J in gravity, 0 at the world's origin; by attractors, 0 far away; in springs
     glm::dvec3 linear_momentum{0};  // kg m/s
     glm::dvec3 angular_momentum{0}; // kg m^2/s about the world's origin
     double max_penetration = 0;     // m, the deepest contact point at the present poses

@@ -1,6 +1,7 @@
 // What only an edit changes: bodies, colliders, joints, particles, springs.
 #pragma once
 
+#include "engine/dynamics/attractor.h"
 #include "engine/dynamics/body.h"
 #include "engine/dynamics/joint.h"
 #include "engine/dynamics/particles.h"
@@ -11,11 +12,12 @@ namespace plumb::inline PLUMB_PRECISION {
 
 // Shared by a world and everything saved of it; an edit of a shared model copies it first.
 struct Model {
-    std::vector<Body> bodies;        // holes included (Body::alive)
-    std::vector<Collider> colliders; // holes included (Collider::body); a body's are in a row
-    std::vector<Joint> joints;       // holes included
-    std::vector<Particle> particles; // never removed
-    std::vector<Spring> springs;     // likewise
+    std::vector<Body> bodies;          // holes included (Body::alive)
+    std::vector<Collider> colliders;   // holes included (Collider::body); a body's are in a row
+    std::vector<Joint> joints;         // holes included
+    std::vector<Particle> particles;   // never removed
+    std::vector<Spring> springs;       // likewise
+    std::vector<Attractor> attractors; // likewise
     std::vector<std::uint32_t> free_bodies; // descending
     std::vector<std::uint32_t> free_joints;
     // Pairs of bodies that a joint keeps from colliding, (lesser << 32 | greater), ascending; a

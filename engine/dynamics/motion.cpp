@@ -351,6 +351,7 @@ constexpr std::size_t bodies_a_part = 64;
 
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
+    attract_bodies(context, kick == Kick::around ? Real(0.5) * h : h);
     flights.resize(context.moving().size());
     const auto begin_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -381,6 +382,8 @@ void end_flights(StepContext &context, Real h, Kick kick) {
     };
     for_parts(context.tasks, flights.size(), bodies_a_part, end_part);
     context.report.body_passes += flights.size();
+    if (kick == Kick::around)
+        attract_bodies(context, Real(0.5) * h);
 }
 
 namespace {
@@ -421,16 +424,34 @@ void fly_spinning_on(SolverBody &body, const Drive &drive, Real h, int substeps)
 
 } // namespace
 
+namespace {
+
+// All substeps of one that attractors pull at, with half of that before and after each.
+void fly_attracted(SolverBody &motion, const Body &body, const Drive &drive,
+                   const StepContext &context) {
+    const Real h = context.substep();
+    for (int substep = 0; substep < context.settings.substeps; ++substep) {
+        attract(motion, body, context.model.attractors, Real(0.5) * h);
+        fly(motion, body, drive, h, context.settings.gyroscopic_iterations);
+        attract(motion, body, context.model.attractors, Real(0.5) * h);
+    }
+}
+
+} // namespace
+
 void fly_freely(StepContext &context, const Vec3 &gravity) {
     const Real h = context.substep();
     const int substeps = context.settings.substeps;
     const std::span<const std::uint32_t> moving = context.moving();
+    const bool is_attracted = !context.model.attractors.empty();
     const auto fly_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Body &body = context.model.bodies[moving[i]];
             SolverBody &motion = context.bodies[moving[i]];
             const Drive drive = drive_of(body, gravity, h);
-            if (spins_on(body))
+            if (is_attracted)
+                fly_attracted(motion, body, drive, context);
+            else if (spins_on(body))
                 fly_spinning_on(motion, drive, h, substeps);
             else
                 for (int substep = 0; substep < substeps; ++substep)
@@ -438,10 +459,12 @@ void fly_freely(StepContext &context, const Vec3 &gravity) {
         }
     };
     for_parts(context.tasks, moving.size(), bodies_a_part, fly_part);
-    context.report.body_passes += 2 * moving.size() * static_cast<std::size_t>(substeps);
+    context.report.body_passes +=
+        (is_attracted ? 4 : 2) * moving.size() * static_cast<std::size_t>(substeps);
 }
 
 void kick(StepContext &context, const Vec3 &gravity, Real h) {
+    attract_bodies(context, h);
     for (const std::uint32_t i : context.moving()) {
         const Body &body = context.model.bodies[i];
         SolverBody &motion = context.bodies[i];

@@ -1,6 +1,7 @@
 // Unconstrained rigid motion over one substep.
 #pragma once
 
+#include "engine/dynamics/attractor.h"
 #include "engine/dynamics/body.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -47,6 +48,12 @@ inline Vec3 gravity_on(const Body &body, const Vec3 &gravity) {
         if (body.locked[static_cast<std::size_t>(i)])
             felt[i] = Real(0);
     return felt;
+}
+
+// Its velocity after h seconds of what attractors do to it where it is.
+inline void attract(Motion &motion, const Body &body, std::span<const Attractor> attractors,
+                    Real h) {
+    motion.velocity += h * gravity_on(body, attraction(attractors, motion.position));
 }
 
 // Whether all three moments are the same, so that a free body's spin is constant.

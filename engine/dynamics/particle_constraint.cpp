@@ -93,6 +93,7 @@ void kick_particles(StepContext &context, const Vec3 &gravity, Real h) {
     for (std::size_t i = 0; i < context.particles.size(); ++i)
         if (context.model.particles[i].inv_mass > Real(0))
             context.particles[i].velocity += h * gravity;
+    attract_particles(context, h);
 }
 
 void pull_particle(StepContext &context, Real h) {

@@ -120,7 +120,7 @@ void World::wake_all() {
 bool World::is_at_rest(std::uint32_t index) const {
     const Body &body = model_->bodies[index];
     const Motion &motion = scratch_.bodies[index];
-    const glm::dvec3 gravity{gravity_on(body, Vec3{settings_.gravity})};
+    const glm::dvec3 gravity{pull_on(index)};
     const double share = rest_share * settings_.dt;
     const glm::dvec3 velocity{motion.velocity};
     if (glm::dot(velocity, velocity) > 2 * share * share * glm::dot(gravity, gravity))

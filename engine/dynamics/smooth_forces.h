@@ -1,5 +1,5 @@
-// The one acceleration function of the smooth methods: gravity, springs, damping and the torque of
-// free spin, at the present motions.
+// The one acceleration function of the smooth methods: gravity, attractors, springs, damping and
+// the torque of free spin, at the present motions.
 #pragma once
 
 #include "engine/dynamics/body.h"

@@ -123,6 +123,33 @@ Model &World::edit() {
     return *model_;
 }
 
+void World::add_attractor(const Attractor &attractor) {
+    const Vec3 &x = attractor.position;
+    PLUMB_CHECK(std::isfinite(x.x + x.y + x.z),
+                "an attractor's position must be finite, got " << x.x << ' ' << x.y << ' ' << x.z);
+    PLUMB_CHECK(std::isfinite(attractor.gravitational_parameter),
+                "gravitational_parameter must be finite, got "
+                    << attractor.gravitational_parameter);
+    wake_all();
+    edit().attractors.push_back(attractor);
+}
+
+Vec3 World::pull_on(std::uint32_t body) const {
+    Vec3 pull{settings_.gravity};
+    if (!model_->attractors.empty())
+        pull += attraction(model_->attractors, state_.motions[body].position);
+    return gravity_on(model_->bodies[body], pull);
+}
+
+Vec3 World::pull_on_particle(std::uint32_t particle) const {
+    if (model_->particles[particle].inv_mass == Real(0))
+        return Vec3{Real(0)};
+    Vec3 pull{settings_.gravity};
+    if (!model_->attractors.empty())
+        pull += attraction(model_->attractors, state_.particles[particle].position);
+    return pull;
+}
+
 BodyId World::add_body(const BodyDef &def) {
     PLUMB_CHECK(!def.colliders.empty(), "a body needs a collider");
     PLUMB_CHECK(def.colliders.size() <= UINT16_MAX,

@@ -60,6 +60,8 @@ class World {
     // positive, a NaN, a negative stiffness, an end that is not there, fail a check.
     std::uint32_t add_particle(const ParticleDef &def);
     std::uint32_t add_spring(const SpringDef &def);
+    // Never removed either. Numbers that are not finite fail a check; one below 0 repels.
+    void add_attractor(const Attractor &attractor);
 
     const Model &model() const { return *model_; }
     const State &state() const { return state_; }
@@ -231,6 +233,11 @@ class World {
     void end_particles();
     void add_particles(Measures &m) const;
     double particle_energy() const;
+
+    // The acceleration of gravity and attractors where a body or particle began the step; none of
+    // what does not move by forces.
+    Vec3 pull_on(std::uint32_t body) const;
+    Vec3 pull_on_particle(std::uint32_t particle) const;
 
     bool is_turned(const Candidate &candidate) const;
     bool needs_contacts() const;

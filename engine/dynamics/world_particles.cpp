@@ -272,7 +272,8 @@ void World::add_particles(Measures &m) const {
         const glm::dvec3 x{state_.particles[i].position};
         const glm::dvec3 v{state_.particles[i].velocity};
         m.kinetic_energy += 0.5 * mass * glm::dot(v, v);
-        m.potential_energy -= mass * glm::dot(settings_.gravity, x);
+        m.potential_energy +=
+            mass * (attraction_potential(model_->attractors, x) - glm::dot(settings_.gravity, x));
         m.linear_momentum += mass * v;
         m.angular_momentum += mass * glm::cross(x, v);
     }

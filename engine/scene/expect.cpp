@@ -96,7 +96,8 @@ constexpr std::array all_quantities{
         "potential_energy", "J",
         [](const Measures &now, const SceneStart &) { return now.potential_energy; },
         "of all dynamic bodies and particles in gravity: sum of -m g.r, r from the world's "
-        "origin; and of springs that are not torn: sum of k (l - l0)^2 / 2"},
+        "origin; by attractors: sum of -m mu / |r|, r from them; and of springs that are not torn: "
+        "sum of k (l - l0)^2 / 2"},
     QuantityInfo{"energy", "J",
                  [](const Measures &now, const SceneStart &) { return now.energy(); },
                  "kinetic_energy + potential_energy"},
@@ -173,6 +174,10 @@ constexpr std::array all_reductions{
                   "mean time (s) between successive upward crossings of `level`"},
     ReductionInfo{"crossings", Reduction::crossings, true,
                   "how often the value crosses `level`, up or down", true},
+    ReductionInfo{"first_crossing", Reduction::first_crossing, true,
+                  "when the value first crosses `level`, up or down, in s from the start of the "
+                  "window; how long that is where it never does",
+                  true},
 };
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -217,6 +222,26 @@ double sign_changes(std::span<const double> values, double level) {
         side = now;
     }
     return static_cast<double>(changes);
+}
+
+// Where the chord from the last sample on the first side meets the level, once there is one on the
+// other.
+double first_crossing(std::span<const double> times, std::span<const double> values, double level) {
+    const auto side_of = [&](double value) { return value > level ? 1 : value < level ? -1 : 0; };
+    int side = 0;
+    std::size_t last = 0; // on that side
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const int now = side_of(values[i]);
+        if (now == 0)
+            continue;
+        if (side != 0 && now != side) {
+            const double fraction = (values[last] - level) / (values[last] - values[last + 1]);
+            return times[last] + fraction * (times[last + 1] - times[last]) - times.front();
+        }
+        side = now;
+        last = i;
+    }
+    return times.back() - times.front();
 }
 
 } // namespace
@@ -272,6 +297,8 @@ double reduce(std::span<const double> times, std::span<const double> values, Red
         return mean_period(times, values, middle);
     case Reduction::crossings:
         return sign_changes(values, middle);
+    case Reduction::first_crossing:
+        return first_crossing(times, values, middle);
     }
     return nan;
 }

@@ -57,11 +57,11 @@ const QuantityInfo *find_quantity(std::string_view name); // null when there is 
 //   linear_momentum_error    change |p - p0|,    scale sum of m |v| at the start
 //   angular_momentum_error   change |L - L0|,    scale sum of |r x m v| + |I w| at the start
 // with E = K + U; K the kinetic energy and U = sum of -m g.r the potential energy of all dynamic
-// bodies and particles, springs' added; r from the world's origin; p, L their momenta, L about the
-// world's origin; 0 marks t = 0.
+// bodies and particles, springs' and attractors' added; r from the world's origin; p, L their
+// momenta, L about the world's origin; 0 marks t = 0.
 double relative_change(double change, double scale_at_start);
 
-enum class Reduction { last, min, max, mean, max_abs, drift, period, crossings };
+enum class Reduction { last, min, max, mean, max_abs, drift, period, crossings, first_crossing };
 
 struct ReductionInfo {
     std::string_view name;
@@ -85,6 +85,9 @@ const ReductionInfo *find_reduction(std::string_view name); // null when there i
 //                     linear interpolation between two samples; NaN with fewer than two crossings
 //   crossings         how often x - level changes sign; samples that lie exactly on the level count
 //                     for neither side
+//   first_crossing    when it first does so, in s from the first sample, placed as for `period`;
+//   the
+//                     last sample's time where it never does
 // `level` is by default midway between the smallest and the largest value. No samples give NaN, and
 // so does any value that is NaN.
 double reduce(std::span<const double> times, std::span<const double> values, Reduction reduction,

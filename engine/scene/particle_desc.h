@@ -1,4 +1,4 @@
-// Particles, springs and cloth of a scene as plain values. SI units.
+// Attractors, particles, springs and cloth of a scene as plain values. SI units.
 #pragma once
 
 #include "engine/scene/frame.h"
@@ -17,6 +17,14 @@
 #include <glm/vec3.hpp>
 
 namespace plumb {
+
+// Attracts all that moves by forces, by Newton's law of gravitation.
+struct AttractorDesc {
+    std::string name;
+    glm::dvec3 position{0};
+    double gravitational_parameter = 1; // G M, m^3/s^2
+    double radius = 0.1;                // of the ball that it is drawn as
+};
 
 struct ParticleDesc {
     std::string name; // no body and no cloth has it

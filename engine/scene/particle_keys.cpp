@@ -13,6 +13,17 @@ using scene_file::positive;
 constexpr std::monostate by_hand{};
 constexpr std::string_view needed = "**needed**";
 
+constexpr std::array all_attractor_keys{
+    ParticleKey<AttractorDesc>{"name", by_hand, moderate, "", needed},
+    ParticleKey<AttractorDesc>{"position", &AttractorDesc::position, moderate, "`[x, y, z]`",
+                               "the origin"},
+    ParticleKey<AttractorDesc>{"gravitational_parameter", &AttractorDesc::gravitational_parameter,
+                               positive,
+                               "m³/s², positive: the gravitational constant times its mass", "1"},
+    ParticleKey<AttractorDesc>{"radius", &AttractorDesc::radius, positive,
+                               "m, positive: of the ball that it is drawn as", "0.1"},
+};
+
 constexpr std::array all_particle_keys{
     ParticleKey<ParticleDesc>{"name", by_hand, moderate,
                               "not `\"world\"`, and no body's or cloth's", needed},
@@ -128,6 +139,9 @@ std::string reference(std::string_view kind, std::span<const ParticleKey<Desc>> 
 
 } // namespace
 
+std::span<const ParticleKey<AttractorDesc>> attractor_keys() {
+    return all_attractor_keys;
+}
 std::span<const ParticleKey<ParticleDesc>> particle_keys() {
     return all_particle_keys;
 }
@@ -138,6 +152,9 @@ std::span<const ParticleKey<ClothDesc>> cloth_keys() {
     return all_cloth_keys;
 }
 
+std::string attractor_reference() {
+    return reference("attractor", attractor_keys());
+}
 std::string particle_reference() {
     return reference("particle", particle_keys());
 }

@@ -1,5 +1,5 @@
-// The keys of [[particle]], [[spring]] and [[cloth]] in scene files. The reader, the writer and the
-// reference in scenes/README.md come from these tables.
+// The keys of [[attractor]], [[particle]], [[spring]] and [[cloth]] in scene files. The reader, the
+// writer and the reference in scenes/README.md come from these tables.
 #pragma once
 
 #include "engine/scene/file/bounds.h"
@@ -25,11 +25,13 @@ template <typename Desc> struct ParticleKey {
     std::string_view also{}; // other keys that say the same in their own way: "or `frequency`"
 };
 
+std::span<const ParticleKey<AttractorDesc>> attractor_keys();
 std::span<const ParticleKey<ParticleDesc>> particle_keys();
 std::span<const ParticleKey<SpringDesc>> spring_keys();
 std::span<const ParticleKey<ClothDesc>> cloth_keys();
 
 // As tables in Markdown: what scenes/README.md says of the keys of each.
+std::string attractor_reference();
 std::string particle_reference();
 std::string spring_reference();
 std::string cloth_reference();

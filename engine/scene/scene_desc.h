@@ -109,7 +109,7 @@ struct ExpectDesc {
     std::string quantity;        // see scene/expect.h for the list
     std::string body;            // body, particle or spring, for quantities of one
     std::string reduce = "last"; // see scene/expect.h for the list
-    std::optional<double> level; // for period and crossings; by default midway between min and max
+    std::optional<double> level; // of a crossing; by default midway between min and max
     double from = 0;             // s
     double to = 0;               // s; the end of the window, and so of the run
     Relation relation = Relation::equals;
@@ -180,6 +180,7 @@ struct SceneDesc {
     std::vector<MaterialDesc> materials;
     std::vector<BodyDesc> bodies; // repeats expanded
     std::vector<JointDesc> joints;
+    std::vector<AttractorDesc> attractors;
     std::vector<ParticleDesc> particles;
     std::vector<SpringDesc> springs;
     std::vector<ClothDesc> cloths;

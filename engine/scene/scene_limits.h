@@ -12,6 +12,7 @@ inline constexpr std::size_t max_scene_planes = 100;
 inline constexpr std::size_t max_scene_pairs = 3'000'000;
 
 // Those of cloth among them: of each some 200 bytes, and as a saved scene 100 characters.
+inline constexpr std::size_t max_scene_attractors = 100;
 inline constexpr std::size_t max_scene_particles = 200'000;
 inline constexpr std::size_t max_scene_springs = 2'000'000;
 

@@ -133,6 +133,7 @@ class Simulation {
 
     // Particles, springs and cloth, as they were at the start.
     virtual const SoftParts &soft_parts() const;
+    virtual std::span<const AttractorDesc> attractors() const { return {}; }
 
     virtual const std::string &joint_name(std::size_t joint) const = 0; // a JointView's
 

@@ -79,6 +79,7 @@ const std::vector<Case> &cases() {
             {"wrecking_ball", "showcase/wrecking_ball", 40, {}},
             {"domino_run", "stacking/domino_run", 60, {}},
             {"spinning_book", "free/spinning_book", 40, {}},
+            {"kepler_orbit", "free/kepler_orbit", 150, {}},
             {"bounce", "contact/bounce_half", 30, {}},
             {"slope", "contact/slope_slides", 30, {}},
             {"stack_contacts_bounds", "stacking/ten_box_stack", 10, contacts},

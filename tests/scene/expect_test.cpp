@@ -93,6 +93,24 @@ TEST(Reduce, CountsCrossings) {
     EXPECT_EQ(reduce(Samples{{0, 1}, {2, 2}}, Reduction::crossings), 0);
 }
 
+// Let go at 5 m, it passes 2 m after sqrt(2 (5 - 2) / g): the chord is off by g dt^2 / 8, 1.2e-6 m,
+// at 7.7 m/s.
+TEST(Reduce, FirstCrossingOfAFall) {
+    Samples s;
+    for (int i = 0; i <= 1000; ++i) {
+        s.times.push_back(3 + 0.001 * i); // counts from the first sample
+        s.values.push_back(5 - 0.5 * 9.81 * (0.001 * i) * (0.001 * i));
+    }
+    EXPECT_NEAR(reduce(s, Reduction::first_crossing, 2.0), std::sqrt(6 / 9.81), 2e-7);
+    EXPECT_DOUBLE_EQ(reduce(s, Reduction::first_crossing, -10.0), 1); // not while it is watched
+    // Upward, and only the first; one that only touches is none.
+    const Samples wave{{0, 1, 2, 3, 4, 5}, {-1, 0, -1, 3, -3, 3}};
+    EXPECT_DOUBLE_EQ(reduce(wave, Reduction::first_crossing, 0.0), 2.25);
+    // Over samples on the level: when it came to it.
+    EXPECT_DOUBLE_EQ(reduce(Samples{{0, 1, 2, 3}, {1, 0, 0, -1}}, Reduction::first_crossing, 0.0),
+                     1);
+}
+
 TEST(Reduce, NothingGivesNan) {
     for (const ReductionInfo &info : reductions()) {
         EXPECT_TRUE(std::isnan(plumb::reduce({}, {}, info.reduction))) << info.name;

@@ -53,7 +53,7 @@ at_most = 1
 to = 1
 at_most = 1
 )",
-         {R"(reduce = "last" has no level; period and crossings have one)"}},
+         {R"(reduce = "last" has no level; period, crossings and first_crossing have one)"}},
         {"ExpectWindowReversed",
          expect + R"(from = @2
 to = 1

@@ -34,10 +34,30 @@ TEST(ParticleFile, ReferencesAreInTheReadme) {
     std::ostringstream text;
     text << file.rdbuf();
     for (const std::string &reference :
-         {particle_reference(), spring_reference(), cloth_reference()})
+         {attractor_reference(), particle_reference(), spring_reference(), cloth_reference()})
         EXPECT_NE(text.str().find(reference), std::string::npos)
             << "put this into scenes/README.md:\n\n"
             << reference;
+}
+
+TEST(ParticleFile, AttractorsAreReadAndWritten) {
+    const SceneDesc scene = parse(bob + R"([[attractor]]
+name = "sun"
+position = [1, 2, 3]
+gravitational_parameter = 4.5
+[[attractor]]
+name = "moon"
+radius = 0.5
+)");
+    const SceneDesc again = parse(write_scene(scene));
+    for (const SceneDesc *read : {&scene, &again}) {
+        ASSERT_EQ(read->attractors.size(), 2U);
+        EXPECT_EQ(read->attractors[0].name, "sun");
+        EXPECT_EQ(read->attractors[0].position, glm::dvec3(1, 2, 3));
+        EXPECT_EQ(read->attractors[0].gravitational_parameter, 4.5);
+        EXPECT_EQ(read->attractors[1].gravitational_parameter, 1);
+        EXPECT_EQ(read->attractors[1].radius, 0.5);
+    }
 }
 
 TEST(ParticleFile, SpringTakesItsRestLengthFromTheStart) {

@@ -3,6 +3,7 @@
 #include "app/lab/chart/chart_pen.h"
 
 #include <algorithm>
+#include <array>
 
 namespace plumb {
 
@@ -178,26 +179,41 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         pen.line({left, y}, {left + 24, y}, faint_ink, 1);
         entry("spread of the timings");
     }
-    const auto list = [&](const char *title, const std::vector<std::string> &texts) {
-        if (texts.empty() || y + 33 > bottom)
-            return;
-        y += 12;
-        pen.text({left, y}, title, Face::label, soft_ink, {0, 0.5f});
-        y += 21;
-        for (const std::string &text : texts)
-            for (const std::string &line :
-                 pen.wrapped(text, Face::footer, layout.size.x - 20 - left)) {
-                if (y > bottom)
-                    return;
-                const bool last = y + 16 > bottom && (&text != &texts.back());
-                pen.text({left, y}, last ? "…" : line, Face::footer, faint_ink, {0, 0.5f});
-                y += 16;
-            }
+    struct List {
+        const char *title;
+        const std::vector<std::string> &texts;
+        std::size_t rows = 0;
     };
     // What may be long comes last.
-    list("Worst expectation", content.worst);
-    list("Failed", content.failures);
-    list("Not on this chart", content.left_out);
+    std::array<List, 3> lists{{{"Worst expectation", content.worst},
+                               {"Failed", content.failures},
+                               {"Not on this chart", content.left_out}}};
+    constexpr float gap = 12, title_row = 21, line_row = 16;
+    float room = bottom + line_row - y;
+    for (List &list : lists)
+        if (!list.texts.empty()) {
+            list.rows = 1;
+            room -= gap + title_row + line_row;
+        }
+    for (List &list : lists) {
+        if (list.texts.empty())
+            continue;
+        std::vector<std::vector<std::string>> wrapped;
+        std::size_t wanted = 0;
+        for (const std::string &text : list.texts) {
+            wrapped.push_back(pen.wrapped(text, Face::footer, layout.size.x - 20 - left));
+            wanted += wrapped.back().size();
+        }
+        for (; list.rows < wanted && room >= line_row; room -= line_row)
+            ++list.rows;
+        y += gap;
+        pen.text({left, y}, list.title, Face::label, soft_ink, {0, 0.5f});
+        y += title_row;
+        for (const std::string &line : fitting_lines(wrapped, list.rows)) {
+            pen.text({left, y}, line, Face::footer, faint_ink, {0, 0.5f});
+            y += line_row;
+        }
+    }
 }
 
 } // namespace

@@ -87,6 +87,24 @@ std::vector<PlacedLabel> place_labels(const std::vector<glm::vec2> &points,
     return placed;
 }
 
+std::vector<std::string> fitting_lines(const std::vector<std::vector<std::string>> &texts,
+                                       std::size_t rows) {
+    std::size_t all = 0;
+    for (const std::vector<std::string> &text : texts)
+        all += text.size();
+    std::vector<std::string> lines;
+    std::size_t shown = 0;
+    for (; shown < texts.size() && rows > 0; ++shown) {
+        if (all > rows && lines.size() + texts[shown].size() + 1 > rows)
+            break; // the last row is for what is said of the rest
+        lines.insert(lines.end(), texts[shown].begin(), texts[shown].end());
+    }
+    if (rows > 0 && shown < texts.size())
+        lines.push_back((shown > 0 ? "and " : "") + std::to_string(texts.size() - shown) +
+                        (shown > 0 ? " more" : "") + ", named in the CSV file");
+    return lines;
+}
+
 ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     using namespace chart_style;
     ChartLayout layout;

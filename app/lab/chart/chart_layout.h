@@ -133,4 +133,9 @@ place_labels(const std::vector<glm::vec2> &points, const std::vector<glm::vec2> 
              const PixelBox &bounds, const std::vector<PixelBox> &obstacles,
              const std::vector<std::pair<glm::vec2, glm::vec2>> &lines);
 
+// A list under a title, in so many rows: all lines of all texts where there is room for them, else
+// those of the first texts, whole, and how many more there are. Empty without a row.
+[[nodiscard]] std::vector<std::string>
+fitting_lines(const std::vector<std::vector<std::string>> &texts, std::size_t rows);
+
 } // namespace plumb

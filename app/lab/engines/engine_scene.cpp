@@ -56,6 +56,8 @@ bool lies_in_its_mass_frame(const BodyDesc &body, const BodyDesc &described) {
 std::string beyond_engines(const SceneDesc &scene) {
     if (!scene.particles.empty() || !scene.springs.empty() || !scene.cloths.empty())
         return "particles, springs or cloth";
+    if (!scene.attractors.empty())
+        return "an attractor";
     if (scene.step_count > 0)
         return "a state that it goes on from";
     if (scene.bodies.empty())

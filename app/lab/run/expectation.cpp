@@ -44,7 +44,8 @@ ExpectOutcome judge(const ExpectDesc &desc, double measured) {
     ExpectOutcome outcome;
     outcome.desc = desc;
     const QuantityInfo *quantity = find_quantity(desc.quantity);
-    outcome.unit = desc.reduce == "period"      ? "s"
+    const bool is_time = desc.reduce == "period" || desc.reduce == "first_crossing";
+    outcome.unit = is_time                      ? "s"
                    : desc.reduce == "crossings" ? "1"
                    : quantity != nullptr        ? std::string(quantity->unit)
                                                 : "1";

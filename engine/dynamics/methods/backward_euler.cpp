@@ -5,7 +5,9 @@
 //
 // Across its line a spring under load is stiff by its force over its length; one that is pressed
 // would be soft there, and is taken as 0, so that the matrix stays positive (Choi and Ko 2002,
-// "Stable but Responsive Cloth", section 4).
+// "Stable but Responsive Cloth", section 4). An attractor
+// pulls the harder the nearer it is, which is a soft spring, too; of that as much is taken as
+// leaves the matrix half of the mass.
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 
@@ -99,6 +101,10 @@ class System {
             const glm::dmat3 inertia =
                 glm::dmat3{axes[0] * moments.x, axes[1] * moments.y, axes[2] * moments.z} *
                 glm::transpose(axes);
+            if (!context_.model.attractors.empty())
+                add_attraction(own, mass * static_cast<double>(body.gravity_scale),
+                               glm::dvec3{context_.bodies[moving[place]].position},
+                               glm::dvec3{context_.bodies[moving[place]].velocity});
             const glm::dvec3 torque = inertia * glm::dvec3{now.bodies[place].angular};
             for (int i = 0; i < 3; ++i) {
                 const auto row = static_cast<std::size_t>(i);
@@ -112,11 +118,28 @@ class System {
         }
         for (std::size_t i = 0; i < particles_.size(); ++i) {
             const auto mass = static_cast<double>(context_.model.particles[i].mass);
+            if (!context_.model.attractors.empty())
+                add_attraction(particles_[i], mass, glm::dvec3{context_.particles[i].position},
+                               glm::dvec3{context_.particles[i].velocity});
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 add_entry(particles_[i][axis], particles_[i][axis], mass);
                 add_side(particles_[i][axis],
                          h_ * mass * static_cast<double>(now.particles[i][static_cast<int>(axis)]));
             }
+        }
+    }
+
+    // -h^2 df/dx in the matrix, h^2 df/dx v on the right.
+    void add_attraction(const Unknowns &own, double mass, const glm::dvec3 &x,
+                        const glm::dvec3 &v) {
+        const glm::dmat3 change =
+            h_ * h_ * mass * attraction_gradient(context_.model.attractors, x, 0.5 / (h_ * h_));
+        const glm::dvec3 side = change * v;
+        for (int i = 0; i < 3; ++i) {
+            const auto row = static_cast<std::size_t>(i);
+            add_side(own[row], side[i]);
+            for (int j = 0; j < 3; ++j)
+                add_entry(own[row], own[static_cast<std::size_t>(j)], -change[j][i]);
         }
     }
 
@@ -183,7 +206,7 @@ class System {
     Eigen::VectorXd side_;
 };
 
-// Without springs the matrix is that of each body by itself.
+// Without springs and attractors the matrix is that of each body by itself.
 void kick_free_bodies(StepContext &context, const Accelerations &now, Real h) {
     for (std::size_t place = 0; place < context.moving().size(); ++place) {
         const std::uint32_t i = context.moving()[place];
@@ -203,7 +226,7 @@ void advance_backward_euler(StepContext &context) {
     Accelerations &now = context.scratch.accelerations[0];
     for (int substep = 0; substep < settings.substeps; ++substep) {
         find_accelerations(context, now);
-        if (context.active.has_particles)
+        if (context.active.has_particles || !context.model.attractors.empty())
             System(context, now, h).solve();
         else
             kick_free_bodies(context, now, static_cast<Real>(h));

@@ -79,6 +79,8 @@ void place(SolverBody &motion, const Motion &stage, const Body &body) {
 void take_substep(StepContext &context, Real h) {
     const auto moving = context.moving();
     const bool has_particles = context.active.has_particles;
+    // Otherwise no force asks where things are.
+    const bool reads_places = has_particles || !context.model.attractors.empty();
     Accelerations &now = context.scratch.accelerations[0];
     Stages<Motion> bodies(context.scratch.motions, moving.size());
     Stages<ParticleMotion> particles(context.scratch.particle_motions,
@@ -100,7 +102,7 @@ void take_substep(StepContext &context, Real h) {
             SolverBody &motion = context.bodies[moving[i]];
             if (body.kind == BodyKind::dynamic) {
                 bodies.stage(i) = bodies.start(i) + (at.reach * h) * bodies.rate(i);
-                if (has_particles)
+                if (reads_places)
                     place(motion, bodies.stage(i), body);
                 else
                     motion.velocity = bodies.stage(i).velocity;

@@ -66,7 +66,7 @@ void read_reduction(const Table &table, ExpectDesc &expect) {
     expect.level = table.number("level", finite);
     if (!find_reduction(expect.reduce)->uses_level)
         table.refuse({"level"}, "reduce = " + in_quotes(expect.reduce),
-                     "period and crossings have one");
+                     "period, crossings and first_crossing have one");
 }
 
 void read_estimate(const Table &table, ExpectDesc &expect) {

@@ -208,6 +208,17 @@ void read_particle(Reading &reading, const toml::table &source) {
     reading.positions.particles.push_back(table.position());
 }
 
+void read_attractor(Reading &reading, const toml::table &source) {
+    static const std::vector<std::string_view> keys = key_names(attractor_keys());
+    const Table table(reading.report, source, title_of("attractor", source), keys);
+    AttractorDesc attractor;
+    attractor.name = read_name(reading.report, table, "attractor", reading.attractors).value_or("");
+    read_members(table, attractor_keys(), attractor);
+    if (has_room_for(reading, 1, max_scene_attractors, reading.scene.attractors.size(),
+                     "attractors", table.position()))
+        reading.scene.attractors.push_back(std::move(attractor));
+}
+
 void read_spring(Reading &reading, const toml::table &source) {
     static const std::vector<std::string_view> keys = [] {
         std::vector<std::string_view> all = key_names(spring_keys());

@@ -59,6 +59,10 @@ std::string end_lines(std::string_view key, const std::string &name, const glm::
 
 } // namespace
 
+std::string attractor_text(const AttractorDesc &attractor) {
+    return line("name", string(attractor.name)) + member_lines(attractor_keys(), attractor);
+}
+
 std::string particle_text(const ParticleDesc &particle) {
     return line("name", string(particle.name)) + member_lines(particle_keys(), particle) +
            look_lines(particle);

@@ -62,6 +62,7 @@ void read_scene(Reading &reading, const Table &top) {
     read_each("material", read_material);
     read_each("body", read_body);
     read_each("joint", read_joint);
+    read_each("attractor", read_attractor);
     read_each("particle", read_particle);
     read_each("cloth", read_cloth);
     read_each("spring", read_spring);

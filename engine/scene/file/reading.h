@@ -36,6 +36,7 @@ struct Reading {
     Names materials;
     Names bodies;
     Names joints;
+    Names attractors;
     Names particles;
     Names springs;
     Names cloths;
@@ -60,8 +61,8 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string &
                                       std::vector<SceneMessage> &messages);
 
 // The keys of a scene's top level.
-inline constexpr std::array<std::string_view, 14> scene_keys{
-    "title",    "description", "world",  "methods", "camera", "material", "body",
+inline constexpr std::array<std::string_view, 15> scene_keys{
+    "title",    "description", "world",  "methods", "camera", "material", "body", "attractor",
     "particle", "cloth",       "spring", "joint",   "probe",  "expect",   "state"};
 
 // Reads all tables of a scene, and reports every error.
@@ -74,6 +75,7 @@ void read_camera(Reading &reading, const toml::table &source);
 void read_material(Reading &reading, const toml::table &source);
 void read_body(Reading &reading, const toml::table &source);
 void read_joint(Reading &reading, const toml::table &source);
+void read_attractor(Reading &reading, const toml::table &source);
 void read_particle(Reading &reading, const toml::table &source);
 void read_cloth(Reading &reading, const toml::table &source);
 void read_spring(Reading &reading, const toml::table &source); // after what it may name

@@ -33,6 +33,7 @@ std::string angle(const std::string &key, double radians); // a line
 // Of a table of each kind, what stands under its header.
 std::string joint_text(const JointDesc &joint);
 std::string particle_text(const ParticleDesc &particle);
+std::string attractor_text(const AttractorDesc &attractor);
 std::string spring_text(const SpringDesc &spring);
 std::string cloth_text(const ClothDesc &cloth);
 std::string body_text(const BodyDesc &body);

@@ -61,6 +61,8 @@ class SceneWriter {
             write_body(body);
         for (const JointDesc &joint : scene.joints)
             header("[[joint]]"), text_ += joint_text(joint);
+        for (const AttractorDesc &attractor : scene.attractors)
+            header("[[attractor]]"), text_ += attractor_text(attractor);
         for (const ParticleDesc &particle : scene.particles)
             header("[[particle]]"), text_ += particle_text(particle);
         for (const ClothDesc &cloth : scene.cloths)

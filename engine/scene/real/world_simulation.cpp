@@ -39,6 +39,9 @@ class WorldSimulation final : public Simulation {
             insert(body);
         for (const JointDesc &joint : scene.joints)
             insert(joint);
+        for (const AttractorDesc &attractor : scene.attractors)
+            world_.add_attractor(
+                {Vec3{attractor.position}, static_cast<Real>(attractor.gravitational_parameter)});
         for (const ParticleInfo &particle : soft_.particles)
             insert(particle);
         for (const SpringInfo &spring : soft_.springs)
@@ -109,6 +112,7 @@ class WorldSimulation final : public Simulation {
         return book_->scene.joints.at(joint).name;
     }
     const SoftParts &soft_parts() const override { return soft_; }
+    std::span<const AttractorDesc> attractors() const override { return book_->scene.attractors; }
     void read(Frame &into, const FrameParts &parts) const override {
         read_world(world_, book_->scene.joints, into, parts);
     }

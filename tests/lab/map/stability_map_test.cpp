@@ -330,6 +330,73 @@ source = "linear stability"
     EXPECT_NEAR(longest_damped_step("explicit_euler", 10, 1).value_or(0), 0.01, 1e-12);
 }
 
+// One substep of velocity Verlet, as the method takes it: whether it shrinks x'' = -omega^2 x -
+// rate x' in the end, by the eigenvalues of its matrix.
+bool verlet_shrinks(double omega, double rate, double h) {
+    const auto step = [&](double x, double v) {
+        const double half = v + h / 2 * (-omega * omega * x - rate * v);
+        const double to = x + h * half;
+        const double guess = half + h / 2 * (-omega * omega * to - rate * half);
+        return glm::dvec2(to, half + h / 2 * (-omega * omega * to - rate * guess));
+    };
+    const glm::dvec2 a = step(1, 0), b = step(0, 1);
+    const double trace = a.x + b.y, determinant = a.x * b.y - a.y * b.x;
+    const double inside = trace * trace / 4 - determinant;
+    const double greatest =
+        inside < 0 ? std::sqrt(determinant) : std::abs(trace) / 2 + std::sqrt(inside);
+    return greatest <= 1;
+}
+
+TEST(StabilityMap, VelocityVerletThrowsADampedSpringWhereItsMatrixSays) {
+    constexpr const char *spring = R"(
+[world]
+gravity = [0, 0, 0]
+[[particle]]
+name = "bob"
+mass = 2
+position = [0, -1.001, 0]
+[[spring]]
+name = "coil"
+b = "bob"
+anchor_a = [0, 0, 0]
+rest_length = 1
+stiffness = 200
+damping = 0
+[[expect]]
+name = "bounded"
+quantity = "energy_error"
+reduce = "max"
+to = 40
+at_most = 300
+source = "linear stability"
+)";
+    // omega = 10; from a fifth of the critical damping to four times that.
+    for (const double rate : {4.0, 20.0, 40.0, 80.0}) {
+        const double h = longest_damped_step("velocity_verlet", 10, rate).value_or(0);
+        EXPECT_TRUE(verlet_shrinks(10, rate, 0.999999 * h)) << rate;
+        EXPECT_FALSE(verlet_shrinks(10, rate, 1.000001 * h)) << rate;
+    }
+    EXPECT_NEAR(longest_damped_step("velocity_verlet", 10, 0).value_or(0), 0.2, 1e-12);
+    EXPECT_NEAR(longest_damped_step("velocity_verlet", 10, 1e6).value_or(0), 3.08738e-6, 1e-10);
+
+    MapOptions options;
+    options.methods = {"velocity_verlet"};
+    options.base.precision = Precision::dual;
+    const StabilityMap map =
+        map_scene({"scene.toml", spring}, parse_map_axis("dt=1/120..1/3:11log"),
+                  parse_map_axis("spring.coil.damping=8,40,80,160"), options);
+    ASSERT_EQ(theory_of(map, options.base).size(), 1U);
+    const MethodMap &found = map.methods.at(0);
+    EXPECT_EQ(found.limits.size(), 4U);
+    for (const MapLimit &limit : found.limits)
+        EXPECT_NEAR(between(map.x, limit.low, limit.high) /
+                        longest_damped_step("velocity_verlet", 10, limit.y / 2).value_or(0),
+                    1, 0.01)
+            << limit.y;
+    options.base.settings = parse_setting("substeps=2");
+    EXPECT_TRUE(theory_of(map, options.base).empty());
+}
+
 // Lanes whose balls start an eighth of that way on from each other: above 9/8 of the limit one at
 // least is not seen in time, below it none passes.
 TEST(StabilityMap, WhatIsThrownPassesAWallWhereTheoryHasIt) {
