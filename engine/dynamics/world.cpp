@@ -302,6 +302,28 @@ void World::forget_contacts_of(std::uint32_t body) {
     });
 }
 
+// Of what has diverged they are no numbers, and the next step would begin with them.
+void World::forget_lost_loads_of(std::uint32_t body) {
+    const auto are_numbers = [](std::span<const Real> values) {
+        return std::ranges::all_of(values, [](Real value) { return std::isfinite(value); });
+    };
+    std::erase_if(state_.contacts, [&](const ContactMemory &memory) {
+        const auto points =
+            std::span(state_.points).subspan(memory.first_point, memory.point_count);
+        return (memory.key.a == body || memory.key.b == body) &&
+               !std::ranges::all_of(
+                   points, [](const Vec3 &v) { return is_finite(v); }, &PointMemory::impulse);
+    });
+    for (std::uint32_t j = 0; j < model_->joints.size(); ++j)
+        if ((model_->joints[j].a == body || model_->joints[j].b == body) &&
+            !are_numbers(state_.joints[j].impulses)) {
+            state_.joints[j].impulses = {};
+            remember_penalty(j, {});
+        }
+    if (state_.grab.body == body && !is_finite(state_.grab.impulse))
+        state_.grab.impulse = Vec3{Real(0)};
+}
+
 JointId World::add_joint(const JointDef &def) {
     const auto index_of = [&](BodyId id) {
         if (id == BodyId{})
@@ -417,6 +439,7 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
     check_pose(pose);
     const Body &body = bodies()[id.index];
     Motion &motion = state_.motions[id.index];
+    forget_lost_loads_of(id.index);
     motion = {pose.position, pose.rotation, velocity, angular_velocity};
     if (body.kind == BodyKind::fixed)
         motion.velocity = motion.angular_velocity = Vec3{Real(0)};

@@ -295,6 +295,7 @@ class World {
     Model &edit();
     void add_colliders(const BodyDef &def, Body &body, std::uint32_t slot);
     void forget_contacts_of(std::uint32_t body);
+    void forget_lost_loads_of(std::uint32_t body);
     void forget_places_of(const Body &body);
 
     const Method *method_ = nullptr;

@@ -442,6 +442,33 @@ TEST(StepReport, SaysWhenTheWorldIsNotFinite) {
     }
 }
 
+// What has diverged and is put back goes on from there: no joint, contact or grab remembers it.
+TEST(World, WhatHasDivergedCanBePutBack) {
+    int diverged = 0;
+    for (const std::string &name : joint_methods()) {
+        World world(name, settings_for(name));
+        world.add_body(ground(0.5, 0));
+        const BodyId bad = world.add_body(dynamic_body(ball(0.5), 1, V{0, 0.5, 0}));
+        JointDef joint;
+        joint.b = bad;
+        joint.anchor_a_local = narrow(V{0, 0.5, 0});
+        world.add_joint(joint);
+        world.grab(bad, Vec3{Real(0)}, narrow(V{0, 1, 0}), Real(10));
+        run(world, 5);
+        world.set_motion(bad, {narrow(V{0, 0.5, 0}), identity_rotation},
+                         Vec3{std::numeric_limits<Real>::max()}, Vec3{Real(0)});
+        for (int i = 0; i < 200 && world.report().finite; ++i)
+            world.step(nullptr);
+        diverged += world.report().finite ? 0 : 1;
+        world.set_motion(bad, {narrow(V{0, 0.5, 0}), identity_rotation}, Vec3{Real(0)},
+                         Vec3{Real(0)});
+        run(world, 20);
+        EXPECT_TRUE(world.report().finite) << name;
+        EXPECT_LE(glm::distance(position_of(world, bad), V(0, 0.5, 0)), 0.05) << name;
+    }
+    EXPECT_GT(diverged, 0);
+}
+
 // A lift, and a conveyor belt: a box on a kinematic body goes where that goes.
 class Carried : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Carried, testing::ValuesIn(rest_methods()), name_of);
