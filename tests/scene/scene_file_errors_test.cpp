@@ -36,7 +36,7 @@ title = @"b"
         {"UnknownTable",
          R"([@lights]
 )",
-         {R"(unknown key "lights" in the top level of a scene; there are title, description, world, methods, camera, material, body, particle, cloth, spring, joint, probe, expect, state)"}},
+         {R"(unknown key "lights" in the top level of a scene; there are title, description, world, methods, camera, material, body, attractor, particle, cloth, spring, joint, probe, expect, state)"}},
         {"UnknownKeyAfterWideCharacters",
          R"(camera = { target = [0, 0, 0], @"ä" = 1 }
 )",

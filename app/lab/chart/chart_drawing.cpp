@@ -180,39 +180,39 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         entry("spread of the timings");
     }
     struct List {
-        const char *title;
+        std::string title;
         const std::vector<std::string> &texts;
-        std::size_t rows = 0;
     };
     // What may be long comes last.
-    std::array<List, 3> lists{{{"Worst expectation", content.worst},
-                               {"Failed", content.failures},
-                               {"Not on this chart", content.left_out}}};
+    const std::array<List, 3> lists{{{"Worst expectation", content.worst},
+                                     {"Failed", content.failures},
+                                     {"Not on this chart", content.left_out}}};
     constexpr float gap = 12, title_row = 21, line_row = 16;
-    float room = bottom + line_row - y;
-    for (List &list : lists)
-        if (!list.texts.empty()) {
-            list.rows = 1;
-            room -= gap + title_row + line_row;
-        }
-    for (List &list : lists) {
+    // Each has its title at least, with the number of what is not listed.
+    float room = bottom + 0.5f * line_row - y;
+    for (const List &list : lists)
+        if (!list.texts.empty())
+            room -= gap + title_row;
+    for (const List &list : lists) {
         if (list.texts.empty())
             continue;
         std::vector<std::vector<std::string>> wrapped;
-        std::size_t wanted = 0;
-        for (const std::string &text : list.texts) {
+        for (const std::string &text : list.texts)
             wrapped.push_back(pen.wrapped(text, Face::footer, layout.size.x - 20 - left));
-            wanted += wrapped.back().size();
-        }
-        for (; list.rows < wanted && room >= line_row; room -= line_row)
-            ++list.rows;
+        const std::vector<std::string> lines =
+            fitting_lines(wrapped, static_cast<std::size_t>(std::max(room, 0.0f) / line_row));
         y += gap;
-        pen.text({left, y}, list.title, Face::label, soft_ink, {0, 0.5f});
+        pen.text({left, y},
+                 lines.empty() ? list.title + (": " + std::to_string(list.texts.size())) +
+                                     ", named in the CSV file"
+                               : list.title,
+                 Face::label, soft_ink, {0, 0.5f});
         y += title_row;
-        for (const std::string &line : fitting_lines(wrapped, list.rows)) {
+        for (const std::string &line : lines) {
             pen.text({left, y}, line, Face::footer, faint_ink, {0, 0.5f});
             y += line_row;
         }
+        room -= line_row * static_cast<float>(lines.size());
     }
 }
 

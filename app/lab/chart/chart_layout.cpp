@@ -99,9 +99,9 @@ std::vector<std::string> fitting_lines(const std::vector<std::vector<std::string
             break; // the last row is for what is said of the rest
         lines.insert(lines.end(), texts[shown].begin(), texts[shown].end());
     }
-    if (rows > 0 && shown < texts.size())
-        lines.push_back((shown > 0 ? "and " : "") + std::to_string(texts.size() - shown) +
-                        (shown > 0 ? " more" : "") + ", named in the CSV file");
+    if (shown > 0 && shown < texts.size())
+        lines.push_back("and " + std::to_string(texts.size() - shown) +
+                        " more, named in the CSV file");
     return lines;
 }
 

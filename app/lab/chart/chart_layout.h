@@ -134,7 +134,8 @@ place_labels(const std::vector<glm::vec2> &points, const std::vector<glm::vec2> 
              const std::vector<std::pair<glm::vec2, glm::vec2>> &lines);
 
 // A list under a title, in so many rows: all lines of all texts where there is room for them, else
-// those of the first texts, whole, and how many more there are. Empty without a row.
+// those of the first texts, whole, and how many more there are. Empty where not even the first
+// finds room.
 [[nodiscard]] std::vector<std::string>
 fitting_lines(const std::vector<std::vector<std::string>> &texts, std::size_t rows);
 

@@ -148,6 +148,45 @@ std::optional<double> way_into_wall(const SceneDesc &scene, const std::string &t
     return way;
 }
 
+std::optional<double> column_of_cubes(const SceneDesc &scene, const std::string &cube) {
+    if (!scene.joints.empty() || !scene.particles.empty() || !scene.cloths.empty() ||
+        !scene.attractors.empty())
+        return std::nullopt;
+    std::optional<double> side;
+    double height = 0;
+    for (const BodyDesc &body : scene.bodies) {
+        if (body.kind == BodyKind::fixed && has_plane(body))
+            continue;
+        const auto *box = std::get_if<BoxDesc>(&body.colliders.front().shape);
+        if (box == nullptr || body.colliders.size() != 1 || body.kind != BodyKind::dynamic ||
+            (body.name != cube && !body.name.starts_with(cube + "_")))
+            return std::nullopt;
+        const double own = 2 * box->half_extents.x;
+        if (box->half_extents != glm::dvec3(own / 2) || own != side.value_or(own) ||
+            std::abs(body.position.y - (height + own / 2)) > 1e-6 * own ||
+            !in_line(body.position, scene.bodies.back().position, 1))
+            return std::nullopt;
+        side = own;
+        height += own;
+    }
+    return side;
+}
+
+std::optional<double> highest_column(const ResolvedRun &run, double side) {
+    const StepSettings &settings = run.settings;
+    const bool is_whole = run.method->name == "soft_step";
+    if (!is_whole && run.method->name != "tgs_soft")
+        return std::nullopt;
+    if (is_whole && (settings.max_substeps > settings.substeps || settings.sleep_after > 0 ||
+                     settings.kept_travel > 0))
+        return std::nullopt;
+    constexpr double greenhill = 7.837347; // 9/4 of the square of the first root of J_-1/3
+    const double w =
+        2 * std::numbers::pi * settings.contact_frequency_ratio * settings.substeps / settings.dt;
+    return std::cbrt(greenhill * (is_whole ? 1 : 0.5) * w * w * side /
+                     (4 * std::abs(settings.gravity.y)));
+}
+
 bool swings_by_itself(const SceneDesc &scene, const std::string &spring) {
     return lone_oscillator(scene, spring).has_value() && scene.springs.front().damping == 0;
 }
@@ -305,6 +344,30 @@ void add_damped_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map
     }
 }
 
+// "box", of an axis "body.box.repeat.count".
+void add_column(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes,
+                const RunOptions &base) {
+    constexpr std::string_view head = "body.", tail = ".repeat.count";
+    const std::string &name = axes.other.name;
+    if (!name.starts_with(head) || !name.ends_with(tail))
+        return;
+    const std::optional<double> side = column_of_cubes(
+        map.scene, name.substr(head.size(), name.size() - head.size() - tail.size()));
+    for (const MethodMap &of_method : map.methods) {
+        RunOptions options = base;
+        options.method = std::string(of_method.method->name);
+        ResolvedRun run = resolve_run(map.scene, options);
+        if (!side || !highest_column(run, *side))
+            continue;
+        const std::string label =
+            "theory: N³ = 7.84 k s / (4 m g) (" + std::string(of_method.method->name) + ")";
+        curves.push_back({label, {of_method.method}, axes.curve([&](double dt) {
+                              run.settings.dt = dt;
+                              return *highest_column(run, *side);
+                          })});
+    }
+}
+
 void add_struck(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes) {
     const std::optional<FlownAxis> flown = flown_axis(axes.other);
     if (!flown)
@@ -368,6 +431,7 @@ std::vector<TheoryCurve> theory_of(const StabilityMap &map, const RunOptions &ba
     add_thrown(curves, map, axes);
     add_spring(curves, map, axes, base);
     add_damped_spring(curves, map, axes, base);
+    add_column(curves, map, axes, base);
     return curves;
 }
 

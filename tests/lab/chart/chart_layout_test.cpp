@@ -189,7 +189,7 @@ TEST(ChartLayout, ListsShowWholeTextsAndSayHowManyMoreThereAre) {
     EXPECT_EQ(fitting_lines(texts, 4), (Lines{"a", "b", "of b", "c"}));
     EXPECT_EQ(fitting_lines(texts, 9), (Lines{"a", "b", "of b", "c"}));
     EXPECT_EQ(fitting_lines(texts, 3), (Lines{"a", "and 2 more, named in the CSV file"}));
-    EXPECT_EQ(fitting_lines(texts, 1), (Lines{"3, named in the CSV file"}));
+    EXPECT_EQ(fitting_lines(texts, 1), Lines{});
     EXPECT_EQ(fitting_lines(texts, 0), Lines{});
     EXPECT_EQ(fitting_lines({}, 3), Lines{});
 }

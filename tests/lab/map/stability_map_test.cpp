@@ -397,6 +397,58 @@ source = "linear stability"
     EXPECT_TRUE(theory_of(map, options.base).empty());
 }
 
+// A column that leans a little under a gravity that does stays so, or buckles.
+TEST(StabilityMap, AColumnOfCubesBucklesWhereGreenhillHasIt) {
+    constexpr const char *column = R"(
+[world]
+gravity = [1e-3, -9.81, 0]
+[[body]]
+name = "ground"
+shape = "plane"
+[[body]]
+name = "box"
+shape = "box"
+half_extents = [0.5, 0.5, 0.5]
+position = [0, 0.5, 0]
+repeat = { kind = "stack", count = 8 }
+[[expect]]
+name = "nothing falls"
+quantity = "kinetic_energy"
+reduce = "max"
+from = 2
+to = 20
+at_most = 1000
+source = "it stands"
+)";
+    MapOptions options;
+    options.methods = {"soft_step", "tgs_soft"};
+    options.base.precision = Precision::dual;
+    for (const char *setting : {"substeps=2", "max_substeps=1", "sleep_after=0", "kept_travel=0"})
+        options.base.settings.give(parse_setting(setting));
+    const StabilityMap map =
+        map_scene({"scene.toml", column}, parse_map_axis("dt=1/240..1/15:17log"),
+                  parse_map_axis("body.box.repeat.count=8,12,16"), options);
+    EXPECT_EQ(theory_of(map, options.base).size(), 2U);
+    const double cell = std::pow(16, 1.0 / 16);
+    for (const MethodMap &of_method : map.methods) {
+        RunOptions run = options.base;
+        run.method = std::string(of_method.method->name);
+        run.settings.give(&StepSettings::dt, 1.0 / 60);
+        const double highest = highest_column(resolve_run(map.scene, run), 1).value_or(0);
+        EXPECT_NEAR(highest, of_method.method->name == "soft_step" ? 12.11 : 9.61, 0.01);
+        EXPECT_EQ(of_method.limits.size(), 3U) << of_method.method->name;
+        for (const MapLimit &limit : of_method.limits) {
+            const double dt = std::pow(highest / limit.y, 1.5) / 60;
+            EXPECT_LT(std::abs(std::log(between(map.x, limit.low, limit.high) / dt)),
+                      std::log(cell))
+                << of_method.method->name << ' ' << limit.y << ": " << limit.low << " .. "
+                << limit.high << ", not " << dt;
+        }
+    }
+    options.base.settings.give(parse_setting("kept_travel=0.005"));
+    EXPECT_EQ(theory_of(map, options.base).size(), 1U); // of TGS Soft, which keeps none
+}
+
 // Lanes whose balls start an eighth of that way on from each other: above 9/8 of the limit one at
 // least is not seen in time, below it none passes.
 TEST(StabilityMap, WhatIsThrownPassesAWallWhereTheoryHasIt) {
