@@ -119,7 +119,7 @@ TEST_P(ThreadsOfAllSorts, GiveTheSameBits) {
         EXPECT_GT(alone.report().contacts, 60U);
     }
     if (info.contacts && info.springs) {
-        EXPECT_GT(alone.report().particle_contacts, 10U);
+        EXPECT_GT(alone.report().particle_contacts, 5U);
     }
     if (info.joints) {
         EXPECT_GT(alone.report().joints, 40U);
