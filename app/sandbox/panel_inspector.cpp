@@ -85,31 +85,28 @@ void contact_rows(const Frame &frame, std::size_t body) {
     value_row("Normal forces", number(force, "N"));
 }
 
-// Of hinges and sliders: an angle in degrees, or a length.
+// An angle in degrees, or a length.
 std::string place(const JointView &joint, double value, const char *rate = "") {
-    return joint.type == JointType::hinge ? number(glm::degrees(value), std::string("°") + rate)
-                                          : number(value, std::string("m") + rate);
+    return joint_type(joint.type).turns ? number(glm::degrees(value), std::string("°") + rate)
+                                        : number(value, std::string("m") + rate);
 }
 
 // What the joint is held to and how it stands, a row each.
 void joint_rows(const JointView &joint) {
-    const bool has_axis = joint_type(joint.type).frames == JointTypeInfo::Frames::axis;
+    const JointTypeInfo &type = joint_type(joint.type);
     if (joint.broken) {
         value_row("State", "broken");
         return;
     }
-    if (has_axis)
-        value_row(joint.type == JointType::hinge ? "Angle" : "Position",
-                  place(joint, joint.position));
-    else if (joint.type == JointType::distance)
-        value_row("Length", number(joint.position, "m"));
+    if (!type.place.empty())
+        value_row(type.place, place(joint, joint.position));
     if (joint.limits && (*joint.limits)[0] == (*joint.limits)[1])
         value_row("Held at", place(joint, (*joint.limits)[0]));
     else if (joint.limits)
         value_row("Limits",
                   place(joint, (*joint.limits)[0]) + " to " + place(joint, (*joint.limits)[1]));
     if (joint.motor_speed) {
-        const char *unit = joint.type == JointType::hinge ? "N m" : "N";
+        const char *unit = type.turns ? "N m" : "N";
         value_row("Motor", place(joint, *joint.motor_speed, "/s") + ", up to " +
                                number(joint.max_motor_force, unit));
         value_row("Motor gives", number(joint.motor_force, unit));

@@ -178,7 +178,7 @@ Real remembered_share(const ContactBlock &block, std::size_t lane) {
     return sum > most ? most / sum : Real(1);
 }
 
-// As the kernels have it between substeps (recall_impl).
+// As the kernels have it between substeps (warm_start_impl).
 Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane, Real kept) {
     Vec3 impulse = get(point.impulse, lane);
     const Real relaxed = impulse.x - point.remembered.x.lanes[lane];
@@ -353,12 +353,12 @@ void prepare_contact_columns(StepContext &context) {
         });
 }
 
-void recall_contact_columns(StepContext &context, Real share, bool remember_first) {
+void warm_start_contact_columns(StepContext &context, Real share, bool remember_first) {
     if (context.scratch.schedule.blocks.empty())
         return;
     const BodyReals bodies = reals_of(context.bodies);
     for_colours(context, [&](std::span<ContactBlock> blocks) {
-        kernels::recall(blocks, bodies, share, remember_first);
+        kernels::warm_start(blocks, bodies, share, remember_first);
     });
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }

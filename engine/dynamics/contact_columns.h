@@ -97,8 +97,8 @@ void turn_contact_columns(StepContext &context, Real t);
 // Arms and masses of contacts whose bodies have turned far since the step began: with those of
 // another pose impulses do work, and what is thin is flung off.
 void rearm_contact_columns(StepContext &context);
-// As remember_contacts, recall_contacts, solve_contacts and store_contacts.
-void recall_contact_columns(StepContext &context, Real share, bool remember_first);
+// As remember_contacts, warm_start_contacts, solve_contacts and store_contacts.
+void warm_start_contact_columns(StepContext &context, Real share, bool remember_first);
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
 // Whether any bodies closed faster than struck_speed in this substep.
 bool anything_is_struck(const StepContext &context);
@@ -108,8 +108,8 @@ void store_contact_columns(StepContext &context);
 namespace kernels {
 // Masses, from what is there of the blocks.
 void finish(std::span<ContactBlock> blocks);
-void recall(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
-            bool remember_first);
+void warm_start(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
+                bool remember_first);
 // `any_far`: some body has turned so far that separations need more than the second order.
 void solve(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
            const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far);

@@ -124,17 +124,17 @@ void remember_contacts(StepContext &context) {
         }
 }
 
-void recall_contacts(StepContext &context, Real share) {
+void warm_start_contacts(StepContext &context, Real share) {
     for (ContactConstraint &contact : context.scratch.contacts) {
         SolverBody &a = context.bodies[contact.a];
         SolverBody &b = context.bodies[contact.b];
         for (int k = 0; k < contact.count; ++k) {
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
-            const Vec3 recalled = share * point.remembered;
-            point.impulse += recalled;
+            const Vec3 start = share * point.remembered;
+            point.impulse += start;
             apply_pair_impulse(a, b, point,
-                               recalled.x * contact.normal + recalled.y * contact.tangents.t1 +
-                                   recalled.z * contact.tangents.t2);
+                               start.x * contact.normal + start.y * contact.tangents.t1 +
+                                   start.z * contact.tangents.t2);
         }
     }
     context.report.constraint_passes += context.scratch.contacts.size();

@@ -83,10 +83,10 @@ Real present_separation(const ContactConstraint &contact, const ContactPointCons
                         const SolverBody &a, const SolverBody &b);
 // At the present poses, for solve_contacts: these stay as they are in its passes.
 void refresh_separations(StepContext &context);
-// Warm starting: a substep begins by remembering what the one before accumulated, and recalls it,
-// all at once or in shares: adds it to the accumulated impulses and applies it.
+// Warm starting: a substep begins by remembering what the one before accumulated, and starts from
+// it, all at once or in shares: adds it to the accumulated impulses and applies it.
 void remember_contacts(StepContext &context);
-void recall_contacts(StepContext &context, Real share);
+void warm_start_contacts(StepContext &context, Real share);
 // One Gauss-Seidel pass. Points that are still apart may close the gap within h and no faster.
 void solve_contacts(StepContext &context, const ContactBias &bias, Real h);
 // Hands the accumulated impulses back to the world's contacts for the next step.

@@ -143,7 +143,8 @@ HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, const Inde
 // second one alone: the next substep begins with twice as much of it (ContactBlock::Point). Else a
 // tall stack, whose loads one pass does not balance, sways for minutes. But no more of it than a
 // share of the load: what strikes is no load of the next substep.
-void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool remember_first) {
+void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
+                     bool remember_first) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         if (block.inertia_turns) {
             reload(block.inv_inertia_a, bodies, block.body_a, lane);
@@ -168,23 +169,23 @@ void recall_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool 
         for (int k = 0; k < block.points_used; ++k) {
             ContactBlock::Point &point = block.points[k];
             Vector before = load(point.impulse, lane);
-            Vector recalled;
+            Vector start;
             if (remember_first) {
                 const Lanes relaxed = hn::Sub(before.x, load(point.remembered.x, lane));
                 before = times(kept, before);
                 const Lanes most = hn::Mul(all(relaxed_share), before.x);
                 before.x = hn::Add(before.x, max(min(relaxed, most), hn::Neg(most)));
                 store(before, point.remembered, lane);
-                recalled = times(all(share), before);
-                store(recalled, point.impulse, lane);
+                start = times(all(share), before);
+                store(start, point.impulse, lane);
             } else {
-                recalled = times(all(share), load(point.remembered, lane));
-                const Vector sum = plus(before, recalled);
+                start = times(all(share), load(point.remembered, lane));
+                const Vector sum = plus(before, start);
                 store(sum, point.impulse, lane);
                 store(sum, point.remembered, lane);
             }
             const Vector impulse =
-                plus(plus(times(recalled.x, n), times(recalled.y, t1)), times(recalled.z, t2));
+                plus(plus(times(start.x, n), times(start.y, t1)), times(start.z, t2));
             pair.apply(impulse, load(point.r_a, lane), load(point.r_b, lane));
         }
         store_pair(pair, block, bodies, lane);
@@ -452,10 +453,10 @@ void finish_blocks(std::span<ContactBlock> blocks) {
     for (ContactBlock &block : blocks)
         finish_block_impl(block);
 }
-void recall_blocks(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
-                   bool remember_first) {
+void warm_start_blocks(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
+                       bool remember_first) {
     for (ContactBlock &block : blocks)
-        recall_impl(block, bodies, share, remember_first);
+        warm_start_impl(block, bodies, share, remember_first);
 }
 void solve_blocks(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
                   const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far) {
@@ -473,15 +474,15 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace kernels {
 
 HWY_EXPORT(finish_blocks);
-HWY_EXPORT(recall_blocks);
+HWY_EXPORT(warm_start_blocks);
 HWY_EXPORT(solve_blocks);
 
 void finish(std::span<ContactBlock> blocks) {
     HWY_DYNAMIC_DISPATCH(finish_blocks)(blocks);
 }
-void recall(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
-            bool remember_first) {
-    HWY_DYNAMIC_DISPATCH(recall_blocks)(blocks, bodies, share, remember_first);
+void warm_start(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
+                bool remember_first) {
+    HWY_DYNAMIC_DISPATCH(warm_start_blocks)(blocks, bodies, share, remember_first);
 }
 void solve(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
            const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far) {

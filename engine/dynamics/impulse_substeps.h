@@ -5,10 +5,10 @@
 // By pseudo velocities (split_impulse): the bias is solved for by itself, from zero, moves the
 // bodies and is forgotten (Cline and Pai 2003, "Post-Stabilization for Rigid Body Simulation
 // with Contact and Constraints"; Box2D has tried it beside Baumgarte's). In the velocities it would
-// be recalled in the next step as if it were load. Passes that cut a mode's error by a share s a
-// step, with a bias of beta, then follow, in units of the step, y' = v, v' = u,
-// u' = -s (u + v + beta y) for penetration, velocity and load, which grows wherever s < beta: with
-// four corners a contact, five cubes rocked for ever at ten passes, and without slop at fifty.
+// be warm started in the next step as if it were load. Passes that cut a mode's error by a share s
+// a step, with a bias of beta, then follow, in units of the step, y' = v, v' = u, u' = -s (u + v +
+// beta y) for penetration, velocity and load, which grows wherever s < beta: with four corners a
+// contact, five cubes rocked for ever at ten passes, and without slop at fifty.
 //
 // Joints are corrected through the velocities all the same, unless asked, at half of the cost. So
 // that a chain whose joints propagate errors slowly does not gain the more energy the shorter the
@@ -110,8 +110,8 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
-        recall_joints(context, Real(1), Springs::at_the_end);
-        recall_contacts(context, Real(1));
+        warm_start_joints(context, Real(1), Springs::at_the_end);
+        warm_start_contacts(context, Real(1));
         foresee_turns(context, h);
         kick_particles(context, gravity, h);
         refresh_particles(context, h, SpringRule::implicit_euler);

@@ -189,10 +189,10 @@ void remember_joint_columns(StepContext &context) {
     }
 }
 
-void recall_joint_columns(StepContext &context, Real share) {
+void warm_start_joint_columns(StepContext &context, Real share) {
     const BodyReals bodies = reals_of(context.bodies);
     for_levels(context,
-               [&](std::span<JointBlock> blocks) { kernels::recall(blocks, bodies, share); });
+               [&](std::span<JointBlock> blocks) { kernels::warm_start(blocks, bodies, share); });
 }
 
 void solve_joint_columns(StepContext &context, const JointPass &pass) {

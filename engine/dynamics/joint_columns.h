@@ -59,7 +59,7 @@ void prepare_joint_columns(StepContext &context);
 void weigh_joint_columns(StepContext &context, bool changed_only);
 void refresh_joint_columns(StepContext &context);
 void remember_joint_columns(StepContext &context);
-void recall_joint_columns(StepContext &context, Real share);
+void warm_start_joint_columns(StepContext &context, Real share);
 void solve_joint_columns(StepContext &context, const JointPass &pass);
 // Puts arms, errors and impulses back into the joints.
 void store_joint_columns(StepContext &context);
@@ -69,7 +69,7 @@ void store_joint_columns(StepContext &context);
 namespace kernels {
 void weigh(std::span<JointBlock> blocks, const BodyReals &bodies);
 void refresh(std::span<JointBlock> blocks, const BodyReals &bodies);
-void recall(std::span<JointBlock> blocks, const BodyReals &bodies, Real share);
+void warm_start(std::span<JointBlock> blocks, const BodyReals &bodies, Real share);
 void solve(std::span<JointBlock> blocks, const BodyReals &bodies, const JointPass &pass);
 } // namespace kernels
 

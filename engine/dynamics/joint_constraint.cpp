@@ -260,11 +260,11 @@ Real spring_turn(const RowBlock &rows, Real h) {
     return Real(4) * std::numbers::pi_v<Real> * rows.frequency * h;
 }
 
-// By the midpoint rule, a spring recalls less the stiffer it is for the substep: what one pass
+// By the midpoint rule, a spring starts from less the stiffer it is for the substep: what one pass
 // leaves of a stiff one's impulse, of which the next is the opposite, would grow from substep to
 // substep where springs share bodies. A soft one that began anew would sag: its damper would see
 // what the pass has not come to yet.
-Real spring_recall(const RowBlock &rows, Real h) {
+Real spring_warm_start(const RowBlock &rows, Real h) {
     return std::max(Real(0), Real(1) - spring_turn(rows, h));
 }
 
@@ -366,17 +366,17 @@ Real spring_share(const RowBlock &rows, Real h) {
     return turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
 }
 
-void recall_joints(StepContext &context, Real share, Springs springs) {
+void warm_start_joints(StepContext &context, Real share, Springs springs) {
     const Real h = context.substep();
-    recall_joint_columns(context, share);
+    warm_start_joint_columns(context, share);
     for (JointConstraint &joint : context.scratch.joints) {
         if (joint.in_columns || (springs == Springs::skip && joint.is_spring()))
             continue;
         const bool is_midpoint = springs == Springs::midpoint && joint.is_spring();
-        const Vec3 recalled =
-            (is_midpoint ? share * spring_recall(joint.rows, h) : share) * joint.remembered;
-        joint.impulse += recalled;
-        apply(context, joint, recalled);
+        const Vec3 start =
+            (is_midpoint ? share * spring_warm_start(joint.rows, h) : share) * joint.remembered;
+        joint.impulse += start;
+        apply(context, joint, start);
     }
     context.report.constraint_passes += context.scratch.joints.size();
 }

@@ -27,9 +27,9 @@ struct JointConstraint {
     // How much faster its errors grow in the mean of the substep than at its start, because the
     // bodies turn (m/s, rad/s): of foresee_turns alone.
     Vec3 turning{Real(0)};
-    bool is_held = false;     // solved with its group in this substep (JointSystem)
-    bool in_columns = false;  // in this step (JointSchedule)
-    bool is_weighed = false;  // by what groups make of its bodies: they answer each of its impulses
+    bool is_held = false;    // solved with its group in this substep (JointSystem)
+    bool in_columns = false; // in this step (JointSchedule)
+    bool is_weighed = false; // by what groups make of its bodies: they answer each of its impulses
     bool is_spring() const { return rows.frequency > Real(0); }
 };
 
@@ -88,7 +88,7 @@ void weigh_joints(StepContext &context);
 void weigh_changed_joints(StepContext &context);
 // Warm starting, as for contacts.
 void remember_joints(StepContext &context);
-void recall_joints(StepContext &context, Real share, Springs springs);
+void warm_start_joints(StepContext &context, Real share, Springs springs);
 // For passes whose rows agree in their velocities alone: an anchor that goes straight on leaves its
 // circle by h^2 v^2 / 2r, and is pulled back to it along the chord beforehand, at the velocities of
 // now. What is torn, or turns too far for this term of second order, is left to the bias.

@@ -160,12 +160,12 @@ void solve_impl(JointBlock &block, const BodyReals &bodies, const JointPass &pas
     }
 }
 
-void recall_impl(JointBlock &block, const BodyReals &bodies, Real share) {
+void warm_start_impl(JointBlock &block, const BodyReals &bodies, Real share) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
-        const Vector recalled = times(all(share), load(block.remembered, lane));
-        store(plus(load(block.impulse, lane), recalled), block.impulse, lane);
-        apply(block.a, velocity_of(block.a, bodies, lane), negative(recalled), bodies, 0, lane);
-        apply(block.b, velocity_of(block.b, bodies, lane), recalled, bodies, 0, lane);
+        const Vector start = times(all(share), load(block.remembered, lane));
+        store(plus(load(block.impulse, lane), start), block.impulse, lane);
+        apply(block.a, velocity_of(block.a, bodies, lane), negative(start), bodies, 0, lane);
+        apply(block.b, velocity_of(block.b, bodies, lane), start, bodies, 0, lane);
     }
 }
 
@@ -259,9 +259,9 @@ void refresh_joints(std::span<JointBlock> blocks, const BodyReals &bodies) {
     for (JointBlock &block : blocks)
         refresh_impl(block, bodies);
 }
-void recall_joints(std::span<JointBlock> blocks, const BodyReals &bodies, Real share) {
+void warm_start_joints(std::span<JointBlock> blocks, const BodyReals &bodies, Real share) {
     for (JointBlock &block : blocks)
-        recall_impl(block, bodies, share);
+        warm_start_impl(block, bodies, share);
 }
 void solve_joints(std::span<JointBlock> blocks, const BodyReals &bodies, const JointPass &pass) {
     for (JointBlock &block : blocks)
@@ -278,7 +278,7 @@ namespace kernels {
 
 HWY_EXPORT(weigh_joints);
 HWY_EXPORT(refresh_joints);
-HWY_EXPORT(recall_joints);
+HWY_EXPORT(warm_start_joints);
 HWY_EXPORT(solve_joints);
 
 void weigh(std::span<JointBlock> blocks, const BodyReals &bodies) {
@@ -287,8 +287,8 @@ void weigh(std::span<JointBlock> blocks, const BodyReals &bodies) {
 void refresh(std::span<JointBlock> blocks, const BodyReals &bodies) {
     HWY_DYNAMIC_DISPATCH(refresh_joints)(blocks, bodies);
 }
-void recall(std::span<JointBlock> blocks, const BodyReals &bodies, Real share) {
-    HWY_DYNAMIC_DISPATCH(recall_joints)(blocks, bodies, share);
+void warm_start(std::span<JointBlock> blocks, const BodyReals &bodies, Real share) {
+    HWY_DYNAMIC_DISPATCH(warm_start_joints)(blocks, bodies, share);
 }
 void solve(std::span<JointBlock> blocks, const BodyReals &bodies, const JointPass &pass) {
     HWY_DYNAMIC_DISPATCH(solve_joints)(blocks, bodies, pass);

@@ -144,15 +144,14 @@ void solve_particle_contacts(StepContext &context, const ParticlePush &push, Rea
     context.report.constraint_passes += context.scratch.particle_contacts.size();
 }
 
-void recall_particles(StepContext &context, Real share) {
-    recall_springs(context, share);
+void warm_start_particles(StepContext &context, Real share) {
+    warm_start_springs(context, share);
     for (ParticleContactConstraint &row : context.scratch.particle_contacts) {
         const ParticleContact &contact = context.particle_contacts[row.contact];
-        const Vec3 recalled = share * row.remembered;
-        row.impulse += recalled;
+        const Vec3 start = share * row.remembered;
+        row.impulse += start;
         apply(context, contact, row,
-              recalled.x * contact.normal + recalled.y * row.tangents.t1 +
-                  recalled.z * row.tangents.t2);
+              start.x * contact.normal + start.y * row.tangents.t1 + start.z * row.tangents.t2);
     }
     context.report.constraint_passes += context.scratch.particle_contacts.size();
 }

@@ -25,7 +25,7 @@ struct ParticleContactConstraint {
     Real normal_mass = Real(0);
     Real tangent_mass = Real(0); // as ContactPointConstraint::tangent_mass
     Vec3 impulse{Real(0)};       // accumulated in this substep: normal, t1, t2 (N s)
-    Vec3 remembered{Real(0)};    // for recall_particles
+    Vec3 remembered{Real(0)};    // for warm_start_particles
     Real approach = Real(0);     // relative normal velocity as the substep began (m/s)
 };
 
@@ -45,7 +45,7 @@ void pull_particle(StepContext &context, Real h);
 void refresh_particles(StepContext &context, Real h, SpringRule rule);
 void solve_particle_contacts(StepContext &context, const ParticlePush &push, Real h);
 // Adds a share of what springs and contacts remember to their impulses, and applies it.
-void recall_particles(StepContext &context, Real share);
+void warm_start_particles(StepContext &context, Real share);
 void drift_particles(StepContext &context, Real h);
 // Particles that struck a body in this substep leave it at the restitution's share of the speed.
 void restitute_particles(StepContext &context, Real threshold);

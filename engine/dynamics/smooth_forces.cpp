@@ -156,7 +156,7 @@ void remember_velocities(StepContext &context) {
     s.particle_motions.assign(context.particles.begin(), context.particles.end());
 }
 
-void recall_velocities(StepContext &context) {
+void warm_start_velocities(StepContext &context) {
     const SolverScratch &s = context.scratch;
     for (std::size_t i = 0; i < s.velocities.size(); ++i) {
         SolverBody &motion = context.bodies[context.moving()[i]];

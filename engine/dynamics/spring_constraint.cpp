@@ -348,11 +348,11 @@ void solve_springs(StepContext &context, SpringRule rule) {
         context.scratch.springs.size() + context.scratch.spring_schedule.springs.size();
 }
 
-void recall_springs(StepContext &context, Real share) {
+void warm_start_springs(StepContext &context, Real share) {
     for (SpringConstraint &row : context.scratch.springs) {
-        const Real recalled = share * row.remembered;
-        row.impulse += recalled;
-        apply(context, row, recalled);
+        const Real start = share * row.remembered;
+        row.impulse += start;
+        apply(context, row, start);
     }
     context.report.constraint_passes += context.scratch.springs.size();
 }

@@ -60,7 +60,7 @@ struct SpringConstraint {
     Real bias = Real(0);       // beta / h times the error, m/s
     Real mass = Real(0);       // 1 / (K + gamma)
     Real impulse = Real(0);    // accumulated, along the axis on b (N s)
-    Real remembered = Real(0); // for recall_particles
+    Real remembered = Real(0); // for warm_start_particles
 };
 
 // How fast all springs at a body (first) or particle (behind them) swing it and slow it down, at
@@ -72,7 +72,7 @@ void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
                        std::span<const std::uint8_t> torn, std::vector<Mat3> &stiffness,
                        std::vector<Vec2> &rates);
 // By the midpoint rule springs between particles become columns (spring_columns.h) instead of rows:
-// these are solved by the functions below along with the rows, but for recall_springs.
+// these are solved by the functions below along with the rows, but for warm_start_springs.
 void prepare_springs(StepContext &context, SpringRule rule);
 // At the present poses, with what they bear by themselves.
 void begin_springs(StepContext &context, Real h, SpringRule rule);
@@ -80,7 +80,7 @@ void begin_springs(StepContext &context, Real h, SpringRule rule);
 int spring_passes(const StepContext &context);
 void solve_springs(StepContext &context, SpringRule rule = SpringRule::implicit_euler);
 // Adds a share of what rows remember to their impulses, and applies it.
-void recall_springs(StepContext &context, Real share);
+void warm_start_springs(StepContext &context, Real share);
 // After the move, the rest of the substep, along the lines as they are now.
 void repeat_particle_springs(StepContext &context, Real h);
 

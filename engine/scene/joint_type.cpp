@@ -36,6 +36,8 @@ const JointTypeInfo *find(JointType type) {
                                         "a dot",
                                         Anchors::together,
                                         Frames::none,
+                                        "",
+                                        false,
                                         {},
                                         {"x", "y", "z"}};
         return &info;
@@ -49,6 +51,8 @@ const JointTypeInfo *find(JointType type) {
             "a rod, a rope that hangs slack where it is longer, or a coil",
             Anchors::apart,
             Frames::none,
+            "Length",
+            false,
             {{"length", JointKey::Length{}, "m", positive, "", "least and greatest length at once",
               "the distance of the anchors at the start"},
              {"min_length", &JointDesc::min_length, "m", not_negative, "max_length",
@@ -67,6 +71,8 @@ const JointTypeInfo *find(JointType type) {
             "its axis, and about it the arc of its limits with a hand at the present angle",
             Anchors::together,
             Frames::axis,
+            "Angle",
+            true,
             limits_and_motor("rad", half_turn, "N m", "`[lower, upper]` angle"),
             {"x", "y", "z", "tilt about y", "tilt about z", "lower limit", "upper limit", "motor"}};
         return &info;
@@ -80,6 +86,8 @@ const JointTypeInfo *find(JointType type) {
             "its rail, with a stop at each limit",
             Anchors::on_axis,
             Frames::axis,
+            "Position",
+            false,
             limits_and_motor("m", moderate, "N", "`[lower, upper]` position"),
             {"aside along y", "aside along z", "turn about x", "turn about y", "turn about z",
              "lower limit", "upper limit", "motor"}};
@@ -93,6 +101,8 @@ const JointTypeInfo *find(JointType type) {
             "a small cross",
             Anchors::together,
             Frames::whole,
+            "",
+            false,
             {},
             {"x", "y", "z", "turn about x", "turn about y", "turn about z"}};
         return &info;

@@ -45,6 +45,10 @@ struct JointTypeInfo {
     std::string_view drawn;
     Anchors anchors;
     Frames frames;
+    // What it leaves free, in a word, "" if it has no place (JointPlace), and whether that is an
+    // angle (rad) and no length (m).
+    std::string_view place;
+    bool turns;
     std::vector<JointKey> keys;         // besides those that every joint has
     std::vector<std::string_view> rows; // what the impulses are of, in this order
 };

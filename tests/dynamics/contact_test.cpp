@@ -50,8 +50,9 @@ TEST(SoftStep, CarriesTheWeightOfATallStack) {
         expect_weights(stack("soft_step", settings_for("soft_step"), n), n);
 }
 
-// What pushes boxes apart is not recalled as load: five come to rest at the usual ten iterations,
-// and more of them, or shorter steps, do not wake them. Ten of them fall: that takes more.
+// What pushes boxes apart is not warm started as load: five come to rest at the usual ten
+// iterations, and more of them, or shorter steps, do not wake them. Ten of them fall: that takes
+// more.
 TEST(SequentialImpulses, FiveCubesRest) {
     const auto expect_rest = [](const StepSettings &settings) {
         World world("sequential_impulses", settings);

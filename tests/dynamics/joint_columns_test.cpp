@@ -87,11 +87,11 @@ struct Solved {
             else
                 weigh_changed_joints(context);
             remember_joints(context);
-            recall_joints(context, Real(0.5), Springs::midpoint);
+            warm_start_joints(context, Real(0.5), Springs::midpoint);
             solve_joints(context, holding);
             drift(context, h);
             refresh_joints(context);
-            recall_joints(context, Real(0.5), Springs::skip);
+            warm_start_joints(context, Real(0.5), Springs::skip);
             solve_joints(context, relaxing);
             store_joint_columns(context);
         }

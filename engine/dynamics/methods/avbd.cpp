@@ -54,7 +54,7 @@ void stiffen(StepContext &context, const Stiffening &stiffening) {
 // ---- the substep
 
 // What is remembered of the last step.
-void recall(StepContext &context, Real h) {
+void warm_start(StepContext &context, Real h) {
     SolverScratch &s = context.scratch;
     Descent &d = s.descent;
     renew(d.blocks, s.joints.size());
@@ -251,7 +251,7 @@ void advance_avbd(StepContext &context) {
     prepare_joints(context);
     prepare_particles(context);
     gather_uses(context);
-    recall(context, h);
+    warm_start(context, h);
     note_approach(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         accelerate(context, s.contact_impulses);

@@ -32,9 +32,9 @@ template <typename Use> void for_each_impulse(SolverScratch &scratch, Use &&use)
 }
 
 void go_on(StepContext &context, Real share) {
-    recall_joints(context, share, Springs::at_the_end);
-    recall_contacts(context, share);
-    recall_particles(context, share);
+    warm_start_joints(context, share, Springs::at_the_end);
+    warm_start_contacts(context, share);
+    warm_start_particles(context, share);
 }
 
 // Ends with a pass, so that the impulses are within their bounds.

@@ -92,9 +92,9 @@ void advance_soft_step(StepContext &context) {
         resolve_impacts(context, h);
         begin_flights(context, gravity, h, Kick::around);
         remember_joints(context);
-        recall_joints(context, Real(0.5), Springs::midpoint);
+        warm_start_joints(context, Real(0.5), Springs::midpoint);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
-        recall_contact_columns(context, Real(0.5), true);
+        warm_start_contact_columns(context, Real(0.5), true);
         if (has_particles) {
             kick_particles(context, gravity, Real(0.5) * h);
             refresh_particles(context, h, SpringRule::midpoint);
@@ -111,10 +111,10 @@ void advance_soft_step(StepContext &context) {
         if (has_particles)
             drift_particles(context, h);
         refresh_joints(context);
-        recall_joints(context, Real(0.5), Springs::skip);
+        warm_start_joints(context, Real(0.5), Springs::skip);
         turn_contact_columns(context, Real(0));
         rearm_contact_columns(context); // for the next substep's first half, too
-        recall_contact_columns(context, Real(0.5), false);
+        warm_start_contact_columns(context, Real(0.5), false);
         repeat_springs(context);
         if (has_particles) {
             kick_particles(context, gravity, Real(0.5) * h);

@@ -23,7 +23,7 @@ void advance_stormer_verlet(StepContext &context) {
             remember_velocities(context);
             kick_smoothly(context, middle, h / 2);
             find_accelerations(context, middle);
-            recall_velocities(context);
+            warm_start_velocities(context);
         }
         kick_smoothly(context, middle, h);
         drift_smoothly(context, h / 2);

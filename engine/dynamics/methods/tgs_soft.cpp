@@ -42,8 +42,8 @@ void advance_tgs_soft(StepContext &context) {
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
-        recall_joints(context, Real(1), Springs::at_the_end);
-        recall_contacts(context, Real(1));
+        warm_start_joints(context, Real(1), Springs::at_the_end);
+        warm_start_contacts(context, Real(1));
         refresh_particles(context, h, SpringRule::implicit_euler);
         refresh_separations(context);
         for (int i = 0; i < settings.iterations; ++i) {
