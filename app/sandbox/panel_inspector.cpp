@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <variant>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/trigonometric.hpp>
@@ -22,31 +21,6 @@ std::string triple(const glm::dvec3 &v, const char *format = "%.3f, %.3f, %.3f")
     std::snprintf(text.data(), text.size(), format, v.x, v.y, v.z);
     return text.data();
 }
-
-struct ShapeText {
-    std::string operator()(const SphereDesc &s) const {
-        return "sphere, r " + number(s.radius, "m");
-    }
-    std::string operator()(const BoxDesc &b) const {
-        return "box, " + triple(b.half_extents * 2.0, "%.3g × %.3g × %.3g") + " m";
-    }
-    std::string operator()(const CapsuleDesc &c) const {
-        return "capsule, r " + number(c.radius) + ", h " + number(2 * c.half_height, "m");
-    }
-    std::string operator()(const CylinderDesc &c) const {
-        return "cylinder, r " + number(c.radius) + ", h " + number(2 * c.half_height, "m");
-    }
-    std::string operator()(const HullDesc &h) const {
-        return "hull of " + std::to_string(h.points->size()) + " points";
-    }
-    std::string operator()(const PlaneDesc &) const { return "plane"; }
-    std::string operator()(const MeshDesc &m) const {
-        return "mesh of " + std::to_string(m.data->triangles.size()) + " triangles";
-    }
-    std::string operator()(const HeightFieldDesc &f) const {
-        return "height field of " + std::to_string(f.rows) + " × " + std::to_string(f.columns);
-    }
-};
 
 const char *text(BodyKind kind) {
     switch (kind) {
@@ -226,7 +200,7 @@ void inspector_panel(PanelContext &context) {
     value_row("Name", info.name);
     value_row("Kind", text(info.kind));
     for (const ColliderDesc &collider : info.colliders)
-        value_row("Shape", std::visit(ShapeText{}, collider.shape));
+        value_row("Shape", summary(collider.shape));
     if (!info.material.empty())
         value_row("Material", info.material);
     if (info.kind == BodyKind::dynamic) {

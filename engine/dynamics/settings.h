@@ -1,4 +1,4 @@
-// Everything that a step can be told. No method has a constant of its own.
+// Everything that a step can be told. Constants of one method stand where they are used.
 //
 // A setting is a member of StepSettings and a row of setting_rows. Checks, the state hash, scene
 // files, the command line, sweeps, the panel, charts and scenes/README.md are made from the table:

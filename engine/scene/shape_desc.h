@@ -116,6 +116,9 @@ double volume(const ShapeDesc &shape);
 // for a plane and for surfaces, which are unbounded; 0 for points without a solid hull.
 double smallest_width(const ShapeDesc &shape);
 
+// Its kind and size in a few words: "capsule, half height 0.5 m, radius 0.2 m".
+std::string summary(const ShapeDesc &shape);
+
 // The axis-aligned box around a shape that is turned and then moved to `position` (m); infinite for
 // a plane.
 struct BoundsDesc {

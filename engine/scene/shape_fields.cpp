@@ -1,6 +1,10 @@
 #include "engine/scene/shape_fields.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
 #include <type_traits>
+#include <variant>
 
 namespace plumb::scene_file {
 
@@ -35,6 +39,52 @@ std::string_view of_probes(const KindInfo &info) {
     return "";
 }
 
+// Shown a kind's fields, it says them in a few words.
+class Summary {
+  public:
+    explicit Summary(std::string_view kind) : text_(kind) { std::ranges::replace(text_, '_', ' '); }
+
+    void length(std::string_view key, double &value, std::string_view = {}) {
+        std::string name(key);
+        std::ranges::replace(name, '_', ' ');
+        text_ += ", " + name + " " + rounded(value) + " m";
+    }
+    void size(std::string_view, glm::dvec3 &half) {
+        text_ += ", " + rounded(2 * half.x) + " × " + rounded(2 * half.y) + " × " +
+                 rounded(2 * half.z) + " m";
+    }
+    template <typename Points> void cloud(std::string_view, Points &points) {
+        text_ += " of " + std::to_string(points->size()) + " points";
+    }
+    template <typename... Ways> void either(std::string_view, const Ways &...ways) {
+        ((ways.is_chosen ? ways.fields() : void()), ...);
+    }
+    void file(ShapeFile &file) { text_ += " of " + file.name; }
+    template <typename Word, std::size_t count>
+    void word(std::string_view key, Word &word, const std::array<std::string_view, count> &names,
+              bool) {
+        text_ += ", " + std::string(key) + " " + std::string(names[static_cast<std::size_t>(word)]);
+    }
+    void whole(std::string_view, int &, int, int) {}
+    template <typename Data> void surface(std::string_view, std::string_view, Data &data) {
+        text_ += " of " + std::to_string(data->triangles.size()) + " triangles";
+    }
+    void heights(std::string_view, HeightFieldDesc &field) {
+        text_ += " of " + std::to_string(field.rows) + " × " + std::to_string(field.columns);
+    }
+
+    const std::string &text() const { return text_; }
+
+  private:
+    static std::string rounded(double value) {
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%.4g", value);
+        return text.data();
+    }
+
+    std::string text_;
+};
+
 template <typename Shape> std::string row() {
     const KindInfo &info = Kind<Shape>::info;
     constexpr bool has_body = is_one_of<Shape>(static_cast<const ShapeDesc *>(nullptr));
@@ -58,3 +108,14 @@ std::string shape_reference() {
 }
 
 } // namespace plumb::scene_file
+
+std::string plumb::summary(const ShapeDesc &shape) {
+    return std::visit(
+        [](auto known) { // a copy: visitors may write
+            using Shape = decltype(known);
+            scene_file::Summary words(scene_file::Kind<Shape>::info.name);
+            scene_file::Kind<Shape>::fields(known, words);
+            return words.text();
+        },
+        shape);
+}

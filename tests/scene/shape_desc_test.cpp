@@ -111,6 +111,21 @@ TEST(ShapeDesc, ATurnedCylinderFillsItsBounds) {
     }
 }
 
+TEST(ShapeDesc, AreSummedUpInAFewWords) {
+    EXPECT_EQ(summary(SphereDesc{0.5}), "sphere, radius 0.5 m");
+    EXPECT_EQ(summary(BoxDesc{{0.5, 1, 0.1}}), "box, 1 × 2 × 0.2 m");
+    EXPECT_EQ(summary(CapsuleDesc{0.5, 0.2}), "capsule, half height 0.5 m, radius 0.2 m");
+    EXPECT_EQ(summary(PlaneDesc{}), "plane");
+    HeightFieldDesc field;
+    field.rows = 2;
+    field.columns = 3;
+    field.hills.reset();
+    EXPECT_EQ(summary(field), "height field of 2 × 3");
+    HullDesc hull;
+    hull.points = std::make_shared<std::vector<glm::dvec3>>(8);
+    EXPECT_EQ(summary(hull), "hull of 8 points");
+}
+
 TEST(ShapeDesc, ABodysBoundsHoldAllOfItsShapes) {
     BodyDesc body;
     body.position = {10, 0, 0};
