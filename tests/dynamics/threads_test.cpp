@@ -94,9 +94,9 @@ TEST_P(ThreadsOfAllSorts, GiveTheSameBits) {
     const Random random(3);
     for (int step = 0; step < 12; ++step) {
         alone.step(nullptr);
-        for (std::size_t k = 0; k < shared.size(); ++k) {
-            shared[k].step(pools[k]);
-            ASSERT_EQ(shared[k].hash(), alone.hash()) << "step " << step << ", pool " << k;
+        for (std::size_t pool = 0; pool < shared.size(); ++pool) {
+            shared[pool].step(pools[pool]);
+            ASSERT_EQ(shared[pool].hash(), alone.hash()) << "step " << step << ", pool " << pool;
         }
         shared.push_back(alone);
         for (World &world : shared) {
