@@ -29,7 +29,7 @@ STEPS = 20
 PARTS = {
     "broad phase": [r"DynamicTree::", r"World::place_colliders"],
     "contact detection": [r"World::collide_candidate"],
-    "contact solver": [r"kernels::.*solve_blocks", r"kernels::.*recall_blocks"],
+    "contact solver": [r"kernels::.*solve_blocks", r"kernels::.*warm_start_blocks"],
     "joints": [r"::solve_group", r"JointSystem::factor", r"JointSystem::solve",
                r"JointSystem::eliminate", r"::emit_point\("],
     "particles and cloth": [r"World::find_particle_contacts", r"World::collide_particle",

@@ -42,7 +42,7 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
 class Answers {
   public:
     Answers(StepContext &context, const ContactConstraint &contact) : context_(context) {
-        JointSystem &system = context.scratch.joint_system;
+        JointSystem &system = *context.scratch.joint_system;
         first_ = system.group_of(contact.a);
         second_ = system.group_of(contact.b);
         if (second_ == first_)

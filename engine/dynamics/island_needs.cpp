@@ -106,7 +106,7 @@ void World::guess_needs() {
 }
 
 bool World::is_solved_together(std::uint32_t body) const {
-    return scratch_.solver.joint_system.group_of(body) != JointSystem::none;
+    return scratch_.solver.joint_system->group_of(body) != JointSystem::none;
 }
 
 // The depth of a soft contact of frequency w under the force F is F / (2 m w^2): the warm start
@@ -236,7 +236,7 @@ void World::note_turn_needs(const IslandGroup &group) {
 void World::note_let_go(const IslandGroup &group) {
     Scratch &s = scratch_;
     const double more = square(round_substeps_up(group.substeps + 1));
-    JointSystem &system = s.solver.joint_system;
+    JointSystem &system = *s.solver.joint_system;
     for (const JointGroup &joints : system.groups()) {
         const auto note = [&](std::uint32_t body, const Vec3 &) {
             double &load = s.loads[body];

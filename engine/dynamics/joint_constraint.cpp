@@ -47,7 +47,7 @@ std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
 // All rows of a group at once. Where bodies turn far within the substep, the ends of their arms
 // move along circles, and it takes some of Newton's steps until they meet. Returns whether they do.
 bool solve_group(StepContext &context, const JointGroup &group, const JointPass &pass) {
-    const JointSystem &system = context.scratch.joint_system;
+    const JointSystem &system = *context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
     // Far more than it takes when a body turns a radian within the substep.
     constexpr int most_steps = 8;
@@ -83,7 +83,7 @@ bool solve_group(StepContext &context, const JointGroup &group, const JointPass 
 // Leaves a group to Gauss-Seidel, without what it remembers: forces that nothing has stretched for
 // would give more energy than they took.
 void let_go(StepContext &context, JointGroup &group) {
-    const JointSystem &system = context.scratch.joint_system;
+    const JointSystem &system = *context.scratch.joint_system;
     group.is_held = false;
     group.was_let_go = !group.was_torn;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
@@ -100,7 +100,7 @@ void let_go(StepContext &context, JointGroup &group) {
 // of their products with what the impulse did to those rows.
 Real find_answer(StepContext &context, const JointConstraint &joint, const JointGroup &group,
                  const Vec3 &impulse) {
-    const JointSystem &system = context.scratch.joint_system;
+    const JointSystem &system = *context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
     const auto struck = [&](std::uint32_t body) {
         SolverBody motion = context.body(body);
@@ -134,7 +134,7 @@ Real find_answer(StepContext &context, const JointConstraint &joint, const Joint
 // Calls use(group) for those that the joint's bodies hang on, as far as they are held.
 template <typename Use>
 void for_held_groups(StepContext &context, const JointConstraint &joint, Use &&use) {
-    JointSystem &system = context.scratch.joint_system;
+    JointSystem &system = *context.scratch.joint_system;
     std::uint32_t last = JointSystem::none;
     for (const std::uint32_t body : {joint.a, joint.b}) {
         const std::uint32_t group =
@@ -154,7 +154,7 @@ void answer(StepContext &context, const JointConstraint &joint, const Vec3 &impu
         const std::span<const Vec3> sides = sides_of(context, group);
         for (std::uint32_t place = group.first; place < group.last; ++place) {
             JointConstraint &other =
-                context.scratch.joints[context.scratch.joint_system.block(place)];
+                context.scratch.joints[context.scratch.joint_system->block(place)];
             other.impulse += sides[place - group.first];
             apply(context, other, sides[place - group.first]);
         }
@@ -184,7 +184,7 @@ void weigh(StepContext &context, JointConstraint &joint) {
 }
 
 void weigh_with_groups(StepContext &context, bool changed_only) {
-    if (context.scratch.joint_system.groups().empty())
+    if (context.scratch.joint_system->groups().empty())
         return;
     for (JointConstraint &joint : context.scratch.joints)
         if (!changed_only || is_changed(context, joint))
@@ -243,7 +243,7 @@ bool is_in_columns(StepContext &context, std::size_t k) {
 
 // Factors the groups that are held, and of which `is_due` says so.
 template <typename Due> void factor_groups(StepContext &context, Due &&is_due) {
-    JointSystem &system = context.scratch.joint_system;
+    JointSystem &system = *context.scratch.joint_system;
     const std::span<JointGroup> groups = system.groups();
     for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
         for (JointGroup &group : groups.subspan(begin, end - begin)) {
@@ -284,7 +284,7 @@ std::span<JointConstraint> blocks_of(StepContext &context, std::size_t k) {
 void prepare_joints(StepContext &context) {
     std::vector<JointConstraint> &blocks = context.scratch.joints;
     blocks.clear();
-    context.scratch.joint_system.release();
+    context.scratch.joint_system->release();
     context.scratch.joint_schedule.blocks.clear();
     context.scratch.joint_schedule.level_ends.clear();
     context.scratch.first_blocks.clear();
@@ -341,7 +341,7 @@ void weigh_joints(StepContext &context) {
 }
 
 void weigh_changed_joints(StepContext &context) {
-    JointSystem &system = context.scratch.joint_system;
+    JointSystem &system = *context.scratch.joint_system;
     for (JointConstraint &joint : context.scratch.joints)
         if (is_changed(context, joint))
             weigh_alone(context, joint);
@@ -419,7 +419,7 @@ void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &
 // Groups come first, to see whether they hold, and again after other joints have changed what they
 // did.
 void solve_joints(StepContext &context, const JointPass &pass) {
-    const std::span<JointGroup> groups = context.scratch.joint_system.groups();
+    const std::span<JointGroup> groups = context.scratch.joint_system->groups();
     const auto hold = [&](std::size_t begin, std::size_t end) {
         for (JointGroup &group : groups.subspan(begin, end - begin))
             if (group.is_held) {
@@ -457,7 +457,7 @@ void solve_joints(StepContext &context, const JointPass &pass) {
 void answer_impact(StepContext &context, std::uint32_t group) {
     if (group == JointSystem::none)
         return;
-    JointSystem &system = context.scratch.joint_system;
+    JointSystem &system = *context.scratch.joint_system;
     const JointGroup &all = system.groups()[group];
     if (!all.is_held)
         return;

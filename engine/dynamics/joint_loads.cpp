@@ -106,7 +106,7 @@ void follow_loads(StepContext &context, Real h) {
         return;
     raise_inertias(context, h);
     std::vector<std::uint8_t> &changed = context.scratch.changed;
-    JointSystem &system = context.scratch.joint_system;
+    JointSystem &system = *context.scratch.joint_system;
     for (JointGroup &group : system.groups()) {
         group.is_held = true;
         for (std::uint32_t place = group.first; group.is_held && place < group.last; ++place)

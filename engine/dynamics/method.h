@@ -34,7 +34,7 @@ struct SolverScratch {
     std::vector<JointConstraint> joints;
     std::vector<std::uint32_t> first_blocks; // of each active joint and the grab, in `joints`
     JointSchedule joint_schedule;
-    JointSystem joint_system;
+    JointSystem *joint_system = nullptr;         // of what is being advanced
     std::vector<Vec3> sides;                     // of its equations, one for each place
     std::vector<GeometricStiffness> stiffness;   // of each body, by the last substep's impulses
     std::vector<std::uint8_t> changed;           // likewise: what follow_loads changed

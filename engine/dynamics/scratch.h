@@ -94,6 +94,7 @@ struct Scratch {
     std::vector<IslandGroup> groups; // the first group_count of them
     std::size_t group_count = 0;
     std::vector<JointSystem> joint_systems; // one for each group, which is often that of last step
+    JointSystem no_joints;                  // of groups without
     std::vector<double> loads;         // of each body: the square of the substeps that it wants
     std::vector<double> contact_loads; // of each contact of a group, likewise
     std::vector<GeometricStiffness> stiffness; // of each body, that its joints' forces make

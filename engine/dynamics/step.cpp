@@ -249,14 +249,10 @@ void World::advance_groups() {
                             s.point_penalties,
                             s.joint_penalties,
                             s.tasks};
-        const bool has_joints = !s.groups[i].joints.empty();
-        if (has_joints)
-            std::swap(s.solver.joint_system, s.joint_systems[i]);
+        s.solver.joint_system = s.groups[i].joints.empty() ? &s.no_joints : &s.joint_systems[i];
         method_->advance(context);
         if (chooses_substeps())
             note_needs(s.groups[i]);
-        if (has_joints)
-            std::swap(s.solver.joint_system, s.joint_systems[i]);
     }
     if (model_->has_particles())
         end_particles();

@@ -80,7 +80,7 @@ void advance_soft_step(StepContext &context) {
     prepare_contacts(context, Prepare::bouncing); // for their impacts
     prepare_joints(context);
     prepare_particles(context, SpringRule::midpoint);
-    context.scratch.joint_system.arrange(context);
+    context.scratch.joint_system->arrange(context);
     prepare_joint_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
