@@ -26,7 +26,8 @@ Mat3 get(const ColumnsMatrix &columns, std::size_t lane) {
 }
 
 bool is_alone(const StepContext &context, std::uint32_t body) {
-    return body == Joint::world || context.scratch.joint_system->group_of(body) == JointSystem::none;
+    return body == Joint::world ||
+           context.scratch.joint_system->group_of(body) == JointSystem::none;
 }
 
 // Joints that are one rigid point, between bodies that no group has.
