@@ -121,11 +121,7 @@ void World::collide_particle(std::uint32_t index, std::size_t part,
     const Particle &particle = model_->particles[index];
     const ParticleMotion &motion = state_.particles[index];
     const auto dt = static_cast<Real>(settings_.dt);
-    const Real fall = particle.inv_mass > Real(0)
-                          ? (static_cast<Real>(glm::length(settings_.gravity)) +
-                             glm::length(attraction(model_->attractors, motion.position))) *
-                                dt * dt
-                          : Real(0);
+    const Real fall = glm::length(pull_on_particle(index)) * dt * dt;
     const Real reach = particle.radius + dt * glm::length(motion.velocity) + fall +
                        static_cast<Real>(settings_.speculative_distance) / 2;
     const Aabb box = around(motion.position, reach);

@@ -1,4 +1,4 @@
-// What only an edit changes: bodies, colliders, joints, particles, springs.
+// What only an edit changes: bodies, colliders, joints, particles, springs, attractors.
 #pragma once
 
 #include "engine/dynamics/attractor.h"

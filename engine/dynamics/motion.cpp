@@ -422,10 +422,6 @@ void fly_spinning_on(SolverBody &body, const Drive &drive, Real h, int substeps)
     body = motion;
 }
 
-} // namespace
-
-namespace {
-
 // All substeps of one that attractors pull at, with half of that before and after each.
 void fly_attracted(SolverBody &motion, const Body &body, const Drive &drive,
                    const StepContext &context) {

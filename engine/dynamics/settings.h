@@ -123,8 +123,8 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "shorter."},
     {"split_impulse", &StepSettings::split_impulse, "", 0, 2, SettingGroup::split,
      "What is corrected by pseudo velocities, which are then forgotten (split impulse), not "
-     "through the velocities: 0 nothing, and stacks rock; 1 contacts; 2 joints too, and chains "
-     "gain next to no energy, for twice the cost."},
+     "through the velocities: 0 nothing, and stacks rock; 1 contacts; 2 joints too, and no "
+     "chain gains energy, but what swings loses more."},
     {"contact_frequency_ratio", &StepSettings::contact_frequency_ratio, "", 1e-6, 1000,
      SettingGroup::soft,
      "Natural frequency of a soft contact as a fraction of the substep rate: above 1/4 the spring "

@@ -43,14 +43,6 @@ void add_force(const StepContext &context, const SpringEnd &end, const Vec3 &arm
     out.bodies[place].torque += torque;
 }
 
-void add_attraction(const StepContext &context, Accelerations &out) {
-    const auto moving = context.moving();
-    for (std::size_t i = 0; i < moving.size(); ++i)
-        out.bodies[i].linear +=
-            gravity_on(context.model.bodies[moving[i]],
-                       attraction(context.model.attractors, context.bodies[moving[i]].position));
-}
-
 void add_springs(StepContext &context, Accelerations &out) {
     for (std::size_t i = 0; i < context.model.springs.size(); ++i) {
         if (context.torn[i] != 0)
@@ -83,20 +75,19 @@ void find_linear_accelerations(StepContext &context, Accelerations &out) {
         out.bodies[i] = {};
         if (body.kind == BodyKind::dynamic)
             out.bodies[i].linear =
-                gravity_on(body, gravity) - body.linear_damping * motion.velocity;
+                gravity_on(body, gravity + attraction(context.model.attractors, motion.position)) -
+                body.linear_damping * motion.velocity;
     }
     context.report.body_passes += moving.size();
-    if (!context.model.attractors.empty())
-        add_attraction(context, out);
     if (!context.active.has_particles)
         return;
     const std::vector<Particle> &particles = context.model.particles;
     out.particles.resize(particles.size());
     for (std::size_t i = 0; i < particles.size(); ++i)
-        out.particles[i] = particles[i].inv_mass > Real(0) ? gravity : Vec3{Real(0)};
-    for (std::size_t i = 0; !context.model.attractors.empty() && i < particles.size(); ++i)
-        if (particles[i].inv_mass > Real(0))
-            out.particles[i] += attraction(context.model.attractors, context.particles[i].position);
+        out.particles[i] =
+            particles[i].inv_mass > Real(0)
+                ? gravity + attraction(context.model.attractors, context.particles[i].position)
+                : Vec3{Real(0)};
     add_springs(context, out);
     context.report.body_passes += particles.size();
     context.report.constraint_passes += context.model.springs.size();
@@ -156,7 +147,7 @@ void remember_velocities(StepContext &context) {
     s.particle_motions.assign(context.particles.begin(), context.particles.end());
 }
 
-void warm_start_velocities(StepContext &context) {
+void restore_velocities(StepContext &context) {
     const SolverScratch &s = context.scratch;
     for (std::size_t i = 0; i < s.velocities.size(); ++i) {
         SolverBody &motion = context.bodies[context.moving()[i]];

@@ -34,7 +34,7 @@ void kick_smoothly(StepContext &context, const Accelerations &by, Real h);
 
 // For a second evaluation within a substep: velocities as they were when they were remembered.
 void remember_velocities(StepContext &context);
-void warm_start_velocities(StepContext &context);
+void restore_velocities(StepContext &context);
 
 // Whether any of them depends on velocities.
 bool depend_on_velocities(const StepContext &context);

@@ -86,8 +86,7 @@ const ReductionInfo *find_reduction(std::string_view name); // null when there i
 //   crossings         how often x - level changes sign; samples that lie exactly on the level count
 //                     for neither side
 //   first_crossing    when it first does so, in s from the first sample, placed as for `period`;
-//   the
-//                     last sample's time where it never does
+//                     the last sample's time where it never does
 // `level` is by default midway between the smallest and the largest value. No samples give NaN, and
 // so does any value that is NaN.
 double reduce(std::span<const double> times, std::span<const double> values, Reduction reduction,

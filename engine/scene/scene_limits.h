@@ -11,8 +11,10 @@ inline constexpr std::size_t max_scene_planes = 100;
 // some 600 bytes. 15 for each of max_scene_bodies, which is more than a solid block of boxes has.
 inline constexpr std::size_t max_scene_pairs = 3'000'000;
 
-// Those of cloth among them: of each some 200 bytes, and as a saved scene 100 characters.
+// Each is asked by all that moves, as planes are.
 inline constexpr std::size_t max_scene_attractors = 100;
+
+// Those of cloth among them: of each some 200 bytes, and as a saved scene 100 characters.
 inline constexpr std::size_t max_scene_particles = 200'000;
 inline constexpr std::size_t max_scene_springs = 2'000'000;
 

@@ -43,10 +43,10 @@ class Scene : public testing::TestWithParam<fs::path> {};
 // Soft falls by semi-implicit Euler, and bounces once a step, one contact by itself. What does not
 // look ahead takes the planes of the start of the step for those of all of it. Explicit Euler
 // speeds spins up, and steps so short that it would not are lost in float; orbits grow by it, and
-// shrink by backward Euler. XPBD loses swings and
-// spins, its friction is off by some per cent, and impulses are not propagated. AVBD loses swings
-// more than any, bounces as TGS Soft does, and its passes leave cloth that moves fast with more
-// energy than it had. Under naive impulses nothing rests, and under naive spin nothing tumbles.
+// shrink by backward Euler. XPBD loses swings and spins, its friction is off by some per cent, and
+// impulses are not propagated. AVBD loses swings more than any, bounces as TGS Soft does, and its
+// passes leave cloth that moves fast with more energy than it had. Under naive impulses nothing
+// rests, and under naive spin nothing tumbles.
 //
 // Each with the error that it stays below, of what it misses most, in units of its tolerance: a
 // quarter above what was found. Null for what a method must meet.

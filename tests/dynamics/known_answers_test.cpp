@@ -275,7 +275,6 @@ TEST_P(KnownAnswers, AreMetWithinTheMethodsBound) {
     }
 }
 
-// Torn, it whips about: what it has come to at the end says little of what it went through.
 // The greatest energy of a chain let go aside, over what it began with, in units of its fall.
 double energy_gained(int split_impulse, double dt) {
     StepSettings settings = settings_for("sequential_impulses");
@@ -307,9 +306,10 @@ double energy_gained(int split_impulse, double dt) {
 }
 
 TEST(KnownFailings, SequentialImpulsesGainEnergyThroughBaumgartesBias) {
-    EXPECT_GT(energy_gained(1, 1.0 / 120), 0.05);
+    for (const double dt : {1.0 / 120, 1.0 / 480})
+        EXPECT_GT(energy_gained(1, dt), 0.05) << dt;
     for (const double dt : {1.0 / 120, 1.0 / 240, 1.0 / 480, 1.0 / 960})
-        EXPECT_LT(energy_gained(2, dt), 0.02) << dt;
+        EXPECT_LT(energy_gained(2, dt), 0.01) << dt;
 }
 
 // Its rate does not grow as the step shrinks, so what it gives fades.
@@ -318,6 +318,7 @@ TEST(SequentialImpulses, GainLessAndLessEnergyAsTheStepShrinks) {
     EXPECT_LT(energy_gained(1, 1.0 / 1920), 0.002);
 }
 
+// Torn, it whips about: what it has come to at the end says little of what it went through.
 TEST(KnownFailings, SequentialImpulsesTearAChainByMetres) {
     World world = heavy_chain("sequential_impulses");
     double worst = 0;

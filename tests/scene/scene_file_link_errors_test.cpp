@@ -163,6 +163,12 @@ step = 3
 dt_since_step = @4
 )",
          {"dt was changed after step 4 of 3; it must be at most `step`"}},
+        {"StateClockWithoutAStep",
+         R"([state]
+step = 3
+dt_since_time = @0.5
+)",
+         {"dt was changed at a time, but after no step; dt_since_step says after which"}},
         {"GrabOfNothing",
          two + R"(@[state.grab]
 target = [0, 0, 0]
@@ -184,7 +190,7 @@ target = [0, 0, 0]
 max_force = 1
 held_mass = @-1
 )",
-         {R"(there is no particle "p")", "held_mass is -1; it must be a number from 0 to 1e9"}},
+         {R"(there is no particle "p")", "held_mass is -1; it must be a number from 0 on"}},
         {"ContactUnknownBody",
          two + R"([[state.contact]]
 body_a = "a"

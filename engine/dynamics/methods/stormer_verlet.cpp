@@ -23,7 +23,7 @@ void advance_stormer_verlet(StepContext &context) {
             remember_velocities(context);
             kick_smoothly(context, middle, h / 2);
             find_accelerations(context, middle);
-            warm_start_velocities(context);
+            restore_velocities(context);
         }
         kick_smoothly(context, middle, h);
         drift_smoothly(context, h / 2);

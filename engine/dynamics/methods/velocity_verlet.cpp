@@ -23,7 +23,7 @@ void advance_velocity_verlet(StepContext &context) {
             remember_velocities(context);
             kick_smoothly(context, now, h / 2);
             find_accelerations(context, now);
-            warm_start_velocities(context);
+            restore_velocities(context);
         }
         kick_smoothly(context, now, h / 2);
     }

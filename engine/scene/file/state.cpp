@@ -106,6 +106,9 @@ void read_contact(Reading &reading, const toml::table &source) {
     reading.scene.contacts.push_back(std::move(contact));
 }
 
+// Bounds are those of the command that it came of.
+constexpr Bounds no_less_than_0{0, std::numeric_limits<double>::max(), "a number from 0 on"};
+
 // What is not to be held, a static body or a pinned particle, is not, as with a grab.
 void read_grab(Reading &reading, const toml::table &source) {
     static constexpr std::array<std::string_view, 9> keys{
@@ -119,23 +122,24 @@ void read_grab(Reading &reading, const toml::table &source) {
         if (const std::optional<std::size_t> body = find_body(reading, table, "body"))
             grab.body = reading.scene.bodies[*body].name;
         table.refuse({"held_mass"}, "a body is held by its own mass", "leave it out");
-        grab.point_local = table.vector("point", moderate).value_or(grab.point_local);
-        grab.impulse = table.vector("impulse", moderate).value_or(grab.impulse);
+        grab.point_local = table.vector("point", finite).value_or(grab.point_local);
+        grab.impulse = table.vector("impulse", finite).value_or(grab.impulse);
     } else if (held == "particle") {
         grab.particle = table.string("particle").value_or("");
         if (!is_particle(reading, grab.particle))
             table.error("particle", "there is no particle " + in_quotes(grab.particle));
         table.refuse({"point", "impulse"}, "a particle is held as a point, by a spring",
                      "leave it out");
-        grab.held_mass = table.number("held_mass", not_negative).value_or(grab.held_mass);
+        grab.held_mass = table.number("held_mass", no_less_than_0).value_or(grab.held_mass);
     }
     if (table.require("target", "[x, y, z] in m"))
-        grab.target = table.vector("target", moderate).value_or(grab.target);
+        grab.target = table.vector("target", finite).value_or(grab.target);
     if (table.require("max_force", "the greatest force, in N"))
-        grab.max_force = table.number("max_force", not_negative).value_or(grab.max_force);
+        grab.max_force = table.number("max_force", no_less_than_0).value_or(grab.max_force);
     const GrabSpring spring;
-    grab.frequency = table.number("frequency", positive).value_or(spring.frequency);
-    grab.damping_ratio = table.number("damping_ratio", not_negative).value_or(spring.damping_ratio);
+    grab.frequency = table.number("frequency", above_zero).value_or(spring.frequency);
+    grab.damping_ratio =
+        table.number("damping_ratio", no_less_than_0).value_or(spring.damping_ratio);
     reading.scene.grab = std::move(grab);
 }
 
@@ -149,6 +153,9 @@ void read_clock(Reading &reading, const Table &table) {
                     "dt was changed after step " + std::to_string(scene.dt_since_step) + " of " +
                         std::to_string(scene.step_count),
                     "it must be at most `step`");
+    if (scene.dt_since_step == 0 && scene.dt_since_time > 0)
+        table.error("dt_since_time", "dt was changed at a time, but after no step",
+                    "dt_since_step says after which");
 }
 
 } // namespace
