@@ -141,6 +141,21 @@ TEST(Attractors, PullAsGravityDoes) {
     EXPECT_EQ(particle_velocity(world, 1), V{0});
 }
 
+// A kinematic body goes on as told, where nothing moves by forces.
+TEST(Attractors, LeaveAloneWhatMovesAsTold) {
+    for (const std::string &method : all_methods()) {
+        World world(method, settings_of(method, 1.0 / 64));
+        world.add_attractor({Vec3{Real(0)}, Real(8)});
+        BodyDef told = fixed_body(ball(0.1), V{2, 0, 0});
+        told.kind = BodyKind::kinematic;
+        told.velocity = narrow(V{0, 1, 0});
+        const BodyId id = world.add_body(told);
+        run(world, 32);
+        EXPECT_NEAR(glm::distance(position_of(world, id), V(2, 0.5, 0)), 0, 10 * epsilon) << method;
+        EXPECT_EQ(velocity_of(world, id), V(0, 1, 0)) << method;
+    }
+}
+
 // Two balls let go above an attractor within a ball of stone, one on either side: they come to rest
 // on it, and stay.
 TEST(Attractors, BallsRestOnAPlanet) {

@@ -50,6 +50,8 @@ class System {
     }
 
     void solve() {
+        if (count_ == 0)
+            return; // all is locked, pinned, or moves as told
         Eigen::SparseMatrix<double> matrix(count_, count_);
         matrix.setFromTriplets(entries_.begin(), entries_.end());
         const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(matrix);
