@@ -20,7 +20,7 @@ LIBRARIES = [
     (r"hwy/", r"engine/(geometry|space)/[^/]+|engine/math/wide_vector-inl\.h"
      r"|engine/dynamics/(columns-inl\.h|(contact|joint|spring)_kernels\.cpp)|"
      r"tests/(geometry|space|dynamics)/[^/]+", None),
-    (r"Eigen/", r"engine/dynamics/methods/backward_euler\.cpp", 1),
+    (r"Eigen/", r"engine/math/sparse_cholesky\.cpp", 1),
     (r"benchmark/", r"app/lab/timing\.cpp", 1),
     (r"Bullet|LinearMath/|fcl/|embree|\bode/|btBullet",
      r"tests/bench/[^/]+|app/lab/engines/engine_(bullet|ode)\.cpp", None),

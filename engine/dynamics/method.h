@@ -7,6 +7,7 @@
 #include "engine/dynamics/descent.h"
 #include "engine/dynamics/events.h"
 #include "engine/dynamics/geometric_stiffness.h"
+#include "engine/dynamics/implicit_system.h"
 #include "engine/dynamics/joint_columns.h"
 #include "engine/dynamics/joint_constraint.h"
 #include "engine/dynamics/joint_system.h"
@@ -52,6 +53,7 @@ struct SolverScratch {
     std::vector<Motion> motions;                // likewise, where the step began
     std::vector<ParticleMotion> particle_motions;
     Descent descent;
+    ImplicitSystem implicit_system;
 };
 
 // What a method is given: the world at the start of a step, to be advanced by settings.dt. Contacts

@@ -239,8 +239,6 @@ INSTANTIATE_TEST_SUITE_P(Methods, SettledSteps,
 
 TEST_P(SettledSteps, AllocateNothing) {
     const auto &[method, sleeps] = GetParam();
-    if (method == "backward_euler")
-        GTEST_SKIP() << "Eigen's sparse matrices are made anew in each substep";
     World world = settling(method);
     StepSettings settings = world.settings();
     settings.sleep_after = sleeps ? 0.5 : 0;
@@ -273,8 +271,8 @@ TEST_P(SettledSteps, AllocateNothing) {
 // Nor does one of particles, springs and what they touch.
 TEST_P(Saves, AStepOfParticlesAllocatesNothing) {
     const MethodInfo &method = find_method(GetParam())->info;
-    if (!method.springs || method.name == "backward_euler") // which makes matrices of Eigen's
-        GTEST_SKIP() << "no springs, or allocated ones";
+    if (!method.springs)
+        GTEST_SKIP() << "no springs";
     World world(GetParam(), settings_for(GetParam()));
     world.add_body(ground(0.5, 0));
     world.add_body(dynamic_body(block(V{0.2}), 1, V{0.5, 0.2, 0.5}));

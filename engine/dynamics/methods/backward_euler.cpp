@@ -1,5 +1,5 @@
 // Backward (implicit) Euler for particles, springs and free bodies, linearised once a substep:
-// (M - h df/dv - h^2 df/dx) dv = h (f + h df/dx v), by Eigen's sparse Cholesky factors (Baraff and
+// (M - h df/dv - h^2 df/dx) dv = h (f + h df/dx v), by sparse Cholesky factors (Baraff and
 // Witkin 1998, "Large Steps in Cloth Simulation", eq. (6)). First order; stable for any step, and
 // what it cannot follow it damps. Torques of free spin stay explicit.
 //
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 
-#include <Eigen/SparseCholesky>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
@@ -22,27 +21,16 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Up to six unknowns of a body or particle: changes of velocity along the world's axes, then of
-// spin about them. `no_block` where nothing changes.
-using Unknowns = std::array<int, 6>;
-constexpr int no_block = -1;
+using Unknowns = ImplicitSystem::Unknowns;
+constexpr int no_unknown = -1;
 
-// The system of one substep, in double: stiff springs between light particles are told apart.
+// The system of one substep.
 class System {
   public:
     System(StepContext &context, const Accelerations &now, double h)
-        : context_(context), h_(h), bodies_(context.bodies.size(), all_none()),
-          particles_(context.particles.size(), all_none()) {
-        for (const std::uint32_t i : context.moving())
-            if (const Body &body = context.model.bodies[i]; body.kind == BodyKind::dynamic)
-                for (std::size_t axis = 0; axis < 6; ++axis)
-                    if (!body.locked[axis])
-                        bodies_[i][axis] = count_++;
-        for (std::size_t i = 0; i < particles_.size(); ++i)
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                if (context.model.particles[i].inv_mass > Real(0))
-                    particles_[i][axis] = count_++;
-        side_ = Eigen::VectorXd::Zero(count_);
+        : context_(context), memory_(context.scratch.implicit_system), h_(h) {
+        find_unknowns();
+        memory_.entries.clear();
         add_masses(now);
         for (std::size_t i = 0; i < context.model.springs.size(); ++i)
             if (context.torn[i] == 0)
@@ -50,39 +38,55 @@ class System {
     }
 
     void solve() {
-        if (count_ == 0)
+        if (memory_.sides.empty())
             return; // all is locked, pinned, or moves as told
-        Eigen::SparseMatrix<double> matrix(count_, count_);
-        matrix.setFromTriplets(entries_.begin(), entries_.end());
-        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(matrix);
-        const Eigen::VectorXd change = factors.solve(side_);
-        const auto at = [&](const Unknowns &unknowns, std::size_t first) {
-            Vec3 sum{Real(0)};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                if (unknowns[first + axis] != no_block)
-                    sum[static_cast<int>(axis)] = static_cast<Real>(change[unknowns[first + axis]]);
-            return sum;
-        };
+        memory_.matrix.factor(static_cast<int>(memory_.sides.size()), memory_.entries);
+        memory_.matrix.solve(memory_.sides);
         for (const std::uint32_t i : context_.moving()) {
-            context_.bodies[i].velocity += at(bodies_[i], 0);
-            context_.bodies[i].angular_velocity += at(bodies_[i], 3);
+            context_.bodies[i].velocity += change(memory_.bodies[i], 0);
+            context_.bodies[i].angular_velocity += change(memory_.bodies[i], 3);
         }
-        for (std::size_t i = 0; i < particles_.size(); ++i)
-            context_.particles[i].velocity += at(particles_[i], 0);
+        for (std::size_t i = 0; i < context_.particles.size(); ++i)
+            context_.particles[i].velocity += change(memory_.particles[i], 0);
     }
 
   private:
     static constexpr Unknowns all_none() {
-        return {no_block, no_block, no_block, no_block, no_block, no_block};
+        return {no_unknown, no_unknown, no_unknown, no_unknown, no_unknown, no_unknown};
+    }
+
+    void find_unknowns() {
+        int count = 0;
+        memory_.bodies.assign(context_.bodies.size(), all_none());
+        for (const std::uint32_t i : context_.moving())
+            if (const Body &body = context_.model.bodies[i]; body.kind == BodyKind::dynamic)
+                for (std::size_t axis = 0; axis < 6; ++axis)
+                    if (!body.locked[axis])
+                        memory_.bodies[i][axis] = count++;
+        memory_.particles.assign(context_.particles.size(), all_none());
+        for (std::size_t i = 0; i < context_.particles.size(); ++i)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                if (context_.model.particles[i].inv_mass > Real(0))
+                    memory_.particles[i][axis] = count++;
+        memory_.sides.assign(static_cast<std::size_t>(count), 0.0);
+    }
+
+    Vec3 change(const Unknowns &unknowns, std::size_t first) const {
+        Vec3 sum{Real(0)};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (const int unknown = unknowns[first + axis]; unknown != no_unknown)
+                sum[static_cast<int>(axis)] =
+                    static_cast<Real>(memory_.sides[static_cast<std::size_t>(unknown)]);
+        return sum;
     }
 
     void add_entry(int row, int column, double value) {
-        if (row != no_block && column != no_block)
-            entries_.emplace_back(row, column, value);
+        if (column != no_unknown && row >= column)
+            memory_.entries.push_back({row, column, value});
     }
     void add_side(int row, double value) {
-        if (row != no_block)
-            side_[row] += value;
+        if (row != no_unknown)
+            memory_.sides[static_cast<std::size_t>(row)] += value;
     }
 
     // Masses and damping on the diagonal, h M a on the right.
@@ -92,7 +96,7 @@ class System {
             const Body &body = context_.model.bodies[moving[place]];
             if (body.kind != BodyKind::dynamic)
                 continue;
-            const Unknowns &own = bodies_[moving[place]];
+            const Unknowns &own = memory_.bodies[moving[place]];
             const auto mass = static_cast<double>(body.mass);
             const double linear = 1 + h_ * static_cast<double>(body.linear_damping);
             const double angular = 1 + h_ * static_cast<double>(body.angular_damping);
@@ -117,14 +121,15 @@ class System {
                 add_side(own[3 + row], h_ * torque[i]);
             }
         }
-        for (std::size_t i = 0; i < particles_.size(); ++i) {
+        for (std::size_t i = 0; i < context_.particles.size(); ++i) {
             const auto mass = static_cast<double>(context_.model.particles[i].mass);
             if (!context_.model.attractors.empty())
-                add_attraction(particles_[i], mass, glm::dvec3{context_.particles[i].position},
+                add_attraction(memory_.particles[i], mass,
+                               glm::dvec3{context_.particles[i].position},
                                glm::dvec3{context_.particles[i].velocity});
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                add_entry(particles_[i][axis], particles_[i][axis], mass);
-                add_side(particles_[i][axis],
+                add_entry(memory_.particles[i][axis], memory_.particles[i][axis], mass);
+                add_side(memory_.particles[i][axis],
                          h_ * mass * static_cast<double>(now.particles[i][static_cast<int>(axis)]));
             }
         }
@@ -151,9 +156,9 @@ class System {
     End end_of(const SpringEnd &end, const SpringPoint &point) const {
         End out{all_none(), {}};
         if (end.kind == SpringEnd::Kind::particle)
-            out.unknowns = particles_[end.index];
+            out.unknowns = memory_.particles[end.index];
         if (end.kind == SpringEnd::Kind::body)
-            out.unknowns = bodies_[end.index];
+            out.unknowns = memory_.bodies[end.index];
         for (int i = 0; i < 3; ++i) {
             glm::dvec3 axis{0};
             axis[i] = 1;
@@ -184,7 +189,7 @@ class System {
         for (std::size_t one = 0; one < 2; ++one)
             for (std::size_t i = 0; i < 6; ++i) {
                 const int row = ends[one].unknowns[i];
-                if (row == no_block)
+                if (row == no_unknown)
                     continue;
                 const glm::dvec3 &effect = ends[one].effects[i];
                 add_side(row, (one == 0 ? -1 : 1) * glm::dot(effect, pull));
@@ -199,12 +204,8 @@ class System {
     }
 
     StepContext &context_;
+    ImplicitSystem &memory_;
     double h_;
-    int count_ = 0;
-    std::vector<Unknowns> bodies_;
-    std::vector<Unknowns> particles_;
-    std::vector<Eigen::Triplet<double>> entries_;
-    Eigen::VectorXd side_;
 };
 
 // Without springs and attractors the matrix is that of each body by itself.
