@@ -1,6 +1,7 @@
 #include "app/sandbox/joint_draw.h"
 
 #include "app/render/palette.h"
+#include "engine/scene/joint_type.h"
 
 #include <algorithm>
 #include <array>
@@ -132,6 +133,10 @@ std::vector<glm::dvec3> coil(const glm::dvec3 &a, const glm::dvec3 &b, double re
     return points;
 }
 
+bool is_link(const JointView &joint) {
+    return joint_type(joint.type).anchors == JointTypeInfo::Anchors::apart;
+}
+
 void add_link(DrawList &list, const JointView &joint, const glm::dvec3 &gravity) {
     const auto [least, greatest] =
         joint.limits.value_or(std::array{joint.position, joint.position});
@@ -147,7 +152,7 @@ void add_link(DrawList &list, const JointView &joint, const glm::dvec3 &gravity)
         add_capsule(list, points[i - 1], points[i], radius);
 }
 
-// ---- signs of the types ----
+// ---- signs ----
 
 // A joint as one sees it from the body that holds the other: from a, or from b when a moves
 // against the world.
@@ -200,7 +205,7 @@ void add_arc(DrawList &list, const glm::dvec3 &centre, const glm::dvec3 &axis,
     }
 }
 
-void add_hinge(DrawList &list, const Seen &seen) {
+void add_arc_and_hand(DrawList &list, const Seen &seen) {
     const glm::dvec3 centre = seen.anchor();
     const glm::dvec3 axis = seen.axis();
     const double radius = seen.size();
@@ -234,7 +239,7 @@ void add_hinge(DrawList &list, const Seen &seen) {
     }
 }
 
-void add_slider(DrawList &list, const Seen &seen) {
+void add_rail(DrawList &list, const Seen &seen) {
     const glm::dvec3 foot = seen.anchor();
     const glm::dvec3 axis = seen.axis();
     const double size = seen.size();
@@ -257,7 +262,7 @@ void add_slider(DrawList &list, const Seen &seen) {
                         colours::joint);
 }
 
-void add_fixed(DrawList &list, const Seen &seen) {
+void add_cross(DrawList &list, const Seen &seen) {
     for (int k = 0; k < 3; ++k) {
         glm::dvec3 arm{0};
         arm[k] = 0.5 * seen.size();
@@ -277,21 +282,13 @@ void add_force(DrawList &list, const Seen &seen) {
                         colours::contact);
 }
 
-void add_sign(DrawList &list, const Seen &seen) {
-    switch (seen.joint.type) {
-    case JointType::ball: // the anchors' dots say all
-    case JointType::distance:
-        break;
-    case JointType::hinge:
-        add_hinge(list, seen);
-        break;
-    case JointType::slider:
-        add_slider(list, seen);
-        break;
-    case JointType::fixed:
-        add_fixed(list, seen);
-        break;
-    }
+// What the fields of a type show; the anchors' dots are there anyway.
+void add_sign(DrawList &list, const JointTypeInfo &type, const Seen &seen) {
+    using Frames = JointTypeInfo::Frames;
+    if (type.frames == Frames::whole)
+        add_cross(list, seen);
+    if (type.frames == Frames::axis)
+        type.turns ? add_arc_and_hand(list, seen) : add_rail(list, seen);
 }
 
 } // namespace
@@ -313,7 +310,7 @@ std::vector<JointView> joints_at(const Frame &frame, std::span<const BodyState> 
         };
         move(joint.body_a, joint.anchor_a, joint.frame_a);
         move(joint.body_b, joint.anchor_b, joint.frame_b);
-        if (joint.type == JointType::distance)
+        if (is_link(joint))
             joint.position = glm::distance(joint.anchor_a, joint.anchor_b);
     }
     return joints;
@@ -323,7 +320,7 @@ bool is_about_joints(const Simulation &simulation) {
     std::vector<bool> joined(simulation.body_count());
     for (const JointView &joint : simulation.read({.joints = true}).joints)
         for (const std::optional<std::size_t> &body : {joint.body_a, joint.body_b})
-            if (body && joint.type != JointType::distance)
+            if (body && !is_link(joint))
                 joined[*body] = true;
     int with = 0;
     int without = 0;
@@ -348,7 +345,7 @@ void draw_wire(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double 
 void draw_links(DrawList &list, std::span<const JointView> joints,
                 const JointSurroundings &surroundings) {
     for (const JointView &joint : joints)
-        if (joint.type == JointType::distance && !joint.broken)
+        if (is_link(joint) && !joint.broken)
             add_link(list, joint, surroundings.gravity);
 }
 
@@ -364,10 +361,11 @@ void draw_joints(DrawList &list, std::span<const JointView> joints,
         }
         if (joint.broken)
             continue; // its ends alone, in the colour of what is wrong
-        if (joint.type != JointType::slider)
+        const JointTypeInfo &type = joint_type(joint.type);
+        if (type.anchors != JointTypeInfo::Anchors::on_axis)
             add_line(list, joint.anchor_a, joint.anchor_b, 3);
         const Seen seen(joint, surroundings);
-        add_sign(list, seen);
+        add_sign(list, type, seen);
         add_force(list, seen);
     }
 }

@@ -34,10 +34,10 @@ void draw_links(DrawList &list, std::span<const JointView> joints,
 void draw_spring(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double rest_length);
 void draw_wire(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double radius);
 
-// How each joint holds its bodies: its anchors, and what its type adds (a hinge's axis and arc, a
-// slider's rail, a fixed joint's cross), with limits and motor; and the force on the body that it
-// holds, at its anchor there, 0.3 m for the weight and growing with the square root, to 2 m at
-// most.
+// How each joint holds its bodies: its anchors, and what the fields of its type add (the axis about
+// which it turns and an arc, the rail along which it moves, a cross where nothing is free), with
+// limits and motor; and the force on the body that it holds, at its anchor there, 0.3 m for the
+// weight and growing with the square root, to 2 m at most.
 void draw_joints(DrawList &list, std::span<const JointView> joints,
                  const JointSurroundings &surroundings);
 

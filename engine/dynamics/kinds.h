@@ -11,8 +11,8 @@ enum class BodyKind { fixed, kinematic, dynamic };
 // least and a greatest distance, like a massless rod or rope. hinge: the bodies share a point and
 // an axis, about which they turn. slider: they only move along an axis. fixed: they are one.
 //
-// The only list of them: each has a file in engine/dynamics/joints/, a row in
-// engine/scene/joint_type.cpp and a sign in app/sandbox/joint_draw.cpp.
+// The only list of them: each has a file in engine/dynamics/joints/ and a row in
+// engine/scene/joint_type.cpp.
 #define PLUMB_JOINT_TYPES(JOINT) JOINT(ball) JOINT(distance) JOINT(hinge) JOINT(slider) JOINT(fixed)
 
 enum class JointType {
