@@ -159,6 +159,7 @@ void World::choose_substeps() {
         return;
     }
     const bool chooses = chooses_substeps();
+    s.solver.has_spring_rates = chooses && model_->has_particles(); // by gather_needs
     if (chooses) {
         find_islands();
         gather_needs();

@@ -49,6 +49,7 @@ struct SolverScratch {
     std::vector<ParticleContactConstraint> particle_contacts;
     std::vector<Mat3> particle_stiffness;       // of each particle, of all its springs (N/m)
     std::vector<Vec2> spring_rates;             // see find_spring_rates
+    bool has_spring_rates = false;              // as the step began
     std::array<Accelerations, 4> accelerations; // of smooth methods
     std::vector<Motion> motions;                // likewise, where the step began
     std::vector<ParticleMotion> particle_motions;

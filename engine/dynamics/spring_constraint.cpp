@@ -293,8 +293,9 @@ Real decay_softness(Real inverse, Real damping) {
 void prepare_springs(StepContext &context, SpringRule rule) {
     SolverScratch &s = context.scratch;
     const Real h = context.substep();
-    find_spring_rates(context.model, context.bodies, context.particles, context.torn,
-                      s.particle_stiffness, s.spring_rates);
+    if (!s.has_spring_rates)
+        find_spring_rates(context.model, context.bodies, context.particles, context.torn,
+                          s.particle_stiffness, s.spring_rates);
     for (std::uint32_t i = 0; i < context.model.springs.size(); ++i) {
         if (context.torn[i] != 0)
             continue;
