@@ -454,7 +454,7 @@ void Sandbox::dismiss() {
         view_.search.clear();
     else if (!session_.messages().empty())
         session_.messages().clear();
-    else {
+    else if (!session_.let_go()) {
         view_.selected.reset();
         view_.selected_particle.reset();
     }
@@ -498,7 +498,7 @@ DrawList Sandbox::draw_list() const {
     options.hovered = view_.hovered;
     options.selected_particle = view_.selected_particle;
     options.hovered_particle = view_.hovered_particle;
-    options.grab = session_.grabbed();
+    options.grab = session_.held();
     options.impacts = session_.impacts();
     DrawList list = draw_world(
         *session_.simulation(), view_.camera, options,

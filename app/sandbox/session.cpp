@@ -85,7 +85,6 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     disturbed_from_.reset();
     grab_.reset();
     pulled_to_.reset();
-    held_.reset();
     has_grabbed_ = false;
     graphs_ = {};
     if (simulation_->has_world())
@@ -99,13 +98,15 @@ bool Session::step() {
     if (!simulation_ || stopped_ || !simulation_->has_world())
         return false;
     double energy_before = 0;
+    bool is_held = false;
     try {
         if (grab_)
             leave_recording();
         if (replay_ && !obey_replay())
             return false;
         pull_grabbed();
-        if (held_) // which may bring energy in
+        is_held = simulation_->grab().has_value();
+        if (is_held) // which may bring energy in
             energy_before = simulation_->energy();
         troubles_->begin_step(scene_, *simulation_);
         if (ghost_)
@@ -130,13 +131,13 @@ bool Session::step() {
     graphs_.advance.add(times_.advance);
     graphs_.finish.add(times_.finish);
     const double energy = simulation_->energy();
-    if (held_)
+    if (is_held)
         troubles_->brought_in(*simulation_, energy - energy_before);
     graphs_.energy.add(energy);
     std::swap(previous_, present_);
     read_present();
     see_impacts();
-    troubles_->sample(*simulation_, previous_.bodies, held_.has_value());
+    troubles_->sample(*simulation_, previous_.bodies, is_held);
     if (ghost_)
         ghost_->catch_up(*simulation_);
     if (!report.finite) {
@@ -161,11 +162,8 @@ bool Session::obey_replay() {
             replay_outcome_ = ExitCode::outside_tolerance;
             messages_.error(file + ": " + replay_->difference(*simulation_));
         }
-        for (std::size_t i = given; i < replay_->given(); ++i) {
-            note_held(recording_->commands[i].command);
-            if (ghost_)
-                ghost_->apply(*simulation_, recording_->commands[i].command);
-        }
+        for (std::size_t i = given; ghost_ && i < replay_->given(); ++i)
+            ghost_->apply(*simulation_, recording_->commands[i].command);
         if (given < replay_->given())
             troubles_->brought_in(*simulation_, simulation_->energy() - energy);
     } catch (const CommandFailure &failure) {
@@ -195,28 +193,9 @@ void Session::leave_recording() {
     messages_.note("From step " + std::to_string(simulation_->step_count()) +
                    " on this is no longer the recorded run.");
     replay_.reset();
-    if (held_) // nobody will release it
+    has_grabbed_ = true;     // or the recording has
+    if (simulation_->grab()) // nobody will release it
         apply(ReleaseGrab{});
-}
-
-// What holds something from now on.
-void Session::note_held(const Command &command) {
-    if (std::holds_alternative<GrabBody>(command) ||
-        std::holds_alternative<GrabParticle>(command)) {
-        held_ = command;
-        has_grabbed_ = true;
-    } else if (const auto *moved = std::get_if<MoveGrab>(&command)) {
-        if (auto *body = held_ ? std::get_if<GrabBody>(&*held_) : nullptr)
-            body->target = moved->target;
-        if (auto *particle = held_ ? std::get_if<GrabParticle>(&*held_) : nullptr)
-            particle->target = moved->target;
-    } else if (const auto *removed = std::get_if<RemoveBody>(&command)) {
-        const auto *body = held_ ? std::get_if<GrabBody>(&*held_) : nullptr;
-        if (body != nullptr && body->body == removed->body)
-            held_.reset();
-    } else if (std::holds_alternative<ReleaseGrab>(command)) {
-        held_.reset();
-    }
 }
 
 // The restored state may hold a grab that no pointer holds any more: it is released.
@@ -245,11 +224,8 @@ bool Session::step_back() {
         troubles_->go_back(*simulation_);
         if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
             disturbed_from_.reset();
-        if (replay_) { // it knows what was chosen then, and held
+        if (replay_) { // it knows what was chosen then
             replay_->went_back(*simulation_);
-            held_.reset();
-            for (std::size_t i = 0; i < replay_->given(); ++i)
-                note_held(recording_->commands[i].command);
         } else {
             choose_again(method, settings);
             let_go_of_all();
@@ -320,7 +296,6 @@ void Session::apply(const Command &command) {
     leave_recording();
     const double energy = simulation_->energy();
     simulation_->apply(command);
-    note_held(command);
     if (ghost_)
         ghost_->apply(*simulation_, command);
     if (troubles_)
@@ -329,7 +304,7 @@ void Session::apply(const Command &command) {
         recorder_->add(*simulation_, command);
 }
 
-void Session::grab(const std::optional<Grab> &grab) {
+void Session::grab(const std::optional<GrabView> &grab) {
     grab_ = grab;
     if (grab || !pulled_to_)
         return;
@@ -337,9 +312,26 @@ void Session::grab(const std::optional<Grab> &grab) {
     pulled_to_.reset();
 }
 
+std::optional<GrabView> Session::held() const {
+    return grab_ || !simulation_ ? grab_ : simulation_->grab();
+}
+
+bool Session::let_go() {
+    if (replay_ || !held())
+        return false;
+    grab({});
+    if (simulation_->grab()) {
+        disturb(simulation_->step_count() + 1);
+        apply(ReleaseGrab{});
+        has_grabbed_ = true;
+    }
+    return true;
+}
+
 void Session::pull_grabbed() {
     if (!grab_)
         return;
+    has_grabbed_ = true;
     disturb(simulation_->step_count() + 1);
     if (!pulled_to_ && grab_->particle)
         apply(GrabParticle{simulation_->soft_parts().particle_name(*grab_->particle), grab_->target,
@@ -380,8 +372,6 @@ bool Session::set_ghost(const std::string &method) {
     try {
         ghost_.emplace(*simulation_, method);
         ghost_method_ = method;
-        if (held_) // which is no part of a scene
-            ghost_->apply(*simulation_, *held_);
         return true;
     } catch (const std::exception &failure) {
         messages_.note("No ghost: " + reason(failure));

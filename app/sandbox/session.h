@@ -35,15 +35,6 @@ struct SessionGraphs {
     Graph energy;                               // J
 };
 
-// A body's point, or a particle, held to a moving target.
-struct Grab {
-    std::size_t body = 0;
-    glm::dvec3 local_point{0};
-    glm::dvec3 target{0};                  // world
-    double max_force = 0;                  // N
-    std::optional<std::size_t> particle{}; // instead of the body
-};
-
 // An impact that has just been.
 struct SeenImpact {
     ImpactView impact;
@@ -128,8 +119,12 @@ class Session {
     [[nodiscard]] const Ghost *ghost() const { return ghost_ ? &*ghost_ : nullptr; }
 
     // From the next step on; of a grab that goes on, only the target may change. Nothing: lets go.
-    void grab(const std::optional<Grab> &grab);
-    [[nodiscard]] const std::optional<Grab> &grabbed() const { return grab_; }
+    void grab(const std::optional<GrabView> &grab);
+    [[nodiscard]] const std::optional<GrabView> &grabbed() const { return grab_; }
+    // What is held: by that, by the scene as it was saved, or by the recording.
+    [[nodiscard]] std::optional<GrabView> held() const;
+    // False if nothing is held, or as the recording has it.
+    bool let_go();
     // Adds a ball, kg and m/s, in SI units; its index, or nothing with a message.
     std::optional<std::size_t> shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
                                      double radius);
@@ -185,7 +180,6 @@ class Session {
     bool play(const Recording &recording, const std::filesystem::path &path);
     bool obey_replay();
     void leave_recording();
-    void note_held(const Command &command);
     void choose_again(const std::string &method, const StepSettings &settings);
     void pull_grabbed();
     void let_go_of_all();
@@ -208,9 +202,8 @@ class Session {
     std::optional<TroubleWatch> troubles_;
     std::uint64_t first_step_ = 0;                // of the run
     std::optional<std::uint64_t> disturbed_from_; // states from this step on
-    std::optional<Grab> grab_;
+    std::optional<GrabView> grab_;
     std::optional<glm::dvec3> pulled_to_; // what the simulation knows of the grab
-    std::optional<Command> held_;         // what grabs as things stand, in a replay too
     bool has_grabbed_ = false; // in this run, so that an earlier state may hold something
     bool records_ = false;
     std::optional<Recorder> recorder_; // of the run that is going on

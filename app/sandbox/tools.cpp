@@ -117,7 +117,7 @@ void Tools::move(const PointerEvent &event, const ToolTargets &targets) {
         targets.camera.pan(delta, targets.viewport.y);
         break;
     case Drag::grab:
-        if (std::optional<Grab> grab = targets.session.grabbed()) {
+        if (std::optional<GrabView> grab = targets.session.grabbed()) {
             if (const std::optional<glm::dvec3> place = place_in_plane(event.position, targets)) {
                 grab->target = *place;
                 targets.session.grab(grab);
@@ -151,7 +151,7 @@ void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
     const Simulation *simulation = targets.session.simulation();
     const Picked hit =
         pick(targets.session, targets.camera, event.position, targets.viewport).value_or(Picked{});
-    Grab grab;
+    GrabView grab;
     grab.target = hit.point;
     if (hit.particle && !simulation->soft_parts().particles[*hit.particle].pinned) {
         grab.particle = hit.particle;

@@ -182,7 +182,7 @@ double typical_mass(const Simulation &simulation) {
 }
 
 // Where the grab has hold of what it holds; none of what is not there.
-std::optional<glm::dvec3> held_place(const Grab &grab, const std::vector<BodyState> &bodies,
+std::optional<glm::dvec3> held_place(const GrabView &grab, const std::vector<BodyState> &bodies,
                                      const std::vector<ParticleState> &particles) {
     if (grab.particle)
         return *grab.particle < particles.size() ? std::optional(particles[*grab.particle].position)

@@ -24,7 +24,7 @@ struct WorldDrawOptions {
     std::optional<std::size_t> hovered;
     std::optional<std::size_t> selected_particle;
     std::optional<std::size_t> hovered_particle;
-    std::optional<Grab> grab;
+    std::optional<GrabView> grab;
     std::vector<SeenImpact> impacts; // drawn with the contacts
 };
 

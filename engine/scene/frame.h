@@ -72,6 +72,15 @@ struct JointView {
     glm::dvec3 torque{0};
 };
 
+// A body's point, or a particle, held to a target.
+struct GrabView {
+    std::size_t body = 0;
+    glm::dvec3 local_point{0};
+    glm::dvec3 target{0};                  // world
+    double max_force = 0;                  // N
+    std::optional<std::size_t> particle{}; // instead of the body
+};
+
 // A bounce within the last step.
 struct ImpactView {
     std::size_t body_a = 0;

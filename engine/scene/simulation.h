@@ -137,6 +137,8 @@ class Simulation {
 
     virtual const std::string &joint_name(std::size_t joint) const = 0; // a JointView's
 
+    virtual std::optional<GrabView> grab() const { return {}; } // nothing: none is held
+
     // Into the memory of an older frame. What is not asked for comes out empty.
     virtual void read(Frame &into, const FrameParts &parts) const = 0;
     Frame read(const FrameParts &parts = {}) const {

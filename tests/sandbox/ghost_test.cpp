@@ -200,7 +200,7 @@ TEST(Ghost, IsHeldToo) {
     scene.world.method = "soft_step";
     Session session;
     ASSERT_TRUE(session.open(scene));
-    session.grab(Grab{0, {0, 0, 0}, {3, 100, 0}, 1e5});
+    session.grab(GrabView{0, {0, 0, 0}, {3, 100, 0}, 1e5});
     ASSERT_TRUE(session.step());
     ASSERT_TRUE(session.set_ghost("sequential_impulses"));
     for (int i = 0; i < 120; ++i)
@@ -228,7 +228,7 @@ TEST(Ghost, FollowsARecording) {
         ASSERT_TRUE(session.step());
         ASSERT_TRUE(session.shoot({-10, 3, 0}, {8, 0, 0}, 0.3));
         ASSERT_TRUE(session.step());
-        Grab grab{*session.simulation()->find_body("ball"), {0, 0, 0}, {0, 9, 0}, 1e3};
+        GrabView grab{*session.simulation()->find_body("ball"), {0, 0, 0}, {0, 9, 0}, 1e3};
         session.grab(grab);
         ASSERT_TRUE(session.step());
         grab.target.x = 3;

@@ -154,7 +154,7 @@ TEST(Trouble, AShotAndAPullAreNone) {
     ASSERT_TRUE(session.shoot({0, 50, 0}, {0, 300, 0}, 0.5));
     ASSERT_TRUE(session.step());
     const auto ball = session.simulation()->find_body("ball");
-    session.grab(Grab{*ball, {0, 0, 0}, {-500, 0, 0}, 1e5});
+    session.grab(GrabView{*ball, {0, 0, 0}, {-500, 0, 0}, 1e5});
     for (int i = 0; i < 30; ++i)
         ASSERT_TRUE(session.step());
     session.grab(std::nullopt);
@@ -187,7 +187,8 @@ TEST(Trouble, InAReplayTheLightsAreThoseOfTheRun) {
         ASSERT_TRUE(pulled.open(parse_scene(bullet_text, "bullet.toml").scene));
         ASSERT_TRUE(pulled.shoot({0, 50, 0}, {0, 300, 0}, 0.5));
         ASSERT_TRUE(pulled.step());
-        pulled.grab(Grab{*pulled.simulation()->find_body("ball"), {0, 0, 0}, {-500, 0, 0}, 1e5});
+        pulled.grab(
+            GrabView{*pulled.simulation()->find_body("ball"), {0, 0, 0}, {-500, 0, 0}, 1e5});
         for (int i = 0; i < 30; ++i)
             ASSERT_TRUE(pulled.step());
         pulled.grab(std::nullopt);

@@ -1,8 +1,10 @@
 #include "app/sandbox/sandbox.h"
 
+#include "app/render/palette.h"
 #include "app/sandbox/world_draw.h"
 #include "tests/sandbox/fake_simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -331,6 +333,34 @@ TEST_F(SandboxWithScenes, NewFilesOverwriteNothing) {
     EXPECT_TRUE(std::filesystem::exists(out / "free_fall-0.toml"));
     EXPECT_TRUE(std::filesystem::exists(out / "free_fall-0-2.toml"));
     std::filesystem::remove_all(out);
+}
+
+// Drawn as what the pointer holds, from the first picture on.
+TEST(Sandbox, ShowsWhatASavedSceneHoldsUntilEscape) {
+    SceneDesc scene = two_balls();
+    GrabStateDesc &grab = scene.grab.emplace();
+    grab.body = "left";
+    grab.target = {0, 3, 0};
+    grab.max_force = 100;
+    grab.frequency = 5;
+    Sandbox sandbox{Session()};
+    ASSERT_TRUE(sandbox.open(scene));
+    sandbox.session().messages().clear();
+    sandbox.view().selected = 0;
+    const auto drawn = [&] {
+        return std::ranges::any_of(sandbox.draw_list().lines, [](const DrawLine &line) {
+            return line.colour == colours::grab && line.b == glm::vec3(0, 3, 0);
+        });
+    };
+    EXPECT_TRUE(drawn());
+    sandbox.advance(50'000'000);
+    EXPECT_TRUE(drawn());
+    press(sandbox, escape);
+    EXPECT_FALSE(drawn());
+    EXPECT_FALSE(sandbox.session().held());
+    EXPECT_EQ(sandbox.view().selected, 0u);
+    press(sandbox, escape);
+    EXPECT_FALSE(sandbox.view().selected);
 }
 
 } // namespace

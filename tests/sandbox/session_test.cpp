@@ -396,7 +396,7 @@ TEST_F(SessionTest, ARecordingIsTheWayToThePresentState) {
     EXPECT_EQ(replayed_hash(), session.simulation()->hash());
     hashes_of_steps(session, 3);
     const std::size_t crate = session.simulation()->find_body("crate_3").value();
-    Grab grab{crate, {0.5, 0.5, 0}, {1, 5, 0}, 1e5};
+    GrabView grab{crate, {0.5, 0.5, 0}, {1, 5, 0}, 1e5};
     session.grab(grab);
     hashes_of_steps(session, 2);
     grab.target.x = 2;
@@ -430,7 +430,7 @@ TEST_F(SessionTest, ARecordingIsPlayedAgain) {
         session.record();
         ASSERT_TRUE(session.open(folder / "stack.toml"));
         hashes_of_steps(session, 3);
-        Grab grab{
+        GrabView grab{
             session.simulation()->find_body("crate_3").value(), {0.5, 0.5, 0}, {1, 5, 0}, 1e5};
         session.grab(grab);
         hashes_of_steps(session, 4);
@@ -467,6 +467,51 @@ TEST_F(SessionTest, ARecordingIsPlayedAgain) {
     EXPECT_TRUE(session.step()) << "from here on it is another run";
     ASSERT_TRUE(session.reload());
     play_to_the_end();
+}
+
+// As what was saved goes on, though no pointer holds it: until it is let go.
+TEST_F(SessionTest, WhatASavedSceneHoldsIsHeld) {
+    Session first;
+    ASSERT_TRUE(first.open(folder / "stack.toml"));
+    const std::size_t crate = first.simulation()->find_body("crate_3").value();
+    first.grab(GrabView{crate, {0.5, 0.5, 0}, {1, 5, 0}, 1e5});
+    hashes_of_steps(first, 4);
+    ASSERT_TRUE(first.save_scene(folder / "held.toml"));
+    Session session;
+    session.record();
+    ASSERT_TRUE(session.open(folder / "held.toml"));
+    EXPECT_FALSE(session.grabbed());
+    ASSERT_TRUE(session.held());
+    EXPECT_EQ(session.simulation()->body_info(session.held()->body).name, "crate_3");
+    EXPECT_EQ(session.held()->target, glm::dvec3(1, 5, 0));
+    EXPECT_EQ(session.held()->local_point, glm::dvec3(0.5, 0.5, 0));
+    EXPECT_EQ(hashes_of_steps(session, 3), hashes_of_steps(first, 3));
+    EXPECT_FALSE(session.disturbed());
+    ASSERT_TRUE(session.step_back());
+    EXPECT_TRUE(session.held());
+    EXPECT_TRUE(session.let_go());
+    EXPECT_FALSE(session.held());
+    EXPECT_FALSE(session.let_go());
+    hashes_of_steps(session, 2);
+    EXPECT_TRUE(session.disturbed());
+    {
+        OutputFile file(folder / "run.toml");
+        session.write_recording(file);
+    }
+    for (int i = 0; i < 3; ++i)
+        ASSERT_TRUE(session.step_back());
+    EXPECT_FALSE(session.held());
+    ASSERT_TRUE(session.restart());
+    EXPECT_TRUE(session.held());
+
+    Session played;
+    ASSERT_TRUE(played.open_recording(folder / "run.toml"));
+    EXPECT_TRUE(played.held());
+    EXPECT_FALSE(played.let_go()) << "the recording does";
+    while (played.step()) {
+    }
+    EXPECT_FALSE(played.held());
+    EXPECT_EQ(played.replay_outcome(), ExitCode::fine);
 }
 
 TEST_F(SessionTest, APlayedRecordingSaysWhereItDiffers) {
@@ -512,7 +557,7 @@ TEST(SessionWithFake, ARunThatWasMeddledWithSaysSo) {
     EXPECT_TRUE(session.disturbed());
     session.step_back();
     EXPECT_FALSE(session.disturbed());
-    session.grab(Grab{0, {}, {0, 5, 0}});
+    session.grab(GrabView{0, {}, {0, 5, 0}});
     EXPECT_FALSE(session.disturbed());
     session.step();
     EXPECT_TRUE(session.disturbed());

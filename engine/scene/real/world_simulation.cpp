@@ -168,6 +168,7 @@ class WorldSimulation final : public Simulation {
     void insert(const ParticleInfo &info);
     void insert(const SpringInfo &info);
     void remember(const ContactStateDesc &desc);
+    std::optional<GrabView> grab() const override;
     void hold(const GrabStateDesc &desc);
     void describe_grab(SceneDesc &out) const;
     void describe_soft_parts(SceneDesc &out) const;
@@ -380,6 +381,23 @@ void WorldSimulation::hold(const GrabStateDesc &desc) {
     grab.impulse = Vec3{desc.impulse};
     grab.held_mass = static_cast<Real>(desc.held_mass);
     world_.hold(grab);
+}
+
+std::optional<GrabView> WorldSimulation::grab() const {
+    const Grab &grab = world_.state().grab;
+    if (!grab.is_holding() && !grab.holds_particle())
+        return {};
+    GrabView view;
+    view.target = glm::dvec3{grab.target};
+    view.max_force = static_cast<double>(grab.max_force);
+    if (grab.is_holding()) {
+        view.body = grab.body;
+        view.local_point =
+            glm::dvec3{to_world_point(world_.bodies()[grab.body].mass_frame, grab.point_local)};
+    } else {
+        view.particle = grab.particle;
+    }
+    return view;
 }
 
 void WorldSimulation::describe_grab(SceneDesc &out) const {
