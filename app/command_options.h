@@ -34,7 +34,7 @@ struct CommonOptions {
         options.method = method;
         options.settings = settings;
         if (!precision.empty())
-            options.precision = precision == "double" ? Precision::dual : Precision::single;
+            options.precision = precision == "double" ? Precision::f64 : Precision::f32;
         return options;
     }
     std::filesystem::path shader_dir() const { return data / "shaders"; }

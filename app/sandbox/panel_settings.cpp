@@ -161,8 +161,8 @@ bool more_rows(const MethodInfo &method, StepSettings &settings) {
 void settings_panel(PanelContext &context) {
     const Simulation *simulation = context.session.simulation();
     if (!title_bar(context, PanelId::settings, "Method",
-                   simulation->precision() == Precision::dual ? "double precision"
-                                                              : "single precision"))
+                   simulation->precision() == Precision::f64 ? "double precision"
+                                                             : "single precision"))
         return;
     method_row(context, *simulation);
     StepSettings settings = simulation->settings();

@@ -33,7 +33,7 @@ double ProbeAnswer::value(std::string_view name) const {
 
 ProbeAnswer answer(const ProbeDesc &probe, Precision precision) {
     try {
-        return precision == Precision::dual ? f64::answer_probe(probe) : f32::answer_probe(probe);
+        return precision == Precision::f64 ? f64::answer_probe(probe) : f32::answer_probe(probe);
     } catch (const CheckFailure &failure) {
         ProbeAnswer refused;
         refused.refusal = reason(failure);

@@ -159,7 +159,7 @@ struct GrabStateDesc {
     double held_mass = 0;  // of a particle: as if it bore so much (kg)
 };
 
-enum class Precision { single, dual }; // "float", "double" in files
+enum class Precision { f32, f64 }; // "float", "double" in files
 
 struct WorldDesc {
     std::string method = "soft_step";
@@ -168,7 +168,7 @@ struct WorldDesc {
     GivenSettings settings;
     // Settings with which the other methods meet this scene's tolerances, less those of the world.
     std::map<std::string, GivenSettings> other_methods;
-    Precision precision = Precision::single;
+    Precision precision = Precision::f32;
     std::uint64_t seed = 1;
 };
 

@@ -137,8 +137,8 @@ std::unique_ptr<Simulation> Simulation::create(const SceneDesc &scene, const Run
     if (!plumb::has_world(scene))
         return make_probe_simulation(scene, run);
     try {
-        return run.precision == Precision::dual ? f64::make_world_simulation(scene, run, tasks)
-                                                : f32::make_world_simulation(scene, run, tasks);
+        return run.precision == Precision::f64 ? f64::make_world_simulation(scene, run, tasks)
+                                               : f32::make_world_simulation(scene, run, tasks);
     } catch (const CheckFailure &failure) {
         throw std::invalid_argument(failure.what());
     }

@@ -55,7 +55,7 @@ struct RunOptions {
 struct ResolvedRun {
     const MethodInfo *method = nullptr;
     StepSettings settings;
-    Precision precision = Precision::single;
+    Precision precision = Precision::f32;
 };
 ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options);
 

@@ -162,9 +162,9 @@ std::vector<Problem> joint_problems() {
     std::vector<Problem> problems{
         {"pendulum_energy", "worst in 60 s from 60 degrees", "%", 0.05, pendulum_energy},
         {"pendulum_period", "mean of 60 s", "%", 0.005,
-         [](const EngineKind &kind) { return pendulum_period(kind, 0, Precision::single); }},
+         [](const EngineKind &kind) { return pendulum_period(kind, 0, Precision::f32); }},
         {"pendulum_far", "the same at 100 km, Plumb in double", "%", 0.005,
-         [](const EngineKind &kind) { return pendulum_period(kind, 1e5, Precision::dual); }},
+         [](const EngineKind &kind) { return pendulum_period(kind, 1e5, Precision::f64); }},
     };
     for (const int balls : {5, 9}) {
         const std::string name = "cradle_" + std::to_string(balls);

@@ -196,7 +196,7 @@ class Run {
         SceneDesc scene;
         scene.name = "fuzz";
         scene.world.method = method();
-        scene.world.precision = input_.below(3) == 0 ? Precision::dual : Precision::single;
+        scene.world.precision = input_.below(3) == 0 ? Precision::f64 : Precision::f32;
         for (std::uint32_t i = 1 + input_.below(5); i > 0; --i)
             scene.bodies.push_back(new_body());
         for (int i = static_cast<int>(input_.below(4)); i > 0; --i)

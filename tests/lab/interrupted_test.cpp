@@ -85,7 +85,7 @@ class InterruptedChart : public Interrupted {
         });
         command.options.methods = methods;
         command.options.convergence = true; // nothing is timed
-        command.options.base.precision = Precision::dual;
+        command.options.base.precision = Precision::f64;
         command.options.sweep = {parse_sweep("dt=1/60,1/50,1/40,1/30")};
         command.options.shard = {1, 2};
         command.out_dir = folder_;

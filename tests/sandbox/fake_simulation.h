@@ -65,7 +65,7 @@ class FakeSimulation final : public Simulation {
 
     const MethodInfo &method() const override { return method_infos().front(); }
     const StepSettings &settings() const override { return settings_; }
-    Precision precision() const override { return Precision::dual; }
+    Precision precision() const override { return Precision::f64; }
     void apply(const Command &command) override {
         commands.push_back(command);
         if (const auto *changed = std::get_if<SetSettings>(&command)) {

@@ -16,7 +16,7 @@ SceneDesc drop() {
     SceneDesc scene;
     scene.name = "drop";
     scene.world.method = "velocity_verlet";
-    scene.world.precision = Precision::dual;
+    scene.world.precision = Precision::f64;
     BodyDesc &ball = scene.bodies.emplace_back();
     ball.name = "ball";
     ball.colliders.emplace_back().shape = SphereDesc{0.5};

@@ -115,7 +115,7 @@ std::unique_ptr<Simulation> rod_towards(const glm::dvec3 &direction) {
     SceneDesc scene;
     scene.name = "rod";
     scene.world.settings.give(&StepSettings::gravity, glm::dvec3(0));
-    scene.world.precision = Precision::dual;
+    scene.world.precision = Precision::f64;
     BodyDesc ball;
     ball.name = "ball";
     ball.colliders.emplace_back().shape = SphereDesc{0.1};

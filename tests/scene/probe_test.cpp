@@ -73,7 +73,7 @@ shapes = [{ shape = "sphere", position = [0, 0, 0], radius = 1 }]
 
 TEST(Probe, ARayThroughASphereIsAnsweredInBothPrecisions) {
     const SceneDesc scene = parsed(ray_and_sphere);
-    for (const Precision precision : {Precision::single, Precision::dual}) {
+    for (const Precision precision : {Precision::f32, Precision::f64}) {
         const ProbeAnswer found = answer(scene.probes.front(), precision);
         EXPECT_TRUE(found.refusal.empty());
         EXPECT_EQ(found.value("hit"), 1);
@@ -91,7 +91,7 @@ TEST(Probe, WhatIsAnsweredIsListed) {
             const ProbeQuestionInfo &info = probe_question(probe.question);
             EXPECT_EQ(info.question, probe.question);
             asked.insert(probe.question);
-            const ProbeAnswer found = answer(probe, Precision::single);
+            const ProbeAnswer found = answer(probe, Precision::f32);
             EXPECT_EQ(found.refusal, "") << scene.name << ": " << probe.name;
             std::set<std::string_view> names;
             for (const ProbeValue &value : found.values) {
@@ -105,7 +105,7 @@ TEST(Probe, WhatIsAnsweredIsListed) {
 
 TEST(Probe, TheSameQuestionGivesTheSameBits) {
     for (const SceneDesc &scene : geometry_scenes())
-        for (const Precision precision : {Precision::single, Precision::dual})
+        for (const Precision precision : {Precision::f32, Precision::f64})
             EXPECT_EQ(hash_of_answers(scene.probes, precision),
                       hash_of_answers(scene.probes, precision))
                 << scene.name;
@@ -120,7 +120,7 @@ tree = "octree"
 scatter = { count = 300, half_extents = [4, 3, 2], size = 0.3, seed = 9 }
 shapes = [{ shape = "sphere", position = [0.5, 0.25, 0], radius = 1.5 }]
 )");
-    const ProbeAnswer found = answer(scene.probes.front(), Precision::dual);
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::f64);
     const glm::dvec3 center(0.5, 0.25, 0);
     std::size_t items = 0;
     std::size_t touched = 0;
@@ -147,7 +147,7 @@ ask = "cull"
 camera = { eye = [0, 0, 8], target = [0, 0, 0], fov_deg = 60, aspect = 1, near = 1, far = 11 }
 scatter = { count = 500, half_extents = [6, 6, 6], size = 0.3, seed = 4 }
 )");
-    const ProbeAnswer found = answer(scene.probes.front(), Precision::dual);
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::f64);
     const double slope = std::tan(0.5 * 60 * 3.14159265358979323846 / 180);
     std::size_t inside = 0;
     for (const ProbeSolid &solid : found.solids) {
@@ -182,7 +182,7 @@ points = [[1, 1, 1], [2, 1, 6], [3, 2, 7], [4, 5, 1]]
 )"); // rows 1 2 3, 0 1 4, 5 6 0
     const std::vector<double> minors{-24, -20, -5, -18, -15, -4, 5, 4, 1};
     const std::vector<double> inverse{-24, 18, 5, 20, -15, -4, -5, 4, 1}; // as the determinant is 1
-    for (const Precision precision : {Precision::single, Precision::dual}) {
+    for (const Precision precision : {Precision::f32, Precision::f64}) {
         const ProbeAnswer found = answer(scene.probes.front(), precision);
         EXPECT_EQ(found.value("determinant"), 1);
         EXPECT_EQ(found.value("invertible"), 1);
@@ -205,7 +205,7 @@ name = "matrix"
 ask = "matrix"
 points = [[0, 0, 0], [1, 2, 3], [4, 5, 6], [5, 7, 9]]
 )");
-    const ProbeAnswer found = answer(scene.probes.front(), Precision::single);
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::f32);
     EXPECT_EQ(found.refusal, "");
     EXPECT_EQ(found.value("invertible"), 0);
     EXPECT_EQ(found.value("minor_11"), 3); // 5 x 9 - 7 x 6 with rows 1 4 5, 2 5 7, 3 6 9
@@ -225,7 +225,7 @@ shapes = [{ shape = "mesh", file = "gear.obj", position = [3, 0, 0], scale = 4, 
 )");
     const ProbeDesc &probe = scene.probes.front();
     EXPECT_EQ(std::get<MeshDesc>(probe.shapes.front().shape).data->vertices.size(), 96U);
-    const ProbeAnswer found = answer(probe, Precision::dual);
+    const ProbeAnswer found = answer(probe, Precision::f64);
     EXPECT_NEAR(found.value("x"), 4, 1e-9); // 0.25 thick to either side
     EXPECT_NEAR(found.value("normal_x"), 1, 1e-9);
 }
@@ -243,7 +243,7 @@ TEST(Probe, ACompoundHoldsWhatItsPartsHold) {
         return answer(parsed("[[probe]]\nname = \"a\"\nask = \"contains\"\nshapes = [" + shapes +
                              "]\npoints = [" + points + "]\n")
                           .probes.front(),
-                      Precision::dual)
+                      Precision::f64)
             .value("inside");
     };
     const double apart = inside(parts);
@@ -255,7 +255,7 @@ TEST(Probe, ACompoundHoldsWhatItsPartsHold) {
 TEST(Probe, WhatTheGeometryRefusesIsSaidAndNotThrown) {
     SceneDesc scene = parsed(ray_and_sphere);
     scene.probes.front().ray->direction = glm::dvec3(0);
-    const ProbeAnswer found = answer(scene.probes.front(), Precision::single);
+    const ProbeAnswer found = answer(scene.probes.front(), Precision::f32);
     EXPECT_NE(found.refusal, "");
     EXPECT_EQ(found.refusal.find(".cpp"), std::string::npos) << found.refusal;
     EXPECT_TRUE(found.values.empty());
@@ -269,7 +269,7 @@ TEST(ProbeFile, WritesWhatReadsTheSame) {
         const SceneDesc again = parsed(text);
         ASSERT_EQ(again.probes.size(), scene.probes.size()) << text;
         EXPECT_EQ(write_scene(again), text) << scene.name;
-        for (const Precision precision : {Precision::single, Precision::dual})
+        for (const Precision precision : {Precision::f32, Precision::f64})
             EXPECT_EQ(hash_of_answers(again.probes, precision),
                       hash_of_answers(scene.probes, precision))
                 << scene.name;

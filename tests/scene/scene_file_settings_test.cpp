@@ -61,7 +61,7 @@ TEST(SceneFileSettings, WhatIsNotThereIsAddedToTheWorld) {
     const std::string text = std::string("[world]\ndt = \"1/60\"\n\n# a camera\n[camera]\ndistance "
                                          "= 3\n") +
                              ball;
-    EXPECT_EQ(written(text, with({"max_substeps=1", "substeps=1"}, "", Precision::dual)),
+    EXPECT_EQ(written(text, with({"max_substeps=1", "substeps=1"}, "", Precision::f64)),
               std::string("[world]\ndt = \"1/60\"\nsubsteps = 1\nmax_substeps = 1\nprecision = "
                           "\"double\"\n\n# a camera\n[camera]\ndistance = 3\n") +
                   ball);
@@ -86,7 +86,7 @@ TEST(SceneFileSettings, WhatIsWrittenAlreadyIsLeftAlone) {
         EXPECT_EQ(with_run(text, file.path().string(), resolve_run(scene, {})), text)
             << file.path();
         const ResolvedRun other = resolve_run(
-            scene, with({"substeps=77", "dt=1/77", "iterations=7"}, "tgs_soft", Precision::dual));
+            scene, with({"substeps=77", "dt=1/77", "iterations=7"}, "tgs_soft", Precision::f64));
         const SceneDesc changed =
             parse_scene(with_run(text, file.path().string(), other), file.path().string()).scene;
         EXPECT_EQ(changed.world.method, "tgs_soft") << file.path();

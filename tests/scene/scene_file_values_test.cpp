@@ -68,7 +68,7 @@ iterations = 2
     EXPECT_EQ(scene.world.method, "pgs");
     EXPECT_EQ(world.substeps, 3);
     EXPECT_EQ(world.iterations, 40);
-    EXPECT_EQ(scene.world.precision, Precision::dual);
+    EXPECT_EQ(scene.world.precision, Precision::f64);
     EXPECT_EQ(scene.world.seed, 18U);
     ASSERT_EQ(scene.world.other_methods.size(), 2U);
     EXPECT_EQ(scene.world.other_methods.at("soft_step").applied().substeps, 8);

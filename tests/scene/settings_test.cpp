@@ -230,7 +230,7 @@ SceneDesc scene_for(const MethodInfo &method) {
 
 TEST(Settings, ASavedWorldKeepsThemAll) {
     for (const MethodInfo &method : method_infos())
-        for (const Precision precision : {Precision::single, Precision::dual}) {
+        for (const Precision precision : {Precision::f32, Precision::f64}) {
             SceneDesc scene = scene_for(method);
             scene.world.precision = precision;
             const auto before = Simulation::create(scene, {}, nullptr);

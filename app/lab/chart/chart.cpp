@@ -156,7 +156,7 @@ class Charting {
             throw std::invalid_argument("a chart of single steps is of no expectation and of one "
                                         "dt");
         if (options_.convergence && options_.precisions.empty() && !options_.base.precision)
-            options_.precisions = {Precision::dual};
+            options_.precisions = {Precision::f64};
         chart_.scene = scene;
         chart_.convergence = options_.convergence;
         chart_.sweep = !options_.sweep.empty() ? options_.sweep

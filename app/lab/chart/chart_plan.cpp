@@ -74,7 +74,7 @@ std::vector<Value> values_of(std::string_view text, const Read &read, const char
 }
 
 std::optional<Precision> read_precision(std::string_view text) {
-    for (const Precision precision : {Precision::single, Precision::dual})
+    for (const Precision precision : {Precision::f32, Precision::f64})
         if (precision_name(precision) == text)
             return precision;
     return std::nullopt;

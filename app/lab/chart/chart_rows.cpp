@@ -47,9 +47,8 @@ std::optional<ChartRun> read_run(const CsvReader &row, const SceneDesc &scene,
     run.status = *status;
     run.index = static_cast<std::size_t>(*index);
     run.threads = static_cast<int>(*threads);
-    run.resolved.precision = row.cell("precision") == precision_name(Precision::dual)
-                                 ? Precision::dual
-                                 : Precision::single;
+    run.resolved.precision =
+        row.cell("precision") == precision_name(Precision::f64) ? Precision::f64 : Precision::f32;
     GivenSettings settings;
     for (const SettingNumber number : setting_numbers()) {
         const auto value = row.number(setting_column(number));

@@ -17,7 +17,7 @@ RunOptions given_of(const ResolvedRun &run) {
     RunOptions options; // the scene's own method tells what there is; it is never stepped
     options.settings.give(&StepSettings::dt, run.settings.dt);
     options.settings.give(&StepSettings::gravity, run.settings.gravity);
-    options.precision = Precision::dual;
+    options.precision = Precision::f64;
     return options;
 }
 

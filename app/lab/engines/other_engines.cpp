@@ -27,11 +27,11 @@ std::vector<OtherEngine> built() {
     std::vector<OtherEngine> all;
 #ifdef PLUMB_WITH_BULLET
     all.push_back(
-        engine("bullet", "Bullet", "Bullet 3 (Coumans)", Precision::single, 10, bullet_engine));
+        engine("bullet", "Bullet", "Bullet 3 (Coumans)", Precision::f32, 10, bullet_engine));
 #endif
 #ifdef PLUMB_WITH_ODE
     all.push_back(
-        engine("ode", "ODE", "Open Dynamics Engine (Smith)", Precision::dual, 20, ode_engine));
+        engine("ode", "ODE", "Open Dynamics Engine (Smith)", Precision::f64, 20, ode_engine));
 #endif
     return all;
 }

@@ -17,7 +17,7 @@ struct OtherEngine {
     // As if it were a method: its name on the command line, its title, and how many iterations it
     // takes by default.
     MethodInfo info;
-    Precision precision = Precision::single;
+    Precision precision = Precision::f32;
     std::function<std::unique_ptr<Engine>(const EngineScene &)> create;
 };
 

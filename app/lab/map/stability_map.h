@@ -51,7 +51,7 @@ struct StabilityMap {
     std::vector<MethodMap> methods;
     std::vector<std::string> left_out; // why, of each method that cannot run the scene
     std::vector<std::string> unjudged; // what is expected of bodies that some cells do not have
-    Precision precision = Precision::single;
+    Precision precision = Precision::f32;
     std::string fingerprint; // see map_resume.h; may be empty
     bool interrupted = false;
 

@@ -8,9 +8,9 @@ namespace plumb {
 
 std::string_view precision_name(Precision precision) {
     switch (precision) {
-    case Precision::single:
+    case Precision::f32:
         return "float";
-    case Precision::dual:
+    case Precision::f64:
         return "double";
     }
     return "";

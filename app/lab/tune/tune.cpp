@@ -51,7 +51,7 @@ class Rows {
     std::vector<Precision> precisions() const {
         if (options_.base.precision)
             return {*options_.base.precision};
-        return {Precision::single, Precision::dual};
+        return {Precision::f32, Precision::f64};
     }
     std::vector<double> steps(const RunOptions &start) const {
         const double dt = resolve_run(scene_, start).settings.dt;

@@ -192,7 +192,7 @@ std::string with_run(std::string_view text, const std::string &path, const Resol
         if (!is_vector(row) && !same_value(row, given, run.settings))
             change.set(row.name, value_text(row, run.settings));
     if (before.world.precision != run.precision)
-        change.set("precision", run.precision == Precision::dual ? "\"double\"" : "\"float\"");
+        change.set("precision", run.precision == Precision::f64 ? "\"double\"" : "\"float\"");
     std::string changed = change.text();
     if (!is_right(changed, path, before, run))
         throw std::invalid_argument(std::string(own_lines));

@@ -290,7 +290,7 @@ class Completion {
             hull.points = std::make_shared<const std::vector<glm::dvec3>>();
             return;
         }
-        const bool is_solid = precision_ == Precision::dual
+        const bool is_solid = precision_ == Precision::f64
                                   ? f64::measure_hull(*hull.points).is_solid
                                   : f32::measure_hull(*hull.points).is_solid;
         if (!is_solid)

@@ -343,7 +343,7 @@ class Checker {
 
     // Of many the one that suffers most.
     void check_places() {
-        if (scene_.world.precision != Precision::single)
+        if (scene_.world.precision != Precision::f32)
             return;
         std::size_t worst = 0;
         std::size_t count = 0;

@@ -83,7 +83,7 @@ void read_world(Reading &reading, const toml::table &source) {
     world.settings = read_settings(table);
     static constexpr std::array<std::string_view, 2> precisions{"float", "double"};
     if (const std::optional<std::size_t> precision = table.choice("precision", precisions))
-        world.precision = *precision == 0 ? Precision::single : Precision::dual;
+        world.precision = *precision == 0 ? Precision::f32 : Precision::f64;
     world.seed = table.natural("seed").value_or(world.seed);
     reading.positions.dt = table.position("dt");
 }

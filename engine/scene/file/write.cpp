@@ -110,7 +110,7 @@ class SceneWriter {
         header("[world]");
         line("method", string(world.method));
         write_settings(world.settings);
-        line("precision", world.precision == Precision::single ? "\"float\"" : "\"double\"");
+        line("precision", world.precision == Precision::f32 ? "\"float\"" : "\"double\"");
         line("seed", natural(world.seed));
         for (const auto &[method, settings] : world.other_methods) {
             header("[methods." + bare_or_quoted_key(method) + "]");

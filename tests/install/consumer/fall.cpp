@@ -14,7 +14,7 @@ int main() {
     scene.bodies.push_back(ball);
 #if defined(PLUMB_DOUBLE)
     static_assert(std::is_same_v<plumb::Real, double>);
-    scene.world.precision = plumb::Precision::dual;
+    scene.world.precision = plumb::Precision::f64;
 #else
     static_assert(std::is_same_v<plumb::Real, float>);
 #endif

@@ -281,7 +281,7 @@ TEST(Chart, LinesJoinTheFirstAxisOfEachMethod) {
 // Free fall from rest is what every method can do; the truth is g t^2 / 2.
 TEST(Chart, RealMethodsOnFreeFall) {
     SceneDesc scene = falling_scene();
-    scene.world.precision = Precision::dual;
+    scene.world.precision = Precision::f64;
     scene.expects[0].quantity = "position.y";
     scene.expects[0].value = -0.5 * 9.81;
     scene.expects[0].tolerance = 0.1; // first-order methods are off by g dt t / 2 = 0.082 m

@@ -43,7 +43,7 @@ TEST(Convergence, SmoothMethodsHaveTheirOrder) {
     EXPECT_NEAR(orders[0].slope, 2, 0.1);
     EXPECT_NEAR(orders[1].slope, 4, 0.1);
     EXPECT_TRUE(chart.runs[0].timings.empty());
-    EXPECT_EQ(chart.runs[0].resolved.precision, Precision::dual);
+    EXPECT_EQ(chart.runs[0].resolved.precision, Precision::f64);
     EXPECT_EQ(chart.runs[0].resolved.settings.substeps, 1);
     const ChartContent content = chart_content(chart, "");
     EXPECT_EQ(content.cost_title, "dt");

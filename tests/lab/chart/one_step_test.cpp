@@ -47,7 +47,7 @@ repeat = { kind = "stack", count = 4 }
 )");
 }
 
-OneStepStates::Make maker(std::string_view method, Precision precision = Precision::dual) {
+OneStepStates::Make maker(std::string_view method, Precision precision = Precision::f64) {
     RunOptions run;
     run.method = method;
     run.precision = precision;
@@ -109,7 +109,7 @@ TEST(OneStep, EveryMethodStepsFromTheSameStates) {
     };
     const std::vector<glm::dvec3> of_one = poses(maker("soft_step"));
     EXPECT_EQ(of_one.size(), 30U * 5 * 2);
-    EXPECT_EQ(of_one, poses(maker("sequential_impulses", Precision::single)));
+    EXPECT_EQ(of_one, poses(maker("sequential_impulses", Precision::f32)));
     EXPECT_EQ(of_one, poses(maker("avbd")));
 }
 
@@ -147,7 +147,7 @@ angular_velocity = [1, 2, 3]
     const auto error = [&](const char *method, double dt) {
         RunOptions run;
         run.method = method;
-        run.precision = Precision::dual;
+        run.precision = Precision::f64;
         run.settings.give(&StepSettings::dt, dt);
         return states
             .error_of(
@@ -202,7 +202,7 @@ ChartOptions one_step_chart() {
     options.one_step = true;
     options.methods = {"stormer_verlet", "rk4"};
     options.sweep = {parse_sweep("substeps=1,2")};
-    options.precisions = {Precision::dual};
+    options.precisions = {Precision::f64};
     options.repeats = 1;
     options.duration = options.timed = 0.2;
     return options;

@@ -42,7 +42,7 @@ OtherEngine falling_engine() {
     engine.info.title = "Pretended";
     engine.info.reads = {SettingGroup::constraints};
     engine.info.defaults = {.substeps = 1, .iterations = 4};
-    engine.precision = Precision::dual;
+    engine.precision = Precision::f64;
     engine.create = [](const EngineScene &scene) { return std::make_unique<FallingEngine>(scene); };
     return engine;
 }

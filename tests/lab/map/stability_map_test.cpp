@@ -366,7 +366,7 @@ TEST(StabilityMap, VelocityVerletThrowsADampedSpringWhereItsMatrixSays) {
 
     MapOptions options;
     options.methods = {"velocity_verlet"};
-    options.base.precision = Precision::dual;
+    options.base.precision = Precision::f64;
     const StabilityMap map =
         map_scene({"scene.toml", spring}, parse_map_axis("dt=1/120..1/3:11log"),
                   parse_map_axis("spring.coil.damping=8,40,80,160"), options);
@@ -407,7 +407,7 @@ source = "it stands"
 )";
     MapOptions options;
     options.methods = {"soft_step", "tgs_soft"};
-    options.base.precision = Precision::dual;
+    options.base.precision = Precision::f64;
     for (const char *setting : {"substeps=2", "max_substeps=1", "sleep_after=0", "kept_travel=0"})
         options.base.settings.give(parse_setting(setting));
     const StabilityMap map =

@@ -52,7 +52,7 @@ class FakeSimulation : public Simulation {
     std::uint64_t hash() const override { return steps_; }
     const MethodInfo &method() const override { return method_infos().front(); }
     const StepSettings &settings() const override { return settings_; }
-    Precision precision() const override { return Precision::dual; }
+    Precision precision() const override { return Precision::f64; }
     void apply(const Command &command) override {
         std::get<SetSettings>(command).settings.apply_to(settings_);
     }

@@ -73,7 +73,7 @@ TEST(Refinement, SettlesAtClosedFormsWithinItsEstimate) {
     ASSERT_EQ(truths.size(), 1U);
     EXPECT_TRUE(truths[0].settled());
     EXPECT_FALSE(truths[0].agrees());
-    EXPECT_EQ(truths[0].run.precision, Precision::dual);
+    EXPECT_EQ(truths[0].run.precision, Precision::f64);
     EXPECT_LE(truths[0].run.settings.dt, 1.0 / 120);
     EXPECT_LT(truths[0].estimate, 1e-5);
     EXPECT_NEAR(truths[0].value, sagging_truth, truths[0].estimate);

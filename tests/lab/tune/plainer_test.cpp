@@ -15,7 +15,7 @@ TuneOptions of_soft_step() {
     TuneOptions options;
     options.methods = {"soft_step"};
     options.starts = 1;
-    options.base.precision = Precision::single;
+    options.base.precision = Precision::f32;
     for (const char *setting : {"dt=1/60", "substeps=4", "iterations=1", "max_substeps=1"})
         options.base.settings.give(parse_setting(setting));
     return options;

@@ -49,7 +49,7 @@ TuneOptions quick(const std::vector<std::string> &methods,
     options.repeats = 1;
     options.starts = 1;
     options.plainer = false;
-    options.base.precision = Precision::dual;
+    options.base.precision = Precision::f64;
     for (const std::string &setting : settings)
         options.base.settings.give(parse_setting(setting));
     return options;
@@ -108,7 +108,7 @@ TEST(Tune, WhatIsGivenStays) {
     for (const TunedRun &run : tuning.runs) {
         EXPECT_EQ(run.resolved.settings.substeps, 9);
         EXPECT_EQ(run.resolved.settings.dt, 1.0 / 120);
-        EXPECT_EQ(run.resolved.precision, Precision::dual);
+        EXPECT_EQ(run.resolved.precision, Precision::f64);
     }
     EXPECT_EQ(tuning.runs.size(), 2U);
     EXPECT_FALSE(tuning.dearer);
@@ -163,7 +163,7 @@ TEST(Tune, TakesDoubleOnlyWhereFloatIsTooCoarse) {
         const Tuning tuning = tune_scene({"fall.toml", text}, options);
         ASSERT_TRUE(tuning.found()) << printed(tuning);
         EXPECT_EQ(tuning.runs[*tuning.chosen].resolved.precision,
-                  far ? Precision::dual : Precision::single)
+                  far ? Precision::f64 : Precision::f32)
             << printed(tuning);
     }
 }
