@@ -92,7 +92,7 @@ std::optional<DrawPlane> plane_behind(const SceneDesc &scene) {
     for (const BodyDesc &body : scene.bodies) {
         if (has_plane(body))
             return std::nullopt;
-        is_held = is_held || body.kind == BodyKind::fixed;
+        is_held = is_held || body.kind == BodyKind::static_body;
         for (const ColliderDesc &collider : body.colliders)
             lowest = std::min(lowest, bounds(collider.shape,
                                              body.position + body.orientation * collider.position,

@@ -129,7 +129,7 @@ GhostDistance Ghost::farthest(const Simulation &beside, const Frame &frame) cons
     };
     for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
         const BodyInfo &info = beside.body_info(i);
-        if (!info.alive || info.kind == BodyKind::fixed)
+        if (!info.alive || info.kind == BodyKind::static_body)
             continue;
         const auto twin = simulation_->find_body(info.name);
         if (twin && *twin < present_.bodies.size())

@@ -24,7 +24,7 @@ std::string triple(const glm::dvec3 &v, const char *format = "%.3f, %.3f, %.3f")
 
 const char *text(BodyKind kind) {
     switch (kind) {
-    case BodyKind::fixed:
+    case BodyKind::static_body:
         return "static";
     case BodyKind::kinematic:
         return "kinematic";
@@ -210,7 +210,7 @@ void inspector_panel(PanelContext &context) {
     ImGui::Separator();
     value_row("Position", triple(state.position) + " m");
     value_row("Turned", turn_text(state.orientation));
-    if (info.kind == BodyKind::fixed) {
+    if (info.kind == BodyKind::static_body) {
         joints_of(*simulation, frame, *body);
         return;
     }

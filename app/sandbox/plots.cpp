@@ -112,7 +112,7 @@ std::vector<std::string> plot_subjects(const Simulation &simulation) {
             names.push_back(std::move(name));
     };
     for (std::size_t i = 0; i < simulation.body_count(); ++i)
-        if (simulation.body_info(i).alive && simulation.body_info(i).kind != BodyKind::fixed)
+        if (simulation.body_info(i).alive && simulation.body_info(i).kind != BodyKind::static_body)
             add(simulation.body_info(i).name);
     for (std::size_t i = 0; i < soft.particles.size(); ++i)
         add(soft.particle_name(i));

@@ -53,7 +53,7 @@ std::size_t pairs_to_follow(const SceneDesc &scene) {
     const auto count = [&](BodyKind kind) {
         return static_cast<std::size_t>(std::ranges::count(scene.bodies, kind, &BodyDesc::kind));
     };
-    return count(BodyKind::dynamic) * count(BodyKind::fixed);
+    return count(BodyKind::dynamic) * count(BodyKind::static_body);
 }
 
 // Which contact is the deepest: "; body "box" and body "ground", at (1, 0, 2)".

@@ -284,7 +284,8 @@ void Sandbox::keep_in_picture() {
     const Simulation &simulation = *session_.simulation();
     std::vector<glm::vec3> moving;
     for (std::size_t body = 0; body < session_.present_bodies().size(); ++body)
-        if (simulation.body_info(body).alive && simulation.body_info(body).kind != BodyKind::fixed)
+        if (simulation.body_info(body).alive &&
+            simulation.body_info(body).kind != BodyKind::static_body)
             moving.emplace_back(glm::mix(session_.previous_bodies()[body].position,
                                          session_.present_bodies()[body].position, clock_.alpha()));
     const std::vector<ParticleInfo> &particles = simulation.soft_parts().particles;

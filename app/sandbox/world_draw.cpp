@@ -35,7 +35,7 @@ glm::vec3 colour_of(const BodyInfo &body, std::size_t index) {
     if (body.colour)
         return *body.colour;
     switch (body.kind) {
-    case BodyKind::fixed:
+    case BodyKind::static_body:
         return colours::fixed;
     case BodyKind::kinematic:
         return colours::kinematic;
@@ -84,7 +84,7 @@ glm::dvec3 contact_place(const Simulation &simulation, const Frame &frame,
     glm::dvec3 shift(0);
     double moving = 0;
     for (const std::size_t body : {contact.body_a, contact.body_b}) {
-        if (body >= poses.size() || simulation.body_info(body).kind == BodyKind::fixed)
+        if (body >= poses.size() || simulation.body_info(body).kind == BodyKind::static_body)
             continue;
         shift += poses[body].position - frame.bodies[body].position;
         moving += 1;
@@ -258,7 +258,7 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
     if (options.velocities)
         for (std::size_t body = 0; body < shown.size(); ++body)
             if (simulation.body_info(body).alive &&
-                simulation.body_info(body).kind != BodyKind::fixed)
+                simulation.body_info(body).kind != BodyKind::static_body)
                 // As far as the body goes in a quarter of a second.
                 add_arrow(list, shown[body].position, frame.bodies[body].velocity * 0.25,
                           colours::ink);
@@ -278,7 +278,8 @@ void add_ghost(DrawList &list, const Simulation &simulation, const std::vector<B
                const std::vector<ParticleState> &particles) {
     DrawList ghost;
     for (std::size_t body = 0; body < poses.size(); ++body)
-        if (simulation.body_info(body).alive && simulation.body_info(body).kind != BodyKind::fixed)
+        if (simulation.body_info(body).alive &&
+            simulation.body_info(body).kind != BodyKind::static_body)
             add_body(ghost, simulation.body_info(body), poses[body], body, {});
     const Frame frame = simulation.read();
     draw_soft_parts(ghost, {simulation.soft_parts(), poses, particles, frame.torn}, {}, {});
@@ -317,7 +318,8 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
             const glm::dvec3 at = frame.bodies[i].position;
             if (!info.alive ||
                 std::ranges::any_of(info.colliders, is_plane, &ColliderDesc::shape) ||
-                !std::isfinite(at.x + at.y + at.z) || (info.kind == BodyKind::fixed && !fixed_too))
+                !std::isfinite(at.x + at.y + at.z) ||
+                (info.kind == BodyKind::static_body && !fixed_too))
                 continue;
             low = glm::min(low, at - reach(info));
             high = glm::max(high, at + reach(info));

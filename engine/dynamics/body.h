@@ -96,7 +96,7 @@ inline constexpr std::uint32_t no_body = UINT32_MAX;
 
 // What stays the same while a body lives.
 struct Body {
-    BodyKind kind = BodyKind::fixed;
+    BodyKind kind = BodyKind::static_body;
     bool alive = false;
     std::uint32_t generation = 0;
     std::uint32_t first_collider = 0;

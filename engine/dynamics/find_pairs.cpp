@@ -115,7 +115,7 @@ bool World::place_collider(std::uint32_t i) const {
     }
     const Body &body = model_->bodies[collider.body];
     s.reach[i] = {};
-    if (body.kind != BodyKind::fixed)
+    if (body.kind != BodyKind::static_body)
         s.reach[i] = {going(collider.body).velocity, pull_on(collider.body),
                       turning_reach(collider.body)};
     if (!collider.surface)
@@ -250,7 +250,7 @@ void World::find_pairs_with_planes() const {
         const std::uint32_t body = model_->colliders[plane].body;
         HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
         reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;
-        if (model_->bodies[body].kind != BodyKind::fixed)
+        if (model_->bodies[body].kind != BodyKind::static_body)
             reached.offset += glm::length(going(body).velocity) * static_cast<Real>(settings_.dt);
         for (std::uint32_t i = 0; i < model_->colliders.size(); ++i) {
             const Collider &other = model_->colliders[i];
@@ -301,8 +301,8 @@ void World::note_fixed_neighbors() const {
     Scratch &s = scratch_;
     s.beside_fixed.clear();
     for (const Candidate &candidate : s.candidates) {
-        const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::fixed;
-        const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::fixed;
+        const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::static_body;
+        const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::static_body;
         if (!a_is_fixed && !b_is_fixed)
             continue;
         const std::uint32_t other = a_is_fixed ? candidate.collider_b : candidate.collider_a;

@@ -76,7 +76,7 @@ std::uint32_t World::island_body(std::uint32_t a, std::uint32_t b) const {
         return body != Joint::world && model_->bodies[body].kind == kind;
     };
     const bool is_b = is(b, BodyKind::dynamic) && !is(a, BodyKind::dynamic);
-    return is_b || is(a, BodyKind::fixed) || a == Joint::world ? b : a;
+    return is_b || is(a, BodyKind::static_body) || a == Joint::world ? b : a;
 }
 
 void World::gather_needs() {

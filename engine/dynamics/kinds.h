@@ -5,7 +5,7 @@ namespace plumb {
 
 // "static", "kinematic", "dynamic" in files. Kinematic bodies move with a given velocity that
 // nothing changes; static ones not at all.
-enum class BodyKind { fixed, kinematic, dynamic };
+enum class BodyKind { static_body, kinematic, dynamic };
 
 // ball: a point of one body stays on a point of the other. distance: the two points stay between a
 // least and a greatest distance, like a massless rod or rope. hinge: the bodies share a point and

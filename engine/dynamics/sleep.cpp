@@ -34,7 +34,7 @@ void World::note_still(bool asleep) const {
         const Body &body = model_->bodies[i];
         const Motion &motion = state_.motions[i];
         bool moves = body.alive;
-        if (body.kind == BodyKind::fixed)
+        if (body.kind == BodyKind::static_body)
             moves = false;
         else if (body.kind == BodyKind::kinematic)
             moves = moves && !(is_zero(motion.velocity) && is_zero(motion.angular_velocity));

@@ -45,8 +45,8 @@ void gather(const Collider &collider, const Shape &solid, const Motion &motion, 
 
 void World::drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
                              FoundManifold &found) const {
-    const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::fixed;
-    const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::fixed;
+    const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::static_body;
+    const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::static_body;
     if (found.manifold.count == 0 || (!a_is_fixed && !b_is_fixed))
         return;
     const std::uint32_t other = a_is_fixed ? candidate.collider_b : candidate.collider_a;

@@ -441,7 +441,7 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
     Motion &motion = state_.motions[id.index];
     forget_lost_loads_of(id.index);
     motion = {pose.position, pose.rotation, velocity, angular_velocity};
-    if (body.kind == BodyKind::fixed)
+    if (body.kind == BodyKind::static_body)
         motion.velocity = motion.angular_velocity = Vec3{Real(0)};
     // What sleeps is not looked at when something that does not move is put there.
     if (body.kind != BodyKind::dynamic && motion.velocity == Vec3{Real(0)} &&

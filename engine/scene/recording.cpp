@@ -11,7 +11,7 @@ namespace {
 BodyDesc placeholder(const std::string &name) {
     BodyDesc body;
     body.name = name;
-    body.kind = BodyKind::fixed;
+    body.kind = BodyKind::static_body;
     ColliderDesc &collider = body.colliders.emplace_back();
     collider.shape = SphereDesc{0.5};
     collider.sensor = true;

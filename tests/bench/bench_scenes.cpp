@@ -40,9 +40,9 @@ SceneDesc many_pyramids(double size) {
 void add_pit(SceneDesc &scene, double half) {
     for (const double side : {-1.0, 1.0}) {
         add(scene, "wall", BoxDesc{{0.5, 20, half + 1}}, {side * (half + 0.5), 20, 0}).kind =
-            BodyKind::fixed;
+            BodyKind::static_body;
         add(scene, "wall", BoxDesc{{half + 1, 20, 0.5}}, {0, 20, side * (half + 0.5)}).kind =
-            BodyKind::fixed;
+            BodyKind::static_body;
     }
 }
 
@@ -149,7 +149,7 @@ SceneDesc drum(double size) {
     for (const double end : {-1.0, 1.0})
         add(scene, "wall", BoxDesc{{inside + 1, inside + 1, 0.5}},
             {0, 0, end * (half_length + 0.5)})
-            .kind = BodyKind::fixed;
+            .kind = BodyKind::static_body;
     add_block(scene, {side, side, side - 1}, 0.5, -0.25 * side,
               {BoxDesc{{0.15, 0.15, 0.15}}, SphereDesc{0.17}, CapsuleDesc{0.1, 0.12}});
     return scene;

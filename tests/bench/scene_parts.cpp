@@ -17,7 +17,7 @@ BodyDesc &add(SceneDesc &scene, const std::string &what, ShapeDesc shape,
 
 SceneDesc on_ground() {
     SceneDesc scene;
-    add(scene, "ground", PlaneDesc{}, {0, 0, 0}).kind = BodyKind::fixed;
+    add(scene, "ground", PlaneDesc{}, {0, 0, 0}).kind = BodyKind::static_body;
     return scene;
 }
 

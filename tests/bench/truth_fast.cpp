@@ -38,7 +38,7 @@ int through(const EngineKind &kind, int phases, double seconds,
 // A ball of 0.2 m against a wall of 5 cm.
 double bullet(const EngineKind &kind) {
     return through(kind, 20, 0.2, [](SceneDesc &scene, double phase) {
-        add(scene, "wall", BoxDesc{{0.025, 2, 2}}, {0, 0, 0}).kind = BodyKind::fixed;
+        add(scene, "wall", BoxDesc{{0.025, 2, 2}}, {0, 0, 0}).kind = BodyKind::static_body;
         add(scene, "ball", SphereDesc{0.2}, {-12 - 300 * phase / 60, 0, 0}).velocity = {300, 0, 0};
     });
 }
@@ -46,7 +46,7 @@ double bullet(const EngineKind &kind) {
 // A ball at rest before a wall of 1 cm, struck at 20 m/s by one ten times as heavy.
 double struck(const EngineKind &kind) {
     return through(kind, 40, 1, [](SceneDesc &scene, double phase) {
-        add(scene, "wall", BoxDesc{{0.005, 2, 2}}, {0, 0, 0}).kind = BodyKind::fixed;
+        add(scene, "wall", BoxDesc{{0.005, 2, 2}}, {0, 0, 0}).kind = BodyKind::static_body;
         add(scene, "resting", SphereDesc{0.1}, {-0.205, 0, 0}).mass = 1;
         BodyDesc &heavy = add(scene, "heavy", SphereDesc{0.1}, {-0.7 - 20 * phase / 60, 0, 0});
         heavy.mass = 10;
@@ -79,7 +79,7 @@ double rod(const EngineKind &kind) {
         SceneDesc scene = weightless();
         add(scene, "rod", BoxDesc{{1, half, half}}, {0, 0, 0}).angular_velocity = {
             0, 30 * std::numbers::pi, 0};
-        add(scene, "post", BoxDesc{{half, 1, half}}, post).kind = BodyKind::fixed;
+        add(scene, "post", BoxDesc{{half, 1, half}}, post).kind = BodyKind::static_body;
         Trial trial(kind, scene);
         trial.go(trial.scene().dt());
         const glm::dvec3 ahead = trial.body(0).orientation * glm::dvec3(0, 0, -1);
@@ -152,7 +152,7 @@ double gas(const EngineKind &kind) {
         glm::dvec3 away(0), half(3);
         away[side / 2] = side % 2 == 0 ? 2.5 : -2.5;
         half[side / 2] = 0.5;
-        add(scene, "wall", BoxDesc{half}, away).kind = BodyKind::fixed;
+        add(scene, "wall", BoxDesc{half}, away).kind = BodyKind::static_body;
     }
     std::mt19937 bits(11);
     const auto any = [&] { return 6 * (static_cast<double>(bits()) / 4294967295.0) - 3; };

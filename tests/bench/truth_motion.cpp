@@ -138,7 +138,7 @@ double seams(const EngineKind &kind) {
     SceneDesc scene;
     set_material(scene, 0, 0);
     for (int i = 0; i < 50; ++i)
-        add(scene, "tile", BoxDesc{{0.5, 0.25, 1}}, {i, -0.25, 0}).kind = BodyKind::fixed;
+        add(scene, "tile", BoxDesc{{0.5, 0.25, 1}}, {i, -0.25, 0}).kind = BodyKind::static_body;
     BodyDesc &box = add(scene, "box", BoxDesc{{0.2, 0.2, 0.2}}, {0, 0.2, 0.01});
     box.velocity = {2, 0, 0};
     Trial trial(kind, scene);

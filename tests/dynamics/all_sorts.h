@@ -46,7 +46,7 @@ inline BodyDef hilly_ground(bool as_field, const V &at) {
     constexpr int n = 16;
     constexpr double cell = 0.5;
     BodyDef def;
-    def.kind = BodyKind::fixed;
+    def.kind = BodyKind::static_body;
     def.colliders.emplace_back().surface =
         as_field ? std::make_shared<const TriangleSurface>(hilly_field(n, cell), Sides::front)
                  : std::make_shared<const TriangleSurface>(hilly_mesh(n, cell), Sides::front);

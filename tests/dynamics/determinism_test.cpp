@@ -240,7 +240,7 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
     int parts = 0;
     for (std::uint32_t i = 0; i < world.bodies().size(); ++i) {
         const Motion &m = before.motions()[i];
-        const bool has_velocity = world.bodies()[i].kind != BodyKind::fixed;
+        const bool has_velocity = world.bodies()[i].kind != BodyKind::static_body;
         for (int part = 0; part < 13; ++part) {
             if (!has_velocity && part >= 3 && part < 9)
                 continue;

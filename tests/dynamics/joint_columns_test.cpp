@@ -47,7 +47,7 @@ struct Solved {
             const Body &body = world.bodies()[i];
             SolverBody &out = bodies.emplace_back();
             static_cast<Motion &>(out) = world.motions()[i];
-            if (body.kind == BodyKind::fixed)
+            if (body.kind == BodyKind::static_body)
                 continue;
             group.moving.push_back(i);
             if (body.kind != BodyKind::dynamic)

@@ -323,7 +323,7 @@ TEST_P(Flight, KinematicBodiesKeepTheirVelocityAndStaticOnesTheirPlace) {
     const double turn = 2 * std::atan2(double(motion.rotation.z), double(motion.rotation.w));
     EXPECT_NEAR(std::remainder(turn - 6.25, 2 * pi), 0, 100 * 4 * epsilon);
 
-    body.kind = BodyKind::fixed;
+    body.kind = BodyKind::static_body;
     motion = SolverBody{};
     FreeFlight flight = begin_flight(motion, body, Vec3{0, Real(-10), 0}, Real(1), GetParam(), 3);
     move(motion, body, flight, Real(1));

@@ -26,7 +26,7 @@ BodyDef flat_body(bool as_field) {
     constexpr int n = 8;
     constexpr double cell = 0.5;
     BodyDef def;
-    def.kind = BodyKind::fixed;
+    def.kind = BodyKind::static_body;
     std::shared_ptr<const TriangleSurface> &surface = def.colliders.emplace_back().surface;
     if (as_field) {
         HeightField field;

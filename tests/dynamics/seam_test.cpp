@@ -36,7 +36,7 @@ void add_floor(World &world, Tile kind, double friction) {
             if (kind == Tile::box) {
                 tile = fixed_body(block(V{0.5, 0.25, 0.5}), V{i - 0.5, -0.25, double(j)});
             } else {
-                tile.kind = BodyKind::fixed;
+                tile.kind = BodyKind::static_body;
                 tile.colliders.emplace_back().surface = flat_tile(kind == Tile::field);
                 tile.pose.position = narrow(V{i - 0.5, 0, double(j)});
             }

@@ -41,7 +41,7 @@ constexpr auto flat = [](double, double) { return 0.0; };
 
 BodyDef surface_body(std::shared_ptr<const TriangleSurface> surface, double friction) {
     BodyDef def;
-    def.kind = BodyKind::fixed;
+    def.kind = BodyKind::static_body;
     def.colliders.emplace_back().surface = std::move(surface);
     return with_material(def, friction, 0);
 }

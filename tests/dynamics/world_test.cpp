@@ -135,7 +135,7 @@ TEST(World, MisuseIsNamedWithItsValue) {
 
     const BodyId id = world.add_body(good);
     BodyDef fixed = good;
-    fixed.kind = BodyKind::fixed;
+    fixed.kind = BodyKind::static_body;
     const BodyId wall = world.add_body(fixed);
     JointDef joint;
     joint.a = id;

@@ -90,7 +90,7 @@ inline BodyDef with_material(BodyDef def, double friction, double restitution) {
 }
 inline BodyDef fixed_body(const Shape &shape, const V &position = V{0}) {
     BodyDef def;
-    def.kind = BodyKind::fixed;
+    def.kind = BodyKind::static_body;
     def.colliders.emplace_back().shape = shape;
     def.pose.position = narrow(position);
     return def;

@@ -133,12 +133,12 @@ class Run {
         BodyDesc body;
         body.name = "b" + std::to_string(next_body_++);
         const std::uint32_t kind = input_.below(6);
-        body.kind = kind == 0   ? BodyKind::fixed
+        body.kind = kind == 0   ? BodyKind::static_body
                     : kind == 1 ? BodyKind::kinematic
                                 : BodyKind::dynamic;
         for (std::uint32_t i = 1 + input_.below(2); i > 0; --i) {
             ColliderDesc &collider = body.colliders.emplace_back();
-            collider.shape = shape(body.kind == BodyKind::fixed);
+            collider.shape = shape(body.kind == BodyKind::static_body);
             if (input_.below(2) == 0) {
                 collider.position = point();
                 collider.orientation = rotation();
@@ -150,7 +150,7 @@ class Run {
             body.mass = size();
         body.position = point();
         body.orientation = rotation();
-        if (body.kind != BodyKind::fixed) {
+        if (body.kind != BodyKind::static_body) {
             body.velocity = point();
             body.angular_velocity = point();
         }

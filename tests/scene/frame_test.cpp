@@ -17,7 +17,7 @@ std::unique_ptr<Simulation> three_balls() {
     SceneDesc scene;
     BodyDesc floor;
     floor.name = "floor";
-    floor.kind = BodyKind::fixed;
+    floor.kind = BodyKind::static_body;
     floor.colliders.emplace_back().shape = BoxDesc{{5, 0.5, 5}};
     floor.position = {0, -0.5, 0};
     scene.bodies.push_back(floor);
@@ -144,7 +144,7 @@ TEST(Frame, ContactsSayWhatTouches) {
     SceneDesc scene;
     BodyDesc &ground = scene.bodies.emplace_back();
     ground.name = "ground";
-    ground.kind = BodyKind::fixed;
+    ground.kind = BodyKind::static_body;
     MeshData quad; // two triangles, parted along x = z
     quad.vertices = {{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}};
     quad.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -161,7 +161,7 @@ TEST(Frame, ContactsSayWhatTouches) {
     }
     BodyDesc &gate = scene.bodies.emplace_back();
     gate.name = "gate";
-    gate.kind = BodyKind::fixed;
+    gate.kind = BodyKind::static_body;
     gate.position = {1, 0.5, -0.5};
     gate.colliders.emplace_back().shape = BoxDesc{{0.3, 0.3, 0.3}};
     gate.colliders.front().sensor = true;
@@ -197,7 +197,7 @@ TEST(Frame, FeaturesOfPointsLast) {
     for (const char *name : {"floor", "box"}) {
         BodyDesc &body = scene.bodies.emplace_back();
         body.name = name;
-        body.kind = scene.bodies.size() == 1 ? BodyKind::fixed : BodyKind::dynamic;
+        body.kind = scene.bodies.size() == 1 ? BodyKind::static_body : BodyKind::dynamic;
         const double half = scene.bodies.size() == 1 ? 3 : 0.5;
         body.colliders.emplace_back().shape = BoxDesc{glm::dvec3(half)};
         body.position = {0, scene.bodies.size() == 1 ? -3 : 0.5, 0};

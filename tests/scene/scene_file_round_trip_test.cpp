@@ -352,7 +352,7 @@ class Scenes {
         const std::size_t shapes = one_in(2) ? 1 : 1 + random_.next_index(3);
         for (std::size_t i = 0; i < shapes; ++i) {
             ColliderDesc &collider = b.colliders.emplace_back();
-            collider.shape = shape(b.kind == BodyKind::fixed ? 8 : 5);
+            collider.shape = shape(b.kind == BodyKind::static_body ? 8 : 5);
             if (shapes > 1)
                 place(collider, scene);
             if (one_in(3)) {
@@ -389,7 +389,7 @@ class Scenes {
         b.position = vector();
         if (!one_in(3))
             b.orientation = rotation();
-        if (b.kind != BodyKind::fixed && one_in(2)) {
+        if (b.kind != BodyKind::static_body && one_in(2)) {
             b.velocity = vector();
             b.angular_velocity = vector();
         }

@@ -164,7 +164,7 @@ material = "ice"
 color = [0, 0.25, 1]
 )");
     ASSERT_EQ(scene.bodies.size(), 2U);
-    EXPECT_EQ(scene.bodies[0].kind, BodyKind::fixed);
+    EXPECT_EQ(scene.bodies[0].kind, BodyKind::static_body);
     EXPECT_EQ(scene.bodies[0].material, "");
     EXPECT_EQ(scene.bodies[1].kind, BodyKind::kinematic);
     EXPECT_EQ(scene.bodies[1].material, "ice");

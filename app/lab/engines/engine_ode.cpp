@@ -153,7 +153,7 @@ class OdeEngine final : public Engine {
         const BodyDesc &desc = scene_.desc.bodies[index];
         const BodyMass &mass = scene_.masses[index];
         dBodyID body = nullptr;
-        if (desc.kind != BodyKind::fixed) {
+        if (desc.kind != BodyKind::static_body) {
             body = dBodyCreate(world_);
             dQuaternion turn;
             set(turn, desc.orientation);

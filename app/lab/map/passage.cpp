@@ -88,7 +88,7 @@ PassageWatch::PassageWatch(const SceneDesc &scene, const Simulation &simulation)
     : parts_(std::make_unique<Parts>()) {
     simulation.read(parts_->frame, {});
     for (const BodyDesc &body : scene.bodies) {
-        if (body.kind != BodyKind::fixed)
+        if (body.kind != BodyKind::static_body)
             continue;
         const BodyDef def = body_def(scene, body);
         for (ColliderDef collider : def.colliders) {

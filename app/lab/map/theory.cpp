@@ -111,7 +111,7 @@ std::optional<StruckBody> struck_before_wall(const SceneDesc &scene, const std::
     const Span target(bounds(*struck), axis, forwards);
     const BodyDesc *wall =
         only_body(scene, [](const BodyDesc &body) { return body.kind != BodyKind::dynamic; });
-    if (wall == nullptr || wall->kind != BodyKind::fixed || has_plane(*wall) ||
+    if (wall == nullptr || wall->kind != BodyKind::static_body || has_plane(*wall) ||
         !stands_across(bounds(*wall), bounds(*struck), axis))
         return std::nullopt;
     const Span behind(bounds(*wall), axis, forwards);
@@ -126,7 +126,7 @@ std::optional<StruckBody> struck_before_wall(const SceneDesc &scene, const std::
 std::optional<double> way_into_wall(const SceneDesc &scene, const std::string &thrown, int axis) {
     const BodyDesc *wall =
         only_body(scene, [](const BodyDesc &body) { return body.kind != BodyKind::dynamic; });
-    if (wall == nullptr || wall->kind != BodyKind::fixed || has_plane(*wall) ||
+    if (wall == nullptr || wall->kind != BodyKind::static_body || has_plane(*wall) ||
         !scene.joints.empty())
         return std::nullopt;
     std::optional<double> way;
@@ -155,7 +155,7 @@ std::optional<double> column_of_cubes(const SceneDesc &scene, const std::string 
     std::optional<double> side;
     double height = 0;
     for (const BodyDesc &body : scene.bodies) {
-        if (body.kind == BodyKind::fixed && has_plane(body))
+        if (body.kind == BodyKind::static_body && has_plane(body))
             continue;
         const auto *box = std::get_if<BoxDesc>(&body.colliders.front().shape);
         if (box == nullptr || body.colliders.size() != 1 || body.kind != BodyKind::dynamic ||

@@ -28,12 +28,12 @@ const KindInfo &least_movable(const BodyDesc &body) {
 void read_kind(const Table &table, BodyDesc &body) {
     static constexpr std::array<std::string_view, 3> kinds{"static", "kinematic", "dynamic"};
     const KindInfo &info = least_movable(body);
-    body.kind = info.moves == Moves::by_forces ? BodyKind::dynamic : BodyKind::fixed;
+    body.kind = info.moves == Moves::by_forces ? BodyKind::dynamic : BodyKind::static_body;
     const std::optional<std::size_t> kind = table.choice("kind", kinds);
     if (!kind)
         return;
     body.kind = static_cast<BodyKind>(*kind);
-    const bool can = body.kind == BodyKind::fixed || info.moves == Moves::by_forces ||
+    const bool can = body.kind == BodyKind::static_body || info.moves == Moves::by_forces ||
                      (body.kind == BodyKind::kinematic && info.moves == Moves::as_told);
     const std::string name(info.with_article);
     if (!can)
@@ -140,7 +140,7 @@ void read_velocity(Reading &reading, const Table &table, BodyDesc &body) {
         angular = *angular * degree;
     body.velocity = velocity.value_or(body.velocity);
     body.angular_velocity = angular.value_or(body.angular_velocity);
-    if (body.kind != BodyKind::fixed)
+    if (body.kind != BodyKind::static_body)
         return;
     const std::string suggestion = R"(kind = "kinematic" moves as told, "dynamic" by forces)";
     if (body.velocity != glm::dvec3(0))

@@ -28,7 +28,7 @@ SceneMessage refusal(const ScenePositions &positions, std::size_t body, std::str
 // boxes, grown by that, touch are a pair that it looks at.
 double reach(const StepSettings &settings, const BodyDesc &body) {
     double reach = settings.speculative_distance / 2;
-    if (body.kind != BodyKind::fixed)
+    if (body.kind != BodyKind::static_body)
         reach += glm::length(body.velocity) * settings.dt;
     if (body.kind == BodyKind::dynamic)
         reach += glm::length(settings.gravity) * settings.dt * settings.dt;

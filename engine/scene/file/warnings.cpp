@@ -294,14 +294,14 @@ class Checker {
                 smallest_body = &body;
             }
             const double way = glm::length(body.velocity) * dt;
-            if (body.kind != BodyKind::fixed && way > width)
+            if (body.kind != BodyKind::static_body && way > width)
                 fast_.add(positions_.bodies[i],
                           in_quotes(body.name) + " moves " + rounded(way) +
                               " m in one step, more than its width of " + rounded(width) +
                               " m, and may pass through others (|v| dt > width)",
                           "world.dt up to " + rounded(width / glm::length(body.velocity)));
             const double turn = glm::length(body.angular_velocity) * dt;
-            if (body.kind != BodyKind::fixed && turn > std::numbers::pi)
+            if (body.kind != BodyKind::static_body && turn > std::numbers::pi)
                 spinning_.add(positions_.bodies[i],
                               in_quotes(body.name) + " turns by " + rounded(turn) +
                                   " rad in one step, more than half a revolution (|w| dt > pi)",

@@ -214,7 +214,7 @@ class SceneWriter {
                 return kind_info(collider.shape).moves == Moves::by_forces;
             });
         line("name", string(body.name));
-        if (body.kind != (can_be_dynamic ? BodyKind::dynamic : BodyKind::fixed))
+        if (body.kind != (can_be_dynamic ? BodyKind::dynamic : BodyKind::static_body))
             line("kind", kinds[static_cast<std::size_t>(body.kind)]);
         write_shapes(body);
         write_mass(body);

@@ -52,7 +52,7 @@ SceneDesc ball_above_floor() {
     scene.name = "ball";
     BodyDesc floor;
     floor.name = "floor";
-    floor.kind = BodyKind::fixed;
+    floor.kind = BodyKind::static_body;
     floor.colliders.emplace_back().shape = PlaneDesc{};
     BodyDesc ball;
     ball.name = "ball";

@@ -125,14 +125,14 @@ std::string passage(const std::vector<glm::dvec3> &path, const char *obstacle_sh
     SceneDesc scene = scene_of_a_ball();
     BodyDesc &wall = scene.bodies.emplace_back();
     wall.name = obstacle_shape;
-    wall.kind = BodyKind::fixed;
+    wall.kind = BodyKind::static_body;
     if (wall.name == "pillar")
         wall.colliders.emplace_back().shape = SphereDesc{1};
     else
         wall.colliders.emplace_back().shape = BoxDesc{{0.1, 3, 3}};
     BodyDesc &floor = scene.bodies.emplace_back();
     floor.name = "floor";
-    floor.kind = BodyKind::fixed;
+    floor.kind = BodyKind::static_body;
     floor.position = {0, -5, 0};
     floor.colliders.emplace_back().shape = PlaneDesc{};
     FakeSimulation simulation(1);
