@@ -15,9 +15,9 @@ inline constexpr std::size_t palette_size = 8;
 [[nodiscard]] glm::vec3 linear_from_srgb(const glm::vec3 &srgb);
 
 namespace colours {
-inline constexpr glm::vec3 fixed{0.66f, 0.67f, 0.69f};     // bodies that never move
-inline constexpr glm::vec3 kinematic{0.50f, 0.55f, 0.60f}; // bodies that move as they are told
-inline constexpr glm::vec3 rod{0.36f, 0.38f, 0.42f};       // massless rods between bodies
+inline constexpr glm::vec3 static_body{0.66f, 0.67f, 0.69f}; // bodies that never move
+inline constexpr glm::vec3 kinematic{0.50f, 0.55f, 0.60f};   // bodies that move as they are told
+inline constexpr glm::vec3 rod{0.36f, 0.38f, 0.42f};         // massless rods between bodies
 inline constexpr glm::vec3 selected{0.98f, 0.62f, 0.16f};
 inline constexpr glm::vec3 contact{0.85f, 0.26f, 0.22f};
 inline constexpr glm::vec3 impact{0.93f, 0.70f, 0.15f};

@@ -83,7 +83,7 @@ void draw_particles(DrawList &list, const SoftView &view,
         ball.size = glm::vec3(static_cast<float>((particle.cloth ? 1.5 : 1.0) * particle.radius));
         ball.colour =
             particle.pinned
-                ? colours::fixed
+                ? colours::static_body
                 : particle.colour.value_or(palette_colour(particle.cloth ? *particle.cloth : i));
         ball.selected = selected == i;
         ball.highlighted = hovered == i;

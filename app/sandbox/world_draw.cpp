@@ -36,7 +36,7 @@ glm::vec3 colour_of(const BodyInfo &body, std::size_t index) {
         return *body.colour;
     switch (body.kind) {
     case BodyKind::static_body:
-        return colours::fixed;
+        return colours::static_body;
     case BodyKind::kinematic:
         return colours::kinematic;
     case BodyKind::dynamic:
@@ -241,7 +241,7 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
         DrawShape ball;
         ball.position = glm::vec3(attractor.position);
         ball.size = glm::vec3(static_cast<float>(attractor.radius));
-        ball.colour = colours::fixed;
+        ball.colour = colours::static_body;
         list.shapes.push_back(ball);
     }
     const double mass = options.contacts || options.joints ? typical_mass(simulation) : 0;
@@ -310,7 +310,7 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
                 radius > 0 ? static_cast<float>(radius) : 5.0f};
     }
     // A floor may be far larger than what stands on it, so what never moves counts only alone.
-    for (const bool fixed_too : {false, true}) {
+    for (const bool static_too : {false, true}) {
         glm::dvec3 low(std::numeric_limits<double>::max());
         glm::dvec3 high(std::numeric_limits<double>::lowest());
         for (std::size_t i = 0; i < simulation.body_count(); ++i) {
@@ -319,7 +319,7 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
             if (!info.alive ||
                 std::ranges::any_of(info.colliders, is_plane, &ColliderDesc::shape) ||
                 !std::isfinite(at.x + at.y + at.z) ||
-                (info.kind == BodyKind::static_body && !fixed_too))
+                (info.kind == BodyKind::static_body && !static_too))
                 continue;
             low = glm::min(low, at - reach(info));
             high = glm::max(high, at + reach(info));

@@ -293,24 +293,24 @@ void World::find_pairs() const {
     s.candidates.resize(s.pair_candidates.size() + s.plane_candidates.size());
     std::ranges::merge(s.pair_candidates, s.plane_candidates, s.candidates.begin(), {},
                        &Candidate::key, &Candidate::key);
-    note_fixed_neighbors();
+    note_static_neighbors();
 }
 
-// Which fixed colliders each other one is near: where there are several they may be flush.
-void World::note_fixed_neighbors() const {
+// Which static colliders each other one is near: where there are several they may be flush.
+void World::note_static_neighbors() const {
     Scratch &s = scratch_;
-    s.beside_fixed.clear();
+    s.beside_static.clear();
     for (const Candidate &candidate : s.candidates) {
-        const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::static_body;
-        const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::static_body;
-        if (!a_is_fixed && !b_is_fixed)
+        const bool a_is_static = model_->bodies[candidate.key.a].kind == BodyKind::static_body;
+        const bool b_is_static = model_->bodies[candidate.key.b].kind == BodyKind::static_body;
+        if (!a_is_static && !b_is_static)
             continue;
-        const std::uint32_t other = a_is_fixed ? candidate.collider_b : candidate.collider_a;
-        const std::uint32_t fixed = a_is_fixed ? candidate.collider_a : candidate.collider_b;
-        if (!model_->colliders[fixed].sensor && !model_->colliders[other].sensor)
-            s.beside_fixed.push_back(std::uint64_t{other} << 32 | fixed);
+        const std::uint32_t other = a_is_static ? candidate.collider_b : candidate.collider_a;
+        const std::uint32_t of_static = a_is_static ? candidate.collider_a : candidate.collider_b;
+        if (!model_->colliders[of_static].sensor && !model_->colliders[other].sensor)
+            s.beside_static.push_back(std::uint64_t{other} << 32 | of_static);
     }
-    radix_sort(s.beside_fixed, s.sorted_numbers, std::identity{});
+    radix_sort(s.beside_static, s.sorted_numbers, std::identity{});
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -51,8 +51,8 @@ struct Scratch {
     std::vector<Candidate> sorted_candidates;
     FoundParts<std::uint64_t> pair_parts;
     FoundParts<Candidate> candidate_parts;
-    // Of candidates with one fixed body: (the other collider << 32 | the fixed one), ascending.
-    std::vector<std::uint64_t> beside_fixed;
+    // Of candidates with one static body: (the other collider << 32 | the static one), ascending.
+    std::vector<std::uint64_t> beside_static;
 
     // Contacts of the last step, or found again. `are_current`: of this model and these poses or of
     // the step that led to them.
@@ -74,7 +74,7 @@ struct Scratch {
     // Of those between bodies that were still: where they were and where they are now.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> kept_memory;
 
-    // Of each body: whether it does not move in this step (fixed, asleep, or driven at no speed),
+    // Of each body: whether it does not move in this step (static, asleep, or driven at no speed),
     // so that it need not be met with others that do not.
     std::vector<std::uint8_t> still;
     std::size_t awake = 0; // bodies that move

@@ -1,4 +1,4 @@
-// What lies flush beside a fixed body that something touches.
+// What lies flush beside a static body that something touches.
 #include "engine/dynamics/inner_edges.h"
 #include "engine/dynamics/world.h"
 #include "engine/geometry/overlap.h"
@@ -45,19 +45,19 @@ void gather(const Collider &collider, const Shape &solid, const Motion &motion, 
 
 void World::drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
                              FoundManifold &found) const {
-    const bool a_is_fixed = model_->bodies[candidate.key.a].kind == BodyKind::static_body;
-    const bool b_is_fixed = model_->bodies[candidate.key.b].kind == BodyKind::static_body;
-    if (found.manifold.count == 0 || (!a_is_fixed && !b_is_fixed))
+    const bool a_is_static = model_->bodies[candidate.key.a].kind == BodyKind::static_body;
+    const bool b_is_static = model_->bodies[candidate.key.b].kind == BodyKind::static_body;
+    if (found.manifold.count == 0 || (!a_is_static && !b_is_static))
         return;
-    const std::uint32_t other = a_is_fixed ? candidate.collider_b : candidate.collider_a;
-    const std::uint32_t fixed = a_is_fixed ? candidate.collider_a : candidate.collider_b;
-    const auto first = std::ranges::lower_bound(scratch_.beside_fixed, std::uint64_t{other} << 32);
+    const std::uint32_t other = a_is_static ? candidate.collider_b : candidate.collider_a;
+    const std::uint32_t of_static = a_is_static ? candidate.collider_a : candidate.collider_b;
+    const auto first = std::ranges::lower_bound(scratch_.beside_static, std::uint64_t{other} << 32);
     const auto last =
-        std::ranges::lower_bound(scratch_.beside_fixed, std::uint64_t{other + 1} << 32);
+        std::ranges::lower_bound(scratch_.beside_static, std::uint64_t{other + 1} << 32);
     if (last - first < 2)
         return;
 
-    const Collider &own = model_->colliders[fixed];
+    const Collider &own = model_->colliders[of_static];
     const Collider &mover = model_->colliders[other];
     if (own.is_half_space() || mover.surface)
         return;
@@ -67,24 +67,24 @@ void World::drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
     for (const std::uint64_t pair : std::span(first, last)) {
         const auto neighbor = static_cast<std::uint32_t>(pair & 0xFFFFFFFFU);
         const Collider &collider = model_->colliders[neighbor];
-        if (neighbor != fixed)
+        if (neighbor != of_static)
             gather(collider, scratch_.placed[neighbor], state_.motions[collider.body], box,
                    neighbors);
     }
     if (neighbors.empty())
         return;
 
-    const Motion &at = a_is_fixed ? found.b : found.a;
+    const Motion &at = a_is_static ? found.b : found.a;
     const Shape solid = placed(mover.shape, Transform{at.position, at.rotation});
     const StaticPiece piece = own.surface
                                   ? StaticPiece{placed(own.surface->triangle(triangle),
                                                        surface_pose(own, state_.motions[own.body]))}
-                                  : StaticPiece{scratch_.placed[fixed]};
+                                  : StaticPiece{scratch_.placed[of_static]};
     Manifold &manifold = found.manifold;
-    if (a_is_fixed)
+    if (a_is_static)
         manifold.normal = -manifold.normal;
     manifold = without_inner_edges(manifold, solid, piece, neighbors, candidate.margin, flush);
-    if (a_is_fixed)
+    if (a_is_static)
         manifold.normal = -manifold.normal;
 }
 

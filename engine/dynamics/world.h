@@ -78,7 +78,7 @@ class World {
 
     // The pose of the body's own frame.
     Transform pose_of(std::uint32_t body) const;
-    // Sets pose and velocity of a body, as a tool or a test does. A fixed one has no velocity.
+    // Sets pose and velocity of a body, as a tool or a test does. A static one has no velocity.
     void set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
                     const Vec3 &angular_velocity);
     // Changes a dynamic body's velocity at once: `impulse` in N s at a world point. Others ignore
@@ -268,8 +268,8 @@ class World {
     void set_anchor(Contact &contact, std::size_t k, const Motion &a, const Motion &b) const;
     // Of a point, from its anchor (m).
     Real separation_now(const Contact &contact, std::size_t k) const;
-    void note_fixed_neighbors() const;
-    // Without what a fixed body's neighbours cover (inner_edges.h).
+    void note_static_neighbors() const;
+    // Without what a static body's neighbours cover (inner_edges.h).
     void drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
                           FoundManifold &found) const;
     // Contacts of what does not touch yet (predicted_contact.cpp).

@@ -162,7 +162,7 @@ bool World::mark_touched_by_particles() const {
     return any;
 }
 
-// The step's copies. Bodies that sleep are loaded where particles meet them, as fixed ones.
+// The step's copies. Bodies that sleep are loaded where particles meet them, as static ones.
 void World::load_particles() {
     Scratch &s = scratch_;
     s.particles = state_.particles;

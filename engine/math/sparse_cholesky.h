@@ -1,5 +1,5 @@
-// Systems of linear equations with a sparse, symmetric and positive matrix, in double whatever Real
-// is.
+// Systems of linear equations with a sparse, symmetric, positive definite matrix, in double
+// whatever Real is. Eigen's own factors allocate in every factorisation.
 #pragma once
 
 #include "engine/core/precision.h"
@@ -20,7 +20,8 @@ struct MatrixEntry {
 // last time, only values are computed, and nothing is allocated.
 class SparseCholesky {
   public:
-    // The matrix is the sum of all entries; each unknown has one on the diagonal.
+    // The matrix is the sum of all entries; each unknown has one on the diagonal. Not checked to be
+    // positive definite: where it is singular, solutions are not finite.
     void factor(int unknowns, std::span<const MatrixEntry> entries);
     // Replaces the right-hand side, one number for each unknown, by the solution.
     void solve(std::span<double> side);

@@ -164,12 +164,12 @@ inline World world_of_all_sorts(const std::string &method, int bodies) {
     BodyDef below = ground(0.5, 0);
     below.pose.position.y = Real(-1);
     world.add_body(below);
-    BodyDef platform = fixed_body(block(V{0.8, 0.1, 0.8}), V{0, 0.3, 1});
+    BodyDef platform = static_body(block(V{0.8, 0.1, 0.8}), V{0, 0.3, 1});
     platform.kind = BodyKind::kinematic;
     platform.velocity = narrow(V{0, 0.25, 0});
     platform.angular_velocity = narrow(V{0, 0.7, 0});
     world.add_body(platform);
-    BodyDef sensor = fixed_body(block(V{1, 0.3, 1}), V{-1, 0.5, 0});
+    BodyDef sensor = static_body(block(V{1, 0.3, 1}), V{-1, 0.5, 0});
     sensor.colliders.front().sensor = true;
     world.add_body(sensor);
     std::vector<BodyId> ids;

@@ -129,7 +129,7 @@ TEST(Attractors, PullAsGravityDoes) {
     held.locked[1] = true;
     world.add_body(twice);
     world.add_body(held);
-    world.add_body(fixed_body(ball(0.1), V{0, 0, 2}));
+    world.add_body(static_body(ball(0.1), V{0, 0, 2}));
     world.add_particle(particle_at(V{0, -2, 0}));
     world.add_particle(particle_at(V{0, 0, -2}, 1, true));
     run(world, 1);
@@ -146,7 +146,7 @@ TEST(Attractors, LeaveAloneWhatMovesAsTold) {
     for (const std::string &method : all_methods()) {
         World world(method, settings_of(method, 1.0 / 64));
         world.add_attractor({Vec3{Real(0)}, Real(8)});
-        BodyDef told = fixed_body(ball(0.1), V{2, 0, 0});
+        BodyDef told = static_body(ball(0.1), V{2, 0, 0});
         told.kind = BodyKind::kinematic;
         told.velocity = narrow(V{0, 1, 0});
         const BodyId id = world.add_body(told);
@@ -165,7 +165,7 @@ TEST(Attractors, BallsRestOnAPlanet) {
         StepSettings settings = weightless(settings_for(method));
         World world(method, settings);
         world.add_attractor({Vec3{Real(0)}, Real(gravity)}); // 9.81 m/s^2 at its surface
-        world.add_body(fixed_body(ball(1)));
+        world.add_body(static_body(ball(1)));
         const BodyId above = world.add_body(dynamic_body(ball(0.2), 1, V{0, 1.3, 0}));
         const BodyId below = world.add_body(dynamic_body(ball(0.2), 1, V{0, -1.3, 0}));
         run(world, 240);

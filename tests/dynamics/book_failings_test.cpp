@@ -14,7 +14,7 @@ using namespace trial;
 // begins, it is never met.
 double farthest_behind_a_wall(const std::string &method) {
     World world(method, weightless(settings_for(method)));
-    world.add_body(fixed_body(block(V{0.01, 1, 1})));
+    world.add_body(static_body(block(V{0.01, 1, 1})));
     const BodyId id = world.add_body(dynamic_body(ball(0.1), 1, V{-2.5, 0, 0}, V{60, 0, 0}));
     double farthest = -2.5;
     for (int i = 0; i < 60; ++i) {

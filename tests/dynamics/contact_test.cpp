@@ -230,7 +230,7 @@ TEST_P(Contacts, AFastBallDoesNotPassAThinWall) {
     for (const double speed : {10.0, 50.0, 300.0, 1000.0})
         for (const double start : {0.5, 1.3, 2.0, 3.7}) {
             World world(GetParam(), weightless(settings_for(GetParam())));
-            world.add_body(fixed_body(block(V{0.025, 5, 5})));
+            world.add_body(static_body(block(V{0.025, 5, 5})));
             const BodyId id =
                 world.add_body(dynamic_body(ball(0.1), 1, V{-start, 0, 0}, V{speed, 0, 0}));
             run(world, 60);
@@ -243,7 +243,7 @@ TEST_P(Contacts, AFastBallDoesNotPassAThinWall) {
 TEST_P(Contacts, AFastBallPassesBesideABox) {
     const auto passes = [&](double speed) {
         World world(GetParam(), weightless(settings_for(GetParam())));
-        world.add_body(fixed_body(block(V{0.5})));
+        world.add_body(static_body(block(V{0.5})));
         const BodyId id = world.add_body(dynamic_body(ball(0.1), 1, V{-2, 0.8, 0}, V{speed, 0, 0}));
         run(world, 60);
         return velocity_of(world, id) == V{speed, 0, 0};
@@ -258,7 +258,7 @@ TEST_P(Contacts, AFastBallPassesBesideABox) {
 TEST_P(Contacts, ASpinningRodNoticesAPost) {
     const auto notices = [&](double spin, int steps) {
         World world(GetParam(), weightless(settings_for(GetParam())));
-        world.add_body(fixed_body(block(V{0.02, 0.5, 0.02}), V{0, 0, 0.9}));
+        world.add_body(static_body(block(V{0.02, 0.5, 0.02}), V{0, 0, 0.9}));
         BodyDef rod = dynamic_body(block(V{1, 0.02, 0.02}), 1, V{0});
         rod.angular_velocity = narrow(V{0, spin, 0});
         world.add_body(rod);

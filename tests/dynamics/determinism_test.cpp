@@ -25,7 +25,7 @@ World random_world(const std::string &method, std::uint64_t seed, bool holes = f
     };
     world.add_body(ground(0.6, 0));
     add_doomed();
-    BodyDef lift = fixed_body(block(V{0.5, 0.1, 0.5}), V{1.5, 0.3, 0});
+    BodyDef lift = static_body(block(V{0.5, 0.1, 0.5}), V{1.5, 0.3, 0});
     lift.kind = BodyKind::kinematic;
     lift.velocity = narrow(V{0, 0.25, 0});
     lift.angular_velocity = narrow(V{0, 0.5, 0});
@@ -194,7 +194,7 @@ TEST_P(Determinism, AWorldLoadedFromItsStateContinuesTheSame) {
 // Nor is anything kept that a setting decides: here how far static bodies reach.
 TEST_P(Determinism, ASettingChangedOnTheWayCountsFromThen) {
     World world = random_world(GetParam(), 6);
-    world.add_body(fixed_body(block(V{3, 0.1, 3}), V{0, -0.05, 0}));
+    world.add_body(static_body(block(V{3, 0.1, 3}), V{0, -0.05, 0}));
     run(world, 20);
     SavedWorld before;
     world.save(before);

@@ -85,7 +85,7 @@ TEST(SoftStepGas, ElasticBodiesKeepTheirEnergy) {
         for (int side = 0; side < 6; ++side) {
             V normal{0};
             normal[side / 2] = side % 2 == 0 ? 1 : -1;
-            world.add_body(with_material(fixed_body(HalfSpace{narrow(normal), Real(-2)}), 0, 1));
+            world.add_body(with_material(static_body(HalfSpace{narrow(normal), Real(-2)}), 0, 1));
         }
         for (int i = 0; i < 36; ++i) {
             const V at{-1.2 + 0.8 * (i % 4), -0.8 + 0.8 * (i / 4 % 3), -0.8 + 0.8 * (i / 12)};
@@ -104,7 +104,7 @@ TEST(SoftStepTurntable, ItsRiderStays) {
     for (const double share : {0.3, 0.5, 0.7, 0.82, 0.95}) {
         const double friction = 0.5, spin = std::sqrt(share * friction * gravity);
         World world("soft_step", settings_for("soft_step"));
-        BodyDef table = with_material(fixed_body(block(V{3, 0.1, 3}), V{0, -0.1, 0}), friction, 0);
+        BodyDef table = with_material(static_body(block(V{3, 0.1, 3}), V{0, -0.1, 0}), friction, 0);
         table.kind = BodyKind::kinematic;
         table.angular_velocity = narrow(V{0, spin, 0});
         world.add_body(table);

@@ -60,22 +60,22 @@ struct Stand {
 
 std::vector<Stand> stands() {
     std::vector<Stand> all;
-    all.push_back({"sphere", fixed_body(ball(0.4)), 0.4});
-    all.push_back({"box", fixed_body(block(V{0.5, 0.2, 0.5})), 0.2});
+    all.push_back({"sphere", static_body(ball(0.4)), 0.4});
+    all.push_back({"box", static_body(block(V{0.5, 0.2, 0.5})), 0.2});
     all.push_back({"capsule",
-                   fixed_body(Capsule{narrow(V{-0.5, 0, 0}), narrow(V{0.5, 0, 0}), Real(0.3)}),
+                   static_body(Capsule{narrow(V{-0.5, 0, 0}), narrow(V{0.5, 0, 0}), Real(0.3)}),
                    0.3});
     all.push_back({"cylinder",
-                   fixed_body(Cylinder{narrow(V{0, -0.3, 0}), narrow(V{0, 0.3, 0}), Real(0.5)}),
+                   static_body(Cylinder{narrow(V{0, -0.3, 0}), narrow(V{0, 0.3, 0}), Real(0.5)}),
                    0.3});
     std::vector<Vec3> corners;
     for (int i = 0; i < 8; ++i)
         corners.push_back(narrow(V{i & 1 ? 0.5 : -0.5, i & 2 ? 0.25 : -0.25, i & 4 ? 0.4 : -0.4}));
     const auto mesh = std::make_shared<const HullMesh>(*convex_hull(corners, 64).mesh);
-    BodyDef hull = fixed_body(ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation});
+    BodyDef hull = static_body(ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation});
     hull.colliders[0].hull = mesh;
     all.push_back({"hull", hull, 0.25});
-    BodyDef compound = fixed_body(block(V{0.6, 0.1, 0.6}));
+    BodyDef compound = static_body(block(V{0.6, 0.1, 0.6}));
     compound.colliders.emplace_back().shape =
         Box{narrow(V{0, 0.2, 0}), identity_rotation, narrow(V{0.2, 0.1, 0.2})};
     all.push_back({"compound", compound, 0.3});
@@ -104,7 +104,7 @@ TEST_P(ParticleContacts, FastOnesDoNotPassAThinWall) {
     for (int trial = 0; trial < 60; ++trial) {
         World world(GetParam(), weightless(settings_for(GetParam())));
         const bool moves = trial % 3 == 2;
-        BodyDef wall = trial % 3 == 0 ? flat_body(false) : fixed_body(block(V{2, 0.005, 2}));
+        BodyDef wall = trial % 3 == 0 ? flat_body(false) : static_body(block(V{2, 0.005, 2}));
         if (moves) {
             wall.kind = BodyKind::kinematic;
             wall.velocity = narrow(V{0, 50, 0});
@@ -125,7 +125,7 @@ TEST_P(ParticleContacts, FastOnesDoNotPassAThinWall) {
 // What flies past a ball 1 cm away is not turned aside.
 TEST_P(ParticleContacts, FastOnesPassWhatTheyMiss) {
     World world(GetParam(), weightless(settings_for(GetParam())));
-    world.add_body(fixed_body(ball(0.3)));
+    world.add_body(static_body(ball(0.3)));
     world.add_particle(grain_at(V{-2, 0.36, 0}, V{60, 0, 0}));
     run(world, 6);
     EXPECT_NEAR(particle_velocity(world, 0).x, 60, 1e-4);
@@ -369,7 +369,7 @@ TEST(ParticleSleep, FollowsTheParticles) {
 TEST(ParticleContactCount, IsOfWhatIsNear) {
     World world("soft_step", settings_for("soft_step"));
     for (int i = 0; i < 500; ++i)
-        world.add_body(fixed_body(ball(0.2), V{0.5 * (i % 25), 0, 0.5 * (i / 25)}));
+        world.add_body(static_body(ball(0.2), V{0.5 * (i % 25), 0, 0.5 * (i / 25)}));
     for (int i = 0; i < 1000; ++i) {
         ParticleDef def = particle_at(V{0.3 * (i % 40), 0.23, 0.4 * (i / 40)});
         world.add_particle(def);

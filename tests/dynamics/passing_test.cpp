@@ -77,7 +77,7 @@ TEST(SoftStepPassing, NothingIsStruckThroughAWall) {
         for (const double gap : {0.02, 0.05, 0.1, 0.3})
             for (int phase = 0; phase < 10; ++phase) {
                 World world = weightless_world("soft_step");
-                world.add_body(with_material(fixed_body(block(V{0.005, 5, 5})), 0, 0));
+                world.add_body(with_material(static_body(block(V{0.005, 5, 5})), 0, 0));
                 const double x = -0.105 - gap;
                 const BodyId id =
                     world.add_body(with_material(dynamic_body(ball(0.1), 1, V{x, 0, 0}), 0, 0));
@@ -102,7 +102,7 @@ TEST(SoftStepPassing, ABoxDoesNotPassAThinWall) {
             for (int trial = 0; trial < 100; ++trial) {
                 World world = weightless_world("soft_step");
                 world.add_body(
-                    with_material(fixed_body(block(V{0.005, 50, 50})), 0.3, restitution));
+                    with_material(static_body(block(V{0.005, 50, 50})), 0.3, restitution));
                 V way = any_vector(random, 1);
                 way = glm::normalize(V{std::abs(way.x) + 0.3, way.y, way.z});
                 BodyDef def = dynamic_body(block(V{0.05, 0.1, 0.02}), 1,
@@ -165,7 +165,8 @@ TEST(SoftStepPassing, ASpinningRodDoesNotPassAPost) {
     for (const double spin : {10.0, 30.0, 94.0, 180.0})
         for (int phase = 0; phase < 20; ++phase) {
             World world = weightless_world("soft_step");
-            world.add_body(with_material(fixed_body(upright_capsule(1, 0.05), V{0.8, 0, 0}), 0, 0));
+            world.add_body(
+                with_material(static_body(upright_capsule(1, 0.05), V{0.8, 0, 0}), 0, 0));
             BodyDef rod = dynamic_body(block(V{1, 0.03, 0.03}), 1, V{0});
             rod.pose.rotation =
                 glm::normalize(narrow(glm::angleAxis(0.3 + 2.4 * phase / 20, V{0, 1, 0})));

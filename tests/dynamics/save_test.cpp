@@ -182,10 +182,10 @@ World settling(const std::string &method) {
     const MethodInfo &info = find_method(method)->info;
     World world = heap(method, 60);
     const BodyId doomed = world.add_body(dynamic_body(ball(0.2), 1, V{0, 9, 20}));
-    BodyDef sensor = fixed_body(block(V{1}), V{3, 1, 3});
+    BodyDef sensor = static_body(block(V{1}), V{3, 1, 3});
     sensor.colliders.front().sensor = true;
     world.add_body(sensor);
-    BodyDef platform = fixed_body(block(V{0.5, 0.1, 0.5}), V{0, 5, -20});
+    BodyDef platform = static_body(block(V{0.5, 0.1, 0.5}), V{0, 5, -20});
     platform.kind = BodyKind::kinematic;
     platform.angular_velocity = narrow(V{0, 1, 0});
     world.add_body(platform);

@@ -34,7 +34,7 @@ void add_floor(World &world, Tile kind, double friction) {
         for (int j = -1; j <= 1; ++j) {
             BodyDef tile;
             if (kind == Tile::box) {
-                tile = fixed_body(block(V{0.5, 0.25, 0.5}), V{i - 0.5, -0.25, double(j)});
+                tile = static_body(block(V{0.5, 0.25, 0.5}), V{i - 0.5, -0.25, double(j)});
             } else {
                 tile.kind = BodyKind::static_body;
                 tile.colliders.emplace_back().surface = flat_tile(kind == Tile::field);
@@ -122,7 +122,7 @@ TEST_P(Seams, AWallOfBlocksIsOneWall) {
     for (int i = 0; i < 20; ++i)
         for (int j = 0; j < 3; ++j)
             world.add_body(with_material(
-                fixed_body(block(V{0.5, 0.5, 0.25}), V{i - 0.5, j - 1.0, -0.25}), 0, 0));
+                static_body(block(V{0.5, 0.5, 0.25}), V{i - 0.5, j - 1.0, -0.25}), 0, 0));
     StepSettings settings = world.settings();
     settings.gravity = V{0, 0, -9.81};
     world.set_settings(settings);
@@ -138,7 +138,7 @@ TEST_P(Seams, AStepUpIsStillInTheWay) {
         World world(GetParam(), settings_for(GetParam()));
         add_floor(world, Tile::box, 0);
         world.add_body(
-            with_material(fixed_body(block(V{0.5, 0.25, 1.5}), V{5.5, height - 0.25, 0}), 0, 0));
+            with_material(static_body(block(V{0.5, 0.25, 1.5}), V{5.5, height - 0.25, 0}), 0, 0));
         const BodyId id = world.add_body(
             with_material(dynamic_body(block(V{0.2}), 8, V{3, 0.2, 0.013}, V{1, 0, 0}), 0, 0));
         run(world, 300);
@@ -151,7 +151,7 @@ TEST_P(Seams, ABoxAtTheFootOfAWallRests) {
         World world(GetParam(), settings_for(GetParam()));
         add_floor(world, Tile::box, 0.5);
         world.add_body(
-            with_material(fixed_body(block(V{0.5, 1, 1.5}), V{3.5, 1, 0}), 0.5, 0)); // face x = 3
+            with_material(static_body(block(V{0.5, 1, 1.5}), V{3.5, 1, 0}), 0.5, 0)); // face x = 3
         const BodyId id = world.add_body(
             with_material(dynamic_body(block(V{0.2}), 8, V{2.8 - gap, 0.2, 0.1}), 0.5, 0));
         run(world, 240);
@@ -162,8 +162,8 @@ TEST_P(Seams, ABoxAtTheFootOfAWallRests) {
 // A plank that leans with its foot in the corner of a floor and a wall stays out of both.
 TEST_P(Seams, AFootInACornerIsHeld) {
     World world(GetParam(), settings_for(GetParam()));
-    world.add_body(with_material(fixed_body(block(V{2, 0.25, 2}), V{-2, -0.25, 0}), 0, 0));
-    world.add_body(with_material(fixed_body(block(V{0.25, 2, 2}), V{0.25, 0, 0}), 0, 0));
+    world.add_body(with_material(static_body(block(V{2, 0.25, 2}), V{-2, -0.25, 0}), 0, 0));
+    world.add_body(with_material(static_body(block(V{0.25, 2, 2}), V{0.25, 0, 0}), 0, 0));
     BodyDef plank = dynamic_body(block(V{0.02, 0.5, 0.1}), 1, V{-0.4, 0.4, 0});
     plank.pose.rotation = glm::normalize(narrow(glm::angleAxis(pi / 4, V{0, 0, 1})));
     const BodyId id = world.add_body(with_material(plank, 0, 0));
@@ -178,7 +178,7 @@ TEST_P(Seams, AFootInACornerIsHeld) {
 TEST(SoftStepSeams, ARidgeHolds) {
     World world("soft_step", settings_for("soft_step"));
     for (const double side : {-1.0, 1.0}) {
-        BodyDef slab = fixed_body(block(V{1, 0.1, 1}));
+        BodyDef slab = static_body(block(V{1, 0.1, 1}));
         const glm::dquat tilt = glm::angleAxis(-side * 0.3, V{0, 0, 1});
         slab.pose.rotation = glm::normalize(narrow(tilt));
         slab.pose.position = narrow(tilt * V{side * 1, -0.1, 0});

@@ -142,12 +142,12 @@ TEST(Sleep, WhatTouchesMovesOrLeavesAnIslandWakesIt) {
          0.02},
         {"something fixed is put into it",
          [](World &world, std::span<const BodyId>) {
-             world.add_body(fixed_body(block(V{0.5}), V{0.8, 2.5, 0}));
+             world.add_body(static_body(block(V{0.5}), V{0.8, 2.5, 0}));
          },
          0.02},
         {"something driven comes",
          [](World &world, std::span<const BodyId>) {
-             BodyDef pusher = fixed_body(block(V{0.5}), V{-1.5, 1.5, 0});
+             BodyDef pusher = static_body(block(V{0.5}), V{-1.5, 1.5, 0});
              pusher.kind = BodyKind::kinematic;
              pusher.velocity = narrow(V{1, 0, 0});
              world.add_body(pusher);

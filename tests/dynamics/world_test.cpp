@@ -239,8 +239,8 @@ TEST(World, MaterialsMix) {
 TEST(World, RaycastFindsTheNearestAndOfTwoTheFirst) {
     World world = plain_world();
     const BodyId far = world.add_body(dynamic_body(ball(0.5), 1, V{0, 0, 10}));
-    const BodyId near = world.add_body(fixed_body(block(V{1}), V{0, 0, 5}));
-    const BodyId twin = world.add_body(fixed_body(block(V{1}), V{0, 0, 5}));
+    const BodyId near = world.add_body(static_body(block(V{1}), V{0, 0, 5}));
+    const BodyId twin = world.add_body(static_body(block(V{1}), V{0, 0, 5}));
     const BodyId floor = world.add_body(ground(0.5, 0));
     const Ray ray{Vec3{0, Real(0.5), 0}, Vec3{0, 0, 1}};
     std::optional<WorldHit> hit = world.raycast(ray);
@@ -272,7 +272,7 @@ TEST(World, RaycastFindsTheNearestAndOfTwoTheFirst) {
 // A static body may be put elsewhere; it gets no velocity, which would drive what rests on it.
 TEST(World, AStaticBodyHasNoVelocity) {
     World world("soft_step", StepSettings{});
-    BodyDef def = fixed_body(block(V{1, 0.5, 1}));
+    BodyDef def = static_body(block(V{1, 0.5, 1}));
     def.velocity = narrow(V{1, 0, 0});
     const BodyId floor = world.add_body(def);
     world.set_motion(floor, {narrow(V{0, -0.5, 0}), identity_rotation}, narrow(V{3, 0, 0}),
@@ -292,7 +292,7 @@ TEST(World, ImpulsesOnDynamicBodiesAlone) {
     EXPECT_EQ(velocity_of(world, id), V(2, 0, 0));
     // r x J / (0.4 m r^2) = -0.5 * 8 / 0.4
     EXPECT_NEAR(spin_of(world, id).z, -10, 20 * epsilon);
-    BodyDef def = fixed_body(ball(0.5), V{5, 0, 0});
+    BodyDef def = static_body(ball(0.5), V{5, 0, 0});
     const BodyId fixed = world.add_body(def);
     def.kind = BodyKind::kinematic;
     def.velocity = narrow(V{1, 0, 0});
@@ -316,8 +316,8 @@ TEST_P(AnyMethodWorld, AnEmptyWorldAndOneOfStaticBodies) {
     EXPECT_EQ(world.measure().energy(), 0);
     EXPECT_FALSE(world.raycast({}));
     world.add_body(ground(0.5, 0));
-    world.add_body(fixed_body(block(V{1})));
-    const BodyId ball_id = world.add_body(fixed_body(ball(1), V{0, 1, 0}));
+    world.add_body(static_body(block(V{1})));
+    const BodyId ball_id = world.add_body(static_body(ball(1), V{0, 1, 0}));
     run(world, 3);
     EXPECT_EQ(world.report().pairs, 0U);
     EXPECT_EQ(world.report().contacts, 0U);
@@ -353,7 +353,7 @@ TEST(StepReport, Counts) {
     world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 0.5, 0}));
     const BodyId high = world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 1.5, 0}));
     world.add_body(dynamic_body(ball(0.25), 1, V{3, 0.25, 0}));
-    BodyDef mover = fixed_body(ball(0.25), V{0, 9, 0});
+    BodyDef mover = static_body(ball(0.25), V{0, 9, 0});
     mover.kind = BodyKind::kinematic;
     mover.velocity = narrow(V{1, 0, 0});
     world.add_body(mover);
@@ -475,7 +475,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Carried, testing::ValuesIn(rest_methods()), na
 
 TEST_P(Carried, AKinematicBodyCarriesABox) {
     World world(GetParam(), settings_for(GetParam()));
-    BodyDef platform = with_material(fixed_body(block(V{2, 0.1, 2}), V{0, -0.1, 0}), 0.8, 0);
+    BodyDef platform = with_material(static_body(block(V{2, 0.1, 2}), V{0, -0.1, 0}), 0.8, 0);
     platform.kind = BodyKind::kinematic;
     platform.velocity = narrow(V{0.5, 0.25, 0});
     const BodyId lift = world.add_body(platform);

@@ -88,7 +88,7 @@ inline BodyDef with_material(BodyDef def, double friction, double restitution) {
         collider.material = {Real(friction), Real(restitution)};
     return def;
 }
-inline BodyDef fixed_body(const Shape &shape, const V &position = V{0}) {
+inline BodyDef static_body(const Shape &shape, const V &position = V{0}) {
     BodyDef def;
     def.kind = BodyKind::static_body;
     def.colliders.emplace_back().shape = shape;
@@ -97,7 +97,7 @@ inline BodyDef fixed_body(const Shape &shape, const V &position = V{0}) {
 }
 // The solid below the plane through the origin with the given normal.
 inline BodyDef ground(double friction, double restitution, const V &normal = V{0, 1, 0}) {
-    return with_material(fixed_body(HalfSpace{narrow(normal), Real(0)}), friction, restitution);
+    return with_material(static_body(HalfSpace{narrow(normal), Real(0)}), friction, restitution);
 }
 
 // A rod or rope of one length.
