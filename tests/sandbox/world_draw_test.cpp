@@ -50,7 +50,7 @@ TEST_F(WorldDraw, EveryBodyOnceInItsPlace) {
     ASSERT_EQ(list.shapes.size(), 3u);
     EXPECT_TRUE(list.lines.empty());
     EXPECT_TRUE(list.points.empty());
-    EXPECT_EQ(list.shapes[0].colour, colours::fixed);
+    EXPECT_EQ(list.shapes[0].colour, colours::static_body);
     EXPECT_EQ(list.shapes[1].kind, DrawKind::box);
     EXPECT_EQ(list.shapes[1].size, glm::vec3(0.5f, 0.25f, 0.75f));
     EXPECT_EQ(list.shapes[1].colour, palette_colour(2)); // by its index among the bodies
