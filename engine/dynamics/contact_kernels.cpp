@@ -23,6 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
 using Mask = hn::Mask<decltype(tag)>;
 constexpr int new_sweeps = 8;
+constexpr int most_rubs = 4;
 // Of struck_speed: contacts that close or part faster are solved as a whole before their points.
 constexpr Real even_share = Real(1) / Real(20);
 
@@ -307,6 +308,41 @@ HWY_INLINE Mask does_not_move(const Vector &inv_mass) {
     return hn::Eq(hn::Add(inv_mass.x, hn::Add(inv_mass.y, inv_mass.z)), hn::Zero(tag));
 }
 
+// Friction at each point. Returns where some points slide while others hold: those have more to
+// bear then, of which those before them knew nothing.
+HWY_INLINE Mask solve_friction(ContactBlock &block, std::size_t lane, Pair &pair, const Vector &t1,
+                               const Vector &t2, Lanes friction, Mask chosen) {
+    const Lanes one = all(Real(1));
+    auto any_slides = hn::FirstN(tag, 0);
+    auto any_holds = hn::FirstN(tag, 0);
+    for (int k = 0; k < block.points_used; ++k) {
+        ContactBlock::Point &point = block.points[k];
+        const Vector r_a = load(point.r_a, lane);
+        const Vector r_b = load(point.r_b, lane);
+        const Vector v = pair.velocity_at(r_a, r_b);
+        const Lanes before_1 = load(point.impulse.y, lane);
+        const Lanes before_2 = load(point.impulse.z, lane);
+        const Lanes mass = load(point.tangent_mass, lane);
+        const Lanes new_1 = hn::Sub(before_1, hn::Mul(mass, dot(v, t1)));
+        const Lanes new_2 = hn::Sub(before_2, hn::Mul(mass, dot(v, t2)));
+        const Lanes length = hn::Sqrt(hn::Add(hn::Mul(new_1, new_1), hn::Mul(new_2, new_2)));
+        const Lanes limit = hn::Mul(friction, load(point.impulse.x, lane));
+        const auto slides = hn::Gt(length, limit);
+        const Lanes scale =
+            hn::IfThenElse(slides, hn::Div(limit, hn::IfThenElse(slides, length, one)), one);
+        const Lanes after_1 = hn::IfThenElse(chosen, hn::Mul(scale, new_1), before_1);
+        const Lanes after_2 = hn::IfThenElse(chosen, hn::Mul(scale, new_2), before_2);
+        any_slides = hn::Or(any_slides, hn::And(slides, hn::Gt(limit, hn::Zero(tag))));
+        any_holds = hn::Or(any_holds, hn::Lt(length, limit));
+        pair.apply(
+            plus(times(hn::Sub(after_1, before_1), t1), times(hn::Sub(after_2, before_2), t2)), r_a,
+            r_b);
+        store(after_1, point.impulse.y, lane);
+        store(after_2, point.impulse.z, lane);
+    }
+    return hn::And(any_slides, any_holds);
+}
+
 void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReals &bodies,
                 const ContactBias &bias, Real inv_h, bool any_far) {
     const Lanes zero = hn::Zero(tag);
@@ -411,34 +447,9 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 pair.apply(times(hn::Sub(total, before), n), r_a, r_b);
                 store(total, point.impulse.x, lane);
             }
-            for (int k = 0; k < block.points_used; ++k) {
-                ContactBlock::Point &point = block.points[k];
-                const Vector r_a = load(point.r_a, lane);
-                const Vector r_b = load(point.r_b, lane);
-                const Vector v = pair.velocity_at(r_a, r_b);
-                const Lanes before_1 = load(point.impulse.y, lane);
-                const Lanes before_2 = load(point.impulse.z, lane);
-                const Lanes mass = load(point.tangent_mass, lane);
-                const Lanes new_1 = hn::Sub(before_1, hn::Mul(mass, dot(v, t1)));
-                const Lanes new_2 = hn::Sub(before_2, hn::Mul(mass, dot(v, t2)));
-                const Lanes length =
-                    hn::Sqrt(hn::Add(hn::Mul(new_1, new_1), hn::Mul(new_2, new_2)));
-                const Lanes limit = hn::Mul(friction, load(point.impulse.x, lane));
-                const auto slides = hn::Gt(length, limit);
-                const Lanes scale = hn::IfThenElse(
-                    slides, hn::Div(limit, hn::IfThenElse(slides, length, one)), one);
-                Lanes after_1 = hn::Mul(scale, new_1);
-                Lanes after_2 = hn::Mul(scale, new_2);
-                if (!is_first) {
-                    after_1 = hn::IfThenElse(again, after_1, before_1);
-                    after_2 = hn::IfThenElse(again, after_2, before_2);
-                }
-                pair.apply(plus(times(hn::Sub(after_1, before_1), t1),
-                                times(hn::Sub(after_2, before_2), t2)),
-                           r_a, r_b);
-                store(after_1, point.impulse.y, lane);
-                store(after_2, point.impulse.z, lane);
-            }
+            auto rubs = is_first ? hn::FirstN(tag, column_lanes) : again;
+            for (int rub = 0; rub < (pushes ? most_rubs : 1) && !hn::AllFalse(tag, rubs); ++rub)
+                rubs = hn::And(rubs, solve_friction(block, lane, pair, t1, t2, friction, rubs));
         }
         store_pair(pair, block, bodies, lane);
         const Lanes before = pushes ? zero : load(block.struck, lane);

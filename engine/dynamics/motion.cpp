@@ -4,6 +4,7 @@
 #include "engine/dynamics/method.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -388,75 +389,83 @@ void end_flights(StepContext &context, Real h, Kick kick) {
 
 namespace {
 
-// A substep of a body that nothing holds or touches, with nothing between its two halves.
-inline void fly(SolverBody &motion, const Body &body, const Drive &drive, Real h,
-                int gyroscopic_iterations) {
-    FreeFlight flight = begin_driven(motion, body, drive, h, Kick::around, gyroscopic_iterations);
-    flight.free = true;
-    move_along(motion, body, flight, h, drive.is_gyroscopic);
-    end_driven(motion, flight, Kick::around, drive.is_gyroscopic);
+// How far a body comes that nothing holds or touches, and how fast it is then: closed forms, for
+// any time.
+void fly_along(SolverBody &motion, const Drive &drive, Real time) {
+    const Vec3 mean = drive.mean_kept * motion.velocity + drive.mean_gain;
+    const Vec3 way = time * mean;
+    motion.velocity = mean + (drive.late_kept * motion.velocity + drive.late_gain);
+    go(motion, way);
+    motion.moved += way;
 }
 
-// Whether such a body's spin stays as it is, however it turns.
-bool spins_on(const Body &body) {
-    return is_isotropic(body.inertia) && body.angular_damping == Real(0);
-}
-
-// All substeps of one whose spin stays: the same as `fly`, less what that does about spins.
-void fly_spinning_on(SolverBody &body, const Drive &drive, Real h, int substeps) {
-    SolverBody motion = body;
-    const Vec3 spin = motion.angular_velocity;
-    const Real squared = glm::dot(spin, spin) * (h * h);
-    const Quat turn = squared == Real(0) ? identity_rotation : turn_in(spin, h, squared);
-    for (int substep = 0; substep < substeps; ++substep) {
-        const Vec3 mean = drive.mean_kept * motion.velocity + drive.mean_gain;
-        const Vec3 way = h * mean;
-        motion.velocity = mean + (drive.late_kept * motion.velocity + drive.late_gain);
-        go(motion, way);
-        motion.moved += way;
-        if (squared == Real(0))
-            continue;
-        motion.turned += h * spin;
-        motion.rotation = glm::normalize(turn * motion.rotation);
-    }
-    body = motion;
-}
-
-// All substeps of one that attractors pull at, with half of that before and after each.
-void fly_attracted(SolverBody &motion, const Body &body, const Drive &drive,
-                   const StepContext &context) {
+// What attractors do is half before each substep and half after it. Returns passes over the body.
+int fly_attracted(SolverBody &motion, const Body &body, const Vec3 &gravity,
+                  const StepContext &context) {
     const Real h = context.substep();
+    const Drive drive = drive_of(body, gravity, h);
     for (int substep = 0; substep < context.settings.substeps; ++substep) {
         attract(motion, body, context.model.attractors, Real(0.5) * h);
-        fly(motion, body, drive, h, context.settings.gyroscopic_iterations);
+        fly_along(motion, drive, h);
         attract(motion, body, context.model.attractors, Real(0.5) * h);
     }
+    return 3 * context.settings.substeps;
+}
+
+// Its turn: about an axis that stays, by closed forms as well; else substep by substep, its spin
+// kept in its own axes meanwhile. Returns passes over the body.
+int turn_alone(SolverBody &motion, const Body &body, const Drive &drive,
+               const StepContext &context) {
+    const Real h = context.substep();
+    if (!drive.is_gyroscopic || motion.angular_velocity == Vec3{Real(0)}) {
+        const auto dt = static_cast<Real>(context.settings.dt);
+        const Damped angular = drive.is_dynamic ? damped(body.angular_damping, dt) : Damped{};
+        const Vec3 mean = angular.mean_kept * motion.angular_velocity;
+        motion.turned += dt * mean;
+        motion.rotation = turned(motion.rotation, mean, dt);
+        motion.angular_velocity *= angular.kept;
+        return 1;
+    }
+    const Damped angular = damped(body.angular_damping, h);
+    Vec3 spin = turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
+    for (int substep = 0; substep < context.settings.substeps; ++substep) {
+        const Vec3 undamped =
+            gyroscopic_spin(body.inertia, spin, h, context.settings.gyroscopic_iterations);
+        const Vec3 mean = angular.mean_kept * (Real(0.5) * (spin + undamped));
+        spin = angular.kept * undamped;
+        motion.turned += h * rotated(motion.rotation, mean);
+        motion.rotation = glm::normalize(motion.rotation * cayley(mean, h));
+    }
+    motion.angular_velocity = turned_to_rounding(motion.rotation, spin);
+    motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
+    return context.settings.substeps;
 }
 
 } // namespace
 
 void fly_freely(StepContext &context, const Vec3 &gravity) {
-    const Real h = context.substep();
-    const int substeps = context.settings.substeps;
+    const auto dt = static_cast<Real>(context.settings.dt);
     const std::span<const std::uint32_t> moving = context.moving();
     const bool is_attracted = !context.model.attractors.empty();
+    std::atomic<std::uint64_t> passes = 0;
     const auto fly_part = [&](std::size_t begin, std::size_t end) {
+        std::uint64_t own_passes = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const Body &body = context.model.bodies[moving[i]];
             SolverBody &motion = context.bodies[moving[i]];
-            const Drive drive = drive_of(body, gravity, h);
+            const Drive drive = drive_of(body, gravity, dt);
+            int own = 1;
             if (is_attracted)
-                fly_attracted(motion, body, drive, context);
-            else if (spins_on(body))
-                fly_spinning_on(motion, drive, h, substeps);
+                own = fly_attracted(motion, body, gravity, context);
             else
-                for (int substep = 0; substep < substeps; ++substep)
-                    fly(motion, body, drive, h, context.settings.gyroscopic_iterations);
+                fly_along(motion, drive, dt);
+            own += turn_alone(motion, body, drive, context);
+            own_passes += static_cast<std::uint64_t>(own);
         }
+        passes.fetch_add(own_passes, std::memory_order_relaxed);
     };
     for_parts(context.tasks, moving.size(), bodies_a_part, fly_part);
-    context.report.body_passes +=
-        (is_attracted ? 4 : 2) * moving.size() * static_cast<std::size_t>(substeps);
+    context.report.body_passes += passes;
 }
 
 void kick(StepContext &context, const Vec3 &gravity, Real h) {

@@ -110,7 +110,8 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
 struct StepContext;
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick);
 void end_flights(StepContext &context, Real h, Kick kick); // moves them, then ends the flights
-// Both, in all substeps, for bodies that nothing holds or touches, with nothing in between.
+// All substeps of bodies that nothing holds or touches: at once where closed forms say how they
+// fly.
 void fly_freely(StepContext &context, const Vec3 &gravity);
 
 // The plain substep: gravity, damping and gyroscopic torque on the velocities, and, once the solver

@@ -60,7 +60,7 @@ void advance_soft_step(StepContext &context) {
     // Twice as stiff against what does not give way: the ground bears all that stands on it (Catto
     // 2024, Solver2D).
     contact_bias.on_static =
-        make_soft(Real(2) * static_cast<Real>(settings.contact_frequency_ratio) * rate,
+        make_soft(Real(4) * static_cast<Real>(settings.contact_frequency_ratio) * rate,
                   static_cast<Real>(settings.contact_damping_ratio), h);
     contact_bias.struck_speed = relax_bias.struck_speed =
         glm::length(gravity) * static_cast<Real>(settings.dt);
