@@ -133,13 +133,13 @@ inline Transform surface_pose(const Collider &collider, const Motion &motion) {
             motion.rotation * collider.surface_pose.rotation};
 }
 
-// A body as the methods work on it: its motion, and what follows from it.
-struct SolverBody : Motion {
+// A body as the methods work on it: its motion, and what follows from it. In single precision two
+// cache lines.
+struct alignas(64) SolverBody : Motion {
     Vec3 inv_mass{Real(0)};    // along the world's axes, which differ where one is locked
     Mat3 inv_inertia{Real(0)}; // world; follows the rotation
     Vec3 moved{Real(0)};       // since the step began (m)
     Vec3 turned{Real(0)};      // likewise, as a rotation vector (rad, world)
-    Vec3 rounded_off{Real(0)}; // what `moved` has and the position, too coarse for it, has not (m)
     bool has_locked_translation = false;
 
     // `impulse` (N s) acts at `r` from the centre of mass, all in world axes.
@@ -152,6 +152,14 @@ struct SolverBody : Motion {
     Real inv_mass_along(const Vec3 &unit) const {
         return has_locked_translation ? glm::dot(unit, inv_mass * unit) : inv_mass.x;
     }
+};
+
+// What moved and turned a body since its step began and its pose, too coarse for it, has not (Kahan
+// 1965): far from the origin, or in many substeps, it would else stand still at a speed that its
+// contacts see, and creep or never rest.
+struct RoundedOff {
+    Vec3 position{Real(0)};
+    Quat rotation{Real(0), Real(0), Real(0), Real(0)};
 };
 
 // Such a body is nowhere, and collides with nothing.

@@ -40,6 +40,7 @@ struct SolverScratch {
     std::vector<GeometricStiffness> stiffness;   // of each body, by the last substep's impulses
     std::vector<std::uint8_t> changed;           // likewise: what follow_loads changed
     std::vector<FreeFlight> flights;             // one for each moving body
+    std::vector<RoundedOff> rounded_off;         // one for each body
     std::vector<std::array<Vec3, 2>> velocities; // likewise, while pseudo velocities are solved
     std::vector<Vec3> joint_impulses;            // likewise
     std::vector<Vec3> contact_impulses;          // likewise

@@ -61,24 +61,29 @@ Vec3 rotation_vector(const Quat &rotation) {
 
 namespace {
 
-// The turn of h seconds, of which rounding has left the length not quite one.
-Quat turn_in(const Vec3 &angular_velocity, Real h, Real squared_angle) {
-    // Of half of the angle: its sine by the whole of it, and its cosine.
+// The unit quaternion of a turn: `v`, and by how much its scalar part is less than one.
+struct Turn {
+    Vec3 v{Real(0)};
+    Real less = Real(0);
+};
+
+inline Turn turn_in(const Vec3 &angular_velocity, Real h, Real squared_angle) {
+    // Of half of the angle: its sine by the whole of it.
     Real sine = Real(0);
-    Real cosine = Real(0);
+    Real less = Real(0);
     // Up to here what the series leave out is below rounding.
     constexpr Real near = std::numeric_limits<Real>::digits > 24 ? Real(1e-5) : Real(1e-2);
     if (squared_angle < near) {
         const Real x = Real(0.25) * squared_angle;
         sine = Real(0.5) - x * (Real(1) / 12 - x * (Real(1) / 240));
-        cosine = Real(1) - x * (Real(0.5) - x * (Real(1) / 24 - x * (Real(1) / 720)));
+        less = x * (Real(0.5) - x * (Real(1) / 24 - x * (Real(1) / 720)));
     } else {
         const Real angle = std::sqrt(squared_angle);
+        const Real quarter = std::sin(Real(0.25) * angle);
         sine = std::sin(Real(0.5) * angle) / angle;
-        cosine = std::cos(Real(0.5) * angle);
+        less = Real(2) * quarter * quarter;
     }
-    const Vec3 v = (sine * h) * angular_velocity;
-    return Quat{cosine, v.x, v.y, v.z};
+    return {(sine * h) * angular_velocity, less};
 }
 
 } // namespace
@@ -87,7 +92,26 @@ Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h) {
     const Real squared = glm::dot(angular_velocity, angular_velocity) * (h * h);
     if (squared == Real(0))
         return rotation;
-    return glm::normalize(turn_in(angular_velocity, h, squared) * rotation);
+    const Turn turn = turn_in(angular_velocity, h, squared);
+    return glm::normalize(Quat{Real(1) - turn.less, turn.v.x, turn.v.y, turn.v.z} * rotation);
+}
+
+void turn(Motion &motion, RoundedOff &rounded_off, Real h) {
+    const Vec3 &spin = motion.angular_velocity;
+    const Real squared = glm::dot(spin, spin) * (h * h);
+    if (squared == Real(0))
+        return;
+    const Turn turn = turn_in(spin, h, squared);
+    const Quat way = Quat{-turn.less, turn.v.x, turn.v.y, turn.v.z} * motion.rotation;
+    const Quat whole = way + rounded_off.rotation;
+    const Quat to = motion.rotation + whole;
+    rounded_off.rotation = whole - (to - motion.rotation);
+    motion.rotation = to;
+    constexpr Real off = Real(8) * std::numeric_limits<Real>::epsilon();
+    if (std::abs(glm::dot(to, to) - Real(1)) > off) {
+        motion.rotation = glm::normalize(to);
+        rounded_off.rotation = RoundedOff{}.rotation;
+    }
 }
 
 namespace {
@@ -277,34 +301,32 @@ FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravit
 
 namespace {
 
-// Adds a way, and what rounding left out of those before it (Kahan 1965): far from the origin, or
-// in many substeps, a body would else stand still at a speed that its contacts see, and never rest.
-void go(SolverBody &motion, const Vec3 &way) {
-    const Vec3 whole = way + motion.rounded_off;
+void go(SolverBody &motion, RoundedOff &rounded_off, const Vec3 &way) {
+    const Vec3 whole = way + rounded_off.position;
     const Vec3 to = motion.position + whole;
-    motion.rounded_off = whole - (to - motion.position);
+    rounded_off.position = whole - (to - motion.position);
     motion.position = to;
+    motion.moved += way;
 }
 
 // The pose after h, at the velocities that the body has now.
-inline void move_along(SolverBody &motion, const Body &body, const FreeFlight &flight, Real h,
-                       bool is_gyroscopic) {
+inline void move_along(SolverBody &motion, RoundedOff &rounded_off, const Body &body,
+                       const FreeFlight &flight, Real h, bool is_gyroscopic) {
     const Vec3 way = h * (flight.free ? flight.mean_velocity : motion.velocity);
-    go(motion, way);
-    motion.moved += way;
+    go(motion, rounded_off, way);
     motion.turned += h * motion.angular_velocity;
     if (is_gyroscopic && flight.free)
         motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
     else
-        motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
+        turn(motion, rounded_off, h);
     if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
         motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
 }
 
 // Where joints hold a body between two halves of a kick (`is_held`), the gyroscopic torque is that
 // of the spin that the solver left, or tops sink.
-void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
-               int gyroscopic_iterations, bool is_held) {
+void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
+               Real h, int gyroscopic_iterations, bool is_held) {
     flight.free =
         motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
     const bool is_gyroscopic = body.kind == BodyKind::dynamic && has_gyroscopic_spin(body);
@@ -314,13 +336,14 @@ void move_held(SolverBody &motion, const Body &body, FreeFlight &flight, Real h,
         turn_freely(flight, body, damped(body.angular_damping, h), h, gyroscopic_iterations);
         motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
     }
-    move_along(motion, body, flight, h, is_gyroscopic);
+    move_along(motion, rounded_off, body, flight, h, is_gyroscopic);
 }
 
 } // namespace
 
-void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h) {
-    move_held(motion, body, flight, h, 0, false);
+void move(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
+          Real h) {
+    move_held(motion, rounded_off, body, flight, h, 0, false);
 }
 
 namespace {
@@ -372,8 +395,8 @@ void end_flights(StepContext &context, Real h, Kick kick) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = context.moving()[i];
             SolverBody &motion = context.bodies[body];
-            move_held(motion, context.model.bodies[body], flights[i], h,
-                      context.settings.gyroscopic_iterations,
+            move_held(motion, context.scratch.rounded_off[body], context.model.bodies[body],
+                      flights[i], h, context.settings.gyroscopic_iterations,
                       kick == Kick::around && !stiffness.empty() && stiffness[body].most > Real(0));
             if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts off
                 motion.turned = rotation_vector(motion.rotation *
@@ -391,12 +414,11 @@ namespace {
 
 // How far a body comes that nothing holds or touches, and how fast it is then: closed forms, for
 // any time.
-void fly_along(SolverBody &motion, const Drive &drive, Real time) {
+void fly_along(SolverBody &motion, RoundedOff &rounded_off, const Drive &drive, Real time) {
     const Vec3 mean = drive.mean_kept * motion.velocity + drive.mean_gain;
     const Vec3 way = time * mean;
     motion.velocity = mean + (drive.late_kept * motion.velocity + drive.late_gain);
-    go(motion, way);
-    motion.moved += way;
+    go(motion, rounded_off, way);
 }
 
 // What attractors do is half before each substep and half after it. Returns passes over the body.
@@ -404,9 +426,10 @@ int fly_attracted(SolverBody &motion, const Body &body, const Vec3 &gravity,
                   const StepContext &context) {
     const Real h = context.substep();
     const Drive drive = drive_of(body, gravity, h);
+    RoundedOff rounded_off;
     for (int substep = 0; substep < context.settings.substeps; ++substep) {
         attract(motion, body, context.model.attractors, Real(0.5) * h);
-        fly_along(motion, drive, h);
+        fly_along(motion, rounded_off, drive, h);
         attract(motion, body, context.model.attractors, Real(0.5) * h);
     }
     return 3 * context.settings.substeps;
@@ -454,11 +477,12 @@ void fly_freely(StepContext &context, const Vec3 &gravity) {
             const Body &body = context.model.bodies[moving[i]];
             SolverBody &motion = context.bodies[moving[i]];
             const Drive drive = drive_of(body, gravity, dt);
+            RoundedOff rounded_off; // of one way: dropped
             int own = 1;
             if (is_attracted)
                 own = fly_attracted(motion, body, gravity, context);
             else
-                fly_along(motion, drive, dt);
+                fly_along(motion, rounded_off, drive, dt);
             own += turn_alone(motion, body, drive, context);
             own_passes += static_cast<std::uint64_t>(own);
         }
@@ -493,7 +517,7 @@ void drift(StepContext &context, Real h) {
         const Body &body = context.model.bodies[i];
         SolverBody &motion = context.bodies[i];
         motion.position += h * motion.velocity;
-        motion.rotation = turned(motion.rotation, motion.angular_velocity, h);
+        turn(motion, context.scratch.rounded_off[i], h);
         if (body.kind == BodyKind::dynamic && !is_isotropic(body.inertia))
             motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
     }

@@ -16,6 +16,10 @@ Vec3 spin_momentum(const Quat &rotation, const Vec3 &inertia, const Vec3 &angula
 // (exponential map).
 Quat turned(const Quat &rotation, const Vec3 &angular_velocity, Real h);
 
+// The same of a body with its own spin, less what rounding leaves out, which it is given back next
+// time.
+void turn(Motion &motion, RoundedOff &rounded_off, Real h);
+
 // The shorter way round of a rotation: its axis times its angle (rad, at most pi).
 Vec3 rotation_vector(const Quat &rotation);
 
@@ -103,7 +107,8 @@ struct FreeFlight {
 
 FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
                         Kick kick, int gyroscopic_iterations);
-void move(SolverBody &motion, const Body &body, FreeFlight &flight, Real h);
+void move(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
+          Real h);
 void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick);
 
 // The same for all moving bodies, with the flights kept in the context.

@@ -167,6 +167,7 @@ void World::load_body(std::size_t i) {
     const Body &body = model_->bodies[i];
     SolverBody &out = s.bodies[i];
     out = SolverBody{};
+    s.solver.rounded_off[i] = {};
     static_cast<Motion &>(out) = state_.motions[i];
     if (s.still[i] != 0 || body.kind != BodyKind::dynamic)
         return;
@@ -182,6 +183,7 @@ void World::load_body(std::size_t i) {
 void World::load_motions() {
     Scratch &s = scratch_;
     s.bodies.resize(state_.motions.size());
+    s.solver.rounded_off.resize(s.bodies.size());
     s.moving.clear();
     for (std::uint32_t i = 0; i < s.bodies.size(); ++i)
         if (!s.paces[i].is_asleep() && s.still[i] == 0)

@@ -150,7 +150,7 @@ Method soft_step() {
                        SettingGroup::push, SettingGroup::threshold, SettingGroup::impacts,
                        SettingGroup::gyroscopic},
              .defaults = {.substeps = 4,
-                          .max_substeps = 64,
+                          .max_substeps = 128,
                           .sleep_after = 0.5,
                           .iterations = 1,
                           .contact_damping_ratio = 1}},
