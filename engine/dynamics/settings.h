@@ -26,7 +26,7 @@ struct StepSettings {
     int max_substeps = 1;   // likewise
     double sleep_after = 0; // likewise
     int iterations = 1;     // likewise
-    double substep_tolerance = 3e-4;
+    double substep_tolerance = 2e-4;
     int substep_budget = 8192;
     double speculative_distance = 0.02;
     double kept_travel = 0.005;
