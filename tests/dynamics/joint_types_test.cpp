@@ -85,6 +85,21 @@ TEST_P(JointTypes, AHingePendulumKeepsItsPeriod) {
     EXPECT_LE(double(j.world.joint_error(j.joint)), 2e-3);
 }
 
+// A substep's turn of 3e-8 rad is less than single precision can add to a quaternion.
+TEST(SlowTurn, IsNotLostToRounding) {
+    for (const char *method : {"soft_step", "tgs_soft"}) {
+        StepSettings settings = weightless(fine(method, 64));
+        settings.sleep_after = 0;
+        JointDef def;
+        def.type = JointType::hinge;
+        BodyDef body = dynamic_body(block(V{0.1, 0.5, 0.3}), 2, V{0});
+        body.angular_velocity = narrow(V{0, 1e-4, 0});
+        Joined j = joined(method, settings, def, body, V{0, 1, 0});
+        run(j.world, 60 * 20);
+        EXPECT_NEAR(place_of(j), 20e-4, 20e-6) << method;
+    }
+}
+
 // A motor with a bounded torque spins a disc up by w = torque t / I, and then keeps its speed.
 TEST_P(JointTypes, AMotorSpinsUpByItsTorque) {
     JointDef def;

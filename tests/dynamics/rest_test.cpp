@@ -1,6 +1,8 @@
 // What stands comes to rest and stays there: long, and at every width of the processor's vectors.
+#include "engine/geometry/quickhull.h"
 #include "tests/dynamics/particles.h"
 
+#include <glm/gtc/quaternion.hpp>
 #include <hwy/highway.h>
 #include <hwy/targets.h>
 
@@ -57,14 +59,14 @@ TEST(Rest, ATallStackStandsOnKeptContacts) {
 
 // A substep's soft pass brings half of a load's impulse back, and rests where the spring makes up
 // for it: m g h / 2 = m_eff h omega^2 depth. Two boxes give way to each other as half of one's mass
-// does; against the ground the spring is twice as stiff, omega h = pi / 2 at its defaults.
+// does; against the ground the spring is four times as stiff, omega h = pi at its defaults.
 TEST(Rest, AStackSinksAsItsSpringsSay) {
     StepSettings settings = settings_for("soft_step");
     settings.max_substeps = 1;
     settings.sleep_after = 0;
     const double h = settings.dt / settings.substeps;
-    const double on_ground = gravity * h * h / 2 / (pi / 2 * pi / 2);
-    const double between = 8 * on_ground;
+    const double on_ground = gravity * h * h / 2 / (pi * pi);
+    const double between = 32 * on_ground;
     for (const int boxes : {1, 2, 10}) {
         World world = stack_of(boxes, settings);
         run(world, 60 * 10);
@@ -98,6 +100,55 @@ TEST(Rest, APyramidComesToRest) {
         EXPECT_LT(m.kinetic_energy, 1e-6 * m.potential_energy) << base;
         EXPECT_LT(m.max_penetration, 3e-3) << base;
     }
+}
+
+// Where points of a contact slide before others hold, those have more to bear than friction's first
+// sweep knew.
+TEST(Rest, WhatFrictionHoldsDoesNotCreepDownASlope) {
+    for (const double ratio : {0.3, 0.5, 0.7, 0.9}) {
+        const double angle = std::atan(0.5 * ratio);
+        StepSettings settings = settings_for("soft_step");
+        settings.gravity = gravity * V{std::sin(angle), -std::cos(angle), 0};
+        World world("soft_step", settings);
+        world.add_body(ground(0.5, 0));
+        BodyDef box = dynamic_body(block(V{0.5}), 10, V{0, 0.5, 0});
+        world.add_body(with_material(box, 0.5, 0));
+        run(world, 300);
+        EXPECT_LT(std::abs(double(world.motions()[1].position.x)), 1e-5) << ratio;
+    }
+}
+
+// A half circle of wedges. In many substeps each turn is less than a quaternion's rounding.
+TEST(Rest, AnArchDoesNotCreepHoweverFineItsSubsteps) {
+    constexpr int stones = 13;
+    constexpr double inner = 2, outer = 2.6, deep = 0.3;
+    const double half = 0.5 * pi / stones;
+    std::vector<Vec3> corners;
+    for (const double radius : {inner, outer})
+        for (const double side : {-1.0, 1.0})
+            for (const double z : {-deep, deep})
+                corners.push_back(
+                    narrow(V{side * radius * std::sin(half), radius * std::cos(half), z}));
+    const auto mesh = std::make_shared<const HullMesh>(*convex_hull(corners, 64).mesh);
+    StepSettings settings = settings_for("soft_step");
+    settings.substeps = 64;
+    settings.max_substeps = 1;
+    settings.sleep_after = 0;
+    World world("soft_step", settings);
+    world.add_body(ground(0.7, 0));
+    for (int i = 0; i < stones; ++i) {
+        BodyDef stone =
+            dynamic_body(ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation}, 100, V{0});
+        stone.colliders[0].hull = mesh;
+        stone.pose.rotation = narrow(glm::angleAxis((2 * i + 1) * half - pi / 2, V{0, 0, 1}));
+        world.add_body(with_material(stone, 0.7, 0));
+    }
+    run(world, 60 * 20);
+    const std::vector<Motion> before(world.motions().begin(), world.motions().end());
+    run(world, 60 * 20);
+    for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_LT(glm::distance(wide(before[i].position), wide(world.motions()[i].position)), 2e-5)
+            << i;
 }
 
 // A box a little steeper than friction holds picks up speed at once; none of it is lost to corners

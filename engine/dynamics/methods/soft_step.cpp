@@ -57,8 +57,8 @@ void advance_soft_step(StepContext &context) {
 
     ContactBias relax_bias;
     relax_bias.loaded_only = true;
-    // Twice as stiff against what does not give way: the ground bears all that stands on it (Catto
-    // 2024, Solver2D).
+    // Stiffer against what does not give way: the ground bears all that stands on it (Catto 2024,
+    // Solver2D, has it twice as stiff).
     contact_bias.on_static =
         make_soft(Real(4) * static_cast<Real>(settings.contact_frequency_ratio) * rate,
                   static_cast<Real>(settings.contact_damping_ratio), h);
