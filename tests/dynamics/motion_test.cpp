@@ -184,7 +184,8 @@ TEST(GyroscopicSpin, ThreeIterationsAreEnoughForUsualSpins) {
 
 void fly(SolverBody &motion, const Body &body, const V &pull, double h, Kick kick) {
     FreeFlight flight = begin_flight(motion, body, narrow(pull), Real(h), kick, 3);
-    move(motion, body, flight, Real(h));
+    RoundedOff rounded_off;
+    move(motion, rounded_off, body, flight, Real(h));
     EXPECT_TRUE(flight.free);
     end_flight(motion, body, flight, kick);
 }
@@ -298,7 +299,8 @@ TEST_P(Flight, ATouchedBodyFollowsTheSolver) {
     FreeFlight flight =
         begin_flight(motion, body, Vec3{0, Real(-10), 0}, Real(0.125), GetParam(), 3);
     motion.velocity = Vec3{Real(1), Real(0), Real(0)};
-    move(motion, body, flight, Real(0.125));
+    RoundedOff rounded_off;
+    move(motion, rounded_off, body, flight, Real(0.125));
     EXPECT_FALSE(flight.free);
     EXPECT_EQ(motion.position, Vec3(Real(0.125), Real(0), Real(0)));
     EXPECT_EQ(motion.rotation, identity_rotation);
@@ -311,10 +313,11 @@ TEST_P(Flight, KinematicBodiesKeepTheirVelocityAndStaticOnesTheirPlace) {
     SolverBody motion;
     motion.velocity = Vec3{Real(1), Real(2), Real(3)};
     motion.angular_velocity = Vec3{Real(0), Real(0), Real(0.5)};
+    RoundedOff rounded_off;
     for (int i = 0; i < 100; ++i) {
         FreeFlight flight =
             begin_flight(motion, body, Vec3{0, Real(-10), 0}, Real(0.125), GetParam(), 3);
-        move(motion, body, flight, Real(0.125));
+        move(motion, rounded_off, body, flight, Real(0.125));
         end_flight(motion, body, flight, GetParam());
     }
     EXPECT_EQ(motion.velocity, Vec3(Real(1), Real(2), Real(3)));
@@ -326,7 +329,7 @@ TEST_P(Flight, KinematicBodiesKeepTheirVelocityAndStaticOnesTheirPlace) {
     body.kind = BodyKind::static_body;
     motion = SolverBody{};
     FreeFlight flight = begin_flight(motion, body, Vec3{0, Real(-10), 0}, Real(1), GetParam(), 3);
-    move(motion, body, flight, Real(1));
+    move(motion, rounded_off, body, flight, Real(1));
     end_flight(motion, body, flight, GetParam());
     EXPECT_EQ(motion.position, Vec3{Real(0)});
     EXPECT_EQ(motion.velocity, Vec3{Real(0)});
