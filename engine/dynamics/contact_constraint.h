@@ -59,6 +59,8 @@ struct ContactBias {
     bool frictionless = false;
     // m/s; contacts that close faster are swept more than once (soft_step).
     Real struck_speed = std::numeric_limits<Real>::infinity();
+    // Whether the points of each contact are taken from the last to the first (soft_step).
+    bool backwards = false;
     // Of penetrating points against what has no inverse mass.
     Softness on_static{};
 };

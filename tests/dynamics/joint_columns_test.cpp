@@ -66,6 +66,7 @@ struct Solved {
                 joints[i].impulses[row] = Real(random.next_in(-1, 1));
         }
         context.bodies = bodies;
+        scratch.rounded_off.resize(bodies.size());
         context.joints = joints;
     }
 
