@@ -8,7 +8,7 @@
 // be warm started in the next step as if it were load. Passes that cut a mode's error by a share s
 // a step, with a bias of beta, then follow, in units of the step, y' = v, v' = u, u' = -s (u + v +
 // beta y) for penetration, velocity and load, which grows wherever s < beta: with four corners a
-// contact, five cubes rocked for ever at ten passes, and without slop at fifty.
+// contact, six cubes rock for ever at ten passes.
 //
 // Joints are corrected through the velocities all the same, unless asked, at about half the cost.
 // So that a chain whose joints propagate errors slowly does not gain the more energy the shorter
@@ -23,11 +23,20 @@
 #include "engine/dynamics/motion.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace plumb::inline PLUMB_PRECISION {
 
+enum class PointOrder : std::uint8_t { forwards, backwards };
+
+inline ContactBias in_order(ContactBias bias, PointOrder order) {
+    bias.backwards = order == PointOrder::backwards;
+    return bias;
+}
+
 // Pseudo velocities stand in the velocities' place, their impulses in that of the impulses: both
-// are put back. Springs, motors and particles know nothing of them.
+// are put back. Springs, motors and particles know nothing of them. They start from zero each time,
+// so that no order of points lasts: turned round as well, ten cubes fell after 50 s.
 template <typename Solve>
 void correct_poses(StepContext &context, const ContactBias &bias, const Softness &pull, Real h,
                    Solve &&solve) {
@@ -56,7 +65,7 @@ void correct_poses(StepContext &context, const ContactBias &bias, const Softness
     const JointPass pulling{
         .softness = pull, .h = h, .springs = Springs::skip, .skips_motors = true};
     refresh_separations(context);
-    solve([&] {
+    solve([&](PointOrder) {
         solve_joints(context, pulling);
         solve_contacts(context, bias, h);
     });
@@ -82,7 +91,8 @@ inline std::vector<SettingGroup> read_by_impulses() {
             SettingGroup::impacts,     SettingGroup::gyroscopic};
 }
 
-// `solve` is called with a pass over all rows, and may do it as often as it likes.
+// `solve` is called with a pass over all rows, and may do it as often as it likes, with the points
+// of each contact in either order.
 template <typename Solve> void advance_by_impulses(StepContext &context, Solve &&solve) {
     const StepSettings &settings = context.settings;
     const Real h = context.substep();
@@ -118,11 +128,11 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
         kick_particles(context, gravity, h);
         refresh_particles(context, h, SpringRule::implicit_euler);
         refresh_separations(context);
-        solve([&] {
+        solve([&](PointOrder order) {
             solve_joints(context, joint_pass);
             solve_springs(context);
             solve_particle_contacts(context, particle_push, h);
-            solve_contacts(context, contact_bias, h);
+            solve_contacts(context, in_order(contact_bias, order), h);
         });
         end_flights(context, h, Kick::before);
         drift_particles(context, h);

@@ -75,27 +75,39 @@ TEST(SoftStepFastImpact, BallsPartByTheClosedFormAndKeepAngularMomentum) {
         }
 }
 
-// 36 of them between six walls for ten seconds.
+// The share of its energy that a gas of 36 bodies between six walls gains in ten seconds.
+double energy_gained(const Shape &shape, std::uint32_t seed) {
+    Random random(seed);
+    World world("soft_step", weightless(settings_for("soft_step")));
+    for (int side = 0; side < 6; ++side) {
+        V normal{0};
+        normal[side / 2] = side % 2 == 0 ? 1 : -1;
+        world.add_body(with_material(static_body(HalfSpace{narrow(normal), Real(-2)}), 0, 1));
+    }
+    for (int i = 0; i < 36; ++i) {
+        const V at{-1.2 + 0.8 * (i % 4), -0.8 + 0.8 * (i / 4 % 3), -0.8 + 0.8 * (i / 12)};
+        BodyDef def = dynamic_body(shape, 1, at, any_vector(random, 3));
+        def.angular_velocity = narrow(any_vector(random, 3));
+        world.add_body(with_material(def, 0, 1));
+    }
+    const double before = world.measure().energy();
+    run(world, 600);
+    return world.measure().energy() / before - 1;
+}
+
 TEST(SoftStepGas, ElasticBodiesKeepTheirEnergy) {
     const std::vector<Shape> shapes{block(V{0.15, 0.1, 0.2}), ball(0.15),
                                     upright_capsule(0.15, 0.1)};
     for (const Shape &shape : shapes) {
-        Random random(11);
-        World world("soft_step", weightless(settings_for("soft_step")));
-        for (int side = 0; side < 6; ++side) {
-            V normal{0};
-            normal[side / 2] = side % 2 == 0 ? 1 : -1;
-            world.add_body(with_material(static_body(HalfSpace{narrow(normal), Real(-2)}), 0, 1));
+        std::vector<double> gains;
+        for (std::uint32_t seed = 8; seed < 16; ++seed) {
+            gains.push_back(std::abs(energy_gained(shape, seed)));
+            // In single precision one of 120 gases of capsules loses so much, in one blow: one that
+            // spins at 73 rad/s strikes another.
+            EXPECT_LT(gains.back(), 3e-3) << shape.index() << ", " << seed;
         }
-        for (int i = 0; i < 36; ++i) {
-            const V at{-1.2 + 0.8 * (i % 4), -0.8 + 0.8 * (i / 4 % 3), -0.8 + 0.8 * (i / 12)};
-            BodyDef def = dynamic_body(shape, 1, at, any_vector(random, 3));
-            def.angular_velocity = narrow(any_vector(random, 3));
-            world.add_body(with_material(def, 0, 1));
-        }
-        const double before = world.measure().energy();
-        run(world, 600);
-        EXPECT_NEAR(world.measure().energy(), before, 1e-3 * before) << shape.index();
+        std::ranges::sort(gains);
+        EXPECT_LT(gains[6], 1e-4) << shape.index();
     }
 }
 

@@ -46,7 +46,7 @@ template <typename Pass> void search(StepContext &context, const Pass &pass) {
         std::vector<Real> &change = s.changes;
         change.clear();
         for_each_impulse(s, [&](Real impulse, Real) { change.push_back(impulse); });
-        pass();
+        pass(PointOrder::forwards);
         double squared = 0;
         auto next = change.begin();
         for_each_impulse(s, [&](Real impulse, Real) {

@@ -62,13 +62,13 @@ TEST(Chart, JustSoManySubstepsAndAtLeastSoManyAreTwoCurves) {
     options.methods = {"soft_step", "tgs_soft"};
     options.sweep = {parse_sweep("substeps=1,4")};
     SceneDesc scene = falling_scene();
-    scene.world.settings.give(&StepSettings::max_substeps, 1); // of its own; the default is 64
+    scene.world.settings.give(&StepSettings::max_substeps, 1); // of its own; the default is 128
     const SceneChart chart = chart_scene(scene, options);
     std::vector<std::pair<int, int>> runs;
     for (const ChartRun &run : chart.runs)
         runs.emplace_back(run.resolved.settings.substeps, run.resolved.settings.max_substeps);
     EXPECT_EQ(runs,
-              (std::vector<std::pair<int, int>>{{1, 1}, {4, 1}, {1, 64}, {4, 64}, {1, 1}, {4, 1}}));
+              (std::vector<std::pair<int, int>>{{1, 1}, {4, 1}, {1, 128}, {4, 128}, {1, 1}, {4, 1}}));
     const ChartContent content = chart_content(chart, "");
     ASSERT_EQ(content.series.size(), 3U);
     EXPECT_EQ(content.series[0].name, "Soft step, just so many");
@@ -78,7 +78,7 @@ TEST(Chart, JustSoManySubstepsAndAtLeastSoManyAreTwoCurves) {
     EXPECT_EQ(content.footer.at(0).find("max_substeps"), std::string::npos) << content.footer[0];
     std::ostringstream table;
     print(table, chart);
-    EXPECT_NE(table.str().find(" 4..64 "), std::string::npos) << table.str();
+    EXPECT_NE(table.str().find(" 4..128 "), std::string::npos) << table.str();
     // Where the most is given, or swept, that alone.
     options.base.settings.give(&StepSettings::max_substeps, 8);
     EXPECT_EQ(chart_scene(scene, options).runs.size(), 4U);
