@@ -47,7 +47,7 @@ TEST_P(ContactLaw, ABoxThatSlidesLosesWhatFrictionTakes) {
     const double speed = 3 - 0.5 * 9.81 * 0.25;
     EXPECT_NEAR(now.contact_power, -force * speed, 0.02 * force * speed);
     EXPECT_LT(now.dissipation_residual, 1e-3 * force * speed);
-    EXPECT_LT(now.cone_residual, 1e-7 * force); // single precision
+    EXPECT_LT(now.cone_residual, 1e-8 * force);
     EXPECT_LT(now.signorini_residual, 1e-2);
 }
 
