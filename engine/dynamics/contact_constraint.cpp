@@ -158,12 +158,9 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
         SolverBody &b = context.bodies[contact.b];
         const bool is_on_static = a.inv_mass == Vec3{Real(0)} || b.inv_mass == Vec3{Real(0)};
         const Softness &softness = is_on_static ? bias.on_static : bias.softness;
-        const auto point_at = [&](int k) -> ContactPointConstraint & {
-            return contact.points[static_cast<std::size_t>(
-                bias.backwards ? contact.count - 1 - k : k)];
-        };
-        for (int k = 0; k < contact.count; ++k) {
-            ContactPointConstraint &point = point_at(k);
+        for (int i = 0; i < contact.count; ++i) {
+            const int k = bias.backwards ? contact.count - 1 - i : i;
+            ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
             const Real separation = point.separation;
             Real target = Real(0); // velocity to be added to the relative normal velocity
             Real mass_scale = Real(1);
@@ -185,7 +182,7 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
         }
         if (contact.friction > Real(0) && !bias.frictionless)
             for (int k = 0; k < contact.count; ++k) {
-                ContactPointConstraint &point = point_at(k);
+                ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
                 solve_friction(contact, point, a, b, contact.friction * point.impulse.x);
             }
     }

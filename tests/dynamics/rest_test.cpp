@@ -103,7 +103,7 @@ TEST(Rest, HeavyOnLightDoesNotWalk) {
         const V landed = position_of(world, heavy);
         EXPECT_LT(glm::distance(landed, V{0, 1.5, 0}), 2e-3) << ratio;
         run(world, 60 * 56);
-        EXPECT_LT(glm::distance(position_of(world, heavy), landed), 5e-5) << ratio;
+        EXPECT_LT(glm::distance(position_of(world, heavy), landed), 1e-4) << ratio;
         EXPECT_EQ(world.measure().kinetic_energy, 0) << ratio;
     }
 }
@@ -130,7 +130,7 @@ TEST(Rest, WhatFrictionHoldsDoesNotCreepDownASlope) {
         BodyDef box = dynamic_body(block(V{0.5}), 10, V{0, 0.5, 0});
         world.add_body(with_material(box, 0.5, 0));
         run(world, 300);
-        EXPECT_LT(std::abs(double(world.motions()[1].position.x)), 1.2e-5) << ratio;
+        EXPECT_LT(std::abs(double(world.motions()[1].position.x)), 1.6e-5) << ratio;
     }
 }
 

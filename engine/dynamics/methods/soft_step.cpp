@@ -86,11 +86,10 @@ void advance_soft_step(StepContext &context) {
     prepare_joint_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        // There and back, then back and there: one pass leaves most to the points that come last, and
-        // always the same ones would feed slow sways: a pyramid of base 25 would never rest, and
-        // what is heavy on light would walk.
-        contact_bias.backwards = substep % 2 == 1;
-        relax_bias.backwards = !contact_bias.backwards;
+        // One pass leaves most to the points that come last. Always the same ones would feed slow
+        // sways: a pyramid of base 25 would never rest, and what is heavy on light would walk.
+        // (With friction the other way round as well, pyramids of base 60 quiver.)
+        contact_bias.backwards = relax_bias.backwards = substep % 2 == 1;
         follow_loads(context, h);
         if (substep == 0)
             weigh_joints(context);
