@@ -59,7 +59,7 @@ struct ContactBias {
     bool frictionless = false;
     // m/s; contacts that close faster are swept more than once (soft_step).
     Real struck_speed = std::numeric_limits<Real>::infinity();
-    // Whether the points of each contact push from the last to the first.
+    // Whether the points of each contact are taken from the last to the first.
     bool backwards = false;
     // Of penetrating points against what has no inverse mass.
     Softness on_static{};

@@ -311,12 +311,12 @@ HWY_INLINE Mask does_not_move(const Vector &inv_mass) {
 // Friction at each point. Returns where some points slide while others hold: those have more to
 // bear then, of which those before them knew nothing.
 HWY_INLINE Mask solve_friction(ContactBlock &block, std::size_t lane, Pair &pair, const Vector &t1,
-                               const Vector &t2, Lanes friction, Mask chosen) {
+                               const Vector &t2, Lanes friction, Mask chosen, bool backwards) {
     const Lanes one = all(Real(1));
     auto any_slides = hn::FirstN(tag, 0);
     auto any_holds = hn::FirstN(tag, 0);
-    for (int k = 0; k < block.points_used; ++k) {
-        ContactBlock::Point &point = block.points[k];
+    for (int i = 0; i < block.points_used; ++i) {
+        ContactBlock::Point &point = block.points[backwards ? block.points_used - 1 - i : i];
         const Vector r_a = load(point.r_a, lane);
         const Vector r_b = load(point.r_b, lane);
         const Vector v = pair.velocity_at(r_a, r_b);
@@ -450,7 +450,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
             }
             auto rubs = is_first ? hn::FirstN(tag, column_lanes) : again;
             for (int rub = 0; rub < (pushes ? most_rubs : 1) && !hn::AllFalse(tag, rubs); ++rub)
-                rubs = hn::And(rubs, solve_friction(block, lane, pair, t1, t2, friction, rubs));
+                rubs = hn::And(rubs, solve_friction(block, lane, pair, t1, t2, friction, rubs,
+                                                    bias.backwards));
         }
         store_pair(pair, block, bodies, lane);
         const Lanes before = pushes ? zero : load(block.struck, lane);

@@ -24,10 +24,12 @@ struct Pace {
     bool is_asleep() const { return rested == asleep; }
 };
 
-// Islands that take the same number of substeps: what a method advances at once. Indices of the
-// context's, each ascending.
+// Islands that take the same number of substeps, and their contacts' points in the same order: what
+// a method advances at once. Indices of the context's, each ascending.
 struct IslandGroup {
     int substeps = 0;
+    // Whether passes take a contact's points from the first and from the last in turns.
+    bool alternates = true;
     std::vector<std::uint32_t> moving;
     std::vector<std::uint32_t> contacts;
     std::vector<std::uint32_t> joints;
@@ -52,6 +54,7 @@ struct Islands {
         bool rests = true;
         bool was_let_go = false; // see JointGroup, of any of its joints
         int substeps = 0;
+        bool alternates = true; // see IslandGroup
     };
     std::vector<Needs> needs;
     std::vector<std::uint32_t> roots; // of islands that have contacts or joints

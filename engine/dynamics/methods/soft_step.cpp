@@ -57,12 +57,11 @@ void advance_soft_step(StepContext &context) {
 
     ContactBias relax_bias;
     relax_bias.loaded_only = true;
-    // Stiffer against what does not give way: the ground bears all that stands on it. Catto 2024,
-    // Solver2D, has it twice as stiff; from three times on, what bears five of its own weights rocks
-    // and walks off.
-    constexpr Real on_static = Real(2.5);
+    // Twice as stiff against what does not give way: the ground bears all that stands on it (Catto
+    // 2024, Solver2D). From 2.25 times on, some of what bears several of its own weights rocks, and
+    // walks off.
     contact_bias.on_static =
-        make_soft(on_static * static_cast<Real>(settings.contact_frequency_ratio) * rate,
+        make_soft(Real(2) * static_cast<Real>(settings.contact_frequency_ratio) * rate,
                   static_cast<Real>(settings.contact_damping_ratio), h);
     contact_bias.struck_speed = relax_bias.struck_speed =
         glm::length(gravity) * static_cast<Real>(settings.dt);
@@ -86,10 +85,11 @@ void advance_soft_step(StepContext &context) {
     prepare_joint_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        // One pass leaves most to the points that come last. Always the same ones would feed slow
-        // sways: a pyramid of base 25 would never rest, and what is heavy on light would walk.
-        // (With friction the other way round as well, pyramids of base 60 quiver.)
-        contact_bias.backwards = relax_bias.backwards = substep % 2 == 1;
+        // There and back, then back and there: one pass leaves most to the points that come last, and
+        // always the same ones would feed slow sways: a pyramid of base 25 would never rest, and
+        // what is heavy on light would walk.
+        contact_bias.backwards = context.active.alternates && substep % 2 == 1;
+        relax_bias.backwards = context.active.alternates && substep % 2 == 0;
         follow_loads(context, h);
         if (substep == 0)
             weigh_joints(context);
