@@ -35,6 +35,7 @@ name = "box"
 shape = "box"
 half_extents = [0.5, 0.2, 0.1]
 position = [0, 10, 0]
+angular_velocity = [3, 1, 2]
 repeat = { kind = "line", count = 2, step = [3, 0, 0] }
 [[expect]]
 name = "height"
