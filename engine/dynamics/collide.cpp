@@ -208,7 +208,7 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
 // Whether a body's loads ask for more substeps than its island has: its contacts are softer then
 // than they should be. With far too few it sinks in and does not stand at all.
 bool World::gets_too_few_substeps(std::uint32_t body) const {
-    constexpr int far_too_few = 10;        // times: contacts are 100 times as deep as they should be
+    constexpr int far_too_few = 10; // times: contacts are 100 times as deep as they should be
     const Pace &pace = state_.paces[body]; // no substeps: nothing is chosen
     return pace.wanted > pace.substeps && pace.wanted < far_too_few * pace.substeps;
 }

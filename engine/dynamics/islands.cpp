@@ -17,8 +17,8 @@ constexpr std::uint64_t steps_to_go_down = 4;
 
 // The part of wanted substeps by which an island must be better off before it goes down.
 constexpr double spare = 1.25;
-// Times: in pyramids of base 45 and up, of which the passes balance no more than a part, points that
-// push in turns feed waves that those in one order do not.
+// Times: in pyramids of base 45 and up, of which the passes balance no more than a part, points
+// that push in turns feed waves that those in one order do not.
 constexpr int far_too_few = 4;
 
 } // namespace

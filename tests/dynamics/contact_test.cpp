@@ -95,8 +95,8 @@ TEST(SequentialImpulses, SixCubesRockWithBaumgartesBiasInTheirVelocities) {
     EXPECT_GT(kinetic_energy_after_30_s(0), 1);
 }
 
-// A pass that always took a contact's points from the first to the last would feed their sway: eight
-// cubes fell after 30 s. Twelve still ask for more than the usual ten passes.
+// A pass that always took a contact's points from the first to the last would feed their sway:
+// eight cubes fell after 30 s. Twelve still ask for more than the usual ten passes.
 TEST(SequentialImpulses, TenCubesComeToRestAtTheDefaultsAndThirteenFall) {
     const auto stack = [](int count, int iterations) {
         StepSettings settings = settings_for("sequential_impulses");

@@ -85,9 +85,9 @@ void advance_soft_step(StepContext &context) {
     prepare_joint_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        // There and back, then back and there: one pass leaves most to the points that come last, and
-        // always the same ones would feed slow sways: a pyramid of base 25 would never rest, and
-        // what is heavy on light would walk.
+        // There and back, then back and there: one pass leaves most to the points that come last,
+        // and always the same ones would feed slow sways: a pyramid of base 25 would never rest,
+        // and what is heavy on light would walk.
         contact_bias.backwards = context.active.alternates && substep % 2 == 1;
         relax_bias.backwards = context.active.alternates && substep % 2 == 0;
         follow_loads(context, h);

@@ -67,8 +67,8 @@ TEST(Chart, JustSoManySubstepsAndAtLeastSoManyAreTwoCurves) {
     std::vector<std::pair<int, int>> runs;
     for (const ChartRun &run : chart.runs)
         runs.emplace_back(run.resolved.settings.substeps, run.resolved.settings.max_substeps);
-    EXPECT_EQ(runs,
-              (std::vector<std::pair<int, int>>{{1, 1}, {4, 1}, {1, 128}, {4, 128}, {1, 1}, {4, 1}}));
+    EXPECT_EQ(runs, (std::vector<std::pair<int, int>>{
+                        {1, 1}, {4, 1}, {1, 128}, {4, 128}, {1, 1}, {4, 1}}));
     const ChartContent content = chart_content(chart, "");
     ASSERT_EQ(content.series.size(), 3U);
     EXPECT_EQ(content.series[0].name, "Soft step, just so many");
