@@ -71,7 +71,7 @@ PROBLEMS = [
             ("",), "--x dt=1/480..1/30:9log --y body.heavy.velocity.x=5..80:5log "
             "--methods soft_step,tgs_soft,sequential_impulses", None,
             "What holds at one speed and step may fail at the next, so that the map counts, not the "
-            "cheapest dot of the chart.", mapped_substeps="4 to 64"),
+            "cheapest dot of the chart.", mapped_substeps="4 to 128"),
     Problem("hanging_cloth", "cloth", "Cloth",
             "Two sheets hang from an edge and from two corners. Does the first stretch under its own "
             "weight as far as the closed form says, does the second hang evenly, and does energy not "
