@@ -17,9 +17,10 @@ constexpr std::uint64_t steps_to_go_down = 4;
 
 // The part of wanted substeps by which an island must be better off before it goes down.
 constexpr double spare = 1.25;
-// Times: in pyramids of base 45 and up, of which the passes balance no more than a part, points
-// that push in turns feed waves that those in one order do not.
-constexpr int far_too_few = 4;
+// An island that wants more than so many times the substeps that it gets takes its points in one
+// order: in pyramids of base 45 and up, of which the passes balance but a part, points taken in
+// turns feed waves.
+constexpr int most_wanted_in_turns = 4;
 
 } // namespace
 
@@ -152,7 +153,7 @@ void World::share_budget() {
     } while (work > settings_.substep_budget);
     for (const std::uint32_t root : roots) {
         Islands::Needs &needs = s.islands.needs[root];
-        needs.alternates = needs.wanted <= far_too_few * needs.substeps;
+        needs.alternates = needs.wanted <= most_wanted_in_turns * needs.substeps;
     }
 }
 
