@@ -29,7 +29,8 @@ struct Candidate {
 // longer before the tree changes, but more pairs are looked at.
 inline constexpr Real tree_margin = Real(0.1);
 
-struct Scratch {
+// One for each world: its members stand by subject, not by size.
+struct Scratch { // NOLINT(clang-analyzer-optin.performance.Padding)
     TaskPool *tasks = nullptr; // of the step that runs; null: one thread
 
     // Broad phase, one for each collider of the model.
