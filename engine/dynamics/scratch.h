@@ -30,7 +30,7 @@ struct Candidate {
 inline constexpr Real tree_margin = Real(0.1);
 
 // One for each world: its members stand by subject, not by size.
-struct Scratch { // NOLINT(clang-analyzer-optin.performance.Padding)
+struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Padding)
     TaskPool *tasks = nullptr; // of the step that runs; null: one thread
 
     // Broad phase, one for each collider of the model.

@@ -36,6 +36,16 @@ std::vector<OtherEngine> built() {
     return all;
 }
 
+std::string no_such_engine(const std::string &name) {
+    if (other_engines().empty())
+        return "this build has no other engines: `./plumb bench` installs and builds them "
+               "(-DPLUMB_BENCH=ON)";
+    std::string known;
+    for (const OtherEngine &other : other_engines())
+        known.append(known.empty() ? "" : ", ").append(other.info.name);
+    return "there is no engine \"" + name + "\"; there are " + known;
+}
+
 } // namespace
 
 std::span<const OtherEngine> other_engines() {
@@ -48,16 +58,8 @@ std::vector<const OtherEngine *> find_other_engines(const std::vector<std::strin
     for (const std::string &name : names) {
         const auto engine = std::ranges::find(
             other_engines(), name, [](const OtherEngine &other) { return other.info.name; });
-        if (engine == other_engines().end()) {
-            if (other_engines().empty())
-                throw std::invalid_argument(
-                    "this build has no other engines: `./plumb bench` installs and builds them "
-                    "(-DPLUMB_BENCH=ON)");
-            std::string known;
-            for (const OtherEngine &other : other_engines())
-                known.append(known.empty() ? "" : ", ").append(other.info.name);
-            throw std::invalid_argument("there is no engine \"" + name + "\"; there are " + known);
-        }
+        if (engine == other_engines().end())
+            throw std::invalid_argument(no_such_engine(name));
         if (std::ranges::find(found, &*engine) == found.end())
             found.push_back(&*engine);
     }
