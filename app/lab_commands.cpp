@@ -17,6 +17,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <system_error>
 
@@ -46,14 +47,15 @@ struct BenchArguments {
 
 // Each thing to time has options of its own: the others would be passed over in silence.
 void refuse_options_of_others(const CLI::App &bench_command, const std::string &what) {
-    const std::map<std::string, std::string> reader{{"--rounds", "geometry"},
-                                                    {"--seconds", "dynamics"},
-                                                    {"--size", "dynamics"},
-                                                    {"--threads", "dynamics"}};
+    const std::map<std::string, std::set<std::string>> readers{
+        {"--rounds", {"geometry"}},
+        {"--only", {"dynamics", "scenes", "truth"}},
+        {"--seconds", {"dynamics"}},
+        {"--size", {"dynamics", "scenes"}},
+        {"--threads", {"dynamics"}}};
     for (const CLI::Option *option : bench_command.get_options()) {
-        const auto only_for = reader.find(option->get_name());
-        if (option->count() > 0 && ((only_for != reader.end() && only_for->second != what) ||
-                                    (option->get_name() == "--only" && what == "geometry")))
+        const auto read_by = readers.find(option->get_name());
+        if (option->count() > 0 && read_by != readers.end() && !read_by->second.contains(what))
             throw std::invalid_argument("bench " + what + " takes no " + option->get_name());
     }
 }
@@ -399,18 +401,20 @@ void add_bench(CommandLine &line) {
     bench_command
         ->add_option("WHAT", arguments->what,
                      "geometry: what queries cost; dynamics: what steps of the same scenes cost in "
-                     "several engines, and how wrong they are; truth: what each engine makes of "
-                     "small problems whose answer is known, beside the aim")
+                     "several engines, and how wrong they are; scenes: writes these as files, to "
+                     "run, chart and map; truth: what each engine makes of small problems whose "
+                     "answer is known, beside the aim")
         ->required()
-        ->check(CLI::IsMember({"geometry", "dynamics", "truth"}));
+        ->check(CLI::IsMember({"geometry", "dynamics", "scenes", "truth"}));
     bench_command
         ->add_option("--rounds", arguments->rounds, "geometry: of timings; their median counts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     bench_command
-        ->add_option("--only", arguments->only,
-                     "dynamics, truth: the scenes or problems of that name, else those whose names "
-                     "begin so (all)")
+        ->add_option(
+            "--only", arguments->only,
+            "dynamics, scenes, truth: the scenes or problems of that name, else those whose names "
+            "begin so (all)")
         ->type_name("NAME,...");
     bench_command
         ->add_option("--seconds", arguments->seconds,
@@ -419,7 +423,7 @@ void add_bench(CommandLine &line) {
         ->check(positive());
     bench_command
         ->add_option("--size", arguments->size,
-                     "dynamics: of the scenes: 0.1 for about a tenth of the bodies")
+                     "dynamics, scenes: 0.1 for about a tenth of the bodies")
         ->check(CLI::Range(0.0001, 10.0))
         ->capture_default_str();
     bench_command

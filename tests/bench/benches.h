@@ -25,6 +25,9 @@ struct EngineBenchOptions {
 // Steps through the same scenes with every engine, step by step in turns: cost and error.
 ExitCode bench_dynamics(const EngineBenchOptions &options);
 
+// The scenes that bench_dynamics steps through, as files in a folder.
+ExitCode bench_scene_files(const EngineBenchOptions &options);
+
 // Small problems whose answer is known: what each engine makes of it, beside the aim.
 ExitCode bench_truth(const EngineBenchOptions &options);
 

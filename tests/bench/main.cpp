@@ -30,11 +30,13 @@ int bench(const std::vector<std::string> &arguments) {
         code = bench_geometry(std::stoi(arguments[1]), arguments[2], arguments[3]);
     else if (what == "dynamics")
         code = bench_dynamics(options);
+    else if (what == "scenes")
+        code = bench_scene_files(options);
     else if (what == "truth")
         code = bench_truth(options);
     else
         throw std::invalid_argument(
-            "what to time is \"geometry\", \"dynamics\" or \"truth\", got \"" + what + '"');
+            R"(there are "geometry", "dynamics", "scenes" and "truth", got ")" + what + '"');
     return InterruptGuard::requested() ? InterruptGuard::exit_code() : static_cast<int>(code);
 }
 

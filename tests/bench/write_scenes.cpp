@@ -1,0 +1,45 @@
+// `plumb bench scenes`: what `plumb bench dynamics` times as scene files, to run, chart and map.
+#include "tests/bench/benches.h"
+
+#include "app/files/output_file.h"
+#include "engine/scene/scene_file.h"
+#include "tests/bench/bench_scenes.h"
+#include "tests/bench/only.h"
+
+#include <iostream>
+
+namespace plumb {
+
+namespace {
+
+void expect_at_most(SceneDesc &scene, const char *quantity, double bound, double seconds,
+                    const char *source) {
+    ExpectDesc &expect = scene.expects.emplace_back();
+    expect.name = expect.quantity = quantity;
+    expect.reduce = "max";
+    expect.to = seconds;
+    expect.relation = ExpectDesc::Relation::at_most;
+    expect.value = bound;
+    expect.source = source;
+}
+
+} // namespace
+
+ExitCode bench_scene_files(const EngineBenchOptions &options) {
+    create_folder(options.out_dir);
+    for (const BenchScene &one : chosen(bench_scenes(), options.only)) {
+        SceneDesc scene = one.make(options.size);
+        scene.title = one.name;
+        expect_at_most(scene, "penetration", 0.1, one.seconds, "bodies are rigid; 10 cm are seen");
+        if (!scene.joints.empty())
+            expect_at_most(scene, "joint_drift", 0.05, one.seconds,
+                           "joints do not come apart; 5 cm are seen");
+        OutputFile file(options.out_dir / (one.name + ".toml"));
+        file.stream() << write_scene(scene);
+        file.finish();
+        std::cout << file.path().string() << '\n';
+    }
+    return ExitCode::fine;
+}
+
+} // namespace plumb
