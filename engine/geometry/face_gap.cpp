@@ -71,12 +71,7 @@ struct HullFace {
         return true;
     }
     bool is_nearest(const Vec3 &local, Real height) const {
-        for (std::uint32_t i = 0; i < hull.mesh->planes.size(); ++i) {
-            const Plane &plane = hull.mesh->planes[i];
-            if (i != index && !(glm::dot(plane.normal, local) - plane.offset <= height))
-                return false;
-        }
-        return true;
+        return is_nearest_face(*hull.mesh, index, local, height);
     }
 };
 

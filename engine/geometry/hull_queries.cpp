@@ -305,20 +305,6 @@ Index support_vertex(const HullMesh &mesh, const Vec3 &direction, Index start) {
     }
 }
 
-Index supporting_face(const HullMesh &mesh, const Vec3 &direction) {
-    PLUMB_DEBUG_CHECK(is_finite(direction), "direction must be finite, got " << Printed{direction});
-    Index best = 0;
-    Real greatest = glm::dot(mesh.planes[0].normal, direction);
-    for (Index i = 1; i < mesh.planes.size(); ++i) {
-        const Real along = glm::dot(mesh.planes[i].normal, direction);
-        if (along > greatest) {
-            greatest = along;
-            best = i;
-        }
-    }
-    return best;
-}
-
 Vec3 support(const ConvexHull &hull, const Vec3 &direction) {
     check_valid(hull);
     PLUMB_CHECK(is_finite(direction), "direction must be finite, got " << Printed{direction});

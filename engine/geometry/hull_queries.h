@@ -28,6 +28,9 @@ std::uint32_t support_vertex(const HullMesh &mesh, const Vec3 &direction, std::u
 // The face whose outward normal has the greatest dot product with the direction; the first of
 // equals.
 std::uint32_t supporting_face(const HullMesh &mesh, const Vec3 &direction);
+// Whether a point is at most `height` (m) above the plane of every other face; where `height` is
+// that above `face`, whether this is the nearest of a point inside.
+bool is_nearest_face(const HullMesh &mesh, std::uint32_t face, const Vec3 &point, Real height);
 
 // The point of the hull in the world that is farthest along a direction in the world: a vertex.
 Vec3 support(const ConvexHull &hull, const Vec3 &direction);

@@ -383,13 +383,16 @@ bool is_over(const Feature &face, const Vec3 &point) {
     return true;
 }
 
-// `guess`: about the normal; zero: unknown.
+// `guess`: about the normal; zero: unknown. Then a face is guessed by where the other is, but the
+// search goes its own way.
 template <typename A, typename B>
 Proximity proximity_near(const A &a, const B &b, Real margin, const Vec3 &guess) {
-    if constexpr (HaveFaceGap<A, B>)
-        if (guess != Vec3{Real(0)})
-            if (const std::optional<Proximity> known = face_gap(a, b, guess, margin))
+    if constexpr (HaveFaceGap<A, B>) {
+        const Vec3 towards = guess == Vec3{Real(0)} ? b.middle() - a.middle() : guess;
+        if (towards != Vec3{Real(0)})
+            if (const std::optional<Proximity> known = face_gap(a, b, towards, margin))
                 return *known;
+    }
     return proximity(CorePair(a, b), margin, guess);
 }
 
