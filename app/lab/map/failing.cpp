@@ -1,6 +1,7 @@
 #include "app/lab/map/failing.h"
 
 #include "engine/core/check.h"
+#include "engine/scene/expect.h"
 
 #include <algorithm>
 #include <array>
@@ -48,11 +49,19 @@ double smallest_moving_width(const SceneDesc &scene) {
     return width;
 }
 
-Failing kind_of_miss(const ExpectOutcome &outcome) {
+// Of a magnitude only the run knows whether it is of a gain or of a loss.
+bool is_too_much_energy(const ExpectOutcome &outcome, const JudgedRun &run) {
+    const ReductionInfo *reduction = find_reduction(outcome.desc.reduce);
+    if (reduction->reduction == Reduction::drift || reduction->reduction == Reduction::max_abs)
+        return run.max_energy_gain >= run.max_energy_error;
+    return outcome.measured > outcome.desc.value;
+}
+
+Failing kind_of_miss(const ExpectOutcome &outcome, const JudgedRun &run) {
     using Relation = ExpectDesc::Relation;
     const ExpectDesc &desc = outcome.desc;
-    const bool too_much = outcome.measured > desc.value;
-    if (is_about(desc, "energy") && desc.quantity != "kinetic_energy" && too_much)
+    if (is_about(desc, "energy") && desc.quantity != "kinetic_energy" &&
+        is_too_much_energy(outcome, run))
         return Failing::energy_grew;
     if (is_about(desc, "penetration"))
         return Failing::penetration;
@@ -126,7 +135,7 @@ RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::s
     for (const ExpectOutcome &outcome : run.outcomes) {
         if (outcome.verdict != Verdict::missed)
             continue;
-        const Failing kind = kind_of_miss(outcome);
+        const Failing kind = kind_of_miss(outcome, run);
         if (kind == worst.failing && outcome.scaled_error <= error)
             continue;
         if (worst.failing == Failing::none || kind <= worst.failing) {

@@ -102,6 +102,23 @@ TEST(Failing, GoesByTheQuantityThatWasMissed) {
               Failing::never_rests);
 }
 
+// "drift" and "max_abs" measure how far energy went, not which way.
+TEST(Failing, TellsEnergyLostFromEnergyGained) {
+    for (const char *reduce : {"drift", "max_abs"}) {
+        ExpectOutcome outcome = missed("e", "energy_error", Is::at_most, 0.01, 0.2);
+        outcome.desc.reduce = reduce;
+        SceneDesc scene = scene_of_a_ball();
+        scene.expects.push_back(outcome.desc);
+        JudgedRun run;
+        run.outcomes.push_back(outcome);
+        run.max_energy_error = 0.2;
+        run.max_energy_gain = 0.03;
+        EXPECT_EQ(why_failed(scene, run, ""), (RunFailing{Failing::missed, "e"})) << reduce;
+        run.max_energy_gain = 0.2;
+        EXPECT_EQ(why_failed(scene, run, ""), (RunFailing{Failing::energy_grew, "e"})) << reduce;
+    }
+}
+
 TEST(Failing, AsksNothingOfItsOwnWhereTheSceneDoes) {
     SceneDesc scene = scene_of_a_ball();
     scene.expects.push_back(missed("p", "penetration", Is::at_most, 2, 1).desc);
