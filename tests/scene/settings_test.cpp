@@ -243,6 +243,26 @@ TEST(Settings, ASavedWorldKeepsThemAll) {
         }
 }
 
+// At another dt it goes on from the time that it had.
+TEST(Settings, ASavedWorldKeepsItsTimeAtAnotherStep) {
+    SceneDesc scene = scene_for(*find_method_info("soft_step"));
+    scene.world.settings.give(&StepSettings::dt, 0.01);
+    const auto before = Simulation::create(scene, {}, nullptr);
+    for (int i = 0; i < 20; ++i)
+        before->step();
+    RunOptions finer;
+    finer.settings.give(&StepSettings::dt, 0.002);
+    const auto after = Simulation::create(parsed(write_scene(before->describe())), finer, nullptr);
+    EXPECT_EQ(after->step_count(), 20u);
+    EXPECT_NEAR(after->time(), 0.2, 1e-12);
+    after->step();
+    EXPECT_NEAR(after->time(), 0.202, 1e-12);
+    finer.settings.give(&StepSettings::dt, 0.004);
+    const auto again = Simulation::create(parsed(write_scene(after->describe())), finer, nullptr);
+    EXPECT_NEAR(again->time(), 0.202, 1e-12);
+    EXPECT_EQ(Simulation::create(scene, finer, nullptr)->time(), 0);
+}
+
 // Saved with another method than the scene's own, which keeps what was its own.
 TEST(Settings, ASavedWorldKeepsThoseOfTheMethodThatItLeft) {
     SceneDesc scene = scene_for(*find_method_info("soft_step"));

@@ -25,6 +25,16 @@ struct Book {
     std::map<std::string, std::size_t, std::less<>> index_of;
 };
 
+// Its past steps were of the scene's own dt: another one counts from here on.
+StateClock clock_of(const SceneDesc &scene, const ResolvedRun &run) {
+    const StateClock own{scene.step_count, scene.dt_since_time, scene.dt_since_step};
+    const double dt = settings_of(scene.world, *run.method).dt;
+    if (run.settings.dt == dt)
+        return own;
+    const auto steps = static_cast<double>(own.step_count - own.steps_before);
+    return {own.step_count, own.time_before + steps * dt, own.step_count};
+}
+
 class WorldSimulation final : public Simulation {
   public:
     WorldSimulation(const SceneDesc &scene, const ResolvedRun &run, TaskPool *tasks)
@@ -54,7 +64,7 @@ class WorldSimulation final : public Simulation {
                                                 static_cast<std::uint16_t>(pace.wanted),
                                                 static_cast<std::uint16_t>(pace.rested)});
         }
-        world_.set_clock({scene.step_count, scene.dt_since_time, scene.dt_since_step});
+        world_.set_clock(clock_of(scene, run));
         if (scene.grab)
             hold(*scene.grab);
     }
