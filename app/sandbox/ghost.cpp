@@ -19,8 +19,8 @@ namespace {
 constexpr int most_steps = 64;
 constexpr double reference_allowance = 8e-3; // s, half of a picture at 60 Hz
 
-RunOptions reference_run(const SceneDesc &scene, double dt) {
-    return accurate_run(scene, {}, dt / 4, 16);
+double reference_dt(const Simulation &beside) {
+    return beside.settings().dt / 4;
 }
 
 } // namespace
@@ -31,7 +31,7 @@ Ghost::Ghost(const Simulation &beside, const std::string &method)
     const SceneDesc scene = beside.describe();
     RunOptions options;
     if (is_reference_)
-        options = reference_run(scene, beside.settings().dt);
+        options = accurate_run(scene, {}, reference_dt(beside), 16);
     else
         options.method = method;
     simulation_ = Simulation::create(scene, options, nullptr);
@@ -101,6 +101,8 @@ void Ghost::apply(const Simulation &beside, const Command &command) {
             [](const SettingRow &row) { return row.group != SettingGroup::world; });
         if (settings->settings.empty())
             return;
+        if (is_reference_)
+            settings->settings.give(&StepSettings::dt, reference_dt(beside));
     }
     if (is_reference_ && lag(beside) > 0)
         return fail("something was done while it lagged");

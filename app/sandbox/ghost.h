@@ -36,9 +36,9 @@ class Ghost {
     void allow(double seconds) { allowance_ = seconds; }      // for each call
     // `beside` has gone back a step. False when the ghost did not exist then.
     bool go_back();
-    // What is done to the one is done to the other, but for method and settings; the world's
-    // settings, gravity, are the same. What it cannot obey ends its motion, and is told; so does
-    // anything that is done while it lags.
+    // What has been done to `beside` is done to the ghost, but for method and settings; of the
+    // world's, gravity is the same, and so is dt, of which the reference keeps its share. What it
+    // cannot obey ends its motion, and is told; so does anything that is done while it lags.
     void apply(const Simulation &beside, const Command &command);
 
     [[nodiscard]] const Simulation &simulation() const { return *simulation_; }

@@ -114,6 +114,40 @@ TEST(Ghost, TheReferenceTellsHowFarTheRunIsFromTheTruth) {
     EXPECT_TRUE(session.ghost()->is_reference());
 }
 
+// Begun in mid-run it is where the run is, and goes on beside it.
+TEST(Ghost, AReferenceBegunInMidRunIsOfTheSameTime) {
+    Session session;
+    ASSERT_TRUE(session.open(drop()));
+    for (int i = 0; i < 60; ++i)
+        ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.set_ghost(reference_ghost));
+    EXPECT_EQ(session.ghost()->lag(*session.simulation()), 0);
+    for (int i = 0; i < 30; ++i)
+        ASSERT_TRUE(session.step());
+    while (session.ghost()->lag(*session.simulation()) > 0)
+        session.let_ghost_go_on();
+    EXPECT_NEAR(session.ghost()->simulation().time(), 1.5, 1e-9);
+    EXPECT_NEAR(distance(session).metres, 0, 1e-9);
+}
+
+// When another step is chosen it goes on with a quarter of that.
+TEST(Ghost, AReferenceKeepsItsShareOfTheStep) {
+    Session session;
+    ASSERT_TRUE(session.open(drop()));
+    ASSERT_TRUE(session.set_ghost(reference_ghost));
+    StepSettings settings = session.simulation()->settings();
+    for (const double dt : {1.0 / 30, 1.0 / 240}) {
+        settings.dt = dt;
+        ASSERT_TRUE(session.set_settings(settings));
+        EXPECT_EQ(session.ghost()->simulation().settings().dt, dt / 4);
+        ASSERT_TRUE(session.step());
+        while (session.ghost()->lag(*session.simulation()) > 0)
+            session.let_ghost_go_on();
+        EXPECT_NEAR(session.ghost()->simulation().time(), session.simulation()->time(), 1e-12);
+    }
+    EXPECT_EQ(session.ghost()->failure(), "");
+}
+
 // With no time it stays behind and says by how much; what is done then ends it.
 TEST(Ghost, AReferenceWithoutTimeLags) {
     SceneDesc scene = drop();
