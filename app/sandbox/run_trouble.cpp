@@ -140,14 +140,9 @@ void TroubleWatch::begin_step(const SceneDesc &scene, const Simulation &simulati
         passages_ = std::make_unique<PassageWatch>(scene, simulation);
 }
 
-void TroubleWatch::sample(const Simulation &simulation, const std::vector<BodyState> &before,
-                          bool held) {
+void TroubleWatch::sample(const Simulation &simulation, const Frame &before, bool held) {
     if (!simulation.report().finite) {
-        Divergence divergence = find_divergence(simulation, simulation.step_count());
-        const auto body = simulation.find_body(divergence.body);
-        if (body && *body < before.size())
-            divergence.last_position = before[*body].position;
-        std::string text = describe(divergence);
+        std::string text = describe(find_divergence(simulation, simulation.step_count(), &before));
         text[0] = 'N';
         divergence_ = Trouble{Failing::not_finite, text + ".", simulation.step_count()};
         return;

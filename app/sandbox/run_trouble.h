@@ -35,10 +35,10 @@ class TroubleWatch {
     // At the start of the run.
     TroubleWatch(const SceneDesc &scene, const Simulation &simulation);
 
-    // Before and after each step of that scene; `before`: the bodies before it; `held`: a person
-    // pulls at one, perhaps into another.
+    // Before and after each step of that scene; `before`: the state before it; `held`: a person
+    // pulls at a body, perhaps into another.
     void begin_step(const SceneDesc &scene, const Simulation &simulation);
-    void sample(const Simulation &simulation, const std::vector<BodyState> &before, bool held);
+    void sample(const Simulation &simulation, const Frame &before, bool held);
     // The step after the present state failed, saying so.
     void failed(const Simulation &simulation, const std::string &message);
     // The simulation was restored to an earlier state of this run.

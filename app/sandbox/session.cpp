@@ -137,7 +137,7 @@ bool Session::step() {
     std::swap(previous_, present_);
     read_present();
     see_impacts();
-    troubles_->sample(*simulation_, previous_.bodies, is_held);
+    troubles_->sample(*simulation_, previous_, is_held);
     if (ghost_)
         ghost_->catch_up(*simulation_);
     if (!report.finite) {

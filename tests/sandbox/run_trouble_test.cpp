@@ -229,6 +229,22 @@ TEST(Trouble, WhatIsNotFiniteComesFirst) {
     EXPECT_EQ(session.trouble()->failing, Failing::energy_grew);
 }
 
+// Of a particle, too, it is told where it was last.
+TEST(Trouble, SaysWhereAParticleWasLast) {
+    RunOptions options;
+    options.method = "explicit_euler";
+    options.settings.give(&StepSettings::dt, 1.0 / 15);
+    options.settings.give(&StepSettings::substeps, 1);
+    Session session(options);
+    ASSERT_TRUE(session.open(scenes_folder / "springs/spring_limit.toml"));
+    while (session.step())
+        ASSERT_LT(session.simulation()->step_count(), 5000u);
+    ASSERT_TRUE(session.trouble());
+    EXPECT_EQ(session.trouble()->failing, Failing::not_finite);
+    EXPECT_TRUE(says(*session.trouble(), "particle \"bob\", last at (0, "))
+        << session.trouble()->text;
+}
+
 // No scene that keeps what it expects gives an alarm.
 TEST(Trouble, IsNoneInScenesThatAreFine) {
     for (const char *name : {"stacking/ten_box_stack", "joints/pendulum", "joints/newtons_cradle",

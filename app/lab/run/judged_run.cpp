@@ -24,18 +24,15 @@ bool finite(const BodyState &state) {
            std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
 }
 
-// Remembers where all bodies were, to say where things went wrong.
+// Remembers where all was, to say where things went wrong.
 class LastPositions {
   public:
     void note(const Simulation &simulation) { simulation.read(frame_, {}); }
 
     [[nodiscard]] Divergence diverged(const Simulation &simulation, std::uint64_t step,
                                       std::string message) const {
-        Divergence divergence = find_divergence(simulation, step);
+        Divergence divergence = find_divergence(simulation, step, &frame_);
         divergence.message = std::move(message);
-        const auto body = simulation.find_body(divergence.body);
-        if (!divergence.body.empty() && body && *body < frame_.bodies.size())
-            divergence.last_position = frame_.bodies[*body].position;
         return divergence;
     }
 
@@ -54,7 +51,7 @@ ExpectDesc expect_of(const ProbeDesc &probe, const ProbeExpectDesc &expect) {
 
 } // namespace
 
-Divergence find_divergence(const Simulation &simulation, std::uint64_t step) {
+Divergence find_divergence(const Simulation &simulation, std::uint64_t step, const Frame *before) {
     Divergence divergence;
     divergence.step = step;
     divergence.time = simulation.time();
@@ -62,12 +59,17 @@ Divergence find_divergence(const Simulation &simulation, std::uint64_t step) {
     for (std::size_t i = 0; i < frame.bodies.size(); ++i)
         if (simulation.body_info(i).alive && !finite(frame.bodies[i])) {
             divergence.body = simulation.body_info(i).name;
-            break;
+            if (before != nullptr && i < before->bodies.size())
+                divergence.last_position = before->bodies[i].position;
+            return divergence;
         }
-    for (std::size_t i = 0; i < frame.particles.size() && divergence.body.empty(); ++i)
+    for (std::size_t i = 0; i < frame.particles.size(); ++i)
         if (!finite(frame.particles[i].position) || !finite(frame.particles[i].velocity)) {
             divergence.body = simulation.soft_parts().particle_name(i);
             divergence.is_particle = true;
+            if (before != nullptr && i < before->particles.size())
+                divergence.last_position = before->particles[i].position;
+            return divergence;
         }
     return divergence;
 }

@@ -17,7 +17,7 @@ struct Divergence {
     std::uint64_t step = 0; // counted from the start of the scene
     double time = 0;        // s
     std::string body;       // the first whose state is not finite; empty when none is found
-    std::optional<glm::dvec3> last_position; // of that body, a step before, where it is known
+    std::optional<glm::dvec3> last_position; // of it, a step before, where it is known
     std::string message;                     // what a failed check said; may be empty
     bool is_particle = false;                // `body` names a particle
 };
@@ -25,8 +25,10 @@ struct Divergence {
 // "not finite after step 41 (0.683 s): body "top", last at (0.1, 9.2, 0)"
 [[nodiscard]] std::string describe(const Divergence &divergence);
 
-// Looks for the first body whose state is not finite.
-[[nodiscard]] Divergence find_divergence(const Simulation &simulation, std::uint64_t step);
+// Looks for the first body, or else particle, whose state is not finite; `before`, where it is
+// known, is the state a step before.
+[[nodiscard]] Divergence find_divergence(const Simulation &simulation, std::uint64_t step,
+                                         const Frame *before = nullptr);
 
 struct JudgeOptions {
     // Whether to follow penetration, drift and energy too, at the price of a measure() each step.
