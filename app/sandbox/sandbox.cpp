@@ -72,9 +72,7 @@ bool Sandbox::open_recording(const std::filesystem::path &path) {
 void Sandbox::started(bool another_scene) {
     tools_.let_go(session_);
     if (another_scene) {
-        chart_.clear();
-        map_.clear();
-        view_.map_mistake.clear();
+        forget_studies();
         view_.selected.reset();
         view_.selected_particle.reset();
         view_.joints = is_about_joints(*session_.simulation());
@@ -89,6 +87,13 @@ void Sandbox::started(bool another_scene) {
     clock_.give_up();
     pace_.clear();
     follow_simulation();
+}
+
+void Sandbox::forget_studies() {
+    chart_.clear();
+    map_.clear();
+    view_.sweep_mistake.clear();
+    view_.map_mistake.clear();
 }
 
 void Sandbox::follow_simulation() {
@@ -342,8 +347,7 @@ void Sandbox::reload() {
     session_.messages().clear();
     if (!session_.reload())
         return;
-    chart_.clear(); // the file may say otherwise now
-    map_.clear();
+    forget_studies(); // the file may say otherwise now
     view_.selected = name.empty() ? std::nullopt : session_.simulation()->find_body(name);
     started(false);
 }

@@ -125,12 +125,13 @@ TEST(Studies, OfAnotherSceneAreForgottenAndEnd) {
     PanelContext context = sandbox.panel_context(Fonts{});
     start_chart(context.chart, sandbox.session(), "substeps=200,400");
     start_map(context.map, sandbox.session(), "dt=1/60,1/30", "substeps=200,400");
-    sandbox.view().map_mistake = "of the old scene";
+    sandbox.view().sweep_mistake = sandbox.view().map_mistake = "of the old scene";
     ASSERT_TRUE(sandbox.open(scenes / "free/free_fall.toml"));
     EXPECT_FALSE(context.chart.running());
     EXPECT_FALSE(context.map.running());
     EXPECT_EQ(context.chart.result(), nullptr);
     EXPECT_EQ(context.map.result(), nullptr);
+    EXPECT_EQ(sandbox.view().sweep_mistake, "");
     EXPECT_EQ(sandbox.view().map_mistake, "");
 }
 
