@@ -148,8 +148,8 @@ std::optional<ActionInfo> row(Action action) {
                           Place::general, false, {ctrl('p')}};
     case Action::dismiss:
         return ActionInfo{action, "Back",
-                          "Closes help, search or messages; then lets go of what is held; then "
-                          "clears the selection.",
+                          "Closes a list, help, search or messages; then lets go of what is held; "
+                          "then clears the selection.",
                           Place::general, false, {plain(escape)}};
     case Action::quit:
         return ActionInfo{action, "Quit",

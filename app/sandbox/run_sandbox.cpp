@@ -181,7 +181,8 @@ int run_off_screen(const SandboxOptions &options, bool in_software) {
 void handle_events(Sandbox &sandbox, Ui &ui, const Window &window,
                    const WindowInput::Events &events) {
     for (const KeyEvent &key : events.keys)
-        sandbox.handle(key, ui.wants_text());
+        if (key.chord.key != special_key::escape || !ui.close_list())
+            sandbox.handle(key, ui.wants_text());
     if (sandbox.take_keyboard_release())
         ui.release_keyboard();
     for (PointerEvent event : events.pointer) {

@@ -3,7 +3,7 @@
 #include "app/sandbox/widgets.h"
 
 #include <imgui/imgui.h>
-#include <imgui/imgui_internal.h> // ClearActiveID: to leave a text field by Esc
+#include <imgui/imgui_internal.h> // ClearActiveID, ClosePopupToLevel: what Esc does
 
 namespace plumb {
 
@@ -136,6 +136,15 @@ bool Ui::over_panel() const {
 
 bool Ui::wants_text() const {
     return ImGui::GetIO().WantTextInput;
+}
+
+bool Ui::close_list() {
+    ImGui::SetCurrentContext(imgui_);
+    const int open = imgui_->OpenPopupStack.Size;
+    if (open == 0 || wants_text()) // in one of its fields
+        return false;
+    ImGui::ClosePopupToLevel(open - 1, true);
+    return true;
 }
 
 void Ui::release_keyboard() {

@@ -43,6 +43,9 @@ class Ui {
     [[nodiscard]] bool wants_text() const;
     // Takes the keyboard out of a text field.
     void release_keyboard();
+    // The list or popup that was opened last; false if none is open, or one of its fields is typed
+    // in.
+    bool close_list();
 
     struct Panel {
         PanelId id;

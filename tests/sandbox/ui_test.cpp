@@ -211,6 +211,39 @@ TEST_F(UiTest, AClickInTheListOpensAScene) {
     EXPECT_TRUE(sandbox.session().messages().empty());
 }
 
+TEST_F(UiTest, EscClosesAListThatIsOpen) {
+    Sandbox sandbox(Session(), scenes);
+    ASSERT_TRUE(sandbox.open(scenes[1].path));
+    Ui ui;
+    ImGui::GetIO().Fonts->Build();
+    const auto frame = [&](ImVec2 mouse, bool down) {
+        ui.fill_input({1280, 800}, 1.0f / 60);
+        ImGui::GetIO().MousePos = mouse;
+        ImGui::GetIO().MouseDown[0] = down;
+        ui.begin_frame();
+        PanelContext panels = sandbox.panel_context(ui.fonts());
+        static_cast<void>(ui.draw(panels));
+        sandbox.take(panels);
+    };
+    const auto is_open = [] { return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup); };
+    for (int settled = 0; settled < 4; ++settled)
+        frame({640, 400}, false);
+    EXPECT_FALSE(ui.close_list());
+    ASSERT_EQ(ui.panels()[1].id, PanelId::settings);
+    const Rect settings = ui.panels()[1].rect;
+    for (float y = settings.min.y + 30; y < settings.max().y && !is_open(); y += 6) {
+        const ImVec2 at(settings.min.x + settings.size.x / 2, y); // of the method, or of the step
+        frame(at, false);
+        frame(at, true);
+        frame(at, false);
+    }
+    ASSERT_TRUE(is_open());
+    EXPECT_TRUE(ui.close_list());
+    EXPECT_FALSE(is_open());
+    frame({640, 400}, false);
+    EXPECT_FALSE(ui.close_list());
+}
+
 std::vector<Rect> without_those_that_come_and_go(const std::vector<Ui::Panel> &panels) {
     std::vector<Rect> rects;
     for (const Ui::Panel &panel : panels)
