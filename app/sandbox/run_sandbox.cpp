@@ -20,11 +20,15 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/common.hpp>
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <imgui/backends/imgui_impl_glfw.h>
+#include <imgui/imgui.h>
 
 namespace plumb {
 
@@ -38,12 +42,41 @@ constexpr double drowsy = 0.2;         // s between frames
 constexpr double title_interval = 0.2; // s between changes of the title while running
 
 // ImGui's back end lives as long as this. Made after WindowInput, gone before it.
+//
+// ImGui looks at which keys are down once a frame: one that is pressed and released within a slow
+// frame would be lost. So it hears of a release only when it has seen the key.
 class GlfwBackEnd {
   public:
-    explicit GlfwBackEnd(Window &window) { ImGui_ImplGlfw_InitForOpenGL(window.handle(), true); }
-    ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); }
+    explicit GlfwBackEnd(Window &window) : window_(window.handle()) {
+        ImGui_ImplGlfw_InitForOpenGL(window_, true);
+        ImGui::GetIO().BackendLanguageUserData = this;
+        glfwSetKeyCallback(window_, on_key);
+    }
+    ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); } // which takes the callback away, too
     GlfwBackEnd(const GlfwBackEnd &) = delete;
     GlfwBackEnd &operator=(const GlfwBackEnd &) = delete;
+
+    // ImGui has seen the keys of the frame that it has drawn.
+    void end_frame() {
+        for (const Key &key : std::exchange(released_, {}))
+            ImGui_ImplGlfw_KeyCallback(window_, key.key, key.scancode, GLFW_RELEASE, key.mods);
+    }
+
+  private:
+    struct Key {
+        int key, scancode, mods;
+    };
+
+    static void on_key(GLFWwindow *window, int key, int scancode, int action, int mods) {
+        auto *self = static_cast<GlfwBackEnd *>(ImGui::GetIO().BackendLanguageUserData);
+        if (action == GLFW_RELEASE)
+            self->released_.push_back({key, scancode, mods});
+        else
+            ImGui_ImplGlfw_KeyCallback(window, key, scancode, action, mods);
+    }
+
+    GLFWwindow *window_;
+    std::vector<Key> released_;
 };
 
 // Everything that both loops draw with.
@@ -204,7 +237,7 @@ float ui_scale(const SandboxOptions &options, const Window &window, const Sandbo
 }
 
 void show_frames(const SandboxOptions &options, Window &window, WindowInput &input,
-                 Sandbox &sandbox, Stage &stage) {
+                 GlfwBackEnd &back_end, Sandbox &sandbox, Stage &stage) {
     std::string title;
     Clock::time_point last = Clock::now();
     Clock::time_point last_event = last;
@@ -244,6 +277,7 @@ void show_frames(const SandboxOptions &options, Window &window, WindowInput &inp
         sandbox.advance(passed);
         stage.target.resize(pixels);
         stage.draw(sandbox);
+        back_end.end_frame();
         if (sandbox.take_screenshot_request())
             write_screenshot(sandbox, stage.target);
         stage.target.blit_to_window(pixels);
@@ -263,9 +297,10 @@ int run_in_window(const SandboxOptions &options, Window &window, bool in_softwar
     Sandbox sandbox = make_sandbox(options);
     Stage stage(options, in_software, ui_scale(options, window, sandbox),
                 glm::max(window.framebuffer_size(), 1));
-    const GlfwBackEnd back_end(window);
+    GlfwBackEnd back_end(window);
     const InterruptGuard interrupt;
-    with_recording(options, sandbox, [&] { show_frames(options, window, input, sandbox, stage); });
+    with_recording(options, sandbox,
+                   [&] { show_frames(options, window, input, back_end, sandbox, stage); });
     return finish(options, sandbox, stage);
 }
 
