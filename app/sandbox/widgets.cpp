@@ -231,8 +231,15 @@ void value_row(std::string_view what, const std::string &value, const Colour &co
     ImGui::PushStyleColor(ImGuiCol_Text, theme::dim);
     ImGui::TextUnformatted(begin(what), end(what));
     ImGui::PopStyleColor();
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(std::max(right - size_of(value).x, ImGui::GetCursorPosX()));
+    // What once did not fit beside its label in a panel of this width stands below it from then on:
+    // rows must not jump with the digits of their values.
+    const float value_left = right - size_of(value).x;
+    const ImGuiID row = ImGui::GetID(begin(what), end(what)) + static_cast<ImGuiID>(right);
+    bool &is_below = *ImGui::GetStateStorage()->GetBoolRef(row);
+    is_below |= left + size_of(what).x + ImGui::GetStyle().ItemSpacing.x > value_left;
+    if (!is_below)
+        ImGui::SameLine();
+    ImGui::SetCursorPosX(std::max(value_left, left));
     ImGui::PushStyleColor(ImGuiCol_Text, colour);
     ImGui::TextUnformatted(value.data(), value.data() + value.size());
     ImGui::PopStyleColor();

@@ -33,7 +33,8 @@ void tooltip(std::string_view text);
 // A check box with the action's title, and its key in small. True when clicked.
 [[nodiscard]] bool action_check_box(const Fonts &fonts, Action action, bool checked, float width);
 
-// A line of two columns: what, and its value at the right end, in the current window.
+// A line of two columns: what, and its value at the right end, in the current window; two lines
+// where it is too narrow.
 void value_row(std::string_view what, const std::string &value);
 void value_row(std::string_view what, const std::string &value, const Colour &colour);
 

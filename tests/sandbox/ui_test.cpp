@@ -376,11 +376,14 @@ double area_of(const ImDrawData &data, const Colour &colour, const char *window 
 }
 
 // In a narrow panel there is as much of every letter as in a wide one.
-TEST_F(UiTest, NoNumberOfTheSettingsIsCutInANarrowWindow) {
-    const auto text_in = [&](ImVec2 window) {
+TEST_F(UiTest, NoNumberIsCutInANarrowWindow) {
+    const auto text_in = [&](const char *panel, ImVec2 window) {
         Sandbox sandbox(Session(), scenes);
         EXPECT_TRUE(sandbox.open(scenes[2].path));
+        sandbox.view().selected = 4;
+        sandbox.view().diagnostics = false;
         sandbox.view().opened[PanelId::settings] = true;
+        sandbox.view().opened[PanelId::details] = true;
         Ui ui;
         ImGui::GetIO().Fonts->Build();
         const ImDrawData *data = nullptr;
@@ -390,12 +393,14 @@ TEST_F(UiTest, NoNumberOfTheSettingsIsCutInANarrowWindow) {
             PanelContext panels = sandbox.panel_context(ui.fonts());
             data = &ui.draw(panels);
         }
-        return area_of(*data, theme::text, "settings");
+        return area_of(*data, theme::text, panel);
     };
-    const double whole = text_in({1280, 900});
-    EXPECT_GT(whole, 500);
-    EXPECT_NEAR(text_in({1000, 900}), whole, 1e-3 * whole);
-    EXPECT_NEAR(text_in({640, 900}), whole, 1e-3 * whole);
+    for (const char *panel : {"settings", "details"}) {
+        const double whole = text_in(panel, {1280, 900});
+        EXPECT_GT(whole, 500);
+        EXPECT_NEAR(text_in(panel, {1000, 900}), whole, 1e-3 * whole) << panel;
+        EXPECT_NEAR(text_in(panel, {640, 900}), whole, 1e-3 * whole) << panel;
+    }
 }
 
 // Each curve is drawn in a colour of its own, as long as it is; what is stepped back over is gone.
