@@ -23,10 +23,13 @@ bool title_bar(PanelContext &context, PanelId panel, std::string_view title,
 }
 
 void details_panel(PanelContext &context) {
-    // A body that has just been selected brings its tab to the front, and one let go the scene's.
-    std::optional<std::size_t> &shown = context.view.detailed_body;
-    const bool changed = shown != context.view.selected;
-    shown = context.view.selected;
+    // What has just been selected brings its tab to the front, and what is let go the scene's.
+    ViewState &view = context.view;
+    const bool changed =
+        view.detailed_body != view.selected || view.detailed_particle != view.selected_particle;
+    view.detailed_body = view.selected;
+    view.detailed_particle = view.selected_particle;
+    const bool any = view.selected || view.selected_particle;
     const auto flags = [&](bool wanted) {
         return changed && wanted ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None;
     };
@@ -50,8 +53,8 @@ void details_panel(PanelContext &context) {
             contents(context);
         ImGui::EndTabItem();
     };
-    tab("Scene", !shown, expectations_panel);
-    tab("Body", shown.has_value(), inspector_panel);
+    tab("Scene", !any, expectations_panel);
+    tab("Body", any, inspector_panel);
     ImGui::EndTabBar();
 }
 

@@ -19,16 +19,19 @@ void subject_box(PanelContext &context, float width) {
     ViewState &view = context.view;
     const Simulation &simulation = *context.session.simulation();
     // What is selected is likely to be meant.
-    if (view.offered_body != view.selected) {
+    if (view.offered_body != view.selected || view.offered_particle != view.selected_particle) {
         view.offered_body = view.selected;
+        view.offered_particle = view.selected_particle;
         if (view.selected)
             view.plot_of = simulation.body_info(*view.selected).name;
+        else if (view.selected_particle)
+            view.plot_of = simulation.soft_parts().particle_name(*view.selected_particle);
     }
     if (quantities_of(simulation, view.plot_of).empty())
         view.plot_of.clear();
     ImGui::SetNextItemWidth(width);
     if (!ImGui::BeginCombo("##of", view.plot_of.empty() ? "whole scene" : view.plot_of.c_str())) {
-        tooltip("What the quantity is of. A body that is clicked in the scene comes here too.");
+        tooltip("What the quantity is of. What is clicked in the scene comes here, too.");
         return;
     }
     if (ImGui::Selectable("whole scene", view.plot_of.empty()))

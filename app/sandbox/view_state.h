@@ -45,11 +45,13 @@ struct ViewState {
     PerPanel<std::optional<bool>> opened; // or closed to its title; as it likes until a person says
     bool is_roomy = true;                 // the window, in which a panel likes to be open
     [[nodiscard]] bool is_open(PanelId panel) const { return opened[panel].value_or(is_roomy); }
-    float ui_scale = 1;                        // on top of the monitor's
-    std::optional<std::size_t> detailed_body;  // that the details were last about
-    std::string search;                        // in the list of scenes
-    std::string plot_of;                       // whose quantities are offered; empty: the scene's
-    std::optional<std::size_t> offered_body;   // that was last selected for that
+    float ui_scale = 1;                       // on top of the monitor's
+    std::optional<std::size_t> detailed_body; // that the details were last about, or
+    std::optional<std::size_t> detailed_particle;
+    std::string search;                      // in the list of scenes
+    std::string plot_of;                     // whose quantities are offered; empty: the scene's
+    std::optional<std::size_t> offered_body; // that was last selected for that, or
+    std::optional<std::size_t> offered_particle;
     std::string sweeps;                        // of the chart
     std::string sweep_mistake;                 // empty: none
     std::string map_x = "dt=1/240..1/15:7log"; // axes of the map

@@ -445,6 +445,33 @@ TEST_F(UiTest, TheLabPlotsWhatWasChosen) {
     }
 }
 
+// As a body that is selected, it comes to the front, and its quantities are offered.
+TEST_F(UiTest, AParticleThatIsSelectedIsShown) {
+    Sandbox sandbox(Session(), scenes);
+    ASSERT_TRUE(sandbox.open(source / "scenes/cloth/flag.toml"));
+    sandbox.perform(Action::toggle_lab);
+    Ui ui;
+    ImGui::GetIO().Fonts->Build();
+    const auto headings = [&] { // which the scene has, and a particle has not
+        const ImDrawData *data = nullptr;
+        for (int settled = 0; settled < 4; ++settled) {
+            ui.fill_input({1280, 800}, 1.0f / 60);
+            ui.begin_frame();
+            PanelContext panels = sandbox.panel_context(ui.fonts());
+            data = &ui.draw(panels);
+        }
+        return area_of(*data, theme::accent, "details");
+    };
+    const double of_scene = headings();
+    EXPECT_GT(of_scene, 0);
+    sandbox.view().selected_particle = 7;
+    EXPECT_EQ(headings(), 0);
+    EXPECT_EQ(sandbox.view().plot_of,
+              sandbox.session().simulation()->soft_parts().particle_name(7));
+    sandbox.view().selected_particle.reset();
+    EXPECT_EQ(headings(), of_scene);
+}
+
 // A phase that takes no time is not seen in the graph of a step's time: only its sign is, below.
 TEST_F(UiTest, APhaseWithoutTimeLeavesNoTraceInTheGraph) {
     Sandbox sandbox(Session({}, nullptr, make_fake()));
