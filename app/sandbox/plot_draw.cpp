@@ -94,18 +94,19 @@ void draw_curve(const Group &group, const PlotCurve &curve, const PlotAxis &time
         line.clear();
     };
     struct Column {
-        float x, first, low, high, last;
+        ImVec2 first, low, high, last;
     };
     std::optional<Column> column;
     const auto close = [&] {
         if (!column)
             return;
-        line.emplace_back(column->x, column->first);
-        if (column->low < column->high) {
-            line.emplace_back(column->x, column->low);
-            line.emplace_back(column->x, column->high);
-            line.emplace_back(column->x, column->last);
-        }
+        // In the order in which they came; each of them once, for a line that turns on the spot is
+        // drawn thinner or thicker than it is.
+        const bool rises = column->low.x < column->high.x;
+        for (const ImVec2 &point : {column->first, rises ? column->low : column->high,
+                                    rises ? column->high : column->low, column->last})
+            if (line.empty() || point.x != line.back().x || point.y != line.back().y)
+                line.push_back(point);
         column.reset();
     };
     for (std::size_t k = first_in(curve, span); k < curve.samples.size(); ++k) {
@@ -115,15 +116,16 @@ void draw_curve(const Group &group, const PlotCurve &curve, const PlotAxis &time
             draw();
             continue;
         }
-        const float x = x_of(group, time, sample.time);
-        const float y = y_of(group, sample.value);
-        if (column && x - column->x < 1) {
-            column->low = std::min(column->low, y);
-            column->high = std::max(column->high, y);
-            column->last = y;
+        const ImVec2 at(x_of(group, time, sample.time), y_of(group, sample.value));
+        if (column && at.x - column->first.x < 1) {
+            if (at.y < column->low.y)
+                column->low = at;
+            if (at.y > column->high.y)
+                column->high = at;
+            column->last = at;
         } else {
             close();
-            column = Column{x, y, y, y, y};
+            column = Column{at, at, at, at};
         }
     }
     close();

@@ -472,6 +472,37 @@ TEST_F(UiTest, AParticleThatIsSelectedIsShown) {
     EXPECT_EQ(headings(), of_scene);
 }
 
+// Several samples stand on each column of pixels; which way they go does not show in the line.
+TEST_F(UiTest, ACurveThatFallsIsDrawnAsOneThatRises) {
+    const auto area = [&](double gravity) {
+        SceneDesc scene;
+        scene.name = "ball";
+        scene.world.settings.give(&StepSettings::gravity, glm::dvec3(0, gravity, 0));
+        BodyDesc &ball = scene.bodies.emplace_back();
+        ball.name = "ball";
+        ball.colliders.emplace_back().shape = SphereDesc{0.5};
+        Sandbox sandbox{Session()};
+        EXPECT_TRUE(sandbox.open(scene));
+        sandbox.perform(Action::toggle_lab);
+        EXPECT_TRUE(sandbox.session().plot({"velocity.y", "ball"}));
+        for (int i = 0; i < 3000; ++i)
+            EXPECT_TRUE(sandbox.session().step());
+        Ui ui;
+        ImGui::GetIO().Fonts->Build();
+        const ImDrawData *data = nullptr;
+        for (int settled = 0; settled < 4; ++settled) {
+            ui.fill_input({1280, 800}, 1.0f / 60);
+            ui.begin_frame();
+            PanelContext panels = sandbox.panel_context(ui.fonts());
+            data = &ui.draw(panels);
+        }
+        return area_of(*data, {0.42f, 0.68f, 0.90f, 1}, "lab");
+    };
+    const double rises = area(1);
+    EXPECT_GT(rises, 1500);
+    EXPECT_NEAR(area(-1), rises, 0.01 * rises);
+}
+
 // A phase that takes no time is not seen in the graph of a step's time: only its sign is, below.
 TEST_F(UiTest, APhaseWithoutTimeLeavesNoTraceInTheGraph) {
     Sandbox sandbox(Session({}, nullptr, make_fake()));
