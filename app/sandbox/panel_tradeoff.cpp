@@ -29,6 +29,10 @@ std::string without_raised(std::string label) {
     return label;
 }
 
+bool is_shown(const ChartRun &run) {
+    return run.status != ChartStatus::unfinished && run.cost > 0;
+}
+
 // What the lab's picture has, in a frame of this window's.
 struct Placed {
     ChartContent content;
@@ -54,7 +58,7 @@ Placed place(const SceneChart &chart) {
         mark.label.clear(); // the pointer tells them
     placed.layout = lay_out(placed.content, [](std::string_view, float) { return glm::vec2(0); });
     for (std::size_t i = 0; i < chart.runs.size(); ++i)
-        if (chart.runs[i].status != ChartStatus::unfinished && chart.runs[i].cost > 0)
+        if (is_shown(chart.runs[i]))
             placed.runs.push_back(i);
     return placed;
 }
@@ -213,11 +217,12 @@ void draw_chart(PanelContext &context, const SceneChart &chart) {
     placed.min = {at.x + left + 8, at.y + 2};
     placed.max = {at.x + room.x - 2, at.y + height - em - 5};
     draw_axes(context, placed);
-    draw_marks(placed, chart, *context.session.simulation(), mark_radius * scale);
     small_on_ground(context.fonts, placed.min.x + 6, placed.min.y + 4, placed.content.error_title);
     const std::string &cost = placed.content.cost_title;
     small_on_ground(context.fonts, placed.max.x - 6 - small_width(context.fonts, cost),
                     placed.max.y - em - 4, cost);
+    // Over the titles, so that none is hidden.
+    draw_marks(placed, chart, *context.session.simulation(), mark_radius * scale);
     if (!ImGui::IsItemHovered())
         return;
     if (const auto mark = pointed_at(placed, scale)) {
@@ -254,9 +259,10 @@ void tradeoff_tab(PanelContext &context) {
     const std::shared_ptr<const SceneChart> chart = context.frozen ? nullptr : study.result();
     ImGui::SameLine();
     const std::string failure = view.sweep_mistake.empty() ? study.failure() : view.sweep_mistake;
+    const bool any = chart && std::ranges::any_of(chart->runs, is_shown);
     study_state(context, running, study.done(), failure,
-                chart ? "" : "What each method costs and how wrong it is.");
-    if (chart && !chart->runs.empty())
+                any ? "" : "What each method costs and how wrong it is.");
+    if (any)
         draw_chart(context, *chart);
 }
 
