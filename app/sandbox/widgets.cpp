@@ -133,7 +133,8 @@ bool fold_title(const Fonts &fonts, std::string_view text, std::string_view at_r
 }
 
 void tooltip(std::string_view text) {
-    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+    const bool typed_in = ImGui::IsItemActive() && ImGui::GetIO().WantTextInput;
+    if (typed_in || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
