@@ -110,7 +110,7 @@ void time_graph(const PanelContext &context, float height) {
     }
     list.Flags = flags;
     list.PopClipRect();
-    label(context.fonts, plot, true, count > 0 ? duration(scale) : "-");
+    label(context.fonts, plot, true, usual > 0 ? duration(scale) : "-");
 }
 
 void energy_graph(const PanelContext &context, float height) {

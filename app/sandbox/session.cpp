@@ -87,6 +87,7 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     pulled_to_.reset();
     has_grabbed_ = false;
     graphs_ = {};
+    times_ = {};
     if (simulation_->has_world())
         plots_.start(*simulation_);
     settle_poses();
