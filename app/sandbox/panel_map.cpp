@@ -130,9 +130,9 @@ void legend(const PanelContext &context, const StabilityMap &map) {
     const float em = context.fonts.small->FontSize;
     const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
     ImGui::PushFont(context.fonts.small);
-    ImGui::TextDisabled("%s: %s up, %s to the right",
+    ImGui::TextDisabled("%s; to the right: %s; up: %s",
                         std::string(map.methods.front().method->title).c_str(),
-                        axis_title(map.y).c_str(), axis_title(map.x).c_str());
+                        axis_title(map.x).c_str(), axis_title(map.y).c_str());
     for (const FailingInfo &info : failings()) {
         const bool is_there =
             std::ranges::any_of(map.methods.front().cells, [&](const std::optional<MapRun> &cell) {

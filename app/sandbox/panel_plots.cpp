@@ -152,8 +152,8 @@ void plots_tab(PanelContext &context) {
     tooltip("Writes all that is plotted, from the first step to this one.");
     if (context.session.plots().curves().empty()) {
         ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("Choose what it is of and then what shall be plotted, as much as you "
-                            "like. What has one unit stands in one plot.");
+        ImGui::TextDisabled("Choose what it is of and then what to plot, as much as you like. What "
+                            "has one unit stands in one plot.");
         ImGui::PopTextWrapPos();
         return;
     }
