@@ -149,7 +149,7 @@ void energy_graph(const PanelContext &context, float height) {
     label(context.fonts, plot, false, number(low, "J", digits));
 }
 
-void legend(const PanelContext &context, const StepTimes &times) {
+void legend(const PanelContext &context, const std::optional<StepTimes> &times) {
     // In two columns, or in one where a name and its time would not fit into half of the width.
     constexpr float least_column = 9; // heights of its text
     const float width = ImGui::GetContentRegionAvail().x;
@@ -172,7 +172,7 @@ void legend(const PanelContext &context, const StepTimes &times) {
             {at.x, at.y + down}, {at.x + side, at.y + down + side}, packed(phase.colour), 2);
         ImGui::SetCursorPosX(start + side + 5);
         ImGui::TextUnformatted(phase.title);
-        const std::string time = context.frozen ? "-" : duration(times.*phase.time);
+        const std::string time = context.frozen || !times ? "-" : duration((*times).*phase.time);
         ImGui::SameLine();
         ImGui::SetCursorPosX(start + column - ImGui::CalcTextSize(time.c_str()).x -
                              (is_last ? 0.0f : 10.0f));
@@ -195,14 +195,18 @@ void diagnostics_panel(PanelContext &context) {
     heading(context.fonts, "Energy");
     energy_graph(context, height);
     ImGui::Spacing();
-    value_row("Moving bodies", std::to_string(report.moving_bodies));
-    value_row("Pairs", std::to_string(report.pairs));
-    value_row("Contacts, points",
-              std::to_string(report.contacts) + ", " + std::to_string(report.contact_points));
-    value_row("Joints", std::to_string(report.joints));
-    value_row("Impacts, unresolved",
-              std::to_string(report.impacts) + ", " + std::to_string(report.unresolved_impacts),
-              report.unresolved_impacts > 0 ? theme::warning : theme::text);
+    const auto row = [&](const char *what, const std::string &counted, bool warns = false) {
+        const bool known = context.session.times().has_value();
+        value_row(what, known ? counted : "-", warns ? theme::warning : theme::text);
+    };
+    row("Moving bodies", std::to_string(report.moving_bodies));
+    row("Pairs", std::to_string(report.pairs));
+    row("Contacts, points",
+        std::to_string(report.contacts) + ", " + std::to_string(report.contact_points));
+    row("Joints", std::to_string(report.joints));
+    row("Impacts, unresolved",
+        std::to_string(report.impacts) + ", " + std::to_string(report.unresolved_impacts),
+        report.unresolved_impacts > 0);
     measures_panel(context);
 }
 

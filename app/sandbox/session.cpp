@@ -87,7 +87,7 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
     pulled_to_.reset();
     has_grabbed_ = false;
     graphs_ = {};
-    times_ = {};
+    times_.reset();
     if (simulation_->has_world())
         plots_.start(*simulation_);
     settle_poses();
@@ -115,10 +115,10 @@ bool Session::step() {
         history_.remember(*simulation_);
         if (recorder_)
             recorder_->before_step(*simulation_);
-        times_ = StepTimes{};
-        simulation_->step(&times_);
+        simulation_->step(&times_.emplace());
     } catch (const std::exception &failure) {
         stopped_ = true;
+        times_.reset();
         const std::string why = reason(failure);
         troubles_->failed(*simulation_, why);
         messages_.error("The step after " + std::to_string(simulation_->step_count()) +
@@ -127,10 +127,10 @@ bool Session::step() {
         return false;
     }
     const StepReport &report = simulation_->report();
-    graphs_.find_pairs.add(times_.find_pairs);
-    graphs_.collide.add(times_.collide);
-    graphs_.advance.add(times_.advance);
-    graphs_.finish.add(times_.finish);
+    graphs_.find_pairs.add(times_->find_pairs);
+    graphs_.collide.add(times_->collide);
+    graphs_.advance.add(times_->advance);
+    graphs_.finish.add(times_->finish);
     const double energy = simulation_->energy();
     if (is_held)
         troubles_->brought_in(*simulation_, energy - energy_before);
@@ -236,6 +236,7 @@ bool Session::step_back() {
         return false;
     }
     stopped_ = false;
+    times_.reset();
     for (Graph *graph : {&graphs_.find_pairs, &graphs_.collide, &graphs_.advance, &graphs_.finish,
                          &graphs_.energy})
         graph->take_back();

@@ -165,7 +165,9 @@ class Session {
     [[nodiscard]] const Plots &plots() const { return plots_; }
     // As a table, as an OutputFile. Makes the folder.
     bool save_plots(const std::filesystem::path &path);
-    [[nodiscard]] const StepTimes &times() const { return times_; } // of the last step's phases
+    // Of the phases of the step that led to the present state; nothing where none did, at a run's
+    // start or after going back: then the simulation's report is empty, too.
+    [[nodiscard]] const std::optional<StepTimes> &times() const { return times_; }
     // Whether that is why something in messages() failed, once at least.
     [[nodiscard]] bool memory_ran_out() const { return memory_ran_out_; }
     [[nodiscard]] Messages &messages() { return messages_; }
@@ -218,7 +220,7 @@ class Session {
     std::string ghost_method_; // empty: none is wanted
     SessionGraphs graphs_;
     Plots plots_;
-    StepTimes times_;
+    std::optional<StepTimes> times_;
     Messages messages_;
     std::unique_ptr<const Recording> recording_; // that was opened
     std::optional<Replay> replay_;               // of it, until something else is done

@@ -296,14 +296,20 @@ TEST(SessionWithFake, GraphsFollowStepsBothWays) {
     EXPECT_EQ(energy.at(energy.size() - 1), static_cast<double>(Graph::capacity + 9));
 }
 
-TEST(SessionWithFake, TimesOfARunEndWithIt) {
+TEST(SessionWithFake, TimesAreOfTheStepThatLedHere) {
     Session session({}, nullptr, make_fake());
     ASSERT_TRUE(session.open(two_balls()));
+    EXPECT_FALSE(session.times());
     dynamic_cast<FakeSimulation &>(*session.simulation()).advance_time = 1e-3;
     ASSERT_TRUE(session.step());
-    EXPECT_EQ(session.times().advance, 1e-3);
+    ASSERT_TRUE(session.times());
+    EXPECT_EQ(session.times()->advance, 1e-3);
+    ASSERT_TRUE(session.step_back());
+    EXPECT_FALSE(session.times());
+    ASSERT_TRUE(session.step());
+    EXPECT_TRUE(session.times());
     ASSERT_TRUE(session.restart());
-    EXPECT_EQ(session.times().advance, 0);
+    EXPECT_FALSE(session.times());
 }
 
 // Held to what two_balls does: "left" rises by 0.25 m/s.
