@@ -28,8 +28,8 @@ void scene_row(PanelContext &context, const SceneEntry &entry) {
         context.open_scene = entry.path;
     if (!entry.title.empty())
         tooltip(entry.title);
-    // The open scene is brought into sight once, when it has changed.
-    if (open && context.view.scene_in_sight != entry.path) {
+    // The open scene is brought into sight once, when it has changed or the whole list is back.
+    if (open && context.view.search.empty() && context.view.scene_in_sight != entry.path) {
         ImGui::SetScrollHereY();
         context.view.scene_in_sight = entry.path;
     }
@@ -80,6 +80,8 @@ void scenes_panel(PanelContext &context) {
                                                   ImGuiInputTextFlags_EnterReturnsTrue);
     action_tooltip(Action::find_scene);
 
+    if (!context.view.search.empty())
+        context.view.scene_in_sight.clear();
     const std::vector<std::size_t> found = matching(context.scenes, context.view.search);
     if (entered && !found.empty()) {
         context.open_scene = context.scenes[found.front()].path;

@@ -17,6 +17,7 @@
 
 #include <gtest/gtest.h>
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h> // how far a list is scrolled
 
 namespace plumb {
 namespace {
@@ -209,6 +210,30 @@ TEST_F(UiTest, AClickInTheListOpensAScene) {
     EXPECT_EQ(sandbox.session().path(), scenes[1].path);
     EXPECT_TRUE(ui.over_panel());
     EXPECT_TRUE(sandbox.session().messages().empty());
+}
+
+TEST_F(UiTest, AfterASearchTheOpenSceneIsInSightAgain) {
+    Sandbox sandbox(Session(), find_scenes(source / "scenes"));
+    ASSERT_TRUE(sandbox.open(scenes[2].path)); // near the end of the list
+    Ui ui;
+    ImGui::GetIO().Fonts->Build();
+    const auto list_begins = [&](const char *search) {
+        sandbox.view().search = search;
+        for (int settled = 0; settled < 4; ++settled) {
+            ui.fill_input({1280, 800}, 1.0f / 60);
+            ui.begin_frame();
+            PanelContext panels = sandbox.panel_context(ui.fonts());
+            static_cast<void>(ui.draw(panels));
+        }
+        for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows)
+            if (std::string_view(window->Name).starts_with("scenes/list"))
+                return window->Scroll.y;
+        return -1.0f;
+    };
+    const float scrolled = list_begins("");
+    EXPECT_GT(scrolled, 100);
+    EXPECT_EQ(list_begins("pendulum"), 0);
+    EXPECT_EQ(list_begins(""), scrolled);
 }
 
 TEST_F(UiTest, EscClosesAListThatIsOpen) {
