@@ -36,6 +36,8 @@ std::string demanded(const ExpectOutcome &outcome) {
     const ExpectDesc &expect = outcome.desc;
     switch (expect.relation) {
     case ExpectDesc::Relation::equals:
+        if (!expect.curve.empty())
+            return "≤ " + number(expect.tolerance, unit_of(outcome)) + " off its curve";
         return "= " + number(expect.value) + " ± " + number(expect.tolerance, unit_of(outcome));
     case ExpectDesc::Relation::at_most:
         return "≤ " + number(expect.value, unit_of(outcome));

@@ -165,8 +165,9 @@ constexpr std::array all_quantities{
 constexpr std::array all_reductions{
     ReductionInfo{"last", Reduction::last, false, "the value at the end of the window"},
     ReductionInfo{"min", Reduction::min, false, "smallest value", false, true},
-    ReductionInfo{"max", Reduction::max, false, "largest value", true},
-    ReductionInfo{"mean", Reduction::mean, false, "mean over time (trapezoidal rule)"},
+    ReductionInfo{"max", Reduction::max, false, "largest value", true, false, true},
+    ReductionInfo{"mean", Reduction::mean, false, "mean over time (trapezoidal rule)", false, false,
+                  true},
     ReductionInfo{"max_abs", Reduction::max_abs, false, "largest magnitude", true},
     ReductionInfo{"drift", Reduction::drift, false,
                   "largest distance from the value at the start of the window", true},
@@ -301,6 +302,20 @@ double reduce(std::span<const double> times, std::span<const double> values, Red
         return first_crossing(times, values, middle);
     }
     return nan;
+}
+
+double curve_at(std::span<const double> values, double from, double to, double time) {
+    PLUMB_CHECK(values.size() >= least_curve && from < to,
+                values.size() << " values over " << from << " to " << to);
+    const double last = static_cast<double>(values.size() - 1);
+    const double place = std::clamp((time - from) / (to - from), 0.0, 1.0) * last;
+    const double first = std::clamp(std::floor(place) - 1, 0.0, last - 3);
+    const std::size_t i = static_cast<std::size_t>(first);
+    // Lagrange's polynomial through the values at s = 0, 1, 2, 3.
+    const double s = place - first;
+    return -values[i] * (s - 1) * (s - 2) * (s - 3) / 6 +
+           values[i + 1] * s * (s - 2) * (s - 3) / 2 - values[i + 2] * s * (s - 1) * (s - 3) / 2 +
+           values[i + 3] * s * (s - 1) * (s - 2) / 6;
 }
 
 } // namespace plumb

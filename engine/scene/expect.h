@@ -70,6 +70,7 @@ struct ReductionInfo {
     std::string_view description;
     // Its value never falls (rises) as the window grows; not where `level` is left to min and max.
     bool only_rises = false, only_falls = false;
+    bool of_distance = false; // it also reduces how far a quantity is from a curve
 };
 
 std::span<const ReductionInfo> reductions();
@@ -91,5 +92,15 @@ const ReductionInfo *find_reduction(std::string_view name); // null when there i
 // so does any value that is NaN.
 double reduce(std::span<const double> times, std::span<const double> values, Reduction reduction,
               std::optional<double> level = std::nullopt);
+
+// A curve has at least so many values: those that a cubic goes through.
+inline constexpr std::size_t least_curve = 4;
+
+// Of the curve whose values stand evenly over [from, to], from < to: at `time`, which is clamped to
+// that, by the cubic through the four nearest values. Of a function f it is off by at most
+// h^4 max|f''''| / 24 in the first and the last of the intervals h, and by 3/128 of h^4 max|f''''|
+// in all others: of fourth order up to its ends, where a natural spline is of second order, and
+// Catmull-Rom of third throughout.
+double curve_at(std::span<const double> values, double from, double to, double time);
 
 } // namespace plumb

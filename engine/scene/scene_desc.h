@@ -113,7 +113,10 @@ struct ExpectDesc {
     double from = 0;             // s
     double to = 0;               // s; the end of the window, and so of the run
     Relation relation = Relation::equals;
-    double value = 0; // truth, or the bound
+    double value = 0; // truth, or the bound; 0 beside a curve
+    // The truth as a curve: at least least_curve values, evenly over [from, to]. What is reduced is
+    // then how far the quantity is from it. Empty where the truth is one number.
+    std::vector<double> curve;
     double tolerance =
         0; // absolute, in the quantity's unit; how far the truth may be missed. 0 for bounds
     // By how much halving the step changed a truth that was found by refinement; none of others.

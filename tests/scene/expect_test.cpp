@@ -125,6 +125,70 @@ TEST(Reduce, RefusesUnequalLengths) {
     EXPECT_ANY_THROW(plumb::reduce(one, both, Reduction::last));
 }
 
+// The values of f at `count` places over [from, to].
+std::vector<double> values_of(double (*f)(double), double from, double to, int count) {
+    std::vector<double> values;
+    for (int i = 0; i < count; ++i)
+        values.push_back(f(from + (to - from) * i / (count - 1)));
+    return values;
+}
+
+double cubic(double t) {
+    return 2 - 3 * t + 0.5 * t * t - 0.25 * t * t * t;
+}
+
+double sine_of(double t) {
+    return std::sin(t);
+}
+
+// The largest error of a curve, within [first, last] of its intervals.
+double curve_error(double (*f)(double), double from, double to, int count, int first, int last) {
+    const std::vector<double> values = values_of(f, from, to, count);
+    const double h = (to - from) / (count - 1);
+    double error = 0;
+    for (int i = 64 * first; i <= 64 * (last + 1); ++i) {
+        const double t = from + h * i / 64;
+        error = std::max(error, std::abs(curve_at(values, from, to, t) - f(t)));
+    }
+    return error;
+}
+
+TEST(Curve, IsExactForCubicsAndAtItsValues) {
+    // A dozen roundings of numbers up to 50.
+    for (const int count : {4, 5, 9})
+        EXPECT_LT(curve_error(cubic, -2, 5, count, 0, count - 2), 1e-13) << count;
+    const std::vector<double> values{3, -1, 4, 1, -5};
+    for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_DOUBLE_EQ(curve_at(values, 1, 3, 1 + 0.5 * static_cast<double>(i)), values[i]);
+    // No further than its window.
+    EXPECT_DOUBLE_EQ(curve_at(values, 1, 3, 0.9), 3);
+    EXPECT_DOUBLE_EQ(curve_at(values, 1, 3, 3.1), -5);
+}
+
+// As the declaration says, and no smaller than half of that: the bounds are those of a sine, whose
+// fourth derivative is at most 1.
+TEST(Curve, IsOffByTheFourthPowerOfItsInterval) {
+    for (const int count : {33, 65, 129}) {
+        const double h = 2 * pi / (count - 1);
+        const double end = std::pow(h, 4) / 24, within = 3 * std::pow(h, 4) / 128;
+        const double found = curve_error(sine_of, 0, 2 * pi, count, 1, count - 3);
+        EXPECT_LE(found, within) << count;
+        EXPECT_GT(found, 0.5 * within) << count;
+        // From where the sine is greatest, the ends are worst.
+        const double at_ends =
+            std::max(curve_error(sine_of, pi / 2, 2.5 * pi, count, 0, 0),
+                     curve_error(sine_of, pi / 2, 2.5 * pi, count, count - 2, count - 2));
+        EXPECT_LE(at_ends, end) << count;
+        EXPECT_GT(at_ends, 0.5 * end) << count;
+    }
+}
+
+TEST(Curve, RefusesWhatIsNone) {
+    const std::vector<double> values{1, 2, 3};
+    EXPECT_ANY_THROW(curve_at(values, 0, 1, 0.5));
+    EXPECT_ANY_THROW(curve_at(std::vector<double>{1, 2, 3, 4}, 1, 1, 1));
+}
+
 TEST(RelativeChange, DividesByTheScaleAtTheStart) {
     EXPECT_DOUBLE_EQ(relative_change(-3, 4), -0.75);
     EXPECT_EQ(relative_change(-3, 0), -3);

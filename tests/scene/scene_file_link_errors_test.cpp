@@ -129,6 +129,61 @@ tolerance = 0.5
 estimate = @-0.01
 )",
          {"estimate is -0.01; it must be a number from 0 to 1e9"}},
+        {"ExpectShortCurve",
+         expect + R"(to = 1
+reduce = "mean"
+equals = @[1, 2, 3]
+tolerance = 0.5
+)",
+         {"equals is a curve of 3 values; write at least 4, evenly from the start of the window to "
+          "its end; `plumb reference SCENE --write` finds them where there is an estimate"}},
+        {"ExpectCurveOfAnInstant",
+         expect + R"(from = @1
+to = 1
+reduce = "max"
+equals = [1, 2, 3, 4]
+tolerance = 0.5
+)",
+         {"the window of a curve is the instant 1 s; from must be before to"}},
+        {"ExpectCurveWithoutWindow",
+         R"(@[[expect]]
+name = "e"
+quantity = "energy"
+reduce = "max"
+equals = [1, 2, 3, 4]
+tolerance = 0.5
+source = "x"
+)",
+         {R"([[expect]] "e" has no to; to = seconds, the end of the window and of the run)"}},
+        {"ExpectCurveNotFinite",
+         expect + R"(to = 1
+reduce = "max"
+equals = [1, @inf, 3,
+    @nan, @"5"]
+tolerance = 0.5
+)",
+         {"equals[1] is inf; it must be a finite number",
+          "equals[3] is nan; it must be a finite number",
+          "equals[4] is a string; it must be a finite number"}},
+        {"ExpectCurveOtherwiseReduced",
+         expect + R"(to = 1
+reduce = @"period"
+equals = [1, 2, 3, 4]
+tolerance = 0.5
+)",
+         {R"(equals is a curve, and reduce = "period"; how far the quantity is from a curve is reduced by "max" or "mean")"}},
+        {"ExpectCurveReducedByDefault",
+         expect + R"(to = 1
+equals = @[1, 2, 3, 4]
+tolerance = 0.5
+)",
+         {R"(equals is a curve, and reduce = "last"; how far the quantity is from a curve is reduced by "max" or "mean")"}},
+        {"ExpectCurveAsBound",
+         expect + R"(to = 1
+reduce = "max"
+at_most = @[1, 2, 3, 4]
+)",
+         {"at_most is an array; it must be a finite number"}},
         {"ExpectNoSource",
          R"(@[[expect]]
 name = "e"

@@ -154,6 +154,17 @@ tolerance = 0.5
 estimate = 0.01
 source = "conserved but for friction"
 
+[[expect]]
+name = "ball's way"
+quantity = "position.x"
+body = "ball"
+reduce = "mean"
+to = 2
+equals = [0, 0.5,
+    0.75, 1]
+tolerance = 1
+source = "by eye"
+
 [state]
 step = 12
 [[state.contact]]

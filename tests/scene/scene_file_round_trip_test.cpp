@@ -142,6 +142,9 @@ std::vector<std::string> words(const SceneDesc &scene) {
         w.add(e.name), w.add(e.quantity), w.add(e.body), w.add(e.reduce), w.add(e.level);
         w.add(e.from), w.add(e.to), w.number(static_cast<std::uint64_t>(e.relation));
         w.add(e.value), w.add(e.tolerance), w.add(e.estimate), w.add(e.source);
+        w.number(e.curve.size());
+        for (const double value : e.curve)
+            w.add(value);
     }
     w.number(scene.step_count), w.number(scene.dt_since_step), w.add(scene.dt_since_time);
     if (const GrabStateDesc grab = scene.grab.value_or(GrabStateDesc{}); scene.grab) {
@@ -567,6 +570,11 @@ class Scenes {
             e.tolerance = positive();
             if (one_in(2))
                 e.estimate = random_.next_unit() * 0.099 * e.tolerance;
+            if (reduction.of_distance && one_in(2)) {
+                e.value = 0;
+                for (std::uint32_t count = 4 + random_.next_index(30); count > 0; --count)
+                    e.curve.push_back(number());
+            }
         }
         e.source = text();
         return e;

@@ -248,6 +248,27 @@ source = "g t^2 / 2"
     EXPECT_EQ(expect.estimate, 2e-5);
 }
 
+TEST(SceneFileValues, ExpectedCurves) {
+    const SceneDesc scene = parse(ball + R"([[expect]]
+name = "falls"
+quantity = "position.y"
+body = "ball"
+reduce = "max"
+to = 1.5
+equals = [ # at 0, 0.5, 1 and 1.5 s
+    0, -1.22625,
+    -4.905, -11.03625,
+]
+tolerance = 0.1
+source = "g t^2 / 2"
+)");
+    const ExpectDesc &expect = scene.expects.at(0);
+    EXPECT_EQ(expect.curve, (std::vector<double>{0, -1.22625, -4.905, -11.03625}));
+    EXPECT_EQ(expect.value, 0);
+    EXPECT_EQ(expect.tolerance, 0.1);
+    EXPECT_FALSE(expect.estimate);
+}
+
 TEST(SceneFileValues, LoadSaysWhenItCannotRead) {
     for (const std::filesystem::path path : {"/nonexistent/x.toml", "/"}) {
         const SceneFileResult result = load_scene(path);

@@ -24,7 +24,8 @@ std::string explain(const ExpectDesc &expect, const std::string &unit) {
                with_unit(expect.to, "s");
     switch (expect.relation) {
     case ExpectDesc::Relation::equals:
-        text += "; truly " + with_unit(expect.value, unit);
+        text += expect.curve.empty() ? "; truly " + with_unit(expect.value, unit)
+                                     : std::string("; held to a curve");
         break;
     case ExpectDesc::Relation::at_most:
         text += "; should be at most " + with_unit(expect.value, unit);
@@ -51,7 +52,8 @@ ErrorMeasure measure_of(const ExpectDesc &expect, std::size_t index) {
     const std::string limit = short_quantity(outcome.limit, outcome.unit);
     switch (expect.relation) {
     case ExpectDesc::Relation::equals:
-        measure.title = "Error: |measured − true|";
+        measure.title =
+            "Error: " + (expect.curve.empty() ? "" : expect.reduce + " of ") + "|measured − true|";
         measure.limit_label = "tolerance " + limit;
         break;
     case ExpectDesc::Relation::at_most:

@@ -49,10 +49,11 @@ double smallest_moving_width(const SceneDesc &scene) {
     return width;
 }
 
-// Of a magnitude only the run knows whether it is of a gain or of a loss.
+// Of a magnitude or a distance from a curve only the run knows whether it is of a gain or of a loss.
 bool is_too_much_energy(const ExpectOutcome &outcome, const JudgedRun &run) {
     const ReductionInfo *reduction = find_reduction(outcome.desc.reduce);
-    if (reduction->reduction == Reduction::drift || reduction->reduction == Reduction::max_abs)
+    if (reduction->reduction == Reduction::drift || reduction->reduction == Reduction::max_abs ||
+        !outcome.desc.curve.empty())
         return run.max_energy_gain >= run.max_energy_error;
     return outcome.measured > outcome.desc.value;
 }

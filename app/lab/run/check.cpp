@@ -109,7 +109,8 @@ void print(std::ostream &out, const CheckOutcome &outcome) {
             out << "not judged, since this run goes on from a later state; " << demand(expect);
         else
             out << "not measured, should be: " << demand(expect);
-        if (expect.judged() && expect.desc.relation == ExpectDesc::Relation::equals)
+        if (expect.judged() && expect.desc.relation == ExpectDesc::Relation::equals &&
+            expect.desc.curve.empty())
             out << ", off by " << with_unit(expect.error, expect.unit);
         out << how;
     }

@@ -78,6 +78,9 @@ std::string demand(const ExpectOutcome &outcome) {
     const ExpectDesc &desc = outcome.desc;
     switch (desc.relation) {
     case ExpectDesc::Relation::equals:
+        if (!desc.curve.empty())
+            return "at most " + with_unit(desc.tolerance, outcome.unit) + " off its curve (" +
+                   desc.reduce + ")";
         return "is " + with_unit(desc.value, outcome.unit) + " within " +
                with_unit(desc.tolerance, outcome.unit);
     case ExpectDesc::Relation::at_most:

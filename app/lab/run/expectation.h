@@ -28,7 +28,8 @@ struct ExpectOutcome {
     double measured = std::numeric_limits<double>::quiet_NaN();
     // How wrong, >= 0, infinite when nothing could be measured (a period that never came, say); it
     // holds as long as this is at most `limit`.
-    //   equals    |measured - value|; the limit is the tolerance
+    //   equals    |measured - value|, or what was measured of a curve: how far it was missed; the
+    //             limit is the tolerance
     //   at_most   of a bound above zero: what was measured, or 0 if that is negative; the limit is
     //             the bound, so that a chart shows how much better than asked. Of any other bound:
     //             the excess over it; the limit is 0
@@ -49,7 +50,8 @@ struct ExpectOutcome {
 // Met or missed, as if the window had ended.
 [[nodiscard]] ExpectOutcome judge(const ExpectDesc &desc, double measured);
 
-// "is 1.4 m within 0.01 m", "at most 0.05 m", "at least 1 rad"
+// "is 1.4 m within 0.01 m", "at most 0.01 m off its curve (max)", "at most 0.05 m", "at least 1
+// rad"
 [[nodiscard]] std::string demand(const ExpectOutcome &outcome);
 
 } // namespace plumb

@@ -3,6 +3,7 @@
 #include "engine/core/check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -51,6 +52,19 @@ Samples window(std::span<const double> times, std::span<const double> values, do
         if (i > 0 && times[i - 1] < to - slack && time > to + slack && to > from)
             interpolate(i, to);
     }
+    return part;
+}
+
+// How far a course is from the curve that is expected, at the samples of its window.
+Samples distances(std::span<const double> times, std::span<const double> values,
+                  const ExpectDesc &expect, double slack) {
+    Samples part;
+    for (std::size_t i = 0; i < times.size(); ++i)
+        if (times[i] >= expect.from - slack && times[i] <= expect.to + slack) {
+            part.times.push_back(times[i]);
+            part.values.push_back(
+                std::abs(values[i] - curve_at(expect.curve, expect.from, expect.to, times[i])));
+        }
     return part;
 }
 
@@ -128,7 +142,9 @@ double ExpectationWatch::measured(const Followed &expect, std::size_t samples) c
     const std::span<const double> values(courses_[expect.course].data(), samples);
     const bool last = expect.reduction->reduction == Reduction::last;
     const double from = last ? std::min(expect.desc.to, times.back()) : expect.desc.from;
-    const Samples part = window(times, values, from, expect.desc.to, slack_);
+    const Samples part = expect.desc.curve.empty()
+                             ? window(times, values, from, expect.desc.to, slack_)
+                             : distances(times, values, expect.desc, slack_);
     return plumb::reduce(part.times, part.values, expect.reduction->reduction, expect.desc.level);
 }
 

@@ -29,13 +29,20 @@ class ExpectationWatch {
 
     [[nodiscard]] std::size_t size() const { return expects_.size(); }
     // Judged once its window has ended, or before that if it can no longer be met. Where a window's
-    // edge falls between two steps, the quantity there is interpolated linearly.
+    // edge falls between two steps, the quantity there is interpolated linearly; a curve is
+    // compared at the steps within the window.
     [[nodiscard]] ExpectOutcome outcome(std::size_t expectation) const {
         return outcome(expectation, times_.size());
     }
     // When one that is missed came to be so (s): at the end of its window, or when it could no
     // longer be met. Nothing of others.
     [[nodiscard]] std::optional<double> missed_since(std::size_t expectation) const;
+
+    // At each sample: its time (s), and the quantity of that expectation.
+    [[nodiscard]] std::span<const double> times() const { return times_; }
+    [[nodiscard]] std::span<const double> course(std::size_t expectation) const {
+        return courses_[expects_.at(expectation).course];
+    }
 
     // The values of `also` at the last sample, in that order.
     [[nodiscard]] std::span<const double> also_now() const { return also_now_; }

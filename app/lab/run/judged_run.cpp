@@ -200,6 +200,11 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
 
     for (std::size_t i = 0; i < watch.size(); ++i)
         run.outcomes.push_back(watch.outcome(i));
+    if (options.keep_courses) {
+        run.times.assign(watch.times().begin(), watch.times().end());
+        for (std::size_t i = 0; i < watch.size(); ++i)
+            run.courses.emplace_back(watch.course(i).begin(), watch.course(i).end());
+    }
     return run;
 }
 

@@ -39,6 +39,8 @@ struct JudgeOptions {
     bool wall_clock = false;
     // Ends the run once an expectation is missed whatever comes; it is looked at now and then.
     bool give_up = false;
+    // Whether to keep the course of each expectation's quantity.
+    bool keep_courses = false;
     // Asked before each step; true ends the run early. May be empty.
     std::function<bool()> stop;
     // Called after each step, with the fraction done. May be empty.
@@ -72,6 +74,10 @@ struct JudgedRun {
     // With follow_errors, at the end of the run:
     double end_penetration = 0; // m
     double end_joint_drift = 0; // m
+    // With keep_courses, at the start and after each step: the time (s), and of each outcome its
+    // quantity.
+    std::vector<double> times;
+    std::vector<std::vector<double>> courses;
     // It came to its end, and nothing that the scene expects was missed.
     [[nodiscard]] bool all_met() const;
     // Whether anything was judged at all.

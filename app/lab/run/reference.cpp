@@ -7,12 +7,15 @@
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/scene_text.h"
 #include "app/lab/run/sweep.h"
+#include "engine/scene/expect.h"
 #include "engine/scene/file/truths.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <stdexcept>
+#include <utility>
 
 namespace plumb {
 
@@ -28,11 +31,55 @@ std::string known_digits(double value, double estimate) {
     return text;
 }
 
-// Two digits.
-double rounded_estimate(double estimate) {
+// To two digits, upwards.
+double rounded_estimate(double change) {
+    if (!std::isfinite(change))
+        return std::numeric_limits<double>::infinity();
+    if (change == 0)
+        return 0;
+    const int digit = static_cast<int>(std::floor(std::log10(change))) - 1;
     char text[24];
-    std::snprintf(text, sizeof text, "%.2g", estimate);
+    std::snprintf(text, sizeof text, "%.0fe%d", std::ceil(change / std::pow(10, digit)), digit);
     return std::stod(text);
+}
+
+// A quantity at each step of a run.
+struct Course {
+    std::span<const double> times, values;
+    double at(double time) const { return curve_at(values, times.front(), times.back(), time); }
+};
+
+double farthest(const std::vector<double> &curve, const Course &course, const ExpectDesc &desc) {
+    double distance = 0;
+    for (std::size_t i = 0; i < course.times.size(); ++i)
+        if (const double time = course.times[i]; time >= desc.from && time <= desc.to)
+            distance = std::max(
+                distance, std::abs(curve_at(curve, desc.from, desc.to, time) - course.values[i]));
+    return distance;
+}
+
+// As few values as come near enough to the course between them, to a sixteenth; none where it would
+// take more than there are steps.
+std::vector<double> curve_of(const Course &course, const ExpectDesc &desc) {
+    for (std::size_t count = least_curve; count < course.times.size(); count += 1 + count / 16) {
+        std::vector<double> curve;
+        for (std::size_t i = 0; i < count; ++i)
+            curve.push_back(course.at(std::lerp(
+                desc.from, desc.to, static_cast<double>(i) / static_cast<double>(count - 1))));
+        if (farthest(curve, course, desc) < desc.tolerance / 20)
+            return curve;
+    }
+    return {};
+}
+
+// How far the curve that was found before is from this course, whose own takes its place, or that
+// one if it is farther; NaN where there is none.
+double change_of_curve(RefinedTruth &truth, const Course &course) {
+    const std::vector<double> before = std::exchange(truth.curve, curve_of(course, truth.desc));
+    if (before.empty() || truth.curve.empty())
+        return NAN;
+    return std::max(farthest(before, course, truth.desc),
+                    farthest(truth.curve, course, truth.desc));
 }
 
 } // namespace
@@ -64,6 +111,7 @@ std::vector<RefinedTruth> refine(const SceneDesc &scene, const RefineOptions &op
         const RunOptions run = accurate_run(scene, {}, dt, substeps);
         const std::unique_ptr<Simulation> simulation = Simulation::create(left, run, nullptr);
         JudgeOptions judging;
+        judging.keep_courses = true;
         judging.stop = options.stop;
         judging.progress = [&](double fraction) {
             if (options.progress)
@@ -72,14 +120,18 @@ std::vector<RefinedTruth> refine(const SceneDesc &scene, const RefineOptions &op
         const JudgedRun judged = judge_run(*simulation, left, judging);
         if (judged.stopped)
             return {};
-        for (const ExpectOutcome &outcome : judged.outcomes) {
+        for (std::size_t i = 0; i < judged.outcomes.size(); ++i) {
+            const ExpectOutcome &outcome = judged.outcomes[i];
             RefinedTruth &truth = *std::ranges::find(
                 truths, outcome.desc.name, [](const RefinedTruth &each) { return each.desc.name; });
             const double before = truth.value;
             truth.value = judged.divergence ? NAN : outcome.measured;
-            const double change = std::abs(truth.value - before);
-            truth.estimate =
-                std::isfinite(change) ? change : std::numeric_limits<double>::infinity();
+            double change = std::abs(truth.value - before);
+            if (!truth.desc.curve.empty())
+                change = std::isfinite(truth.value)
+                             ? change_of_curve(truth, {judged.times, judged.courses[i]})
+                             : NAN;
+            truth.estimate = rounded_estimate(change);
             truth.run = resolve_run(scene, run);
         }
     }
@@ -95,16 +147,25 @@ void print(std::ostream &out, const std::string &scene, const std::vector<Refine
                 : truth.agrees() ? "ok    "
                                  : "OTHER ")
             << scene << "/" << truth.desc.name << ": ";
-        if (std::isfinite(truth.value))
+        const bool is_curve = !truth.desc.curve.empty();
+        if (!std::isfinite(truth.value))
+            out << "nothing was measured";
+        else if (is_curve && truth.curve.empty())
+            out << "a curve of more values than there are steps";
+        else if (is_curve)
+            out << "a curve of " << truth.curve.size() << " values";
+        else
             out << known_digits(truth.value, truth.estimate)
                 << (truth.unit == "1" ? "" : " " + truth.unit);
-        else
-            out << "nothing was measured";
         if (std::isfinite(truth.estimate))
             out << (known ? ", changed by " : ", not settled: still changed by ")
-                << with_unit(rounded_estimate(truth.estimate), truth.unit);
-        out << "; the file says " << with_unit(truth.desc.value, truth.unit) << " within "
-            << with_unit(truth.desc.tolerance, truth.unit);
+                << with_unit(truth.estimate, truth.unit);
+        if (is_curve)
+            out << "; the file's is off by " << with_unit(truth.value, truth.unit) << " ("
+                << truth.desc.reduce << "), held to ";
+        else
+            out << "; the file says " << with_unit(truth.desc.value, truth.unit) << " within ";
+        out << with_unit(truth.desc.tolerance, truth.unit);
         if (truth.desc.estimate)
             out << ", by refinement";
         out << "  [" << run_text(truth.run) << "]\n";
@@ -114,11 +175,16 @@ void print(std::ostream &out, const std::string &scene, const std::vector<Refine
 ExitCode write(const SceneText &scene, const std::vector<RefinedTruth> &truths, std::ostream &out,
                std::ostream &err) {
     std::vector<WrittenTruth> written;
-    for (const RefinedTruth &truth : truths)
-        if (truth.desc.estimate && truth.settled())
-            written.push_back({truth.desc.name,
-                               std::stod(known_digits(truth.value, truth.estimate)),
-                               rounded_estimate(truth.estimate)});
+    for (const RefinedTruth &truth : truths) {
+        if (!truth.desc.estimate || !truth.settled())
+            continue;
+        std::vector<double> values = truth.curve;
+        if (truth.desc.curve.empty())
+            values = {truth.value};
+        for (double &value : values)
+            value = std::stod(known_digits(value, truth.estimate));
+        written.push_back({truth.desc.name, std::move(values), truth.estimate});
+    }
     std::string text;
     try {
         text = with_truths(scene.text, scene.path.string(), written);

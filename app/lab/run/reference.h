@@ -17,11 +17,16 @@ struct RefinedTruth {
     ExpectDesc desc;
     std::string unit; // "1" where there is none
     double value = std::numeric_limits<double>::quiet_NaN();
-    // By how much halving dt changed it last; infinite where that gave no number.
+    // Where the file has a curve, `value` is how far the run was from that, and this is the run's
+    // own: about as few values as are off by less than a twentieth of the tolerance at any step.
+    // Empty where it would take more values than there were steps.
+    std::vector<double> curve;
+    // By how much halving dt changed it last, of a curve at most at any step, rounded up to two
+    // digits; infinite where that gave no number.
     double estimate = std::numeric_limits<double>::infinity();
     ResolvedRun run; // the last
     [[nodiscard]] bool settled() const { return estimate < desc.tolerance / 10; }
-    // The file's is this, to a tenth of the tolerance.
+    // The file's is this, to a tenth of the tolerance; of a curve, as it is reduced.
     [[nodiscard]] bool agrees() const;
 };
 

@@ -55,6 +55,21 @@ void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
             expect.body = reading.scene.bodies[*body].name;
 }
 
+// Whether `equals` is a curve, not a number.
+bool is_curve(const Table &table) {
+    return table.has("equals") && table.node("equals")->is_array();
+}
+
+void refuse_curve(const Table &table, const ExpectDesc &expect) {
+    std::string names;
+    for (const ReductionInfo &reduction : reductions())
+        if (reduction.of_distance)
+            names += (names.empty() ? "" : " or ") + in_quotes(reduction.name);
+    table.error(table.has("reduce") ? "reduce" : "equals",
+                "equals is a curve, and reduce = " + in_quotes(expect.reduce),
+                "how far the quantity is from a curve is reduced by " + names);
+}
+
 void read_reduction(const Table &table, ExpectDesc &expect) {
     std::vector<std::string_view> names;
     for (const ReductionInfo &reduction : reductions())
@@ -67,6 +82,22 @@ void read_reduction(const Table &table, ExpectDesc &expect) {
     if (!find_reduction(expect.reduce)->uses_level)
         table.refuse({"level"}, "reduce = " + in_quotes(expect.reduce),
                      "period, crossings and first_crossing have one");
+    if (is_curve(table) && !find_reduction(expect.reduce)->of_distance)
+        refuse_curve(table, expect);
+}
+
+void read_curve(const Table &table, ExpectDesc &expect) {
+    for (const toml::node &value : *table.node("equals")->as_array()) {
+        const std::string name = "equals[" + std::to_string(expect.curve.size()) + "]";
+        expect.curve.push_back(table.number(value, name, finite).value_or(0));
+    }
+    if (const std::size_t count = expect.curve.size(); count < least_curve)
+        table.error("equals",
+                    "equals is a curve of " + std::to_string(count) +
+                        (count == 1 ? " value" : " values"),
+                    "write at least " + std::to_string(least_curve) +
+                        ", evenly from the start of the window to its end; `plumb reference SCENE "
+                        "--write` finds them where there is an estimate");
 }
 
 void read_estimate(const Table &table, ExpectDesc &expect) {
@@ -120,6 +151,9 @@ void read_expect(Reading &reading, const toml::table &source) {
                         "the window from " + shortest(expect.from) + " to " + shortest(*to) +
                             " s is empty",
                         "from must not be after to");
+        else if (to && expect.from == *to && is_curve(table))
+            table.error("from", "the window of a curve is the instant " + shortest(*to) + " s",
+                        "from must be before to");
     }
 
     const std::string_view relation =
@@ -127,7 +161,10 @@ void read_expect(Reading &reading, const toml::table &source) {
     if (!relation.empty()) {
         expect.relation = static_cast<ExpectDesc::Relation>(
             std::find(relations.begin(), relations.end(), relation) - relations.begin());
-        expect.value = table.number(relation, finite).value_or(0);
+        if (is_curve(table))
+            read_curve(table, expect);
+        else
+            expect.value = table.number(relation, finite).value_or(0);
         if (relation == "equals") {
             if (table.require("tolerance", "how far the truth may be missed, in the "
                                            "quantity's unit"))

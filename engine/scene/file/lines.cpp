@@ -39,10 +39,31 @@ void Lines::set_value(std::size_t i, std::string_view key, std::string_view valu
     at = at == std::string::npos ? at : line.find_first_not_of(" \t", at + 1);
     if (at == std::string::npos)
         throw std::invalid_argument(layout_);
+    if (line[at] == '[')
+        join_array(i, at);
     const bool quoted = line[at] == '"' || line[at] == '\'';
-    const std::size_t last =
-        quoted ? line.find(line[at], at + 1) : line.find_first_of(" \t#\r\n", at) - 1;
-    line.replace(at, std::min(last, line.size() - 1) + 1 - at, value);
+    const std::size_t last = line[at] == '[' ? line.find(']', at)
+                             : quoted        ? line.find(line[at], at + 1)
+                                             : line.find_first_of(" \t#\r\n", at) - 1;
+    line.replace(at, std::min(last, line.size() - 1) + 1 - at, with_ends(value));
+}
+
+// What is between the array's bracket and the line that has the other goes.
+void Lines::join_array(std::size_t i, std::size_t at) {
+    std::string &line = lines_[i];
+    const auto closing = [](std::string_view text) {
+        const std::size_t bracket = text.find(']');
+        return bracket < text.find('#') ? bracket : std::string_view::npos;
+    };
+    if (closing(std::string_view(line).substr(at)) != std::string_view::npos)
+        return;
+    for (std::size_t next = i + 1; next < lines_.size(); ++next) {
+        const std::string text = take(next);
+        if (const std::size_t bracket = closing(text); bracket != std::string::npos) {
+            line.replace(at + 1, std::string::npos, text.substr(bracket));
+            return;
+        }
+    }
 }
 
 std::string Lines::text() const {

@@ -21,11 +21,13 @@ class Lines {
     std::string take(std::size_t i);
     void add_after(std::size_t i, std::string_view text);
     void add_before(std::size_t i, std::string_view text);
-    // Of a line "key = value # comment"; throws std::invalid_argument of any other.
+    // Of a line "key = value # comment"; throws std::invalid_argument of any other. An array of
+    // numbers may go on over the lines that follow.
     void set_value(std::size_t i, std::string_view key, std::string_view value);
     std::string text() const;
 
   private:
+    void join_array(std::size_t i, std::size_t at);
     std::string with_ends(std::string_view text) const;
 
     std::string layout_;

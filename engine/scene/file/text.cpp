@@ -15,6 +15,13 @@ bool same_bits(const glm::dvec3 &a, const glm::dvec3 &b) {
     return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
 }
 
+std::string array_of(std::span<const double> values) {
+    std::string text = "[";
+    for (std::size_t i = 0; i < values.size(); ++i)
+        text += (i % 10 == 0 ? "\n    " : " ") + shortest(values[i]) + ',';
+    return text + "\n]";
+}
+
 std::string rotation(const glm::dquat &q) {
     return "[" + shortest(q.w) + ", " + shortest(q.x) + ", " + shortest(q.y) + ", " +
            shortest(q.z) + "]";

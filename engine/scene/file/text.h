@@ -5,6 +5,7 @@
 #include "engine/scene/scene_desc.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,8 @@ bool same_bits(const glm::dvec3 &a, const glm::dvec3 &b);
 template <typename Vector> std::string array3(const Vector &v) {
     return "[" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + "]";
 }
+// In lines of ten.
+std::string array_of(std::span<const double> values);
 std::string rotation(const glm::dquat &q);  // [w, x, y, z]
 std::string string(std::string_view value); // in quotes
 // A character that a basic string must not hold as it is.

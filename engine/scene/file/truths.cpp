@@ -3,6 +3,7 @@
 #include "engine/scene/file/lines.h"
 #include "engine/scene/file/number.h"
 #include "engine/scene/file/reading.h"
+#include "engine/scene/file/text.h"
 #include "engine/scene/scene_file.h"
 
 #include <algorithm>
@@ -38,17 +39,21 @@ std::string with_truths(std::string_view text, const std::string &path,
     Lines lines(text, expect_layout);
     for (const WrittenTruth &truth : truths) {
         const toml::table &table = expect_of(*root, truth.expect);
-        for (const auto &[key, value] :
-             {std::pair{"equals", truth.value}, {"estimate", truth.estimate}}) {
+        const bool is_curve = truth.values.size() > 1;
+        const double value = is_curve ? 0 : truth.values.at(0);
+        for (const auto &[key, text_of_value] :
+             {std::pair{"equals", is_curve ? array_of(truth.values) : shortest(value)},
+              {"estimate", shortest(truth.estimate)}}) {
             const auto at = table.find(key);
             if (at == table.end())
                 throw std::invalid_argument("[[expect]] " + in_quotes(truth.expect) + " has no " +
                                             key);
-            lines.set_value(line_of(at->first.source()), key, shortest(value));
+            lines.set_value(line_of(at->first.source()), key, text_of_value);
         }
         const auto expect =
             std::ranges::find(should_be.scene.expects, truth.expect, &ExpectDesc::name);
-        expect->value = truth.value;
+        expect->value = value;
+        expect->curve = is_curve ? truth.values : std::vector<double>();
         expect->estimate = truth.estimate;
     }
     std::string changed = lines.text();

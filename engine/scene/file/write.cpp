@@ -312,7 +312,8 @@ class SceneWriter {
             line("level", shortest(*expect.level));
         line("from", shortest(expect.from));
         line("to", shortest(expect.to));
-        line(relations[static_cast<std::size_t>(expect.relation)], shortest(expect.value));
+        line(relations[static_cast<std::size_t>(expect.relation)],
+             expect.curve.empty() ? shortest(expect.value) : array_of(expect.curve));
         if (expect.relation == ExpectDesc::Relation::equals)
             line("tolerance", shortest(expect.tolerance));
         if (expect.estimate)

@@ -3,6 +3,7 @@
 #include "app/lab/run/check.h"
 
 #include "engine/core/random.h"
+#include "engine/scene/expect.h"
 #include "engine/scene/scene_file.h"
 #include "tests/lab/chart/falling.h"
 
@@ -105,6 +106,12 @@ TEST(ChartAndCheck, AgreeOnAnythingThatABallIsHeldTo) {
             expect.value = random.next_index(8) == 0 ? 0 : random.next_in(-2, 5);
             if (expect.relation == ExpectDesc::Relation::equals)
                 expect.tolerance = random.next_in(0.1, 5);
+            if (expect.tolerance > 0 && find_reduction(expect.reduce)->of_distance &&
+                random.next_index(2) == 0) {
+                expect.value = 0;
+                for (int value = 0; value < 6; ++value)
+                    expect.curve.push_back(random.next_in(-2, 5));
+            }
             scene.expects.push_back(expect);
         }
         ChartOptions options;

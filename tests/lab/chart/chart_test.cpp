@@ -56,6 +56,27 @@ TEST(Chart, ErrorsAreThoseOfAFullRun) {
         EXPECT_EQ(chart.runs[i].pareto, front[i]);
 }
 
+// x is t (1 + 1 / substeps), and should be t.
+TEST(Chart, ErrorsOfACurveAreItsWorstOrItsMean) {
+    for (const bool mean : {false, true}) {
+        SceneDesc scene = falling_scene();
+        ExpectDesc &expect = scene.expects.front();
+        expect.reduce = mean ? "mean" : "max";
+        expect.value = 0;
+        expect.curve = {0, 0.25, 0.5, 0.75, 1};
+        const SceneChart chart = chart_scene(scene, quick(fakes()));
+        EXPECT_EQ(chart.measure.title,
+                  mean ? "Error: mean of |measured − true|" : "Error: max of |measured − true|");
+        EXPECT_EQ(chart.measure.unit, "m");
+        ASSERT_EQ(chart.runs.size(), 4U);
+        for (const ChartRun &run : chart.runs) {
+            const double error = (mean ? 0.5 : 1) / run.resolved.settings.substeps;
+            EXPECT_NEAR(run.error, error, 1e-12); // rounding of numbers near 1
+            EXPECT_EQ(run.status, error > 0.3 ? ChartStatus::outside : ChartStatus::fine);
+        }
+    }
+}
+
 TEST(Chart, JustSoManySubstepsAndAtLeastSoManyAreTwoCurves) {
     ChartOptions options = quick(fakes());
     options.base = {};

@@ -85,6 +85,60 @@ TEST(Expectation, WindowEdgesBetweenStepsAreInterpolated) {
         EXPECT_EQ(outcome.verdict, Verdict::met) << outcome.desc.name << ": " << outcome.measured;
 }
 
+double wave(double t) {
+    return 0.4 * std::sin(2 * pi * t / 0.7 + 0.3);
+}
+
+// Held to a curve of the wave through `count` values.
+ExpectDesc curve_of_wave(const std::string &reduce, double from, double to, int count,
+                         double tolerance) {
+    ExpectDesc desc = expect_of("position.x", reduce, from, to, 0, tolerance);
+    for (int i = 0; i < count; ++i)
+        desc.curve.push_back(wave(from + (to - from) * i / (count - 1)));
+    return desc;
+}
+
+// Steps that do not meet the window's edges nor the curve's values. The curve itself is off by up
+// to a (w h)^4 / 24 = 2e-6 m.
+TEST(Expectation, CurvesAreMissedByTheirWorstOrTheirMean) {
+    FakeSimulation fake(0.013);
+    fake.state_at = [](double t) {
+        BodyState state;
+        state.position.x = wave(t) + 0.01 * t;
+        return state;
+    };
+    const SceneDesc scene = scene_of(
+        {curve_of_wave("max", 0.5, 4, 321, 0.041), curve_of_wave("mean", 0.5, 4, 321, 0.023),
+         curve_of_wave("max", 0.5, 4, 321, 0.039), curve_of_wave("mean", 0.5, 4, 321, 0.022)});
+    const JudgedRun run = judge_run(fake, scene);
+    // Off by 0.01 t, at the first and the last step of the window at 0.507 and 3.991 s.
+    constexpr double curve = 2e-6;
+    EXPECT_NEAR(run.outcomes[0].measured, 0.03991, curve);
+    EXPECT_NEAR(run.outcomes[1].measured, 0.5 * (0.00507 + 0.03991), curve);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(run.outcomes[i].verdict, i < 2 ? Verdict::met : Verdict::missed) << i;
+        EXPECT_EQ(run.outcomes[i].error, run.outcomes[i].measured);
+        EXPECT_EQ(run.outcomes[i].limit, scene.expects[i].tolerance);
+        EXPECT_EQ(run.outcomes[i].unit, "m");
+    }
+    EXPECT_EQ(demand(run.outcomes[0]), "at most 0.041 m off its curve (max)");
+}
+
+TEST(Expectation, CurvesOfWhatIsNoNumberOrHasNoStepsAreMissed) {
+    FakeSimulation fake(0.5);
+    fake.state_at = [](double t) {
+        BodyState state;
+        state.position.x = t == 1 ? NAN : 0;
+        return state;
+    };
+    const JudgedRun run = judge_run(
+        fake, scene_of({curve_of_wave("max", 0.6, 0.9, 9, 9), curve_of_wave("mean", 0, 2, 9, 9)}));
+    for (const ExpectOutcome &outcome : run.outcomes) {
+        EXPECT_EQ(outcome.verdict, Verdict::missed);
+        EXPECT_TRUE(std::isinf(outcome.error));
+    }
+}
+
 TEST(Expectation, SineHasItsPeriodAndAmplitude) {
     FakeSimulation fake(0.01);
     fake.state_at = [](double t) {
@@ -345,11 +399,35 @@ TEST(ExpectationWatch, WhatCanNoLongerBeMetIsMissedAtOnce) {
         EXPECT_TRUE(watch.outcome(i).judged());
 }
 
+// The worst at once, when it is too far; the mean, which may yet fall, at the end.
+TEST(ExpectationWatch, WhatIsTooFarFromItsCurveIsMissedAtOnce) {
+    const auto at_rest = [](const char *reduce) {
+        ExpectDesc desc = expect_of("position.x", reduce, 0, 4, 0, 0.5);
+        desc.curve = {0, 0, 0, 0};
+        return desc;
+    };
+    FakeSimulation fake = moving(0.125);
+    ExpectationWatch watch(fake, {at_rest("max"), at_rest("mean")});
+    EXPECT_EQ(watch.outcome(0).verdict, Verdict::pending);
+    for (int step = 1; step < 32; ++step) {
+        fake.step();
+        watch.sample(fake);
+        ASSERT_EQ(watch.outcome(0).verdict, step > 4 ? Verdict::missed : Verdict::pending) << step;
+        ASSERT_EQ(watch.outcome(1).verdict, Verdict::pending) << step;
+    }
+    EXPECT_EQ(watch.missed_since(0), 0.625);
+    fake.step();
+    watch.sample(fake);
+    EXPECT_EQ(watch.outcome(1).verdict, Verdict::missed);
+    EXPECT_EQ(watch.outcome(1).measured, 2);
+}
+
 // A run that goes back and forth is judged as one that never did.
 TEST(ExpectationWatch, GoingBackForgetsWhatCameAfter) {
     const std::vector<ExpectDesc> expects{expect_of("position.x", "max", 0, 1, 0.3, 0.01),
                                           expect_of("position.x", "mean", 0.2, 0.9, 0.55, 1e-9),
-                                          expect_of("displacement", "last", 0, 1, 0, 9)};
+                                          expect_of("displacement", "last", 0, 1, 0, 9),
+                                          curve_of_wave("max", 0.2, 0.9, 9, 0.2)};
     FakeSimulation fake = moving(0.07);
     ExpectationWatch watch(fake, expects);
     std::vector<std::unique_ptr<Simulation::Saved>> saved;

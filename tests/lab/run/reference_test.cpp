@@ -1,8 +1,10 @@
 // Truths by refinement: against closed forms, those of the scenes, and written into a file.
 #include "app/lab/run/reference.h"
 
+#include "engine/scene/expect.h"
 #include "engine/scene/scene_file.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
@@ -41,6 +43,20 @@ equals = )" +
 }
 const double sagging_truth = 9.81 / (4 * std::numbers::pi * std::numbers::pi);
 
+// Its height over time, with an end that no step meets.
+std::string sagging_curve(const std::string &equals, const std::string &reduce) {
+    return sagging("0", "0").substr(0, sagging("0", "0").find("[[expect]]")) + R"([[expect]]
+name = "way"
+quantity = "displacement"
+body = "bob"
+reduce = ")" +
+           reduce + R"("
+from = 0.123
+to = 1.456
+equals = )" +
+           equals + " # m\ntolerance = 1e-3\nestimate = 0\nsource = \"by refinement\"\n";
+}
+
 class Reference : public testing::Test {
   protected:
     Reference() {
@@ -78,6 +94,27 @@ TEST(Refinement, SettlesAtClosedFormsWithinItsEstimate) {
     EXPECT_LT(truths[0].estimate, 1e-5);
     EXPECT_NEAR(truths[0].value, sagging_truth, truths[0].estimate);
     EXPECT_GT(truths[0].estimate, 0);
+}
+
+TEST(Refinement, OfACurveSettlesAtTheClosedFormWithAboutAsFewValuesAsItTakes) {
+    const SceneDesc scene = parse_scene(sagging_curve("[0, 0, 0, 0]", "max"), "sag.toml").scene;
+    const std::vector<RefinedTruth> truths = refine(scene);
+    ASSERT_EQ(truths.size(), 1U);
+    const RefinedTruth &truth = truths[0];
+    EXPECT_TRUE(truth.settled());
+    EXPECT_FALSE(truth.agrees());
+    EXPECT_NEAR(truth.value, 2 * sagging_truth, 1e-3); // from a curve that stays at 0
+    // Off by 1/20 of the tolerance at intervals of (5e-5 * 24 / (sag w^4))^(1/4) = 0.03 s at most.
+    EXPECT_GT(truth.curve.size(), 30U);
+    EXPECT_LT(truth.curve.size(), 50U);
+    double error = 0;
+    for (int i = 0; i <= 1000; ++i) {
+        const double t = std::lerp(0.123, 1.456, i / 1000.0);
+        error = std::max(error, std::abs(curve_at(truth.curve, 0.123, 1.456, t) -
+                                         sagging_truth * (1 - std::cos(2 * std::numbers::pi * t))));
+    }
+    EXPECT_LT(error, truth.estimate);
+    EXPECT_LT(truth.estimate, 1e-4);
 }
 
 TEST(Refinement, OfWhatDependsOnTheStepDoesNotSettle) {
@@ -136,6 +173,29 @@ TEST_F(Reference, IsSaidAndWrittenAndNothingElse) {
     EXPECT_NE(out_.str().find("Nothing to write"), std::string::npos) << out_.str();
     EXPECT_EQ(command(false), ExitCode::fine);
     EXPECT_NE(out_.str().find("ok    sag/way"), std::string::npos) << out_.str();
+}
+
+TEST_F(Reference, CurvesAreSaidAndWrittenAndNothingElse) {
+    for (const std::string reduce : {"max", "mean"}) {
+        put(sagging_curve("[0, 0, 0, 0]", reduce));
+        EXPECT_EQ(command(false), ExitCode::outside_tolerance);
+        EXPECT_NE(out_.str().find("OTHER sag/way: a curve of "), std::string::npos) << out_.str();
+        EXPECT_EQ(command(true), ExitCode::fine) << err_.str();
+        const std::string written = text();
+        const std::size_t array = written.find("equals = ") + 9;
+        const std::size_t estimate = written.find("estimate = ") + 11;
+        std::string other =
+            sagging_curve(written.substr(array, written.find(" # m") - array), reduce);
+        other.replace(other.find("estimate = 0"), 12,
+                      "estimate = " +
+                          written.substr(estimate, written.find("\nsource") - estimate));
+        EXPECT_EQ(written, other);
+
+        EXPECT_EQ(command(true), ExitCode::fine);
+        EXPECT_NE(out_.str().find("Nothing to write"), std::string::npos) << out_.str();
+        EXPECT_EQ(command(false), ExitCode::fine);
+        EXPECT_NE(out_.str().find("ok    sag/way"), std::string::npos) << out_.str();
+    }
 }
 
 TEST_F(Reference, WithoutAnEstimateThereIsNoneToWrite) {
