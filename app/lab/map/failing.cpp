@@ -49,7 +49,8 @@ double smallest_moving_width(const SceneDesc &scene) {
     return width;
 }
 
-// Of a magnitude or a distance from a curve only the run knows whether it is of a gain or of a loss.
+// Of a magnitude or a distance from a curve only the run knows whether it is of a gain or of a
+// loss.
 bool is_too_much_energy(const ExpectOutcome &outcome, const JudgedRun &run) {
     const ReductionInfo *reduction = find_reduction(outcome.desc.reduce);
     if (reduction->reduction == Reduction::drift || reduction->reduction == Reduction::max_abs ||
