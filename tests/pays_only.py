@@ -6,9 +6,9 @@ usage: pays_only.py [PROGRAM]       by default build/release/bin/plumb
 
 What a world lacks must not be called at all within World::step, but for the few instructions with
 which a phase sees that it has nothing to do. Free bodies by themselves run no collision detection;
-many of them do look for pairs, since any two may meet, and where none come near each other nothing
-more. A sensor finds its contacts, and solves none; that nothing is a sensor costs a flag each contact,
-which no count of calls shows.
+many of them do look for pairs, since any two may meet, unless they all ignore each other; where none
+come near each other nothing more. A sensor finds its contacts, and solves none; that nothing is a
+sensor costs a flag each contact, which no count of calls shows.
 
 So that nothing is proven of names that are there no more: each pattern must match a function of the
 program, and each that a world is to be without must be called by a world that has it.
@@ -55,9 +55,9 @@ repeat = { kind = "line", count = COUNT, step = [STEP, 0, 0] }
 """
 
 
-def boxes(count, height, step=1.4):
+def boxes(count, height, step=1.4, lines=""):
     return (BOXES.replace("COUNT", str(count)).replace("HEIGHT", str(height))
-            .replace("STEP", str(step)))
+            .replace("STEP", str(step))) + lines
 
 
 JOINT = """
@@ -100,6 +100,7 @@ WORLDS = {
     "a body by itself, soft_step": (boxes(1, 3), "soft_step", []),
     "the same, rk4": (boxes(1, 3), "rk4", []),
     "thirty boxes far apart": (boxes(30, 3, step=20), "soft_step", ["broad phase"]),
+    "thirty that ignore each other": (boxes(30, 3, lines="ignores = [0]\n"), "soft_step", []),
     "a box within a sensor": (SENSOR + boxes(1, 3), "soft_step", DETECTION),
     "thirty boxes on the ground": (GROUND + boxes(30, 0.5), "soft_step", CONTACTS),
     "boxes with a joint and cloth": (GROUND + boxes(4, 0.5) + JOINT + CLOTH, "soft_step",

@@ -78,9 +78,11 @@ void sort_candidates(std::vector<Candidate> &list, std::vector<Candidate> &scrat
 
 } // namespace
 
-// A world of one body, or a method that knows no contacts, pays for no collision detection.
+// A world of one body, or whose bodies all ignore each other, or a method that knows no contacts,
+// pays for no collision detection.
 bool World::needs_contacts() const {
-    return method_->info.contacts && model_->dynamic_bodies > 0 && model_->alive_bodies >= 2;
+    return method_->info.contacts && model_->dynamic_bodies > 0 && model_->alive_bodies >= 2 &&
+           (model_->layers & model_->heeded_layers) != 0;
 }
 
 // Everything that a collider of the body with these bounds may reach in this step, and half the
@@ -98,11 +100,16 @@ bool World::is_asked(std::uint32_t body) const {
     return scratch_.surprised.empty() || scratch_.surprised[body] != 0;
 }
 
+// Whether nothing that a collider may collide with is there. Particles collide with every layer.
+bool World::meets_nothing(const Collider &collider) const {
+    return model_->particles.empty() && model_->ignores_all(collider.filter);
+}
+
 // Places a collider and sweeps its box; whether the tree has to know.
 bool World::place_collider(std::uint32_t i) const {
     Scratch &s = scratch_;
     const Collider &collider = model_->colliders[i];
-    if (collider.body == no_body || !is_asked(collider.body))
+    if (collider.body == no_body || !is_asked(collider.body) || meets_nothing(collider))
         return false;
     const bool is_still = s.still[collider.body] != 0;
     if (is_still && s.stays[i] != 0 && s.leaves[i] != DynamicTree::none)
@@ -247,6 +254,8 @@ void World::find_pairs_with_planes() const {
     s.plane_candidates.clear();
     s.plane_candidates.reserve(model_->half_spaces.size() * model_->colliders.size());
     for (const std::uint32_t plane : model_->half_spaces) {
+        if (meets_nothing(model_->colliders[plane]))
+            continue;
         const std::uint32_t body = model_->colliders[plane].body;
         HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
         reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;

@@ -24,12 +24,21 @@ struct Model {
     // pair comes as often as there are such joints.
     std::vector<std::uint64_t> joined;
     std::vector<std::uint32_t> half_spaces; // colliders, ascending
+    // Bit n: layer n. Those that colliders are on, and those that some do not ignore.
+    std::uint32_t layers = 0;
+    std::uint32_t heeded_layers = 0;
     std::uint32_t alive_bodies = 0;
     std::uint32_t dynamic_bodies = 0;
     std::uint32_t alive_joints = 0;
     std::uint32_t free_particles = 0; // not pinned
 
     bool has_particles() const { return !particles.empty() || !springs.empty(); }
+    void note_layers(const Filter &filter) {
+        layers |= std::uint32_t{1} << filter.layer;
+        heeded_layers |= ~filter.ignores;
+    }
+    // Whether it ignores every layer that there is: it collides with no body.
+    bool ignores_all(const Filter &filter) const { return (~filter.ignores & layers) == 0; }
 };
 
 inline std::uint64_t body_pair(std::uint32_t a, std::uint32_t b) {

@@ -223,6 +223,7 @@ void World::add_colliders(const BodyDef &def, Body &body, std::uint32_t slot) {
                       .rounding = from.surface ? Real(0) : rounding_radius(from.shape),
                       .body = slot,
                       .child = static_cast<std::uint16_t>(i)};
+        model.note_layers(from.filter);
         if (body.has_mass_frame)
             to.shape = with_unit_rotation(placed(from.shape, into(body.mass_frame)));
         to.extent =
@@ -251,6 +252,10 @@ void World::remove_body(BodyId id) {
         std::erase(model.half_spaces, body.first_collider + i);
         model.colliders[body.first_collider + i] = Collider{};
     }
+    model.layers = model.heeded_layers = 0;
+    for (const Collider &collider : model.colliders)
+        if (collider.body != no_body)
+            model.note_layers(collider.filter);
     if (state_.grab.body == id.index)
         release();
     --model.alive_bodies;

@@ -242,6 +242,7 @@ class World {
     bool is_turned(const Candidate &candidate) const;
     bool needs_contacts() const;
     bool is_asked(std::uint32_t body) const;
+    bool meets_nothing(const Collider &collider) const;
     bool place_collider(std::uint32_t i) const;
     bool place_colliders() const;
     bool may_touch(std::uint32_t i, std::uint32_t j) const;

@@ -172,6 +172,38 @@ TEST(Colliders, FiltersAndSensors) {
         }
 }
 
+// What ignores every layer that there is goes as it would by itself, bit for bit; and no longer
+// when one comes that it does not ignore.
+TEST(Colliders, WhatIgnoresAllGoesAsByItself) {
+    const auto ball_at = [](double x, double speed) {
+        BodyDef def = dynamic_body(ball(0.5), 1, V{x, 2, 0}, V{speed, 0, 0});
+        def.angular_velocity = narrow(V{1, 2, 3});
+        def.colliders.front().filter = {.layer = 1, .ignores = 2};
+        return def;
+    };
+    World alone("soft_step", settings_for("soft_step"));
+    const BodyId lone = alone.add_body(ball_at(0, 1));
+    World world("soft_step", settings_for("soft_step"));
+    const BodyId one = world.add_body(ball_at(0, 1));
+    world.add_body(ball_at(1.5, -1));
+    for (int i = 0; i < 60; ++i) {
+        alone.step(nullptr);
+        world.step(nullptr);
+        EXPECT_TRUE(world.contacts().empty());
+        ASSERT_EQ(position_of(world, one), position_of(alone, lone)) << i;
+        ASSERT_EQ(spin_of(world, one), spin_of(alone, lone)) << i;
+    }
+
+    World floored = world;
+    const BodyId floor = floored.add_body(ground(0.5, 0)); // on layer 0
+    run(floored, 240);
+    EXPECT_NEAR(position_of(floored, one).y, 0.5, 1e-2);
+    floored.remove_body(floor);
+    run(floored, 60);
+    EXPECT_LT(position_of(floored, one).y, -1);
+    EXPECT_TRUE(floored.contacts().empty());
+}
+
 // v' = g - c v has the solution v = g / c + (v0 - g / c) e^(-c t).
 TEST(Damping, FollowsTheExponential) {
     for (const std::string &method : all_methods()) {
