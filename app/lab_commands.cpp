@@ -11,6 +11,7 @@
 #include "app/lab/run/reference.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
+#include "app/lab/tune/plainer.h"
 #include "app/lab/tune/tune.h"
 
 #include <cerrno>
@@ -326,8 +327,9 @@ void add_tune(CommandLine &line) {
         "tune",
         "Finds the cheapest method, precision, dt, substeps and iterations with which a scene "
         "meets all that it expects of itself, with a margin and from several starts, and what its "
-        "model can then do without: sleep, a body's rotation, its shape. What is given by "
-        "--methods, --precision, --set and the like stays as it is given");
+        "model can then do without: " +
+            model_parts_text() +
+            ". What is given by --methods, --precision, --set and the like stays as it is given");
     tune_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()
@@ -360,8 +362,9 @@ void add_tune(CommandLine &line) {
     tune_command->add_flag("--explain", arguments->command.explain,
                            "Prints what was tried, what each cost and what it missed");
     tune_command->add_flag("--write", arguments->command.write,
-                           "Writes what was chosen into the scene's file, and leaves all else in "
-                           "it, its bodies too, as it is");
+                           "Writes the settings that were chosen, sleep among them, into the "
+                           "scene's file, and leaves all else in it as it is: what bodies can do "
+                           "without is only said");
     add_run_options(*tune_command, line.common, true);
     tune_command->callback([=, &line] {
         arguments->command.scene = line.common.scene_paths().front();

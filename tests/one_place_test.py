@@ -39,8 +39,8 @@ class Kind:
 
 
 # How many files each may touch.
-MOST = {"setting": 1, "quantity": 1, "command": 2, "key": 3, "joint": 3, "shape": 5,
-        "geometric shape": 7}
+MOST = {"setting": 1, "quantity": 1, "command": 2, "part of a model": 2, "key": 3, "joint": 3,
+        "shape": 5, "geometric shape": 7}
 
 KINDS = [
     Kind("setting",
@@ -62,6 +62,9 @@ KINDS = [
     Kind("key",
          [("app/sandbox/keys.h", "    quit,\n", "    quit,\n    dummy,\n")],
          [("app/sandbox/keys.cpp", NOT_HANDLED), ("app/sandbox/sandbox.cpp", NOT_HANDLED)]),
+    Kind("part of a model",
+         [("app/lab/tune/plainer.h", "PART(shape)\n", "PART(shape) PART(dummy)\n")],
+         [("app/lab/tune/plainer.cpp", NOT_HANDLED)]),
     Kind("joint",
          [("engine/dynamics/kinds.h", "JOINT(fixed)\n", "JOINT(fixed) JOINT(dummy)\n")],
          [("engine/scene/joint_type.cpp", NOT_HANDLED)],

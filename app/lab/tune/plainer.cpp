@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -22,11 +23,46 @@ std::string stem(const std::string &name) {
                : name;
 }
 
+std::uint32_t layers_of(const SceneDesc &scene) {
+    std::uint32_t layers = 0;
+    for (const BodyDesc &body : scene.bodies)
+        for (const ColliderDesc &collider : body.colliders)
+            layers |= std::uint32_t{1} << static_cast<unsigned>(collider.filter.layer);
+    return layers;
+}
+
+// Whether there is a layer that it does not ignore.
+bool collides(const BodyDesc &body, std::uint32_t layers) {
+    return std::ranges::any_of(body.colliders, [&](const ColliderDesc &collider) {
+        return (~collider.filter.ignores & layers) != 0;
+    });
+}
+
+// Whether two bodies could collide, wherever they are; beside those of that stem.
+bool any_collide(const SceneDesc &scene, const std::string &but = {}) {
+    const std::uint32_t layers = layers_of(scene);
+    int bodies = 0;
+    bool any_dynamic = false;
+    for (const BodyDesc &body : scene.bodies)
+        if (collides(body, layers) && stem(body.name) != but) {
+            ++bodies;
+            any_dynamic = any_dynamic || body.kind == BodyKind::dynamic;
+        }
+    return bodies > 1 && any_dynamic;
+}
+
+void ignore_all(BodyDesc &body) {
+    for (ColliderDesc &collider : body.colliders)
+        collider.filter.ignores = ~std::uint32_t{0};
+}
+
 bool turns(const BodyDesc &body) {
     return body.kind == BodyKind::dynamic && !(body.locked[3] && body.locked[4] && body.locked[5]);
 }
 
 void lock_rotation(BodyDesc &body) {
+    if (!turns(body))
+        return;
     std::fill(body.locked.begin() + 3, body.locked.end(), true);
     body.angular_velocity = glm::dvec3(0);
 }
@@ -57,29 +93,63 @@ void make_sphere(BodyDesc &body) {
 Simplification of_bodies(std::string what, const std::string &name, void (*apply)(BodyDesc &)) {
     return {std::move(what), [name, apply](SceneDesc &scene, RunOptions &) {
                 for (BodyDesc &body : scene.bodies)
-                    if (body.kind == BodyKind::dynamic && stem(body.name) == name)
+                    if (stem(body.name) == name)
                         apply(body);
             }};
 }
 
-} // namespace
-
-std::vector<Simplification> simplifications(const SceneDesc &scene, const RunOptions &options) {
-    std::vector<Simplification> all;
-    const ResolvedRun run = resolve_run(scene, options);
-    const SettingRow &sleep = *find_setting("sleep_after");
-    if (reads(*run.method, sleep) && run.settings.sleep_after > 0 && !options.settings.has(sleep))
-        all.push_back({"sleep", [](SceneDesc &, RunOptions &plain) {
-                           plain.settings.give(&StepSettings::sleep_after, 0.0);
-                       }});
+// The first body of each stem.
+std::vector<const BodyDesc *> kinds_of_bodies(const SceneDesc &scene) {
+    std::vector<const BodyDesc *> kinds;
     std::set<std::string> done;
-    for (const BodyDesc &body : scene.bodies) {
-        const std::string name = stem(body.name);
-        if (!done.insert(name).second)
-            continue;
-        if (turns(body))
+    for (const BodyDesc &body : scene.bodies)
+        if (done.insert(stem(body.name)).second)
+            kinds.push_back(&body);
+    return kinds;
+}
+
+std::vector<Simplification> without_sleep(const ResolvedRun &run, const RunOptions &options) {
+    const SettingRow &sleep = *find_setting("sleep_after");
+    if (!reads(*run.method, sleep) || run.settings.sleep_after <= 0 || options.settings.has(sleep))
+        return {};
+    return {{"sleep", [](SceneDesc &, RunOptions &plain) {
+                 plain.settings.give(&StepSettings::sleep_after, 0.0);
+             }}};
+}
+
+// Particles collide with bodies of every layer, and still do.
+std::vector<Simplification> without_collisions(const SceneDesc &scene, const ResolvedRun &run) {
+    if (!run.method->contacts || !any_collide(scene))
+        return {};
+    const bool has_particles = !scene.particles.empty() || !scene.cloths.empty();
+    std::vector<Simplification> all;
+    all.push_back({.what = has_particles ? "collisions between bodies" : "collisions",
+                   .apply = [](SceneDesc &plain,
+                               RunOptions &) { std::ranges::for_each(plain.bodies, ignore_all); },
+                   .is_all = true});
+    const std::uint32_t layers = layers_of(scene);
+    for (const BodyDesc *body : kinds_of_bodies(scene))
+        if (const std::string name = stem(body->name);
+            collides(*body, layers) && any_collide(scene, name)) // else all are left out with its
+            all.push_back(of_bodies("the collisions of " + name, name, ignore_all));
+    for (Simplification &less : all)
+        less.must_pay = true;
+    return all;
+}
+
+std::vector<Simplification> without_rotation(const SceneDesc &scene) {
+    std::vector<Simplification> all;
+    for (const BodyDesc *body : kinds_of_bodies(scene))
+        if (const std::string name = stem(body->name); turns(*body))
             all.push_back(of_bodies("the rotation of " + name, name, lock_rotation));
-        if (const std::string_view shape = shape_name(body); !shape.empty())
+    return all;
+}
+
+std::vector<Simplification> with_spheres(const SceneDesc &scene) {
+    std::vector<Simplification> all;
+    for (const BodyDesc *body : kinds_of_bodies(scene)) {
+        const std::string name = stem(body->name);
+        if (const std::string_view shape = shape_name(*body); !shape.empty())
             all.push_back(
                 of_bodies("the " + std::string(shape) + " of " + name + " (a sphere will do)", name,
                           make_sphere));
@@ -87,12 +157,54 @@ std::vector<Simplification> simplifications(const SceneDesc &scene, const RunOpt
     return all;
 }
 
+} // namespace
+
+std::string_view about(ModelPart part) {
+    switch (part) {
+    case ModelPart::sleep:
+        return "sleep";
+    case ModelPart::collisions:
+        return "collisions";
+    case ModelPart::rotation:
+        return "a body's rotation";
+    case ModelPart::shape:
+        return "its shape";
+    }
+    return "";
+}
+
+std::string model_parts_text() {
+    std::string text;
+    constexpr std::size_t count = std::size(all_model_parts);
+    for (std::size_t i = 0; i < count; ++i) {
+        text += i == 0 ? "" : i + 1 < count ? ", " : " and ";
+        text += about(all_model_parts[i]);
+    }
+    return text;
+}
+
+std::vector<Simplification> simplifications(ModelPart part, const SceneDesc &scene,
+                                            const RunOptions &options) {
+    switch (part) {
+    case ModelPart::sleep:
+        return without_sleep(resolve_run(scene, options), options);
+    case ModelPart::collisions:
+        return without_collisions(scene, resolve_run(scene, options));
+    case ModelPart::rotation:
+        return without_rotation(scene);
+    case ModelPart::shape:
+        return with_spheres(scene);
+    }
+    return {};
+}
+
 void leave_out(const std::vector<SceneDesc> &starts, const TuneOptions &options, Tuning &tuning,
                const Progress &progress) {
     const auto stopped = [&] { return options.stop && options.stop(); };
     std::vector<SceneDesc> model = starts;
     TunedRun full = tuning.runs[*tuning.chosen];
-    for (const Simplification &less : simplifications(starts.front(), full.options)) {
+    // Whether it is left out.
+    const auto attempt = [&](const Simplification &less) {
         std::vector<SceneDesc> plain = model;
         RunOptions run = full.options;
         for (SceneDesc &start : plain)
@@ -102,17 +214,27 @@ void leave_out(const std::vector<SceneDesc> &starts, const TuneOptions &options,
         if (tried.run.verdict == TuneVerdict::met)
             time_in_turns({{&fuller, &full}, {&trial, &tried.run}}, options, progress);
         if (stopped())
-            return;
+            return false;
         if (!tried.run.timings.empty()) {
             tried.times_as_dear = median_ratio(tried.run.timings, full.timings);
-            tried.is_enough = !is_always_dearer(tried.run, full);
+            tried.is_enough = less.must_pay ? tried.times_as_dear < 1 / same_cost
+                                            : !is_always_dearer(tried.run, full);
         }
         if (tried.is_enough) {
             model = std::move(plain);
             full = tried.run;
         }
         tuning.plainer.push_back(std::move(tried));
-    }
+        return tuning.plainer.back().is_enough;
+    };
+    for (const ModelPart part : all_model_parts)
+        for (const Simplification &less : simplifications(part, model.front(), full.options)) {
+            const bool is_left_out = attempt(less);
+            if (stopped())
+                return;
+            if (is_left_out && less.is_all)
+                break;
+        }
 }
 
 } // namespace plumb

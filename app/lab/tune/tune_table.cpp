@@ -156,8 +156,13 @@ void print_plainer(std::ostream &out, const Tuning &tuning) {
     out << "  It can do without ";
     for (std::size_t i = 0; i < less.size(); ++i)
         out << (i == 0 ? "" : i + 1 < less.size() ? ", " : " and ") << less[i];
-    out << ": that costs " << ratio_text(ratio) << ", with a worst error of "
-        << error_text(tuning.plainest()) << ".\n";
+    const TunedRun &full = tuning.runs[*tuning.chosen], &plain = tuning.plainest();
+    out << ": that costs " << ratio_text(ratio) << ". What is left out would ";
+    if (full.error < plain.error && error_text(full) != error_text(plain))
+        out << "bring the worst error from " << error_text(plain) << " to " << error_text(full);
+    else
+        out << "buy nothing: the worst error is " << error_text(plain) << " without it";
+    out << ".\n";
 }
 
 // The nearest to its tolerance of those that missed.

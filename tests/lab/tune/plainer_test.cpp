@@ -1,10 +1,12 @@
 // What scenes can do without, and what they cannot.
 #include "tests/lab/tune/printed.h"
 
+#include "app/lab/tune/plainer.h"
 #include "engine/scene/scene_file.h"
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -28,6 +30,74 @@ const PlainerModel &without(const Tuning &tuning, const std::string &what) {
     return *found;
 }
 
+std::vector<std::string> collisions_of(const Tuning &tuning) {
+    std::vector<std::string> names;
+    for (const PlainerModel &model : tuning.plainer)
+        if (model.what.find("collisions") != std::string::npos)
+            names.push_back(model.what);
+    return names;
+}
+
+// Three balls in a row fall from 10 m, each with these lines of its own; what the first expects.
+std::string falling_balls(std::string_view lines) {
+    return R"(
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 0.5
+position = [0, 10, 0]
+repeat = { kind = "line", count = 3, step = [3, 0, 0] }
+)" + std::string(lines) +
+           R"(
+[[expect]]
+name = "height"
+quantity = "position.y"
+body = "ball_1"
+to = 1
+equals = 5.095
+tolerance = 0.001
+source = "s = g t^2 / 2"
+)";
+}
+
+// A ball that is dropped on the floor, beside another that flies by itself, and a post far off.
+constexpr const char *one_lands = R"(
+[[body]]
+name = "floor"
+shape = "box"
+half_extents = [2, 0.5, 2]
+kind = "static"
+position = [0, -0.5, 0]
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 0.5
+position = [0, 1, 0]
+[[body]]
+name = "flier"
+shape = "sphere"
+radius = 0.5
+position = [20, 0, 0]
+velocity = [0, 20, 0]
+repeat = { kind = "line", count = 30, step = [3, 0, 0] }
+[[expect]]
+name = "lies"
+quantity = "position.y"
+body = "ball"
+to = 3
+equals = 0.5
+tolerance = 0.01
+source = "it lies on the floor"
+[[expect]]
+name = "flies"
+quantity = "position.y"
+body = "flier_1"
+to = 3
+equals = 15.855
+tolerance = 0.1
+source = "v t - g t^2 / 2"
+)";
+
 TEST(Plainer, AFallingBoxNeedsNeitherSleepNorRotationNorItsShape) {
     const Tuning tuning = tune_scene({"fall.toml", R"(
 [[body]]
@@ -48,15 +118,66 @@ source = "s = g t^2 / 2"
 )"},
                                      of_soft_step());
     ASSERT_TRUE(tuning.chosen);
-    EXPECT_EQ(tuning.plainer.size(), 3U);
+    EXPECT_EQ(tuning.plainer.size(), 4U);
     EXPECT_TRUE(without(tuning, "sleep").is_enough) << printed(tuning);
+    EXPECT_TRUE(without(tuning, "collisions").is_enough) << printed(tuning);
     EXPECT_TRUE(without(tuning, "the rotation of box").is_enough) << printed(tuning);
     EXPECT_TRUE(without(tuning, "the box of box (a sphere will do)").is_enough) << printed(tuning);
     EXPECT_EQ(tuning.plainest().resolved.settings.sleep_after, 0);
-    EXPECT_NE(printed(tuning).find("It can do without sleep, the rotation of box and the box of "
-                                   "box (a sphere will do): that costs "),
+    EXPECT_NE(printed(tuning).find("It can do without sleep, collisions, the rotation of box and "
+                                   "the box of box (a sphere will do): that costs "),
               std::string::npos)
         << printed(tuning);
+    EXPECT_NE(printed(tuning).find(" What is left out would buy nothing: the worst error is "),
+              std::string::npos)
+        << printed(tuning);
+}
+
+TEST(Plainer, BallsThatNeverMeetNeedNoCollisions) {
+    const Tuning tuning = tune_scene({"balls.toml", falling_balls("")}, of_soft_step());
+    ASSERT_TRUE(tuning.chosen);
+    const PlainerModel &free = without(tuning, "collisions");
+    EXPECT_TRUE(free.is_enough) << printed(tuning);
+    EXPECT_LT(free.times_as_dear, 0.8); // no broad phase: about a third
+    // Not each body's, too, once all are left out.
+    EXPECT_EQ(collisions_of(tuning), (std::vector<std::string>{"collisions"}));
+}
+
+TEST(Plainer, CollisionsThatAreOffAreNotTried) {
+    for (const char *off : {"ignores = [0]", "layer = 3\nignores = [3]"}) {
+        const Tuning tuning = tune_scene({"balls.toml", falling_balls(off)}, of_soft_step());
+        ASSERT_TRUE(tuning.chosen);
+        EXPECT_EQ(collisions_of(tuning), std::vector<std::string>{}) << off;
+    }
+}
+
+TEST(Plainer, WhatLandsMustCollideAndWhatFliesNeedNot) {
+    const Tuning tuning = tune_scene({"one_lands.toml", one_lands}, of_soft_step());
+    ASSERT_TRUE(tuning.chosen) << printed(tuning);
+    EXPECT_EQ(collisions_of(tuning),
+              (std::vector<std::string>{"collisions", "the collisions of floor",
+                                        "the collisions of ball", "the collisions of flier"}));
+    for (const char *needed : {"collisions", "the collisions of floor", "the collisions of ball"}) {
+        EXPECT_EQ(without(tuning, needed).run.verdict, TuneVerdict::missed) << needed;
+        EXPECT_FALSE(without(tuning, needed).is_enough) << needed;
+    }
+    EXPECT_TRUE(without(tuning, "the collisions of flier").is_enough) << printed(tuning);
+}
+
+// With the floor's left out nothing is left that a ball could meet.
+TEST(Plainer, OfTwoBodiesNeitherIsTriedByItself) {
+    std::string text = one_lands;
+    const std::size_t from = text.find("[[body]]\nname = \"flier\"");
+    text.erase(from, text.find("[[expect]]") - from);
+    text.erase(text.rfind("[[expect]]"));
+    const Tuning tuning = tune_scene({"land.toml", text}, of_soft_step());
+    ASSERT_TRUE(tuning.chosen) << printed(tuning);
+    EXPECT_EQ(collisions_of(tuning), (std::vector<std::string>{"collisions"}));
+    EXPECT_EQ(without(tuning, "collisions").run.verdict, TuneVerdict::missed);
+}
+
+TEST(Plainer, EachPartOfAModelIsInTheHelp) {
+    EXPECT_EQ(model_parts_text(), "sleep, collisions, a body's rotation and its shape");
 }
 
 TEST(Plainer, ABoxThatLandsNeedsSleepAndItsShape) {
