@@ -108,6 +108,7 @@ const double *known_failing(const MethodInfo &method, const std::string &scene) 
           {"elastic_666", 5.2},
           {"kapla", 9.6e5},
           {"static_stability", 120},
+          {"seams", 17},
           {"slope_holds", 1400},
           {"struck_before_wall", 450},
           {"barrel_run", 2.9},
