@@ -1,0 +1,148 @@
+// Commands that chart cost against error.
+#include "app/commands.h"
+
+#include "app/lab/chart/chart.h"
+#include "app/lab/engines/other_engines.h"
+#include "app/lab/queries/query_chart.h"
+#include "app/lab/tune/tune.h"
+
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+namespace {
+
+// A chart of geometric queries steps no world, so it would pass over them in silence.
+void refuse_options_of_scenes(const CLI::App &chart_command) {
+    for (const CLI::Option *option : chart_command.get_options())
+        if (option->count() > 0 && option->get_name() != "SCENE" &&
+            option->get_name() != "--repeats" && option->get_name() != "--out")
+            throw std::invalid_argument("chart geometry takes --repeats and --out, but no " +
+                                        option->get_name());
+}
+
+struct ChartArguments {
+    ChartCommand command;
+    std::vector<std::string> sweeps;
+    std::string methods, engines, budget, shard;
+};
+
+// "2/4"
+Shard parse_shard(const std::string &text) {
+    Shard shard;
+    char slash = 0;
+    std::istringstream in(text);
+    if (!(in >> shard.n >> slash >> shard.of) || slash != '/' || !in.eof() || shard.n < 1 ||
+        shard.n > shard.of)
+        throw std::invalid_argument("--shard: '" + text +
+                                    "' is no shard; write 2/4 for the second of four");
+    return shard;
+}
+
+} // namespace
+
+void add_chart(CommandLine &line) {
+    const auto arguments = std::make_shared<ChartArguments>();
+    CLI::App *chart_command = line.app.add_subcommand(
+        "chart",
+        "Charts each method's cost against its error, as CSV, PNG and SVG: of scenes, or of "
+        "geometric queries (`plumb chart geometry`, with --repeats and --out alone)");
+    add_scenes(*chart_command, line.common);
+    chart_command->add_option("--methods", arguments->methods, "Of " + method_names() + " (all)")
+        ->type_name("METHOD,...");
+    chart_command
+        ->add_option("--sweep", arguments->sweeps,
+                     "What to go through, any setting from `plumb list --settings`: substeps=1..16 "
+                     "(the default), iterations=1,2,8, dt=1/240..1/30; also precision=float,double "
+                     "and threads=1,2 (then by the clock on the wall); may be given several times")
+        ->allow_extra_args(false);
+    chart_command->add_option(
+        "--expect", arguments->command.options.expect,
+        "Name of one expectation to chart, in its own unit (the worst of all, "
+        "each in units of its tolerance)");
+    chart_command
+        ->add_option("--repeats", arguments->command.options.repeats, "Timings of each run")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    chart_command
+        ->add_option(
+            "--with", arguments->engines,
+            "Other engines beside the methods, judged by the same measures: bullet, ode (in a "
+            "build with PLUMB_BENCH=ON)")
+        ->type_name("ENGINE,...");
+    chart_command
+        ->add_option("--budget", arguments->budget,
+                     "What a frame of 1/60 s may cost, drawn as a line (all of it, 60 Hz)")
+        ->type_name("1ms");
+    chart_command->add_flag("--convergence", arguments->command.options.convergence,
+                            "Error against dt with fitted orders, nothing timed: dt=1/960..1/30 "
+                            "unless --sweep has another, one substep, and double");
+    chart_command->add_flag(
+        "--one-step", arguments->command.options.one_step,
+        "For motion that is chaotic: the error of one step (of a frame of 60 Hz, if that is longer)"
+        " from states of one accurate run in double, the same for every method");
+    chart_command
+        ->add_option("--seed", arguments->command.options.seed,
+                     "Of the order in which each round of timings goes")
+        ->capture_default_str();
+    chart_command
+        ->add_option("--shard", arguments->shard,
+                     "Runs the I-th of N parts of a chart, for `plumb merge`: no pictures")
+        ->type_name("I/N");
+    add_out(*chart_command, line.common, "out");
+    add_run_options(*chart_command, line.common, true);
+    chart_command->callback([=, &line] {
+        if (line.common.scenes == std::vector<std::string>{"geometry"}) {
+            refuse_options_of_scenes(*chart_command);
+            QueryChartCommand command;
+            command.options.repeats = arguments->command.options.repeats;
+            command.out_dir = line.common.out;
+            command.shader_dir = line.common.shader_dir();
+            command.command = line.text;
+            line.result = code_of(chart_geometry(command, std::cout, std::cerr));
+            return;
+        }
+        for (const std::string &sweep : arguments->sweeps)
+            add_sweep(arguments->command.options, sweep);
+        if (!arguments->engines.empty())
+            arguments->command.options.engines = find_other_engines(parse_list(arguments->engines));
+        if (!arguments->budget.empty())
+            arguments->command.options.budget = parse_budget(arguments->budget);
+        if (!arguments->shard.empty())
+            arguments->command.options.shard = parse_shard(arguments->shard);
+        if (!arguments->methods.empty())
+            arguments->command.options.methods = parse_list(arguments->methods);
+        arguments->command.scenes = line.common.scene_paths();
+        arguments->command.options.base = line.common.run();
+        arguments->command.out_dir = line.common.out;
+        arguments->command.shader_dir = line.common.shader_dir();
+        arguments->command.command = line.text;
+        line.result = code_of(chart_scenes(arguments->command, std::cout, std::cerr));
+    });
+}
+
+void add_merge(CommandLine &line) {
+    const auto command = std::make_shared<MergeCommand>();
+    CLI::App *merge_command = line.app.add_subcommand(
+        "merge", "Makes one chart of the tables that `plumb chart --shard` wrote");
+    merge_command->add_option("CSV", command->tables, "All of them, in any order")->required();
+    merge_command->add_option("--scene", command->scene,
+                              "The scene's file, where it is not one of `plumb list`");
+    add_out(*merge_command, line.common, "out");
+    merge_command->callback([=, &line] {
+        command->find_scene = [&line](const std::string &name) {
+            return resolve_scene(name, line.common.catalogue);
+        };
+        command->out_dir = line.common.out;
+        command->shader_dir = line.common.shader_dir();
+        command->command = line.text;
+        line.result = code_of(merge_charts(*command, std::cout, std::cerr));
+    });
+}
+
+} // namespace plumb
