@@ -128,10 +128,12 @@ constexpr std::array all_quantities{
                  true},
     QuantityInfo{"penetration", "m",
                  [](const Measures &now, const SceneStart &) { return now.max_penetration; },
-                 "depth of the deepest contact point of the scene; 0 when nothing overlaps"},
+                 "depth of the deepest contact point of the scene; 0 when nothing overlaps", false,
+                 false, true},
     QuantityInfo{"mean_penetration", "m",
                  [](const Measures &now, const SceneStart &) { return now.mean_penetration; },
-                 "mean depth of the contact points that penetrate; 0 without contact points"},
+                 "mean depth of the contact points that penetrate; 0 without contact points", false,
+                 false, true},
     QuantityInfo{
         "joint_drift", "m",
         [](const Measures &now, const SceneStart &) { return now.max_joint_drift; },
@@ -143,19 +145,23 @@ constexpr std::array all_quantities{
         "signorini_residual", "W",
         [](const Measures &now, const SceneStart &) { return now.signorini_residual; },
         "of the law of Signorini: the largest |n v| of a contact point's normal force and the "
-        "velocity along it, 0 where what separates is not pushed"},
+        "velocity along it, 0 where what separates is not pushed",
+        false, false, true},
     QuantityInfo{"cone_residual", "N",
                  [](const Measures &now, const SceneStart &) { return now.cone_residual; },
-                 "of Coulomb's cone: the largest |t| - mu n by which friction is beyond it"},
+                 "of Coulomb's cone: the largest |t| - mu n by which friction is beyond it", false,
+                 false, true},
     QuantityInfo{
         "dissipation_residual", "W",
         [](const Measures &now, const SceneStart &) { return now.dissipation_residual; },
         "of maximal dissipation: the largest mu n |w| + t.w of a point's friction t and sliding w, "
-        "0 where friction slows what slides in full"},
+        "0 where friction slows what slides in full",
+        false, false, true},
     QuantityInfo{"contact_power", "W",
                  [](const Measures &now, const SceneStart &) { return now.contact_power; },
                  "sum of n v + t.w over all contact points: what friction takes is below 0; above "
-                 "it contacts give energy"},
+                 "it contacts give energy",
+                 false, false, true},
     QuantityInfo{"max_strain", "1",
                  [](const Measures &now, const SceneStart &) { return now.max_strain; },
                  "largest |length / rest_length - 1| of all springs that are not torn, those of "

@@ -38,6 +38,7 @@ struct QuantityInfo {
     std::string_view description;
     bool since_start = false;  // counted from t = 0
     bool of_particles = false; // a particle has it as well as a body
+    bool of_contacts = false;  // 0 where there are none
 
     constexpr bool needs_body() const { return std::holds_alternative<OfBody>(value); }
     constexpr bool needs_spring() const { return std::holds_alternative<OfSpring>(value); }

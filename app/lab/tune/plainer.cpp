@@ -3,6 +3,7 @@
 #include "app/lab/run/sweep.h"
 #include "app/lab/timing.h"
 #include "app/lab/tune/trial.h"
+#include "engine/scene/expect.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,9 +118,17 @@ std::vector<Simplification> without_sleep(const ResolvedRun &run, const RunOptio
              }}};
 }
 
-// Particles collide with bodies of every layer, and still do.
+bool expects_something_of_contacts(const SceneDesc &scene) {
+    return std::ranges::any_of(scene.expects, [](const ExpectDesc &expect) {
+        const QuantityInfo *quantity = find_quantity(expect.quantity);
+        return quantity != nullptr && quantity->of_contacts;
+    });
+}
+
+// Particles collide with bodies of every layer, and still do. What is expected of contacts would be
+// met for want of them.
 std::vector<Simplification> without_collisions(const SceneDesc &scene, const ResolvedRun &run) {
-    if (!run.method->contacts || !any_collide(scene))
+    if (!run.method->contacts || !any_collide(scene) || expects_something_of_contacts(scene))
         return {};
     const bool has_particles = !scene.particles.empty() || !scene.cloths.empty();
     std::vector<Simplification> all;

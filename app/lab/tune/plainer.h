@@ -41,8 +41,9 @@ struct Simplification {
 [[nodiscard]] std::string model_parts_text();
 
 // What this scene has of that part that could be left out, in the order in which it is tried:
-// sleep; all collisions between bodies, else those of each body; of each dynamic body its rotation,
-// and its shape for a sphere of the same volume. The copies of a `repeat` count as one body.
+// sleep; all collisions between bodies, else those of each body, unless something is expected of
+// contacts; of each dynamic body its rotation, and its shape for a sphere of the same volume. The
+// copies of a `repeat` count as one body.
 [[nodiscard]] std::vector<Simplification> simplifications(ModelPart part, const SceneDesc &scene,
                                                           const RunOptions &options);
 

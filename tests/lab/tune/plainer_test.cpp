@@ -151,6 +151,22 @@ TEST(Plainer, CollisionsThatAreOffAreNotTried) {
     }
 }
 
+// Where nothing collides nothing overlaps, but that is not what is meant by it.
+TEST(Plainer, WhatIsExpectedOfContactsNeedsThem) {
+    const std::string text = falling_balls("") + R"(
+[[expect]]
+name = "solid"
+quantity = "penetration"
+reduce = "max"
+to = 1
+at_most = 0.01
+source = "what is solid does not go through what is solid"
+)";
+    const Tuning tuning = tune_scene({"balls.toml", text}, of_soft_step());
+    ASSERT_TRUE(tuning.chosen);
+    EXPECT_EQ(collisions_of(tuning), std::vector<std::string>{});
+}
+
 TEST(Plainer, WhatLandsMustCollideAndWhatFliesNeedNot) {
     const Tuning tuning = tune_scene({"one_lands.toml", one_lands}, of_soft_step());
     ASSERT_TRUE(tuning.chosen) << printed(tuning);
