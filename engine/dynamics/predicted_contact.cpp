@@ -19,10 +19,6 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Of the half width of the thinner of two bodies: how deep they may be in each other after a step
-// where none of their contact's points is, so far from all of those.
-constexpr Real missed_share = Real(0.25);
-
 Transform placement(const Motion &motion) {
     return {motion.position, motion.rotation};
 }
@@ -169,17 +165,24 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
     const Motion &surface_motion = going(surface_body);
     const auto dt = static_cast<Real>(settings_.dt);
     const Real near = contact_reach(candidate);
+    const Triangle local = surface.surface->triangle(triangle);
     const Approach met =
-        approach({&solid.shape, motion, solid.extent},
-                 placed(surface.surface->triangle(triangle), surface.surface_pose), surface_motion,
-                 surface.extent, dt, near, solid_first ? normal : -normal);
+        approach({&solid.shape, motion, solid.extent}, placed(local, surface.surface_pose),
+                 surface_motion, surface.extent, dt, near, solid_first ? normal : -normal);
     if (met.distance >= near)
         return {};
     const Motion at_solid = ahead(motion, met.time);
     const Motion at_surface = ahead(surface_motion, met.time);
     const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
-    Manifold manifold = plumb::collide(placed(solid.shape, placement(at_solid)), *surface.surface,
-                                       surface_pose(surface, at_surface), triangle,
+    const Shape solid_then = placed(solid.shape, placement(at_solid));
+    const Transform pose_then = surface_pose(surface, at_surface);
+    // What another triangle is to stop passes this one's plane on, and would touch it from there.
+    const auto was_behind = is_behind(
+        bounds(scratch_.placed[solid_first ? candidate.collider_a : candidate.collider_b]),
+        placed(local, surface_pose(surface, state_.motions[surface_body])));
+    if (was_behind != is_behind(bounds(solid_then), placed(local, pose_then)))
+        return {};
+    Manifold manifold = plumb::collide(solid_then, *surface.surface, pose_then, triangle,
                                        near + left * way_of(candidate));
     if (solid_first)
         return {manifold, at_solid, at_surface, Moment::touch};
@@ -222,12 +225,18 @@ bool World::find_surprises() {
     }
     if (!any)
         return false;
+    const std::vector<Candidate> expected = s.candidates;
     find_pairs();
     s.more.clear();
     if (s.triangles.empty())
         s.triangles.resize(1);
     for (const Candidate &candidate : s.candidates)
         collide_candidate(candidate, s.more, s.triangles.front());
+    // find_missed_points looks at both.
+    s.candidates.insert(s.candidates.end(), expected.begin(), expected.end());
+    std::ranges::sort(s.candidates, {}, &Candidate::key);
+    const auto twice = std::ranges::unique(s.candidates, {}, &Candidate::key);
+    s.candidates.erase(twice.begin(), twice.end());
     std::erase_if(s.more, [&](const Contact &contact) {
         return std::ranges::binary_search(s.contacts, contact.key, {}, &Contact::key);
     });
@@ -241,56 +250,6 @@ bool World::find_surprises() {
     s.contacts.insert(s.contacts.end(), s.more.begin(), s.more.end());
     std::ranges::sort(s.contacts, {}, &Contact::key);
     return true;
-}
-
-// After a try of the step: where two that touch in one place have turned so far that they are deep
-// in each other in another. Returns whether a contact got such a point, which may stop that in the
-// next try.
-bool World::find_missed_points() {
-    if (!method_->info.looks_ahead)
-        return false;
-    Scratch &s = scratch_;
-    bool any = false;
-    for (Contact &contact : s.contacts) {
-        const Collider &a = model_->colliders[contact.collider_a];
-        const Collider &b = model_->colliders[contact.collider_b];
-        const Real deep = missed_share * std::min(a.half_width, b.half_width);
-        const SolverBody &at_a = s.bodies[contact.key.a];
-        const SolverBody &at_b = s.bodies[contact.key.b];
-        const Real turning =
-            glm::length(at_a.turned) * a.extent + glm::length(at_b.turned) * b.extent;
-        Manifold &manifold = contact.manifold;
-        if (!(turning > deep) || has_diverged(at_a) || has_diverged(at_b) || contact.sensor ||
-            contact.is_turning || a.surface || b.surface || manifold.count == 4)
-            continue;
-        const Manifold now =
-            plumb::collide(placed(a.shape, placement(at_a)), placed(b.shape, placement(at_b)),
-                           Real(0), manifold.normal);
-        // About the same side of both.
-        if (!(glm::dot(now.normal, manifold.normal) > Real(0.4)))
-            continue;
-        for (int k = 0; k < now.count && manifold.count < 4; ++k) {
-            const ManifoldPoint &point = now.points[static_cast<std::size_t>(k)];
-            if (point.separation > -deep)
-                continue;
-            const auto added = static_cast<std::size_t>(manifold.count);
-            manifold.points[added] = point;
-            set_anchor(contact, added, at_a, at_b);
-            const ContactAnchor &anchor = contact.anchors[added];
-            const auto is_beside = [&](const ContactAnchor &other) {
-                return glm::distance(other.core_a, anchor.core_a) <= deep ||
-                       glm::distance(other.core_b, anchor.core_b) <= deep;
-            };
-            if (std::ranges::any_of(std::span(contact.anchors).first(added), is_beside))
-                continue; // the contact has it already
-            manifold.points[added].separation = separation_now(contact, added);
-            contact.impulses[added] = Vec3{Real(0)};
-            contact.moment = Moment::touch;
-            ++manifold.count;
-            any = true;
-        }
-    }
-    return any;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

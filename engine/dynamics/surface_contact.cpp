@@ -89,6 +89,12 @@ bool is_in_hollow(Real bend, Real depth, Real beyond) {
 
 } // namespace
 
+bool is_behind(const Aabb &solid, const Triangle &triangle) {
+    const Vec3 middle = Real(0.5) * (solid.min + solid.max);
+    const Vec3 front = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
+    return glm::dot(front, middle - triangle.a) < Real(0);
+}
+
 Manifold collide(const Shape &solid, const TriangleSurface &surface, const Transform &pose,
                  std::uint32_t index, Real margin) {
     if (std::holds_alternative<HalfSpace>(solid))
@@ -104,15 +110,14 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
     triangle.size = std::sqrt(doubled_area);
 
     const Aabb box = bounds(solid);
-    const Vec3 middle = Real(0.5) * (box.min + box.max);
-    const bool is_behind = glm::dot(triangle.face, middle - placed_one.a) < Real(0);
-    if (is_behind && surface.sides() == Sides::front)
+    const bool from_behind = is_behind(box, placed_one);
+    if (from_behind && surface.sides() == Sides::front)
         return {};
     Manifold manifold = collide_triangle(solid, placed_one, margin);
     if (manifold.count == 0)
         return manifold;
     const Vec3 out = -manifold.normal;
-    const Vec3 face = is_behind ? -triangle.face : triangle.face;
+    const Vec3 face = from_behind ? -triangle.face : triangle.face;
     const Real lean = glm::dot(out, face);
     if (lean >= Real(1) - Real(1e-6))
         return manifold;

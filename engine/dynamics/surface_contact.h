@@ -6,6 +6,9 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
+// Whether the middle of a solid with those bounds is behind the triangle's plane.
+bool is_behind(const Aabb &solid, const Triangle &triangle);
+
 // The contact of a convex solid (a) with one triangle (b), by its index, of a surface that is
 // placed by `pose`: none beyond the margin (>= 0, m), none for a flat triangle or a half-space.
 //

@@ -277,7 +277,11 @@ class World {
     const Motion &going(std::uint32_t body) const;
     Real least_half_width(const Body &body) const;
     bool find_surprises();
+    // What no contact stopped (missed_contact.cpp).
     bool find_missed_points();
+    bool find_missed_points(Contact &contact) const;
+    bool find_passed_points(const Candidate &candidate);
+    bool add_missed(const Manifold &now, Real deep, Contact &contact) const;
     Real contact_reach(const Candidate &candidate) const;
     Real moving_width(const Candidate &candidate) const;
     // How far its spin moves its surface at most, a radian (m).

@@ -178,6 +178,37 @@ TEST(Surface, NothingFallsThroughHills) {
     }
 }
 
+// What lands on one edge slaps down within the step, and by its end the other edge is deeper than
+// the body is thick.
+TEST(Surface, NothingThinFallsThrough) {
+    const std::vector<std::pair<std::string, std::shared_ptr<const TriangleSurface>>> grounds{
+        {"field", std::make_shared<const TriangleSurface>(field(8, 1, flat), Sides::front)},
+        {"two triangles", std::make_shared<const TriangleSurface>(grid(1, 8, flat), Sides::front)},
+        {"two-sided", std::make_shared<const TriangleSurface>(grid(16, 0.5, flat), Sides::both)}};
+    const std::vector<std::pair<std::string, Shape>> solids{
+        {"plate", block(V{0.3, 0.02, 0.2})},
+        {"stick", block(V{0.3, 0.02, 0.02})},
+        {"disc", Cylinder{narrow(V{0, -0.02, 0}), narrow(V{0, 0.02, 0}), Real(0.25)}}};
+    Random random(7);
+    for (const auto &[ground, surface] : grounds)
+        for (const auto &[name, solid] : solids)
+            for (const double speed : {0.0, 5.0}) {
+                int fallen = 0;
+                for (int trial = 0; trial < 30; ++trial) {
+                    World world("soft_step", settings_for("soft_step"));
+                    world.add_body(surface_body(surface, 0.4));
+                    BodyDef def = dynamic_body(solid, 1, V{0.13, random.next_in(0.45, 0.55), 0.09},
+                                               V{0, -speed, 0});
+                    def.pose.rotation = glm::normalize(narrow(any_rotation(random)));
+                    def.angular_velocity = narrow(any_vector(random, 6 * speed));
+                    const BodyId id = world.add_body(with_material(def, 0.4, 0));
+                    run(world, 60);
+                    fallen += position_of(world, id).y < 0 ? 1 : 0;
+                }
+                EXPECT_EQ(fallen, 0) << name << " on " << ground << " at " << speed << " m/s";
+            }
+}
+
 // A bar with one edge along a gutter, sunk below both of its faces: at least one of them has it.
 TEST(Surface, AnEdgeInAGutterTouchesAFace) {
     for (const double steep : {0.1, 0.4, 0.8})
