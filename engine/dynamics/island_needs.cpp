@@ -63,6 +63,27 @@ bool is_loaded(const JointConstraint &joint) {
            joint.rows.bounds != RowBounds::motor && !joint.is_spring();
 }
 
+// How far moments turn the joints that bear them: such angles add up along a beam. A block that is
+// solved with its group is as soft as `factor` makes it, and at rest half of its impulse turns it
+// by the half of its error that a substep takes back. What has been torn apart stays so at any
+// number of substeps, and asks for none.
+void note_moment_needs(Scratch &s, const StepSettings &settings, int substeps) {
+    const double h = settings.dt / substeps;
+    JointSystem &system = *s.solver.joint_system;
+    for (const JointGroup &joints : system.groups())
+        for (std::uint32_t place = joints.first; joints.is_held && place < joints.last; ++place) {
+            const JointConstraint &joint = s.solver.joints[system.block(place)];
+            if (joint.rows.kind != RowKind::angular)
+                continue;
+            const auto turn =
+                h * static_cast<double>(glm::length(system.softening(place) * joint.impulse));
+            const double squared = square(substeps) * turn / settings.substep_tolerance;
+            for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
+                s.loads[body] = std::max(s.loads[body], squared);
+            });
+        }
+}
+
 } // namespace
 
 // What joints will bear in their first step is not known: as much as if all of the island hung on
@@ -202,6 +223,7 @@ void World::note_joint_needs(const IslandGroup &group) {
             0.5 * impulse * group.substeps * settings_.dt * inverse / (ratio * ratio * drift);
         ask(joint, squared);
     }
+    note_moment_needs(s, settings_, group.substeps);
 }
 
 // How fast joints' forces turn their bodies, and how fast these turn.

@@ -152,6 +152,52 @@ TEST(Islands, AHangingChainWithAHeavyEndStaysAtRest) {
     }
 }
 
+// Cubes of 0.2 m in a row along x, 8 kg each and `tip` times that at the end, joined to each other
+// and to a wall. Of hinges and sliders x is the free axis, turned by `frame`.
+void expect_beam_holds(JointType type, const glm::dquat &frame, int count, double tip) {
+    constexpr double half = 0.1;
+    World world("soft_step", settings_for("soft_step"));
+    BodyId last;
+    JointDef joint;
+    joint.type = type;
+    joint.frame_a_local = joint.frame_b_local = narrow(frame);
+    joint.anchor_b_local = narrow(V{-half, 0, 0});
+    for (int i = 0; i < count; ++i) {
+        joint.a = last;
+        joint.b = last = world.add_body(dynamic_body(block(V{half}), i + 1 == count ? 8 * tip : 8,
+                                                     V{half * (2 * i + 1), 0, 0}));
+        world.add_joint(joint);
+        joint.anchor_a_local = narrow(V{half, 0, 0});
+    }
+    const double length = 2 * half * count;
+    // While the first steps find out what the joints bear, they are softer.
+    constexpr double most_share = 4e-3;
+    const auto sag = [&] { return glm::length(position_of(world, last) - V{length - half, 0, 0}); };
+    for (int step = 0; step < 180; ++step) {
+        run(world, 1);
+        ASSERT_LT(sag(), most_share * length) << count << ' ' << tip << ", step " << step;
+    }
+    const double turn = world.settings().substep_tolerance;
+    for (int i = 0; i < count; ++i)
+        EXPECT_LT(double(world.joint_errors(std::uint32_t(i)).angular), turn) << count << ' ' << i;
+    // The first joint bears most: with weight alone, angles fall with the square of the distance
+    // from the tip.
+    EXPECT_LT(sag(), (tip > 1 ? 0.5 : 0.25) * count * turn * length) << count << ' ' << tip;
+}
+
+const glm::dquat level{1, 0, 0, 0};
+
+TEST(Islands, WeldedBeamsHoldTheirWeight) {
+    for (const int count : {5, 14, 20})
+        expect_beam_holds(JointType::fixed, level, count, 1);
+    expect_beam_holds(JointType::fixed, level, 5, 50);
+}
+
+TEST(Islands, BeamsOfHingesAndSlidersHoldTheirWeight) {
+    expect_beam_holds(JointType::hinge, glm::angleAxis(pi / 2, V{0, 0, 1}), 12, 1);
+    expect_beam_holds(JointType::slider, glm::angleAxis(-pi / 2, V{0, 1, 0}), 12, 1);
+}
+
 // What spins fast around a joint with its whole arm turns far in a substep, and loses its energy at
 // four of them: more than nine tenths within 5 s at 200 rad/s.
 TEST(Islands, WhatSpinsOnAJointKeepsItsEnergy) {
