@@ -454,6 +454,15 @@ void solve_joints(StepContext &context, const JointPass &pass) {
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
+void hold_touched_groups(StepContext &context, const JointPass &pass) {
+    const std::span<JointGroup> groups = context.scratch.joint_system->groups();
+    for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
+        for (const JointGroup &group : groups.subspan(begin, end - begin))
+            if (group.is_held && group.is_touched)
+                solve_group(context, group, pass);
+    });
+}
+
 void answer_impact(StepContext &context, std::uint32_t group) {
     if (group == JointSystem::none)
         return;

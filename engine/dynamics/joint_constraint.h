@@ -96,6 +96,8 @@ void foresee_turns(StepContext &context, Real h);
 // Applies what springs do in the rest of the substep, after Springs::midpoint.
 void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);
+// The groups that are held once more, where contacts were solved after them.
+void hold_touched_groups(StepContext &context, const JointPass &pass);
 // One alone.
 void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &pass);
 // What the joints of a group answer to an impact: changes velocities so that the joints hold them.

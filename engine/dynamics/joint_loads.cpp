@@ -111,6 +111,9 @@ void follow_loads(StepContext &context, Real h) {
         group.is_held = true;
         for (std::uint32_t place = group.first; group.is_held && place < group.last; ++place)
             group.is_held = !is_torn(context.scratch.joints[system.block(place)].rows);
+        // Torn in the midst of a step: more substeps may follow what did it.
+        group.was_let_go =
+            group.was_let_go || (!group.is_held && group.is_factored && !group.was_torn);
         group.was_torn = group.was_torn || !group.is_held;
         const auto for_all_bodies = [&](auto &&use) {
             for (std::uint32_t place = group.first; place < group.last; ++place) {

@@ -30,6 +30,28 @@ bool is_rigid(const JointConstraint &joint) {
 } // namespace
 
 void JointSystem::arrange(StepContext &context) {
+    find_order(context);
+    for (JointGroup &group : groups_)
+        group.is_factored = group.is_touched = group.was_torn = group.was_let_go = false;
+    note_touched(context);
+}
+
+void JointSystem::note_touched(const StepContext &context) {
+    const auto note = [&](std::uint32_t body) {
+        if (group_of_body_[body] != none)
+            groups_[group_of_body_[body]].is_touched = true;
+    };
+    if (groups_.empty())
+        return;
+    for (const std::uint32_t i : context.active.contacts) {
+        note(context.ends[i].a);
+        note(context.ends[i].b);
+    }
+    for (const ParticleContact &contact : context.particle_contacts)
+        note(contact.body);
+}
+
+void JointSystem::find_order(StepContext &context) {
     std::vector<JointConstraint> &joints = context.scratch.joints;
     const auto is_dynamic = [&](std::uint32_t body) {
         return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
@@ -43,8 +65,6 @@ void JointSystem::arrange(StepContext &context) {
     if (!key_.empty() && key_.front() == context.bodies.size() &&
         std::ranges::equal(std::span(key_).subspan(1), joints, {}, {}, key_of)) {
         context.scratch.sides.resize(std::max(context.scratch.sides.size(), order_.size()));
-        for (JointGroup &group : groups_)
-            group.was_torn = group.was_let_go = false;
         return;
     }
     key_.assign(1, context.bodies.size());

@@ -14,13 +14,15 @@ namespace plumb::inline PLUMB_PRECISION {
 struct StepContext;
 
 // Blocks first..last - 1 in a system's order of elimination. `is_held`: solved together in this
-// substep, not left to Gauss-Seidel. `is_factored`: it was when its joints were refreshed last. In
-// this step: `was_torn` before a substep began, `was_let_go` before it was ever torn.
+// substep, not left to Gauss-Seidel. `is_touched`: contacts act on its bodies. In this step:
+// `is_factored`: it was when its joints were refreshed last; `was_torn` before a substep began;
+// `was_let_go` before it was ever torn, or torn from one substep to the next.
 struct JointGroup {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
     bool is_held = false;
     bool is_factored = false;
+    bool is_touched = false;
     bool was_torn = false;
     bool was_let_go = false;
 };
@@ -39,7 +41,7 @@ class JointSystem {
 
     // Holds no group until it is arranged again; the arrangement is kept, in case it stays.
     void release() { is_arranged_ = false; }
-    // Which of the prepared blocks are solved together, and in which order.
+    // Which of the prepared blocks are solved together, and in which order; and which touch others.
     void arrange(StepContext &context);
     std::span<JointGroup> groups() {
         return is_arranged_ ? std::span<JointGroup>(groups_) : std::span<JointGroup>{};
@@ -77,7 +79,9 @@ class JointSystem {
     static void find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
                             Effect &out);
     static void add_coupling(const Effect &u, const Effect &v, Mat3 &sum);
+    void find_order(StepContext &context);
     bool eliminate(const std::vector<std::uint32_t> &members);
+    void note_touched(const StepContext &context);
 
     bool is_arranged_ = false;
     std::vector<std::uint64_t> key_; // of the arrangement: pairs of bodies

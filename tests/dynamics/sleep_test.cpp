@@ -3,6 +3,8 @@
 #include "tests/dynamics/worlds.h"
 
 #include <functional>
+#include <optional>
+#include <variant>
 
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
@@ -267,6 +269,74 @@ TEST(Sleep, WhatMovesSlowlyStaysAwake) {
             fastest = std::max(fastest, glm::length(velocity_of(world, joint.b)));
         }
         EXPECT_NEAR(fastest, swing * std::sqrt(gravity * 10), 0.05 * fastest);
+    }
+}
+
+// A figure that stands with its feet at y = 0, turned about the x axis by `turn` and lifted:
+// hinges at knees, elbows and waist, within limits.
+struct Figure {
+    World world = floor_world();
+    std::vector<BodyId> parts;
+    glm::dquat turn;
+    V feet;
+
+    std::size_t add(const Shape &shape, double mass, const V &at) {
+        BodyDef def = with_material(dynamic_body(shape, mass, feet + turn * at), 0.6, 0);
+        def.pose.rotation = narrow(turn);
+        // A round head would spin for ever between its neck and the floor: nothing brakes it.
+        def.angular_damping = Real(is_round(shape) ? 5 : 0);
+        parts.push_back(world.add_body(def));
+        return parts.size() - 1;
+    }
+    static bool is_round(const Shape &shape) { return std::holds_alternative<Sphere>(shape); }
+    void join(std::size_t a, std::size_t b, const V &anchor, std::optional<JointLimits> limits) {
+        JointDef joint;
+        joint.type = limits ? JointType::hinge : JointType::ball;
+        joint.a = parts[a];
+        joint.b = parts[b];
+        joint.limits = limits;
+        const auto local = [&](BodyId id) {
+            return narrow(glm::conjugate(turn) * (feet + turn * anchor - position_of(world, id)));
+        };
+        joint.anchor_a_local = local(joint.a);
+        joint.anchor_b_local = local(joint.b);
+        world.add_joint(joint);
+    }
+    Figure(double about_x, double height)
+        : turn(glm::angleAxis(about_x, V{1, 0, 0})), feet(V{0, height, 0}) {
+        const std::size_t torso = add(block(V{0.15, 0.25, 0.1}), 30, V{0, 1.40, 0});
+        const std::size_t pelvis = add(block(V{0.14, 0.1, 0.1}), 15, V{0, 1.03, 0});
+        join(torso, pelvis, V{0, 1.14, 0}, JointLimits{Real(-0.5), Real(0.5)});
+        join(torso, add(ball(0.1), 5, V{0, 1.77, 0}), V{0, 1.66, 0}, {});
+        for (const double side : {-1.0, 1.0}) {
+            const double arm = 0.22 * side;
+            const double leg = 0.09 * side;
+            const std::size_t upper = add(upright_capsule(0.12, 0.05), 3, V{arm, 1.5, 0});
+            join(torso, upper, V{0.2 * side, 1.64, 0}, {});
+            join(upper, add(upright_capsule(0.12, 0.04), 2, V{arm, 1.17, 0}), V{arm, 1.335, 0},
+                 JointLimits{Real(-2.3), Real(0)});
+            const std::size_t thigh = add(upright_capsule(0.17, 0.07), 8, V{leg, 0.69, 0});
+            join(pelvis, thigh, V{leg, 0.93, 0}, {});
+            join(thigh, add(upright_capsule(0.17, 0.06), 5, V{leg, 0.23, 0}), V{leg, 0.46, 0},
+                 JointLimits{Real(0), Real(2.3)});
+        }
+    }
+};
+
+// What lies on the ground and is jointed, light parts below heavy ones: joints and contacts do not
+// undo what the other did.
+TEST(Sleep, AFigureThatFallsStaysWholeAndSleeps) {
+    for (const double turn : {-0.5 * pi, 0.5 * pi, 0.4 * pi}) {
+        Figure figure(turn, 0.6);
+        World &world = figure.world;
+        double apart = 0;
+        for (int step = 0; step < 600 && !all_sleep(world); ++step) {
+            world.step(nullptr);
+            for (std::uint32_t i = 0; i < world.joints().size(); ++i)
+                apart = std::max(apart, double(world.joint_errors(i).linear));
+        }
+        EXPECT_TRUE(all_sleep(world)) << turn;
+        EXPECT_LT(apart, 1e-4) << turn;
     }
 }
 

@@ -9,8 +9,9 @@
 // bodies: a pendulum keeps its energy, which the plain scheme loses at the rate omega^2 h.
 //
 // And joints that hang together without many loops are solved together, as long as the substep can
-// follow them; contacts of what rests are kept as they were found (kept_travel), those of what
-// moves fast for its size are found where it will be (looks_ahead), and all are solved in columns.
+// follow them, and again after the contacts of their bodies; contacts of what rests are kept as
+// they were found (kept_travel), those of what moves fast for its size are found where it will be
+// (looks_ahead), and all are solved in columns.
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 
@@ -113,6 +114,9 @@ void advance_soft_step(StepContext &context) {
             }
             solve_contact_columns(context, contact_bias, h);
         }
+        // Contacts give way, joints that are solved together do not: what is jointed would be
+        // pulled apart by what it lies on, and never rest.
+        hold_touched_groups(context, holding);
         end_flights(context, h, Kick::around);
         if (has_particles)
             drift_particles(context, h);
@@ -133,6 +137,7 @@ void advance_soft_step(StepContext &context) {
                 solve_particle_contacts(context, {.loaded_only = true}, h);
             solve_contact_columns(context, relax_bias, h);
         }
+        hold_touched_groups(context, relaxing);
         store_joint_columns(context); // for what the next substep makes of their loads
         if (has_particles)
             restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
