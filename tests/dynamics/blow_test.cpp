@@ -109,6 +109,34 @@ TEST(SoftStepBlow, SticksGainNoEnergy) {
             }
 }
 
+// Nothing that touches them does work on them: capsules and cylinders that spin about their axes as
+// well as about the vertical, nearly on their sides.
+TEST(SoftStepBlow, WhatSpinsOnAFloorGainsNoEnergy) {
+    const std::vector<Shape> shapes{
+        upright_capsule(0.15, 0.05),
+        Cylinder{narrow(V{0, -0.15, 0}), narrow(V{0, 0.15, 0}), Real(0.05)}};
+    for (const Shape &shape : shapes)
+        for (const double friction : {0.0, 0.5})
+            for (const double own : {20.0, 60.0, 150.0})
+                for (const double vertical : {5.0, 25.0}) {
+                    World world("soft_step", settings_for("soft_step"));
+                    world.add_body(ground(friction, 0));
+                    BodyDef top = with_material(dynamic_body(shape, 1, V{0, 0.07, 0}), friction, 0);
+                    top.pose.rotation = narrow(glm::angleAxis(pi / 2 - 0.1, V{0, 0, 1}));
+                    const V axis = wide(top.pose.rotation) * V{0, 1, 0};
+                    top.angular_velocity = narrow(own * axis + V{0, vertical, 0});
+                    world.add_body(top);
+                    const double before = world.energy();
+                    double most = before;
+                    for (int step = 0; step < 1200; ++step) {
+                        world.step(nullptr);
+                        most = std::max(most, world.energy());
+                    }
+                    EXPECT_LE(most, 1.001 * before)
+                        << shape.index() << ", " << friction << ", " << own << ", " << vertical;
+                }
+}
+
 // Froude's law: a domino hit near its top falls, or does not, at any size.
 TEST(SoftStepBlow, SmallDominoesFallAsLargeOnes) {
     for (const double height : {0.02, 0.04, 0.1, 0.4, 1.0}) {

@@ -102,6 +102,7 @@ void advance_soft_step(StepContext &context) {
         warm_start_joints(context, Real(0.5), Springs::midpoint);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
         warm_start_contact_columns(context, Real(0.5), true);
+        note_lasting_loads(context);
         if (has_particles) {
             kick_particles(context, gravity, Real(0.5) * h);
             refresh_particles(context, h, SpringRule::midpoint);
