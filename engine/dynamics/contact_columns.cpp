@@ -238,23 +238,34 @@ bool has_other_arms(const StepContext &context, const Contact &contact) {
             has_other_arms(context, contact, contact.key.b, contact.collider_b));
 }
 
-// Arms and inertias of a lane as the bodies are now, to one point, that of the body that has
-// turned.
-void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lane) {
-    const Contact &contact = context.contacts[block.contacts[lane]];
+// Where a point is on two bodies as they are now: on the surface of the one that has turned.
+struct Arms {
+    Vec3 a;
+    Vec3 b;
+};
+Arms present_arms(const StepContext &context, const Contact &contact, std::size_t k) {
     const SolverBody &a = context.bodies[contact.key.a];
     const SolverBody &b = context.bodies[contact.key.b];
-    set(block.inv_inertia_a, lane, a.inv_inertia);
-    set(block.inv_inertia_b, lane, b.inv_inertia);
-    const Vec3 n = get(block.normal, lane);
-    const bool is_of_a = has_other_arms(context, contact, contact.key.a, contact.collider_a);
+    const Vec3 &n = contact.manifold.normal;
     const Vec3 between = b.position - a.position;
+    const ContactAnchor &anchor = contact.anchors[k];
+    if (has_other_arms(context, contact, contact.key.a, contact.collider_a)) {
+        const Vec3 arm = a.rotation * anchor.core_a + contact.rounding_a * n;
+        return {arm, arm - between};
+    }
+    const Vec3 arm = b.rotation * anchor.core_b - contact.rounding_b * n;
+    return {arm + between, arm};
+}
+
+// Arms and inertias of a lane as the bodies are now.
+void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lane) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    set(block.inv_inertia_a, lane, context.bodies[contact.key.a].inv_inertia);
+    set(block.inv_inertia_b, lane, context.bodies[contact.key.b].inv_inertia);
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
-        const ContactAnchor &anchor = contact.anchors[k];
-        const Vec3 arm = is_of_a ? a.rotation * anchor.core_a + block.rounding_a.lanes[lane] * n
-                                 : b.rotation * anchor.core_b - block.rounding_b.lanes[lane] * n;
-        set(block.points[k].r_a, lane, is_of_a ? arm : arm + between);
-        set(block.points[k].r_b, lane, is_of_a ? arm - between : arm);
+        const Arms arms = present_arms(context, contact, k);
+        set(block.points[k].r_a, lane, arms.a);
+        set(block.points[k].r_b, lane, arms.b);
     }
 }
 
@@ -296,6 +307,17 @@ void rearm_contact_columns(StepContext &context) {
         }
         if (any)
             kernels::finish(std::span(&block, 1));
+    }
+    // And of their impacts: what these do not see coming, the passes would stop for good.
+    for (ContactConstraint &bouncing : context.scratch.contacts) {
+        const Contact &contact = context.contacts[bouncing.contact];
+        if (!has_other_arms(context, contact))
+            continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(bouncing.count); ++k) {
+            const Arms arms = present_arms(context, contact, k);
+            bouncing.points[k].r_a = arms.a;
+            bouncing.points[k].r_b = arms.b;
+        }
     }
 }
 
