@@ -118,16 +118,17 @@ Real World::acting_side(const ContactKey &key) const {
 namespace {
 
 // The part of a surface's distance along a normal that rolling on it does not change: the radius of
-// a ball or capsule, and of a cylinder that lies on its side.
+// a ball or capsule. Of a cylinder on its side, or on a rim near that: from its axis, along the
+// normal. What is left of the way to the middle lies on the axis then, and rolling does not move
+// it; a coin that leans would else sink in as it rolls, be pushed out, and gain energy.
 Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal) {
     const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
     if (cylinder == nullptr || collider.surface)
         return collider.rounding;
-    // What the rim's rounding is off by, where it leans, is of the second order.
     constexpr Real leaning = Real(0.2);
-    const Vec3 axis = rotation * (cylinder->b - cylinder->a);
-    return std::abs(glm::dot(axis, normal)) <= leaning * glm::length(axis) ? cylinder->radius
-                                                                           : Real(0);
+    const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
+    return std::abs(sine) <= leaning ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
+                                     : Real(0);
 }
 
 // Once its origin is known.
