@@ -235,8 +235,9 @@ bool World::find_surprises() {
     // find_missed_points looks at both.
     s.candidates.insert(s.candidates.end(), expected.begin(), expected.end());
     std::ranges::sort(s.candidates, {}, &Candidate::key);
-    const auto twice = std::ranges::unique(s.candidates, {}, &Candidate::key);
-    s.candidates.erase(twice.begin(), twice.end());
+    const auto is_same = [](const Candidate &a, const Candidate &b) { return a.key == b.key; };
+    s.candidates.erase(std::unique(s.candidates.begin(), s.candidates.end(), is_same),
+                       s.candidates.end());
     std::erase_if(s.more, [&](const Contact &contact) {
         return std::ranges::binary_search(s.contacts, contact.key, {}, &Contact::key);
     });
