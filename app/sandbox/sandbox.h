@@ -93,7 +93,7 @@ class Sandbox {
     void frame_selection();
     void dismiss();
     void started(bool another_scene);
-    void forget_studies(); // of a scene that is no longer there
+    void forget_studies();    // of a scene that is no longer there
     void follow_simulation(); // the clock's dt, and a selection that may be gone
 
     Session session_;
