@@ -267,7 +267,7 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
             is_soft, hn::Div(soft_impulse, hn::Mul(soft_mass, hn::IfThenElse(there, mass, one))));
         const Lanes load_before = load(point.impulse.x, lane);
         const Lanes speed = dot(pair.velocity_at(point_a, point_b), n);
-        const Lanes rigid_need = hn::Neg(hn::Add(speed, target_of(separation, speed)));
+        const Lanes rigid_need = hn::Neg(hn::Add(speed, target_of(separation)));
         const Lanes need = hn::Sub(rigid_need, hn::Mul(yielding, load_before));
         softest = max(softest, yielding);
         least_rigid = hn::IfThenElse(there, min(least_rigid, rigid_need), least_rigid);
@@ -393,13 +393,10 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                                           rounding_b);
             return hn::Add(load(point.separation, lane), hn::Add(way, hn::Sub(way_b, way_a)));
         };
-        // How fast a point is to part (m/s). What bounced and parts is out soon: what it was pushed
-        // the relaxing pass would take back where it has turned, and energy with it.
-        const auto target_of = [&](Lanes separation, Lanes speed) HWY_ATTR {
+        // How fast a point is to part (m/s).
+        const auto target_of = [&](Lanes separation) HWY_ATTR {
             const Lanes depth = min(hn::Add(separation, slop), zero);
-            const auto bounced = hn::And(bounces, hn::Gt(speed, hn::Neg(struck_speed)));
-            const Lanes push =
-                pushes ? hn::IfThenZeroElse(bounced, max(hn::Mul(rate, depth), least)) : zero;
+            const Lanes push = pushes ? max(hn::Mul(rate, depth), least) : zero;
             return hn::IfThenElse(hn::Gt(separation, zero), hn::Mul(separation, all(inv_h)), push);
         };
         // Told by one point: what lands flat is all alike.
@@ -428,8 +425,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 const Lanes separation = separation_at(k);
                 const Lanes before = load(point.impulse.x, lane);
                 const auto apart = hn::Gt(separation, zero);
+                const Lanes target = target_of(separation);
                 const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
-                const Lanes target = target_of(separation, speed);
                 if (is_first)
                     struck = hn::Or(struck, hn::Lt(speed, struck_speed));
                 // What comes in faster than anything is pushed out is stopped at once: as a spring
