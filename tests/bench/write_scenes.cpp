@@ -26,14 +26,16 @@ void expect_at_most(SceneDesc &scene, const char *quantity, double bound, double
 } // namespace
 
 ExitCode bench_scene_files(const EngineBenchOptions &options) {
+    const std::vector<BenchScene> scenes = chosen(bench_scenes(), options.only);
     create_folder(options.out_dir);
-    for (const BenchScene &one : chosen(bench_scenes(), options.only)) {
+    for (const BenchScene &one : scenes) {
         SceneDesc scene = one.make(options.size);
         scene.title = one.name;
-        expect_at_most(scene, "penetration", 0.1, one.seconds, "bodies are rigid; 10 cm are seen");
+        expect_at_most(scene, "penetration", 0.1, one.seconds,
+                       "bodies are rigid; 10 cm would be seen");
         if (!scene.joints.empty())
             expect_at_most(scene, "joint_drift", 0.05, one.seconds,
-                           "joints do not come apart; 5 cm are seen");
+                           "joints do not come apart; 5 cm would be seen");
         OutputFile file(options.out_dir / (one.name + ".toml"));
         file.stream() << write_scene(scene);
         file.finish();

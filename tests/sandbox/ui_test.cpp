@@ -45,6 +45,29 @@ Look look(const Image &image, const Rect &rect) {
     return look;
 }
 
+// What is drawn once windows have found their sizes.
+const ImDrawData &settled(Ui &ui, Sandbox &sandbox, glm::vec2 window = {1280, 800}) {
+    const ImDrawData *data = nullptr;
+    for (int frame = 0; frame < 4; ++frame) {
+        ui.fill_input(window, 1.0f / 60);
+        ui.begin_frame();
+        PanelContext panels = sandbox.panel_context(ui.fonts());
+        data = &ui.draw(panels);
+    }
+    return *data;
+}
+
+// A frame with the pointer there, its button up or down.
+void point(Ui &ui, Sandbox &sandbox, ImVec2 mouse, bool down) {
+    ui.fill_input({1280, 800}, 1.0f / 60);
+    ImGui::GetIO().MousePos = mouse;
+    ImGui::GetIO().MouseDown[0] = down;
+    ui.begin_frame();
+    PanelContext panels = sandbox.panel_context(ui.fonts());
+    static_cast<void>(ui.draw(panels));
+    sandbox.take(panels);
+}
+
 class UiTest : public testing::Test {
   protected:
     UiTest() {
@@ -182,15 +205,7 @@ TEST_F(UiTest, AClickInTheListOpensAScene) {
     ASSERT_TRUE(sandbox.open(scenes[0].path));
     Ui ui;
     ImGui::GetIO().Fonts->Build();
-    const auto frame = [&](ImVec2 mouse, bool down) {
-        ui.fill_input({1280, 800}, 1.0f / 60);
-        ImGui::GetIO().MousePos = mouse;
-        ImGui::GetIO().MouseDown[0] = down;
-        ui.begin_frame();
-        PanelContext panels = sandbox.panel_context(ui.fonts());
-        static_cast<void>(ui.draw(panels));
-        sandbox.take(panels);
-    };
+    const auto frame = [&](ImVec2 mouse, bool down) { point(ui, sandbox, mouse, down); };
     const ImVec2 outside(640, 400);
     for (int settled = 0; settled < 4; ++settled)
         frame(outside, false);
@@ -219,12 +234,7 @@ TEST_F(UiTest, AfterASearchTheOpenSceneIsInSightAgain) {
     ImGui::GetIO().Fonts->Build();
     const auto list_begins = [&](const char *search) {
         sandbox.view().search = search;
-        for (int settled = 0; settled < 4; ++settled) {
-            ui.fill_input({1280, 800}, 1.0f / 60);
-            ui.begin_frame();
-            PanelContext panels = sandbox.panel_context(ui.fonts());
-            static_cast<void>(ui.draw(panels));
-        }
+        static_cast<void>(settled(ui, sandbox));
         for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows)
             if (std::string_view(window->Name).starts_with("scenes/list"))
                 return window->Scroll.y;
@@ -241,15 +251,7 @@ TEST_F(UiTest, EscClosesAListThatIsOpen) {
     ASSERT_TRUE(sandbox.open(scenes[1].path));
     Ui ui;
     ImGui::GetIO().Fonts->Build();
-    const auto frame = [&](ImVec2 mouse, bool down) {
-        ui.fill_input({1280, 800}, 1.0f / 60);
-        ImGui::GetIO().MousePos = mouse;
-        ImGui::GetIO().MouseDown[0] = down;
-        ui.begin_frame();
-        PanelContext panels = sandbox.panel_context(ui.fonts());
-        static_cast<void>(ui.draw(panels));
-        sandbox.take(panels);
-    };
+    const auto frame = [&](ImVec2 mouse, bool down) { point(ui, sandbox, mouse, down); };
     const auto is_open = [] { return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup); };
     for (int settled = 0; settled < 4; ++settled)
         frame({640, 400}, false);
@@ -411,14 +413,8 @@ TEST_F(UiTest, NoNumberIsCutInANarrowWindow) {
         sandbox.view().opened[PanelId::details] = true;
         Ui ui;
         ImGui::GetIO().Fonts->Build();
-        const ImDrawData *data = nullptr;
-        for (int settled = 0; settled < 4; ++settled) {
-            ui.fill_input({window.x, window.y}, 1.0f / 60);
-            ui.begin_frame();
-            PanelContext panels = sandbox.panel_context(ui.fonts());
-            data = &ui.draw(panels);
-        }
-        return area_of(*data, theme::text, panel);
+        const ImDrawData &data = settled(ui, sandbox, {window.x, window.y});
+        return area_of(data, theme::text, panel);
     };
     for (const char *panel : {"settings", "details"}) {
         const double whole = text_in(panel, {1280, 900});
@@ -443,21 +439,15 @@ TEST_F(UiTest, TheLabPlotsWhatWasChosen) {
             EXPECT_TRUE(sandbox.session().step_back());
         Ui ui;
         ImGui::GetIO().Fonts->Build();
-        const ImDrawData *data = nullptr;
-        for (int settled = 0; settled < 4; ++settled) {
-            ui.fill_input(size, 1.0f / 60);
-            ui.begin_frame();
-            PanelContext panels = sandbox.panel_context(ui.fonts());
-            data = &ui.draw(panels);
-        }
+        const ImDrawData &data = settled(ui, sandbox, size);
         const auto lab = std::ranges::find(ui.panels(), PanelId::lab, &Ui::Panel::id);
         EXPECT_NE(lab, ui.panels().end());
         for (const Ui::Panel &panel : ui.panels())
             EXPECT_TRUE(panel.id == PanelId::lab || !windows_overlap(lab->rect, panel.rect))
                 << panel.name;
         // Less its sign in the legend.
-        return std::array{area_of(*data, {0.42f, 0.68f, 0.90f, 1}, "lab") - 90,
-                          area_of(*data, {0.90f, 0.64f, 0.42f, 1}, "lab") - 90};
+        return std::array{area_of(data, {0.42f, 0.68f, 0.90f, 1}, "lab") - 90,
+                          area_of(data, {0.90f, 0.64f, 0.42f, 1}, "lab") - 90};
     };
     for (const glm::vec2 size : {glm::vec2(1280, 800), smallest_window}) {
         const auto begun = plotted(0, 0, size), run = plotted(400, 0, size),
@@ -478,14 +468,8 @@ TEST_F(UiTest, AParticleThatIsSelectedIsShown) {
     Ui ui;
     ImGui::GetIO().Fonts->Build();
     const auto headings = [&] { // which the scene has, and a particle has not
-        const ImDrawData *data = nullptr;
-        for (int settled = 0; settled < 4; ++settled) {
-            ui.fill_input({1280, 800}, 1.0f / 60);
-            ui.begin_frame();
-            PanelContext panels = sandbox.panel_context(ui.fonts());
-            data = &ui.draw(panels);
-        }
-        return area_of(*data, theme::accent, "details");
+        const ImDrawData &data = settled(ui, sandbox);
+        return area_of(data, theme::accent, "details");
     };
     const double of_scene = headings();
     EXPECT_GT(of_scene, 0);
@@ -514,14 +498,8 @@ TEST_F(UiTest, ACurveThatFallsIsDrawnAsOneThatRises) {
             EXPECT_TRUE(sandbox.session().step());
         Ui ui;
         ImGui::GetIO().Fonts->Build();
-        const ImDrawData *data = nullptr;
-        for (int settled = 0; settled < 4; ++settled) {
-            ui.fill_input({1280, 800}, 1.0f / 60);
-            ui.begin_frame();
-            PanelContext panels = sandbox.panel_context(ui.fonts());
-            data = &ui.draw(panels);
-        }
-        return area_of(*data, {0.42f, 0.68f, 0.90f, 1}, "lab");
+        const ImDrawData &data = settled(ui, sandbox);
+        return area_of(data, {0.42f, 0.68f, 0.90f, 1}, "lab");
     };
     const double rises = area(1);
     EXPECT_GT(rises, 1500);
@@ -539,15 +517,9 @@ TEST_F(UiTest, APhaseWithoutTimeLeavesNoTraceInTheGraph) {
     }
     Ui ui;
     ImGui::GetIO().Fonts->Build();
-    const ImDrawData *data = nullptr;
-    for (int settled = 0; settled < 4; ++settled) {
-        ui.fill_input({1280, 800}, 1.0f / 60);
-        ui.begin_frame();
-        PanelContext panels = sandbox.panel_context(ui.fonts());
-        data = &ui.draw(panels);
-    }
-    EXPECT_GT(area_of(*data, {0.50f, 0.76f, 0.58f, 1}), 500); // advance
-    EXPECT_LT(area_of(*data, {0.72f, 0.62f, 0.86f, 1}), 130); // finish
+    const ImDrawData &data = settled(ui, sandbox);
+    EXPECT_GT(area_of(data, {0.50f, 0.76f, 0.58f, 1}), 500); // advance
+    EXPECT_LT(area_of(data, {0.72f, 0.62f, 0.86f, 1}), 130); // finish
 }
 
 } // namespace
