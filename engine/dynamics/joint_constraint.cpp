@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -44,9 +45,102 @@ std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
     return std::span(context.scratch.sides).subspan(group.first, group.last - group.first);
 }
 
+// The limits of a block that has some.
+std::span<JointConstraint, 2> limits_of(JointConstraint &joint) {
+    return std::span<JointConstraint, 2>(&joint + joint.limits, 2);
+}
+
+// The row of the limit that bears as the third of the block.
+void add_limit_row(JointConstraint &joint) {
+    const RowBlock &limit = limits_of(joint)[joint.bearing == BearingLimit::upper ? 1 : 0].rows;
+    joint.rows.count = 3;
+    joint.rows.axes[2] = limit.axes[0];
+    joint.rows.error.z = limit.error.x;
+}
+
+// It bears nothing yet.
+void set_bearing(JointConstraint &joint, BearingLimit bearing) {
+    joint.bearing = bearing;
+    joint.rows.count = 2;
+    joint.rows.axes[2] = Vec3{Real(0)};
+    joint.rows.error.z = joint.impulse.z = joint.remembered.z = Real(0);
+    if (bearing != BearingLimit::none)
+        add_limit_row(joint);
+    for (JointConstraint &limit : limits_of(joint)) {
+        limit.impulse = limit.remembered = Vec3{Real(0)};
+        limit.is_held = bearing != BearingLimit::none;
+        limit.is_weighed = !limit.is_held; // again: weigh_again
+    }
+}
+
+// A limit pushes, and does not pull.
+bool pulls(BearingLimit bearing, Real impulse) {
+    return (bearing == BearingLimit::lower && impulse < Real(0)) ||
+           (bearing == BearingLimit::upper && impulse > Real(0));
+}
+
+// Leaves a limit to Gauss-Seidel, bearing nothing.
+void release_limit(StepContext &context, JointConstraint &joint) {
+    apply(context, joint, {Real(0), Real(0), -joint.impulse.z});
+    set_bearing(joint, BearingLimit::none);
+}
+
+// With other limits than before.
+void factor_again(StepContext &context, JointGroup &group) {
+    context.scratch.joint_system->factor(context, group, held_compliance);
+    group.has_changed = true;
+}
+
+// Releases those that pull. Returns whether there were any.
+bool release_limits(StepContext &context, JointGroup &group) {
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[context.scratch.joint_system->block(place)];
+        if (!pulls(joint.bearing, joint.impulse.z))
+            continue;
+        release_limit(context, joint);
+        any = true;
+    }
+    if (any)
+        factor_again(context, group);
+    return any;
+}
+
+// How fast rows that are solved together take their drift back. A limit may be anywhere when it
+// is reached: the others' drift is not to wait for it.
+Vec3 held_bias(const JointConstraint &joint, const JointPass &pass) {
+    const Real rate = pass.held_share / pass.h;
+    if (joint.bearing == BearingLimit::none)
+        return pushed(rate * joint.rows.error, pass.push_velocity);
+    const Vec3 &error = joint.rows.error;
+    Vec3 bias = pushed(rate * Vec3{error.x, error.y, Real(0)}, pass.push_velocity);
+    const bool is_off = pulls(joint.bearing, -error.z); // comes to its limit in this substep
+    bias.z = is_off ? error.z / pass.h
+                    : std::clamp(rate * error.z, -pass.push_velocity, pass.push_velocity);
+    return bias;
+}
+
+// What strikes open the limits that bore less in the last substep than the blow, whose answers are
+// in the right-hand sides, would have them pull. Returns whether there were any.
+bool open_limits(StepContext &context, JointGroup &group) {
+    JointSystem &system = *context.scratch.joint_system;
+    const std::span<const Vec3> sides = sides_of(context, group);
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        if (!pulls(joint.bearing, joint.impulse.z + sides[place - group.first].z))
+            continue;
+        set_bearing(joint, BearingLimit::none);
+        any = true;
+    }
+    if (any)
+        factor_again(context, group);
+    return any;
+}
+
 // All rows of a group at once. Where bodies turn far within the substep, the ends of their arms
 // move along circles, and it takes some of Newton's steps until they meet. Returns whether they do.
-bool solve_group(StepContext &context, const JointGroup &group, const JointPass &pass) {
+bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = *context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
     // Far more than it takes when a body turns a radian within the substep.
@@ -59,8 +153,7 @@ bool solve_group(StepContext &context, const JointGroup &group, const JointPass 
             Vec3 side =
                 row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), pass);
             if (pass.held_share > Real(0))
-                side += pushed((pass.held_share / pass.h) * joint.rows.error, pass.push_velocity) +
-                        system.softening(place) * joint.impulse;
+                side += held_bias(joint, pass) + system.softening(place) * joint.impulse;
             sides[place - group.first] = -side;
             if (holds) {
                 const Real most = tolerance * size_of(joint.rows) / pass.h;
@@ -80,17 +173,39 @@ bool solve_group(StepContext &context, const JointGroup &group, const JointPass 
     return !pass.at_the_end;
 }
 
+// The same, without limits that would pull: each round has fewer of them.
+bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass) {
+    do
+        if (!solve_rows(context, group, pass))
+            return false;
+    while (release_limits(context, group));
+    return true;
+}
+
+// After limits were released: what the others bore with them would not be borne again in the rest
+// of the substep. `share`: of the substep, so far.
+void remember_anew(StepContext &context, const JointGroup &group, Real share) {
+    const JointSystem &system = *context.scratch.joint_system;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        joint.remembered = joint.impulse / share;
+    }
+}
+
 // Leaves a group to Gauss-Seidel, without what it remembers: forces that nothing has stretched for
 // would give more energy than they took.
 void let_go(StepContext &context, JointGroup &group) {
     const JointSystem &system = *context.scratch.joint_system;
     group.is_held = false;
     group.was_let_go = !group.was_torn;
+    group.has_changed = true;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
         apply(context, joint, -joint.impulse);
         joint.impulse = joint.remembered = Vec3{Real(0)};
         joint.is_held = false;
+        if (joint.bearing != BearingLimit::none)
+            release_limit(context, joint);
         joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
     }
 }
@@ -191,13 +306,34 @@ void weigh_with_groups(StepContext &context, bool changed_only) {
             weigh(context, joint);
 }
 
-// After groups were let go.
-void weigh_again(StepContext &context) {
+bool hangs_on_changed_group(StepContext &context, const JointConstraint &joint) {
+    JointSystem &system = *context.scratch.joint_system;
+    const auto has = [&](std::uint32_t body) {
+        const std::uint32_t group =
+            body == Joint::world ? JointSystem::none : system.group_of(body);
+        return group != JointSystem::none && system.groups()[group].has_changed;
+    };
+    return has(joint.a) || has(joint.b);
+}
+bool any_has_changed(StepContext &context) {
+    return std::ranges::any_of(context.scratch.joint_system->groups(), &JointGroup::has_changed);
+}
+
+// Those that hang on groups that have changed since; calls use(joint) after each.
+template <typename Use> void weigh_again(StepContext &context, Use &&use) {
+    if (!any_has_changed(context))
+        return;
     for (JointConstraint &joint : context.scratch.joints)
-        if (joint.is_weighed) {
+        if (joint.is_weighed && hangs_on_changed_group(context, joint)) {
             joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
             weigh(context, joint);
+            use(joint);
         }
+}
+void weigh_again(StepContext &context) {
+    weigh_again(context, [](const JointConstraint &) {});
+    for (JointGroup &group : context.scratch.joint_system->groups())
+        group.has_changed = false;
 }
 
 // Some microseconds of work.
@@ -229,6 +365,19 @@ void emit(StepContext &context, std::size_t k, RowWriter &rows) {
     } else {
         emit_rows(context.grab, context.world_frame, context.body(context.grab.body), rows);
     }
+}
+
+// Hinges and sliders: the block of the same kind that leaves one row free.
+void find_limits(std::span<JointConstraint> blocks) {
+    const auto lower =
+        std::ranges::find(blocks, RowBounds::at_least,
+                          [](const JointConstraint &joint) { return joint.rows.bounds; });
+    if (lower == blocks.end())
+        return;
+    for (JointConstraint &joint : blocks)
+        if (joint.rows.bounds == RowBounds::equal && joint.rows.count == 2 &&
+            joint.rows.kind == lower->rows.kind)
+            joint.limits = static_cast<std::uint8_t>(&*lower - &joint);
 }
 
 void weigh_alone(StepContext &context, JointConstraint &joint) {
@@ -305,12 +454,48 @@ void prepare_joints(StepContext &context) {
             block.moves_b = is_dynamic(block.b);
             block.impulse = memory_of(context, block);
         }
+        find_limits(blocks_of(context, k));
     }
 }
 
 void refresh_joint(StepContext &context, std::size_t k) {
     SameBlocks rows(context.scratch.joints.data() + context.scratch.first_blocks[k]);
     emit(context, k, rows);
+    for (JointConstraint &joint : blocks_of(context, k))
+        if (joint.bearing != BearingLimit::none)
+            add_limit_row(joint);
+}
+
+bool choose_limits(StepContext &context, const JointGroup &group) {
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[context.scratch.joint_system->block(place)];
+        if (joint.limits == 0)
+            continue;
+        const std::span<JointConstraint, 2> limits = limits_of(joint);
+        BearingLimit bearing = joint.bearing;
+        Real load = joint.impulse.z;
+        if (bearing == BearingLimit::none) {
+            load = limits[0].impulse.x + limits[1].impulse.x;
+            bearing = load > Real(0) ? BearingLimit::lower : BearingLimit::upper;
+        }
+        if (limits[0].rows.error.x == limits[1].rows.error.x)
+            bearing = BearingLimit::shut;
+        else if (load == Real(0))
+            bearing = BearingLimit::none;
+        if (!group.is_held)
+            bearing = BearingLimit::none;
+        if (bearing == joint.bearing)
+            continue;
+        set_bearing(joint, bearing);
+        if (bearing != BearingLimit::none)
+            joint.impulse.z = load;
+        any = true;
+    }
+    // What has torn it apart may have been a blow at those limits, which is not to go on.
+    for (std::uint32_t place = group.first; any && !group.is_held && place < group.last; ++place)
+        context.scratch.joints[context.scratch.joint_system->block(place)].impulse = Vec3{Real(0)};
+    return any;
 }
 
 void refresh_joints(StepContext &context) {
@@ -417,7 +602,8 @@ void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &
 }
 
 // Groups come first, to see whether they hold, and again after other joints have changed what they
-// did.
+// did, with the limits that these passes have reached: Gauss-Seidel alone finds which of them bear,
+// but what a row of limits bears it would find only in very many passes.
 void solve_joints(StepContext &context, const JointPass &pass) {
     const std::span<JointGroup> groups = context.scratch.joint_system->groups();
     const auto hold = [&](std::size_t begin, std::size_t end) {
@@ -425,14 +611,13 @@ void solve_joints(StepContext &context, const JointPass &pass) {
             if (group.is_held) {
                 if (!solve_group(context, group, pass))
                     let_go(context, group);
+                else if (group.has_changed)
+                    remember_anew(context, group, pass.force_share);
             }
     };
     if (pass.at_the_end) {
-        const auto held = [&] { return std::ranges::count(groups, true, &JointGroup::is_held); };
-        const auto before = held();
         for_parts(context.tasks, groups.size(), groups_a_part, hold);
-        if (held() != before)
-            weigh_again(context);
+        weigh_again(context);
     }
     solve_joint_columns(context, pass);
     bool is_changed = !pass.at_the_end;
@@ -444,39 +629,56 @@ void solve_joints(StepContext &context, const JointPass &pass) {
         solve_joint(context, joint, pass);
         is_changed = true;
     }
-    const auto solve = [&](std::size_t begin, std::size_t end) {
-        for (const JointGroup &group : groups.subspan(begin, end - begin))
-            if (group.is_held)
-                solve_group(context, group, pass);
+    const auto solve = [&](auto &&is_due) {
+        for_parts(context.tasks, groups.size(), groups_a_part,
+                  [&](std::size_t begin, std::size_t end) {
+                      for (JointGroup &group : groups.subspan(begin, end - begin)) {
+                          if (!is_due(group) || !group.is_held)
+                              continue;
+                          if (choose_limits(context, group))
+                              factor_again(context, group);
+                          solve_group(context, group, pass);
+                      }
+                  });
     };
     if (is_changed)
-        for_parts(context.tasks, groups.size(), groups_a_part, solve);
+        solve([](const JointGroup &) { return true; });
+    // Limits that were reached or opened change what others of their group do.
+    constexpr int most_rounds = 4;
+    for (int round = 0; round < most_rounds && any_has_changed(context); ++round) {
+        weigh_again(context, [&](JointConstraint &joint) { solve_joint(context, joint, pass); });
+        solve([](JointGroup &group) { return std::exchange(group.has_changed, false); });
+    }
+    weigh_again(context);
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
 void hold_touched_groups(StepContext &context, const JointPass &pass) {
     const std::span<JointGroup> groups = context.scratch.joint_system->groups();
     for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
-        for (const JointGroup &group : groups.subspan(begin, end - begin))
+        for (JointGroup &group : groups.subspan(begin, end - begin))
             if (group.is_held && group.is_touched)
                 solve_group(context, group, pass);
     });
+    weigh_again(context);
 }
 
 void answer_impact(StepContext &context, std::uint32_t group) {
     if (group == JointSystem::none)
         return;
     JointSystem &system = *context.scratch.joint_system;
-    const JointGroup &all = system.groups()[group];
+    JointGroup &all = system.groups()[group];
     if (!all.is_held)
         return;
     const std::span<Vec3> sides = sides_of(context, all);
-    for (std::uint32_t place = all.first; place < all.last; ++place) {
-        const JointConstraint &joint = context.scratch.joints[system.block(place)];
-        sides[place - all.first] =
-            -row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), JointPass{});
-    }
-    system.solve(all, sides);
+    do {
+        for (std::uint32_t place = all.first; place < all.last; ++place) {
+            const JointConstraint &joint = context.scratch.joints[system.block(place)];
+            sides[place - all.first] = -row_velocity(joint.rows, context.body(joint.a),
+                                                     context.body(joint.b), JointPass{});
+        }
+        system.solve(all, sides);
+    } while (open_limits(context, all));
     for (std::uint32_t place = all.first; place < all.last; ++place) {
         const JointConstraint &joint = context.scratch.joints[system.block(place)];
         apply(context, joint, sides[place - all.first]);
@@ -486,19 +688,27 @@ void answer_impact(StepContext &context, std::uint32_t group) {
 void store_joints(StepContext &context) {
     const Real rate =
         static_cast<Real>(context.settings.substeps) / static_cast<Real>(context.settings.dt);
-    for (const JointConstraint &joint : context.scratch.joints) {
-        const Vec3 &total = joint.impulse;
-        if (joint.joint == JointConstraint::grab) {
-            context.grab.impulse = total;
-            continue;
-        }
+    const auto store = [&](const JointConstraint &joint, const Vec3 &total, int count) {
         JointMemory &memory = context.joints[joint.joint];
-        for (int i = 0; i < joint.rows.count; ++i)
+        for (int i = 0; i < count; ++i)
             memory.impulses[joint.rows.first_memory + static_cast<std::size_t>(i)] = total[i];
         const Real break_force = context.model.joints[joint.joint].break_force;
         if (break_force > Real(0) && joint.rows.kind != RowKind::angular &&
             joint.rows.bounds != RowBounds::motor && glm::length(total) * rate > break_force)
             memory.broken = true;
+    };
+    for (JointConstraint &joint : context.scratch.joints) {
+        const Vec3 &total = joint.impulse;
+        if (joint.joint == JointConstraint::grab) {
+            context.grab.impulse = total;
+        } else if (joint.bearing != BearingLimit::none) {
+            store(joint, {total.x, total.y, Real(0)}, 2);
+            const std::span<JointConstraint, 2> limits = limits_of(joint);
+            store(limits[0], Vec3{std::max(total.z, Real(0))}, 1);
+            store(limits[1], Vec3{std::min(total.z, Real(0))}, 1);
+        } else if (joint.rows.bounds == RowBounds::equal || !joint.is_held) { // no limit of those
+            store(joint, total, joint.rows.count);
+        }
     }
     for (const std::uint32_t i : context.active.joints)
         if (context.joints[i].broken)

@@ -4,6 +4,7 @@
 #include "engine/dynamics/joint_rows.h"
 #include "engine/dynamics/softness.h"
 
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -11,6 +12,10 @@ namespace plumb::inline PLUMB_PRECISION {
 
 struct StepContext;
 struct JointGroup;
+
+// Which of a joint's limits bears, and is solved with its group: as the third row of the block of
+// two that leaves free what the limits stop. shut: both, at the same place.
+enum class BearingLimit : std::uint8_t { none, lower, upper, shut };
 
 // One block of rows between two bodies at the present poses.
 struct JointConstraint {
@@ -27,6 +32,8 @@ struct JointConstraint {
     // How much faster its errors grow in the mean of the substep than at its start, because the
     // bodies turn (m/s, rad/s): of foresee_turns alone.
     Vec3 turning{Real(0)};
+    std::uint8_t limits = 0; // how many blocks behind it its lower limit comes; 0: it has none
+    BearingLimit bearing = BearingLimit::none;
     bool is_held = false;    // solved with its group in this substep (JointSystem)
     bool in_columns = false; // in this step (JointSchedule)
     bool is_weighed = false; // by what groups make of its bodies: they answer each of its impulses
@@ -70,6 +77,9 @@ Real size_of(const RowBlock &rows);
 // (scratch.changed).
 void follow_loads(StepContext &context, Real h);
 
+// Makes the limits that bear something rows of their group, as long as it is held. Says whether
+// anything changed.
+bool choose_limits(StepContext &context, const JointGroup &group);
 // Blocks of the joints that are alive and not broken, in order, then of the grab, at the present
 // poses.
 void prepare_joints(StepContext &context);

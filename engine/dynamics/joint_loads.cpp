@@ -19,9 +19,12 @@ constexpr Real followed = Real(1.2);
 // torn apart: they are pulled together softly.
 constexpr Real torn_share = Real(0.001);
 
-bool is_torn(const RowBlock &rows) {
-    const Real most = torn_share * size_of(rows);
-    return !(glm::dot(rows.error, rows.error) <= most * most);
+bool is_torn(const JointConstraint &joint) {
+    const Real most = torn_share * size_of(joint.rows);
+    Vec3 error = joint.rows.error;
+    if (joint.bearing != BearingLimit::none) // has been reached at any speed
+        error.z = Real(0);
+    return !(glm::dot(error, error) <= most * most);
 }
 
 // Calls use(body, force, arm) for what the impulses of the last substep do to the bodies at their
@@ -110,7 +113,7 @@ void follow_loads(StepContext &context, Real h) {
     for (JointGroup &group : system.groups()) {
         group.is_held = true;
         for (std::uint32_t place = group.first; group.is_held && place < group.last; ++place)
-            group.is_held = !is_torn(context.scratch.joints[system.block(place)].rows);
+            group.is_held = !is_torn(context.scratch.joints[system.block(place)]);
         // Torn in the midst of a step: more substeps may follow what did it.
         group.was_let_go =
             group.was_let_go || (!group.is_held && group.is_factored && !group.was_torn);
@@ -123,7 +126,7 @@ void follow_loads(StepContext &context, Real h) {
                         use(changed[body]);
             }
         };
-        bool is_changed = group.is_held != group.is_factored;
+        bool is_changed = choose_limits(context, group) || group.is_held != group.is_factored;
         for_all_bodies([&](std::uint8_t one) { is_changed = is_changed || one != 0; });
         if (is_changed)
             for_all_bodies([](std::uint8_t &one) { one = 1; });

@@ -32,7 +32,8 @@ bool is_rigid(const JointConstraint &joint) {
 void JointSystem::arrange(StepContext &context) {
     find_order(context);
     for (JointGroup &group : groups_)
-        group.is_factored = group.is_touched = group.was_torn = group.was_let_go = false;
+        group.is_factored = group.is_touched = group.was_torn = group.was_let_go =
+            group.has_changed = false;
     note_touched(context);
 }
 

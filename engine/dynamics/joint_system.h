@@ -16,7 +16,8 @@ struct StepContext;
 // Blocks first..last - 1 in a system's order of elimination. `is_held`: solved together in this
 // substep, not left to Gauss-Seidel. `is_touched`: contacts act on its bodies. In this step:
 // `is_factored`: it was when its joints were refreshed last; `was_torn` before a substep began;
-// `was_let_go` before it was ever torn, or torn from one substep to the next.
+// `was_let_go` before it was ever torn, or torn from one substep to the next. `has_changed`: was
+// let go, or has other limits among its rows, since motors and limits were weighed with it.
 struct JointGroup {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
@@ -25,13 +26,14 @@ struct JointGroup {
     bool is_touched = false;
     bool was_torn = false;
     bool was_let_go = false;
+    bool has_changed = false;
 };
 
-// The equations of all rigid rows of joints that share dynamic bodies, factored as L D L^T in
-// blocks of 3 x 3, eliminated by least degree. Without loops (chains, trees, a door's pin and its
-// axis) nothing fills in, and the cost grows with the number of blocks (Baraff 1996, "Linear-Time
-// Dynamics using Lagrange Multipliers"); what would fill in too much, such as a net, is left to
-// Gauss-Seidel.
+// The equations of all rigid rows of joints that share dynamic bodies, and of the limits of theirs
+// that bear (JointConstraint::bearing), factored as L D L^T in blocks of 3 x 3, eliminated by
+// least degree. Without loops (chains, trees, a door's pin and its axis) nothing fills in, and the
+// cost grows with the number of blocks (Baraff 1996, "Linear-Time Dynamics using Lagrange
+// Multipliers"); what would fill in too much, such as a net, is left to Gauss-Seidel.
 //
 // Gauss-Seidel needs compliance, or heavy ends tear a chain; compliance damps, and takes a
 // pendulum's energy. Solved together, joints need next to none.

@@ -212,6 +212,287 @@ TEST(JointGroup, AChainThatWhipsGainsNothing) {
     }
 }
 
+// Blocks in a row, the first welded to the world, each other on a hinge that lets it fold up, but
+// whose limit bears all beyond it.
+struct BeamDef {
+    int count = 6;
+    V half{0.1, 0.1, 0.1};
+    double end = 1;        // times the mass of the others
+    double yaw = 0;        // of the row, which lies along x without it (rad)
+    double fold = 0;       // upwards at each hinge, to begin with (rad)
+    double most = 2;       // likewise, at most; negative: any
+    bool is_upper = false; // the hinges' axes are turned round: so the upper limits bear
+};
+struct Beam {
+    std::vector<BodyId> blocks;
+    std::vector<std::uint32_t> joints;
+    double length = 0; // m
+    double fall = 0;   // J, of all of it by its length
+    V end_at(const World &world) const { return position_of(world, blocks.back()); }
+};
+
+Beam add_beam(World &world, const BeamDef &of) {
+    Beam beam;
+    const double length = 2 * of.half.x, mass = 8000 * of.half.x * of.half.y * of.half.z;
+    beam.length = of.count * length;
+    V at{0};
+    glm::dquat turn = glm::angleAxis(of.yaw, V{0, 1, 0});
+    const glm::dquat axis = glm::angleAxis(of.is_upper ? pi / 2 : -pi / 2, V{0, 1, 0});
+    JointDef def;
+    def.type = JointType::fixed;
+    def.frame_a_local = narrow(turn * axis);
+    def.frame_b_local = narrow(axis);
+    def.anchor_b_local = narrow(V{-length / 2, 0, 0});
+    for (int i = 0; i < of.count; ++i) {
+        BodyDef body = dynamic_body(block(of.half), i + 1 < of.count ? mass : mass * of.end,
+                                    at + turn * V{length / 2, 0, 0});
+        body.pose.rotation = narrow(turn);
+        body.colliders.front().filter = {.layer = 1, .ignores = 2};
+        beam.fall += double(*body.mass) * gravity * beam.length;
+        def.b = world.add_body(body);
+        beam.blocks.push_back(def.b);
+        beam.joints.push_back(world.add_joint(def).index);
+        def.a = def.b;
+        def.type = JointType::hinge;
+        def.anchor_a_local = narrow(V{length / 2, 0, 0});
+        def.frame_a_local = narrow(axis);
+        if (of.most >= 0)
+            def.limits =
+                of.is_upper ? JointLimits{Real(-of.most), 0} : JointLimits{0, Real(of.most)};
+        at += turn * V{length, 0, 0};
+        turn = turn * glm::angleAxis(of.fold, V{0, 0, 1});
+    }
+    return beam;
+}
+
+// As a beam of one piece is held, but for what joints that are solved together give way.
+void expect_a_level_beam(const BeamDef &of, const StepSettings &settings, double seconds) {
+    World world("soft_step", settings);
+    const Beam beam = add_beam(world, of);
+    const double before = world.energy();
+    const auto name = [&] {
+        return testing::Message() << of.count << " blocks of " << 2 * of.half.x << " m, end "
+                                  << of.end << ", yaw " << of.yaw << ", upper " << of.is_upper
+                                  << ", most " << of.most << ", dt " << settings.dt << ": ";
+    };
+    const int steps = int(seconds / settings.dt);
+    for (int step = 0; step < steps; ++step) {
+        world.step(nullptr);
+        ASSERT_LE(world.energy(), before + 0.02 * beam.fall) << name() << step;
+    }
+    EXPECT_NEAR(beam.end_at(world).y, 0, 1.5e-3 * beam.length) << name();
+    EXPECT_LT(world.measure().kinetic_energy, 1e-9 * beam.fall) << name();
+    // Each bears the moment of all beyond it.
+    const double mass = double(world.bodies()[beam.blocks[0].index].mass);
+    for (int i = 1; i < of.count; ++i) {
+        const double beyond = of.count - i, length = 2 * of.half.x;
+        const double moment =
+            mass * gravity * length * (0.5 * beyond * beyond + (of.end - 1) * (beyond - 0.5));
+        EXPECT_NEAR(glm::length(wide(world.joint_load(beam.joints[std::size_t(i)]).torque)), moment,
+                    0.01 * moment)
+            << name() << i;
+    }
+}
+
+TEST(JointGroup, PressedLimitsHoldABeam) {
+    StepSettings settings = settings_for("soft_step");
+    settings.sleep_after = 0;
+    for (const int count : {6, 12, 20}) {
+        for (const bool is_upper : {false, true})
+            expect_a_level_beam({.count = count, .is_upper = is_upper}, settings, 10);
+        expect_a_level_beam({.count = count, .yaw = 0.7}, settings, 10);
+        expect_a_level_beam({.count = count, .most = 0}, settings, 10);
+        expect_a_level_beam({.count = count, .half = {0.2, 0.03, 0.05}}, settings, 10);
+        expect_a_level_beam({.count = count, .half = {0.5, 0.3, 0.3}}, settings, 10);
+    }
+    for (const int count : {6, 12})
+        expect_a_level_beam({.count = count, .end = 30}, settings, 10);
+    for (const double dt : {1.0 / 30, 1.0 / 240}) {
+        settings.dt = dt;
+        expect_a_level_beam({.count = 12}, settings, 10);
+    }
+}
+
+// However it is folded: what comes down on its limits gives back no more than it had.
+TEST(JointGroup, AFoldedBeamFallsOntoItsLimits) {
+    for (const int count : {2, 4, 7, 13})
+        for (const double fold : {0.02, 0.1, 0.3, 1.0}) {
+            World world("soft_step", settings_for("soft_step"));
+            const Beam beam = add_beam(world, {.count = count, .fold = fold});
+            const double before = world.energy();
+            for (int step = 0; step < 60 * 20; ++step) {
+                world.step(nullptr);
+                ASSERT_LE(world.energy(), before + 0.002 * beam.fall)
+                    << count << " blocks, " << fold << ", " << step;
+            }
+            if (fold * count > 1.5)
+                continue; // falls over, and hangs
+            EXPECT_NEAR(beam.end_at(world).y, 0, 1.5e-3 * beam.length) << count << " " << fold;
+            EXPECT_LT(world.measure().kinetic_energy, 1e-6 * beam.fall) << count << " " << fold;
+        }
+}
+
+// Links that were pressed on their limits, and then turn off them, the farther out the faster:
+// against the same links without limits, as long as those fold up.
+TEST(JointGroup, LimitsLetGoAtOnce) {
+    for (const int count : {2, 3, 4}) {
+        StepSettings settings = settings_for("soft_step");
+        World pressed("soft_step", settings), free("soft_step", settings);
+        const BeamDef of{.count = count};
+        const Beam beam = add_beam(pressed, of);
+        run(pressed, 60);
+        add_beam(free, {.count = count, .most = -1});
+        settings.gravity = V{0};
+        for (World *world : {&pressed, &free}) {
+            world->set_settings(settings);
+            V velocity{0};
+            for (int i = 0; i < count; ++i) {
+                const BodyId id = beam.blocks[std::size_t(i)];
+                const V half_way{0, 2.0 * i * of.half.x, 0};
+                velocity += half_way;
+                world->set_motion(id, pressed.pose_of(id.index), narrow(velocity),
+                                  narrow(V{0, 0, 2.0 * i}));
+                velocity += half_way;
+            }
+        }
+        const auto folds = [&](std::uint32_t joint) {
+            const Joint &of_free = free.joints()[joint];
+            return place_of(of_free, free.joint_motion(of_free.a), free.joint_motion(of_free.b))
+                       .position > Real(0);
+        };
+        int step = 0;
+        for (; step < 30; ++step) {
+            run(pressed, 1);
+            run(free, 1);
+            if (!std::all_of(beam.joints.begin() + 1, beam.joints.end(), folds))
+                break;
+            EXPECT_LT(glm::distance(beam.end_at(pressed), beam.end_at(free)), 2e-3)
+                << count << ", " << step;
+        }
+        EXPECT_GE(step, 5) << count;
+    }
+}
+
+// Gravity turns round, and pulls the innermost hinge off its limit, but presses the others on
+// theirs: an arm against the equation of its motion, by Runge and Kutta's rule.
+TEST(JointGroup, AnArmLeavesItsLimitAsAPendulum) {
+    for (const auto &[count, dt] :
+         {std::pair{2, 1.0 / 30}, std::pair{2, 1.0 / 60}, std::pair{2, 1.0 / 240},
+          std::pair{3, 1.0 / 60}, std::pair{4, 1.0 / 60}, std::pair{7, 1.0 / 60}}) {
+        StepSettings settings = settings_for("soft_step");
+        settings.dt = dt;
+        World world("soft_step", settings);
+        const BeamDef of{.count = count};
+        const Beam beam = add_beam(world, of);
+        run(world, 60);
+        settings.gravity = -settings.gravity;
+        world.set_settings(settings);
+        const double arm = (count - 1) * of.half.x;
+        const double rate = gravity * arm / ((arm * arm + of.half.y * of.half.y) / 3 + arm * arm);
+        double angle = 0, speed = 0;
+        for (double time = dt; time < 0.5 && angle < 1.4;
+             time += dt) { // beyond, the others open, too
+            run(world, 1);
+            constexpr int parts = 64;
+            const double h = dt / parts;
+            for (int i = 0; i < parts; ++i) {
+                const auto push = [&](double at) { return rate * std::cos(at); };
+                const double k1 = push(angle), k2 = push(angle + h / 2 * speed);
+                const double k3 = push(angle + h / 2 * speed + h * h / 4 * k1);
+                const double k4 = push(angle + h * speed + h * h / 2 * k2);
+                angle += h * speed + h * h / 6 * (k1 + k2 + k3);
+                speed += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+            }
+            const V end = beam.end_at(world) - V{2 * of.half.x, 0, 0};
+            EXPECT_NEAR(std::atan2(end.y, end.x), angle, 0.01 * angle + 2e-3)
+                << count << ", " << dt << ", " << time;
+        }
+    }
+}
+
+// A ball that strikes an arm from below, which its limit has just borne, turns it as a free one.
+TEST(JointGroup, WhatIsStruckOffItsLimitTurnsFreely) {
+    StepSettings settings = settings_for("soft_step");
+    World world("soft_step", settings);
+    const BeamDef of{.count = 2, .half = {0.4, 0.1, 0.1}};
+    const Beam beam = add_beam(world, of);
+    run(world, 60);
+    world.set_settings(weightless(settings));
+    constexpr double reach = 0.6, ball_mass = 5, speed = 6;
+    world.add_body(with_material(
+        dynamic_body(ball(0.1), ball_mass, V{2 * of.half.x + reach, -0.205, 0}, V{0, speed, 0}), 0,
+        1));
+    run(world, 1);
+    const double mass = double(world.bodies()[beam.blocks[0].index].mass);
+    const double inertia =
+        mass * ((of.half.x * of.half.x + of.half.y * of.half.y) / 3 + of.half.x * of.half.x);
+    const double wanted = 2 * speed * ball_mass * reach / (inertia + ball_mass * reach * reach);
+    EXPECT_NEAR(spin_of(world, beam.blocks.back()).z, wanted, 0.02 * wanted);
+}
+
+// A telescope: each hangs on the limit of the slider above, and that bears all below.
+TEST(JointGroup, LimitsOfSlidersBearWhatHangsOnThem) {
+    for (const int count : {1, 4, 12}) {
+        StepSettings settings = settings_for("soft_step");
+        settings.sleep_after = 0;
+        World world("soft_step", settings);
+        JointDef def;
+        def.type = JointType::slider;
+        def.frame_a_local = def.frame_b_local = narrow(glm::angleAxis(-pi / 2, V{0, 0, 1})); // down
+        def.limits = JointLimits{Real(-0.1), Real(0.3)};
+        constexpr double mass = 8;
+        std::vector<std::uint32_t> joints;
+        for (int i = 0; i < count; ++i) {
+            BodyDef body = dynamic_body(block(V{cube / 2}), mass, V{0});
+            body.colliders.front().filter = {.layer = 1, .ignores = 2};
+            def.a = def.b;
+            def.b = world.add_body(body);
+            joints.push_back(world.add_joint(def).index);
+        }
+        const double before = world.energy(), fall = mass * gravity * 0.3 * count * (count + 1) / 2;
+        for (int step = 0; step < 60 * 10; ++step) {
+            world.step(nullptr);
+            ASSERT_LE(world.energy(), before + 1e-3 * fall) << count << ", " << step;
+        }
+        EXPECT_NEAR(position_of(world, def.b).y, -0.3 * count, 1e-3 * count) << count;
+        EXPECT_LT(world.measure().kinetic_energy, 1e-6 * fall) << count;
+        for (int i = 0; i < count; ++i) {
+            const double weight = (count - i) * mass * gravity;
+            EXPECT_NEAR(double(world.joint_load(joints[std::size_t(i)]).force.y), weight,
+                        0.01 * weight)
+                << i;
+        }
+    }
+}
+
+// Rows that swing into their limits and out again, of many at once: the same by any number of
+// threads, and from where they were saved.
+TEST(JointGroup, LimitsThatOpenAndCloseAreOfTheState) {
+    World alone("soft_step", settings_for("soft_step"));
+    for (int i = 0; i < 24; ++i)
+        add_beam(alone, {.count = 3 + i % 5,
+                         .yaw = 0.26 * i,
+                         .fold = 0.05 + 0.04 * i,
+                         .most = 1,
+                         .is_upper = i % 2 != 0});
+    SavedWorld start;
+    alone.save(start);
+    World shared("soft_step", settings_for("soft_step"));
+    shared.restore(start);
+    TaskPool tasks(4, TaskPool::Parts::single);
+    SavedWorld middle;
+    for (int step = 0; step < 240; ++step) {
+        alone.step(nullptr);
+        shared.step(&tasks);
+        ASSERT_EQ(alone.hash(), shared.hash()) << step;
+        if (step % 40 == 20) {
+            shared.save(middle);
+            run(shared, 3);
+            shared.restore(middle);
+        }
+    }
+}
+
 // What cannot move as its joint asks stays finite, and where it is.
 TEST(JointGroup, WhatIsLockedAndPulledStays) {
     for (const JointType type :
