@@ -151,7 +151,7 @@ void World::note_contact_needs(const IslandGroup &group) {
                 width = std::min(width,
                                  2 * static_cast<double>(least_half_width(model_->bodies[body])));
         const double depth = settings_.substep_tolerance * width;
-        return 0.5 * load * group.substeps * settings_.dt * inverse / (ratio * ratio * depth);
+        return 0.5 * load * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * depth);
     };
     const auto roll_of = [&](std::uint32_t body) {
         const Vec3 &spin = s.bodies[body].angular_velocity;
@@ -201,7 +201,7 @@ void World::note_joint_needs(const IslandGroup &group) {
         const double impulse = static_cast<double>(glm::length(joint.impulse)); // of a substep
         double inverse = 0;
         bool is_together = false;
-        const Vec3 force = static_cast<Real>(group.substeps / settings_.dt) *
+        const Vec3 force = static_cast<Real>(group.pace.substeps / settings_.dt) *
                            world_impulse(joint.rows, joint.impulse);
         for_ends(joint, [&](std::uint32_t body, const Vec3 &arm) {
             s.stiffness[body].add_bound(force, arm);
@@ -213,17 +213,17 @@ void World::note_joint_needs(const IslandGroup &group) {
         if (joint.rows.swing_length > Real(0)) {
             // A rod under tension holds what is at its ends back aside, and turns with them.
             const double length = static_cast<double>(joint.rows.swing_length);
-            const double tension = impulse * group.substeps / settings_.dt;
+            const double tension = impulse * group.pace.substeps / settings_.dt;
             ask(joint, 4 * tension / length * inverse * square(settings_.dt / followed_swing));
         }
         if (is_together)
             continue;
         const double drift = settings_.substep_tolerance * static_cast<double>(size_of(joint.rows));
         const double squared =
-            0.5 * impulse * group.substeps * settings_.dt * inverse / (ratio * ratio * drift);
+            0.5 * impulse * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * drift);
         ask(joint, squared);
     }
-    note_moment_needs(s, settings_, group.substeps);
+    note_moment_needs(s, settings_, group.pace.substeps);
 }
 
 // How fast joints' forces turn their bodies, and how fast these turn.
@@ -257,13 +257,13 @@ void World::note_turn_needs(const IslandGroup &group) {
 // loaded spring, and is stiffened bit by bit.
 void World::note_let_go(const IslandGroup &group) {
     Scratch &s = scratch_;
-    const double more = square(round_substeps_up(group.substeps + 1));
+    const double more = square(round_substeps_up(group.pace.substeps + 1));
     JointSystem &system = *s.solver.joint_system;
     for (const JointGroup &joints : system.groups()) {
         const auto note = [&](std::uint32_t body, const Vec3 &) {
             double &load = s.loads[body];
             if (joints.was_let_go) {
-                load = std::max(load, square(finer * group.substeps));
+                load = std::max(load, square(finer * group.pace.substeps));
                 s.islands.needs[s.islands.root_of(body)].was_let_go = true;
             } else if (state_.paces[body].substeps > 0) {
                 load = std::min(load, more);
@@ -306,9 +306,9 @@ bool World::went_too_coarsely() const {
                s.paces[i].substeps < settings_.max_substeps;
     };
     const auto was_let_go = [&](Islands::Needs needs) {
-        needs.wanted = needs.before = static_cast<int>(finer) * needs.substeps;
+        needs.wanted = needs.before = static_cast<int>(finer) * needs.pace.substeps;
         return needs.was_let_go &&
-               chosen_substeps(needs, settings_.substep_budget) > needs.substeps;
+               chosen_substeps(needs, settings_.substep_budget) > needs.pace.substeps;
     };
     return std::ranges::any_of(s.moving, has_begun) ||
            std::ranges::any_of(s.islands.needs, was_let_go);

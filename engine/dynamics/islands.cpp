@@ -21,6 +21,10 @@ constexpr double spare = 1.25;
 // order: in pyramids of base 45 and up, of which the passes balance but a part, points taken in
 // turns feed waves.
 constexpr int most_wanted_in_turns = 4;
+// Slow is what is slower than such a share of what gravity adds in a step.
+constexpr double slow_share = 0.35;
+// Of contacts and joints: what hangs together of more gains nothing by one more pass.
+constexpr int most_settled = 48;
 
 } // namespace
 
@@ -87,6 +91,7 @@ void World::gather_needs() {
     Scratch &s = scratch_;
     Islands &islands = s.islands;
     islands.needs.assign(islands.parent.size(), {});
+    const auto slow = static_cast<Real>(slow_share * glm::length(settings_.gravity) * settings_.dt);
     for (const std::uint32_t i : s.moving) {
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
         needs.wanted = std::max(needs.wanted, int{s.paces[i].wanted});
@@ -95,10 +100,15 @@ void World::gather_needs() {
                           least_half_width(model_->bodies[i]);
         const Vec3 &velocity = state_.motions[i].velocity;
         needs.rests = needs.rests && glm::dot(velocity, velocity) <= fast * fast;
+        needs.is_slow = needs.is_slow && glm::dot(velocity, velocity) <= slow * slow;
     }
     for (const ContactEnds &contact : s.ends)
-        if (!contact.is_sensor)
-            ++islands.needs[islands.root_of(island_body(contact.a, contact.b))].work;
+        if (!contact.is_sensor) {
+            Islands::Needs &needs =
+                islands.needs[islands.root_of(island_body(contact.a, contact.b))];
+            ++needs.work;
+            needs.touches = true;
+        }
     for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
         const Joint &joint = model_->joints[i];
         if (!holds(i))
@@ -135,7 +145,7 @@ void World::share_budget() {
     std::vector<std::uint32_t> &roots = s.islands.roots;
     roots.clear();
     for (std::uint32_t i = 0; i < s.islands.needs.size(); ++i) {
-        s.islands.needs[i].substeps = settings_.substeps;
+        s.islands.needs[i].pace.substeps = settings_.substeps;
         if (s.islands.needs[i].work > 0)
             roots.push_back(i);
     }
@@ -145,15 +155,39 @@ void World::share_budget() {
         work = 0;
         for (const std::uint32_t root : roots) {
             Islands::Needs &needs = s.islands.needs[root];
-            needs.substeps = chosen_substeps(needs, each);
-            if (needs.substeps > settings_.substeps)
-                work += std::int64_t{needs.work} * needs.substeps;
+            needs.pace.substeps = chosen_substeps(needs, each);
+            if (needs.pace.substeps > settings_.substeps)
+                work += std::int64_t{needs.work} * needs.pace.substeps;
         }
         each = fewer_substeps(each);
     } while (work > settings_.substep_budget);
     for (const std::uint32_t root : roots) {
-        Islands::Needs &needs = s.islands.needs[root];
-        needs.alternates = needs.wanted <= most_wanted_in_turns * needs.substeps;
+        IslandPace &pace = s.islands.needs[root].pace;
+        pace.alternates = s.islands.needs[root].wanted <= most_wanted_in_turns * pace.substeps;
+    }
+    find_unsettled();
+}
+
+// One pass feeds slow sways in what is tall and thin: it would never sleep, or even fall. What is
+// slow takes another until it has been at rest for long enough to sleep, as long as all of that
+// costs no more than the budget.
+void World::find_unsettled() {
+    Scratch &s = scratch_;
+    const auto may_settle = [](const Islands::Needs &needs) {
+        return needs.touches && needs.is_slow && needs.work <= most_settled;
+    };
+    std::int64_t work = 0;
+    for (const std::uint32_t root : s.islands.roots) {
+        const Islands::Needs &needs = s.islands.needs[root];
+        work += may_settle(needs) ? std::int64_t{needs.work} * needs.pace.substeps : 0;
+    }
+    if (2 * work > settings_.substep_budget)
+        return;
+    const std::uint16_t enough = steps_to_sleep();
+    for (const std::uint32_t i : s.moving) {
+        Islands::Needs &needs = s.islands.needs[s.islands.root_of(i)];
+        if (may_settle(needs) && s.paces[i].rested < enough)
+            needs.pace.settles = true;
     }
 }
 
@@ -177,8 +211,9 @@ void World::choose_substeps() {
     group_islands();
     for (const std::uint32_t i : s.moving)
         s.paces[i].substeps =
-            chooses ? static_cast<std::uint16_t>(s.islands.needs[s.islands.root_of(i)].substeps)
-                    : std::uint16_t{0};
+            chooses
+                ? static_cast<std::uint16_t>(s.islands.needs[s.islands.root_of(i)].pace.substeps)
+                : std::uint16_t{0};
 }
 
 // All that moves in one group, where each body is by itself.
@@ -192,8 +227,7 @@ void World::group_freely() {
     if (s.groups.empty())
         s.groups.emplace_back();
     IslandGroup &group = s.groups.front();
-    group.substeps = settings_.substeps;
-    group.alternates = true;
+    group.pace = {.substeps = settings_.substeps};
     group.moving.assign(s.moving.begin(), s.moving.end());
     group.contacts.clear();
     group.joints.clear();
@@ -205,15 +239,14 @@ void World::group_freely() {
 void World::group_islands() {
     Scratch &s = scratch_;
     s.group_count = 0;
-    const auto group_with = [&](int substeps, bool alternates) -> IslandGroup & {
+    const auto group_with = [&](const IslandPace &pace) -> IslandGroup & {
         for (std::size_t i = 0; i < s.group_count; ++i)
-            if (s.groups[i].substeps == substeps && s.groups[i].alternates == alternates)
+            if (s.groups[i].pace == pace)
                 return s.groups[i];
         if (s.groups.size() == s.group_count)
             s.groups.emplace_back();
         IslandGroup &group = s.groups[s.group_count++];
-        group.substeps = substeps;
-        group.alternates = alternates;
+        group.pace = pace;
         // As if all were in each, so that nothing is allocated when islands change groups.
         group.moving.clear();
         group.moving.reserve(s.moving.size());
@@ -228,9 +261,8 @@ void World::group_islands() {
     const bool chooses = chooses_substeps();
     const auto group_of = [&](std::uint32_t body) -> IslandGroup & {
         if (!chooses)
-            return group_with(settings_.substeps, true);
-        const Islands::Needs &needs = s.islands.needs[s.islands.root_of(body)];
-        return group_with(needs.substeps, needs.alternates);
+            return group_with({.substeps = settings_.substeps});
+        return group_with(s.islands.needs[s.islands.root_of(body)].pace);
     };
     for (const std::uint32_t i : s.moving)
         group_of(i).moving.push_back(i);

@@ -24,12 +24,20 @@ struct Pace {
     bool is_asleep() const { return rested == asleep; }
 };
 
-// Islands that take the same number of substeps, and their contacts' points in the same order: what
-// a method advances at once. Indices of the context's, each ascending.
-struct IslandGroup {
+// How an island is stepped.
+struct IslandPace {
     int substeps = 0;
     // Whether passes take a contact's points from the first and from the last in turns.
     bool alternates = true;
+    // Whether it takes another pass over its constraints in each substep, and relaxes once more.
+    bool settles = false;
+    bool operator==(const IslandPace &) const = default;
+};
+
+// Islands that are stepped alike: what a method advances at once. Indices of the context's, each
+// ascending.
+struct IslandGroup {
+    IslandPace pace;
     std::vector<std::uint32_t> moving;
     std::vector<std::uint32_t> contacts;
     std::vector<std::uint32_t> joints;
@@ -52,9 +60,10 @@ struct Islands {
         int wanted = 0;
         int before = 0; // substeps of the last step, the most that any of its bodies took
         bool rests = true;
+        bool is_slow = true;
+        bool touches = false;    // has contacts
         bool was_let_go = false; // see JointGroup, of any of its joints
-        int substeps = 0;
-        bool alternates = true; // see IslandGroup
+        IslandPace pace;
     };
     std::vector<Needs> needs;
     std::vector<std::uint32_t> roots; // of islands that have contacts or joints

@@ -14,6 +14,11 @@ namespace {
 // than a share of what gravity adds in a step: nothing that drifts where there is no gravity.
 constexpr double rest_share = 4e-3;
 
+double rest_time(const StepSettings &settings) {
+    constexpr double where_nothing_sleeps = 0.5; // s
+    return settings.sleep_after > 0 ? settings.sleep_after : where_nothing_sleeps;
+}
+
 bool is_zero(const Vec3 &v) {
     return v == Vec3{Real(0)};
 }
@@ -116,6 +121,12 @@ void World::wake_all() {
         pace.rested = 0;
 }
 
+// How many steps at rest are enough; where nothing sleeps, to be left alone by find_unsettled.
+std::uint16_t World::steps_to_sleep() const {
+    const double steps = std::ceil(rest_time(settings_) / settings_.dt);
+    return static_cast<std::uint16_t>(std::clamp(steps, 1.0, Pace::asleep - 1.0));
+}
+
 // Whether a body moves too little to see, after a try of the step.
 bool World::is_at_rest(std::uint32_t index) const {
     const Body &body = model_->bodies[index];
@@ -132,7 +143,7 @@ bool World::is_at_rest(std::uint32_t index) const {
     }
     const double width = 2 * static_cast<double>(least_half_width(body));
     const auto limit =
-        static_cast<Real>(std::min(settings_.substep_tolerance * width / settings_.sleep_after,
+        static_cast<Real>(std::min(settings_.substep_tolerance * width / rest_time(settings_),
                                    rest_share * glm::length(gravity) * settings_.dt));
     return glm::length(motion.velocity) + extent * glm::length(motion.angular_velocity) <= limit;
 }
@@ -140,11 +151,10 @@ bool World::is_at_rest(std::uint32_t index) const {
 // Counts for how long each body has been at rest; islands that have been for long enough fall
 // asleep.
 void World::fall_asleep() {
-    if (!sleeps())
+    if (!sleeps() && !chooses_substeps())
         return;
     Scratch &s = scratch_;
-    const double steps = std::ceil(settings_.sleep_after / settings_.dt);
-    const auto enough = static_cast<std::uint16_t>(std::clamp(steps, 1.0, Pace::asleep - 1.0));
+    const std::uint16_t enough = steps_to_sleep();
     bool any = false;
     for (const std::uint32_t i : s.moving) {
         std::uint16_t &rested = s.paces[i].rested;
@@ -154,7 +164,7 @@ void World::fall_asleep() {
             ++rested;
         any = any || rested >= enough;
     }
-    if (!any)
+    if (!any || !sleeps())
         return;
     find_islands();
     s.marked.assign(s.bodies.size() + 1, 0); // the roots of islands that stay awake

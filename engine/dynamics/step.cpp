@@ -228,9 +228,9 @@ void World::advance_groups() {
     Scratch &s = scratch_;
     for (std::size_t i = 0; i < s.group_count; ++i) {
         std::optional<StepSettings> own;
-        if (s.groups[i].substeps != settings_.substeps) {
+        if (s.groups[i].pace.substeps != settings_.substeps) {
             own = settings_;
-            own->substeps = s.groups[i].substeps;
+            own->substeps = s.groups[i].pace.substeps;
         }
         StepContext context{*model_,
                             own ? *own : settings_,

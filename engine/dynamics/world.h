@@ -188,6 +188,7 @@ class World {
     void guess_needs();
     int chosen_substeps(const Islands::Needs &needs, int budget) const;
     void share_budget();
+    void find_unsettled();
     void choose_substeps();
     void group_freely();
     void group_islands();
@@ -208,6 +209,7 @@ class World {
     void wake(std::uint32_t body);
     void wake_all();
     bool is_at_rest(std::uint32_t index) const;
+    std::uint16_t steps_to_sleep() const;
     void fall_asleep();
 
     // Particles and springs (world_particles.cpp, find_particle_contacts.cpp).

@@ -36,6 +36,79 @@ double height_of(const World &world, std::uint32_t body) {
     return double(world.motions()[body].position.y);
 }
 
+// How far any body's up leans from the world's (rad), and any has gone from where it was (m).
+struct Strayed {
+    double tilt = 0;
+    double way = 0;
+};
+Strayed strayed(const World &now, const World &before) {
+    Strayed most;
+    for (std::uint32_t i = 0; i < now.bodies().size(); ++i) {
+        const V up = wide(now.pose_of(i).rotation) * V{0, 1, 0};
+        most.tilt = std::max(most.tilt, std::hypot(up.x, up.z));
+        most.way = std::max(most.way, glm::length(wide(now.pose_of(i).position) -
+                                                  wide(before.pose_of(i).position)));
+    }
+    return most;
+}
+bool all_sleep(const World &world) {
+    for (std::uint32_t i = 0; i < world.bodies().size(); ++i)
+        if (world.bodies()[i].kind == BodyKind::dynamic && !world.state().paces[i].is_asleep())
+            return false;
+    return true;
+}
+
+// With one pass over their contacts all of these sway, and a cylinder of h / d = 10 falls within
+// two minutes.
+TEST(Rest, WhatIsTallAndThinStands) {
+    for (const double sleep_after : {0.0, 0.5})
+        for (const double slenderness : {3, 10, 20})
+            for (const double radius : {0.02, 0.1, 0.4}) {
+                StepSettings settings = settings_for("soft_step");
+                settings.sleep_after = sleep_after;
+                World world("soft_step", settings);
+                world.add_body(ground(0.6, 0));
+                const Real half = Real(slenderness * radius);
+                const Cylinder shape{Vec3{0, -half, 0}, Vec3{0, half, 0}, Real(radius)};
+                world.add_body(dynamic_body(shape, 1000 * pi * std::pow(radius, 3) * slenderness,
+                                            V{0, double(half), 0}));
+                const World before = world;
+                run(world, 150 * 60);
+                const Strayed most = strayed(world, before);
+                EXPECT_LT(most.tilt, 1e-5) << slenderness << ' ' << radius << ' ' << sleep_after;
+                EXPECT_LT(most.way, 1e-3 * radius) << slenderness << ' ' << radius;
+                EXPECT_TRUE(sleep_after == 0 || slenderness > 10 || all_sleep(world))
+                    << slenderness << ' ' << radius;
+            }
+}
+
+// With one pass they creep by 2 cm in a minute.
+TEST(Rest, TablesOnTablesStand) {
+    for (const int tables : {2, 4, 8})
+        for (const double size : {0.3, 1.0}) {
+            World world("soft_step", settings_for("soft_step"));
+            world.add_body(ground(0.6, 0));
+            for (int i = 0; i < tables; ++i) {
+                BodyDef table;
+                table.mass = 10;
+                table.pose.position = narrow(size * V{0, 0.45 + 0.9 * i, 0});
+                const auto add = [&](const V &centre, const V &half) {
+                    Box box = block(size * half);
+                    box.center = narrow(size * centre);
+                    table.colliders.emplace_back().shape = box;
+                };
+                add({0, 0.4, 0}, {0.5, 0.05, 0.5});
+                for (const double x : {-0.4, 0.4})
+                    for (const double z : {-0.4, 0.4})
+                        add({x, -0.05, z}, {0.05, 0.4, 0.05});
+                world.add_body(with_material(table, 0.6, 0));
+            }
+            const World before = world;
+            run(world, 60 * 60);
+            EXPECT_LT(strayed(world, before).way, 1e-4) << tables << ' ' << size;
+        }
+}
+
 // Found anew in each step, a column of soft contacts buckles under its own weight once it is taller
 // than N^3 = 7.8 k / (m g): at four substeps some 15 boxes. Kept, it does not.
 TEST(Rest, ATallStackStandsOnKeptContacts) {

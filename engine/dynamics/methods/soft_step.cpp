@@ -8,10 +8,10 @@
 // order of RATTLE (Andersen 1983), a scheme of second order, at the price of one more pass over the
 // bodies: a pendulum keeps its energy, which the plain scheme loses at the rate omega^2 h.
 //
-// And joints that hang together without many loops are solved together, as long as the substep can
-// follow them, and again after the contacts of their bodies; contacts of what rests are kept as
-// they were found (kept_travel), those of what moves fast for its size are found where it will be
-// (looks_ahead), and all are solved in columns.
+// And joints that hang together without many loops are solved together, with the limits that bear
+// something, as long as the substep can follow them, and again after the contacts of their bodies;
+// contacts of what rests are kept as they were found (kept_travel), those of what moves fast for
+// its size are found where it will be (looks_ahead), and all are solved in columns.
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/motion.h"
 
@@ -20,6 +20,10 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
+
+int holding_passes(const StepContext &context) {
+    return context.settings.iterations + (context.active.pace.settles ? 1 : 0);
+}
 
 // One pass takes only a part of the push out of the velocities of what lies on each other: a stack
 // that lands would be thrown up again. Where something was struck there are two for each contact
@@ -34,8 +38,8 @@ int relaxing_passes(const StepContext &context) {
     const std::size_t passes =
         affordable / (context.contacts.size() + context.active.joints.size() + 1);
     const auto wanted = static_cast<int>(std::min({passes, 2 * contacts, most}));
-    return wanted > settings.iterations && anything_is_struck(context) ? wanted
-                                                                       : settings.iterations;
+    const int usual = holding_passes(context);
+    return wanted > usual && anything_is_struck(context) ? wanted : usual;
 }
 
 void advance_soft_step(StepContext &context) {
@@ -89,8 +93,8 @@ void advance_soft_step(StepContext &context) {
         // There and back, then back and there: one pass leaves most to the points that come last,
         // and always the same ones would feed slow sways: a pyramid of base 25 would never rest,
         // and what is heavy on light would walk.
-        contact_bias.backwards = context.active.alternates && substep % 2 == 1;
-        relax_bias.backwards = context.active.alternates && substep % 2 == 0;
+        contact_bias.backwards = context.active.pace.alternates && substep % 2 == 1;
+        relax_bias.backwards = context.active.pace.alternates && substep % 2 == 0;
         follow_loads(context, h);
         if (substep == 0)
             weigh_joints(context);
@@ -107,7 +111,7 @@ void advance_soft_step(StepContext &context) {
             kick_particles(context, gravity, Real(0.5) * h);
             refresh_particles(context, h, SpringRule::midpoint);
         }
-        for (int i = 0; i < settings.iterations; ++i) {
+        for (int i = 0; i < holding_passes(context); ++i) {
             solve_joints(context, holding);
             for (int k = 0; has_particles && k < spring_passes(context); ++k) {
                 solve_springs(context, SpringRule::midpoint);
