@@ -28,15 +28,15 @@ std::optional<ActionInfo> row(Action action) {
         // clang-format off
     case Action::pause:
         return ActionInfo{action, "Pause",
-                          "Stops and goes on.",
+                          "Pauses and continues.",
                           Place::transport, false, {plain('p'), plain(' ')}};
     case Action::step:
         return ActionInfo{action, "Step",
-                          "One step on.",
+                          "One step forward.",
                           Place::transport, true, {plain('.'), plain(right)}};
     case Action::step_5:
         return ActionInfo{action, "5 steps",
-                          "Five steps on.",
+                          "Five steps forward.",
                           Place::transport, true, {shift(right)}};
     case Action::step_back:
         return ActionInfo{action, "Step back",

@@ -64,7 +64,4 @@ void ghost_tab(PanelContext &context);
 [[nodiscard]] std::vector<std::size_t> matching(std::span<const SceneEntry> scenes,
                                                 const std::string &search);
 
-// About how high the messages are in a panel of this width; 0 if there are none.
-[[nodiscard]] float messages_height(const Messages &messages, float width);
-
 } // namespace plumb

@@ -10,7 +10,7 @@ bool title_sign(PanelContext &context, PanelId panel) {
     const bool open = context.view.is_open(panel);
     if (fold_sign("##fold", open))
         context.view.opened[panel] = !open;
-    tooltip(open ? "Closes the panel to its title." : "Opens the panel.");
+    tooltip(open ? "Collapse" : "Expand");
     return open;
 }
 

@@ -1,7 +1,9 @@
 // The scene's title, its description, what it can be held to, and whether it holds.
 #include "app/sandbox/panel.h"
 #include "app/sandbox/widgets.h"
+#include "engine/scene/expect.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -11,34 +13,56 @@ namespace plumb {
 
 namespace {
 
-void wrapped(const std::string &text) {
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-}
-
-// "drift of energy, 0 to 5 s"
+// "drift of energy error, 0 to 5 s", "largest |position.x| of bob, 0 to 5 s", "position.y of bob at
+// 5 s"
 std::string measured(const ExpectDesc &expect) {
-    std::string text = expect.reduce + " of " + expect.quantity;
-    if (!expect.body.empty())
-        text += " of " + expect.body;
-    if (expect.reduce == "last" || expect.from == expect.to)
-        return text + " at " + number(expect.to, "s");
-    return text + ", " + number(expect.from) + " to " + number(expect.to, "s");
+    std::string quantity = expect.quantity;
+    std::ranges::replace(quantity, '_', ' ');
+    const std::string of = expect.body.empty() ? "" : " of " + expect.body;
+    const std::string at = " at " + unbroken(number(expect.to, "s"));
+    const std::string over = ", " + unbroken(number(expect.from) + " to " + number(expect.to, "s"));
+    const ReductionInfo *reduction = find_reduction(expect.reduce);
+    if (!reduction) // the scene has been read, so that there is one
+        return quantity + of;
+    const bool is_mean = reduction->reduction == Reduction::mean;
+    if (!expect.curve.empty())
+        return (is_mean ? "mean" : "largest") + (" distance of " + quantity) + of +
+               " from its curve" + over;
+    switch (reduction->reduction) {
+    case Reduction::last:
+        return quantity + of + at;
+    case Reduction::min:
+        return "smallest " + quantity + of + over;
+    case Reduction::max:
+        return (quantity.starts_with("max ") ? "" : "largest ") + quantity + of + over;
+    case Reduction::mean:
+        return "mean " + quantity + of + over;
+    case Reduction::max_abs:
+        return "largest |" + quantity + "|" + of + over;
+    case Reduction::drift:
+        return "drift of " + quantity + of + over;
+    case Reduction::period:
+        return "period of " + quantity + of + over;
+    case Reduction::crossings:
+        return "crossings of " + quantity + of + over;
+    case Reduction::first_crossing:
+        return "first crossing of " + quantity + of + over;
+    }
+    return "";
 }
 
 std::string_view unit_of(const ExpectOutcome &outcome) {
     return outcome.unit == "1" ? std::string_view() : std::string_view(outcome.unit);
 }
 
-// "= 1.4 ± 0.01 m"
+// "1.4 ± 0.01 m"
 std::string demanded(const ExpectOutcome &outcome) {
     const ExpectDesc &expect = outcome.desc;
     switch (expect.relation) {
     case ExpectDesc::Relation::equals:
         if (!expect.curve.empty())
-            return "≤ " + number(expect.tolerance, unit_of(outcome)) + " off its curve";
-        return "= " + number(expect.value) + " ± " + number(expect.tolerance, unit_of(outcome));
+            return "≤ " + number(expect.tolerance, unit_of(outcome));
+        return number(expect.value) + " ± " + number(expect.tolerance, unit_of(outcome));
     case ExpectDesc::Relation::at_most:
         return "≤ " + number(expect.value, unit_of(outcome));
     case ExpectDesc::Relation::at_least:
@@ -49,14 +73,14 @@ std::string demanded(const ExpectOutcome &outcome) {
 
 // "0.0031 m so far, expected ≤ 0.01 m"
 std::string found_and_demanded(const ExpectOutcome &outcome) {
-    std::string found = number(outcome.measured, unit_of(outcome));
+    std::string found = unbroken(number(outcome.measured, unit_of(outcome)));
     if (outcome.verdict == Verdict::unseen)
-        found = "not judged, since the run goes on from a later state";
+        found = "not judged: the run started from a later state";
     else if (!std::isfinite(outcome.measured))
         found = outcome.verdict == Verdict::pending ? "nothing yet" : "nothing to measure";
     else if (outcome.verdict == Verdict::pending)
         found += " so far";
-    return found + ", expected " + demanded(outcome);
+    return found + ", expected " + unbroken(demanded(outcome));
 }
 
 Colour colour_of(Verdict verdict) {
@@ -84,9 +108,7 @@ void verdict_row(const ExpectOutcome &outcome, bool stopped) {
     ImGui::TextColored(cut_short ? theme::error : colour_of(outcome.verdict), "%s",
                        verdict.c_str());
     ImGui::SetCursorPos(start);
-    ImGui::PushTextWrapPos(at - ImGui::GetStyle().ItemSpacing.x);
-    ImGui::TextUnformatted(outcome.desc.name.c_str());
-    ImGui::PopTextWrapPos();
+    wrapped(outcome.desc.name, at - ImGui::GetStyle().ItemSpacing.x - start.x);
 }
 
 // A light and what it means.
@@ -110,7 +132,7 @@ void lights(const PanelContext &context) {
     for (std::size_t i = 0; i < expects.size(); ++i)
         if (const std::optional<double> since = session.missed_since(i))
             missed += (missed.empty() ? "Outside tolerance: " : "; ") + expects[i].name +
-                      " since " + number(*since, "s");
+                      " since " + unbroken(number(*since, "s"));
     if (!missed.empty())
         warn(context.fonts, theme::warning, missed + ".");
 }
@@ -139,11 +161,11 @@ void expectations_panel(PanelContext &context) {
     heading(context.fonts, "Expected");
     lights(context);
     if (scene.expects.empty())
-        ImGui::TextDisabled("This scene expects nothing.");
+        ImGui::TextDisabled("This scene has no expectations.");
     else if (context.session.disturbed()) {
         ImGui::PushFont(context.fonts.small);
         ImGui::PushStyleColor(ImGuiCol_Text, theme::warning);
-        wrapped("Changed in mid-run: this is what happened, not what a check of the scene says.");
+        wrapped("Changed during the run: `plumb check` may find otherwise.");
         ImGui::PopStyleColor();
         ImGui::PopFont();
     }

@@ -17,7 +17,7 @@ void method_box(PanelContext &context, const Ghost *ghost) {
     ImGui::SetNextItemWidth(16 * ImGui::GetFontSize());
     const std::string shown = ghost ? title_of(*ghost) : "none";
     if (!ImGui::BeginCombo("##ghost", shown.c_str())) {
-        tooltip("The method of the ghost, with the settings that the scene has for it.");
+        tooltip("The ghost's method, with the scene's settings for it.");
         return;
     }
     if (ImGui::Selectable("none", ghost == nullptr))
@@ -25,8 +25,8 @@ void method_box(PanelContext &context, const Ghost *ghost) {
     if (ImGui::Selectable("Reference", ghost != nullptr && ghost->is_reference()) &&
         context.session.set_ghost(reference_ghost))
         context.view.ghost_method = reference_ghost;
-    tooltip("As accurate as the scene can be run: in double, with a quarter of the step and 16 "
-            "substeps. What it cannot keep pace with it follows later.");
+    tooltip("The most accurate run of the scene: in double precision, with a quarter of the step "
+            "and 16 substeps. Where it is too slow, it lags behind and catches up later.");
     for (const MethodInfo &method : method_infos()) {
         const std::string why = why_not(method, context.session.scene());
         ImGui::BeginDisabled(!why.empty());
@@ -48,31 +48,30 @@ void ghost_tab(PanelContext &context) {
     const Ghost *ghost = context.session.ghost(); // after the choice
     if (!ghost) {
         ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("A second simulation of the scene by another method, from here on, "
-                            "drawn translucent over the first. What is done to the one is done to "
-                            "the other. It costs its own time at every step.");
+        ImGui::TextDisabled("Runs the scene by another method as well, from now on, and draws it "
+                            "translucent over the first. What you do to one happens to both. "
+                            "Every step takes longer.");
         ImGui::PopTextWrapPos();
         return;
     }
     if (!ghost->failure().empty()) {
-        ImGui::TextColored(theme::error, "It stopped: %s.", ghost->failure().c_str());
+        ImGui::TextColored(theme::error, "Stopped: %s.", ghost->failure().c_str());
         return;
     }
     if (const double lag = ghost->lag(*context.session.simulation()); lag > 0) {
         value_row("Lags by", number(lag, "s"));
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled(
-            "It is too slow to keep pace. Paused, it comes even, and then tells how "
-            "far apart the two are.");
+            "Too slow to keep up. Pause to let it catch up and see how far apart the two are.");
         ImGui::PopTextWrapPos();
         return;
     }
     const GhostDistance far =
         ghost->farthest(*context.session.simulation(), context.session.present());
     value_row("Largest distance",
-              number(far.metres, "m") + (far.name.empty() ? "" : ", of " + far.name));
-    value_row("Energy of the first", number(context.session.simulation()->energy(), "J", 6));
-    value_row("Energy of the ghost", number(ghost->simulation().energy(), "J", 6));
+              number(far.metres, "m") + (far.name.empty() ? "" : ", " + far.name));
+    value_row("Energy", number(context.session.simulation()->energy(), "J", 6));
+    value_row("Ghost's energy", number(ghost->simulation().energy(), "J", 6));
 }
 
 } // namespace plumb

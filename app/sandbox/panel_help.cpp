@@ -56,7 +56,7 @@ void help_panel(PanelContext &context) {
     group(context, Place::general);
     mouse(context);
     ImGui::EndTable();
-    small_text(context.fonts, "Esc closes this. Point at a row for more.");
+    small_text(context.fonts, "Esc to close. Point at a row for details.");
 }
 
 } // namespace plumb

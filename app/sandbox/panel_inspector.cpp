@@ -56,7 +56,7 @@ void contact_rows(const Frame &frame, std::size_t body) {
         }
     }
     value_row("Contact points", std::to_string(points));
-    value_row("Normal forces", number(force, "N"));
+    value_row("Normal force", number(force, "N"));
 }
 
 // An angle in degrees, or a length.
@@ -83,14 +83,14 @@ void joint_rows(const JointView &joint) {
         const char *unit = type.turns ? "N m" : "N";
         value_row("Motor", place(joint, *joint.motor_speed, "/s") + ", up to " +
                                number(joint.max_motor_force, unit));
-        value_row("Motor gives", number(joint.motor_force, unit));
+        value_row("Motor output", number(joint.motor_force, unit));
         value_row("Speed", place(joint, joint.speed, "/s"));
     }
     if (joint.frequency > 0)
         value_row("Spring", number(joint.frequency, "Hz"));
     value_row("Error", number(joint.drift, "m"));
     if (joint_type(joint.type).frames != JointTypeInfo::Frames::none)
-        value_row("Error of angle", number(glm::degrees(joint.angle_drift), "°"));
+        value_row("Angle error", number(glm::degrees(joint.angle_drift), "°"));
     value_row("Force", number(glm::length(joint.force), "N") +
                            (joint.break_force > 0 ? " of " + number(joint.break_force, "N") : ""));
     if (glm::length(joint.torque) > 0)
@@ -137,7 +137,7 @@ void spring_rows(const Simulation &simulation, const Frame &frame, const Counts 
     }
     value_row("Springs",
               std::to_string(count) + (torn > 0 ? ", " + std::to_string(torn) + " torn" : ""));
-    value_row("Greatest strain", number(100 * strain, "%"));
+    value_row("Largest strain", number(100 * strain, "%"));
 }
 
 void particle_rows(const PanelContext &context, std::size_t particle) {
@@ -167,8 +167,8 @@ void particle_rows(const PanelContext &context, std::size_t particle) {
     const ClothInfo &cloth = parts.cloths[*info.cloth];
     ImGui::Separator();
     value_row("Cloth", cloth.name);
-    value_row("Its mass", number(parts.mass_around(particle), "kg"));
-    value_row("Its particles", std::to_string(cloth.particle_count));
+    value_row("Cloth mass", number(parts.mass_around(particle), "kg"));
+    value_row("Particles", std::to_string(cloth.particle_count));
     spring_rows(simulation, frame,
                 [&](const SpringInfo &spring) { return spring.cloth == info.cloth; });
 }
@@ -187,7 +187,7 @@ void inspector_panel(PanelContext &context) {
         !simulation->body_info(*body).alive) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled(
-            "Click a body, a particle or a cloth to see its name, mass, place and velocity.");
+            "Click a body, a particle or a cloth to see its name, mass, position and velocity.");
         ImGui::Spacing();
         for (const MouseInfo &gesture : mouse_gestures())
             value_row(gesture.title, std::string(gesture.gesture));
@@ -209,14 +209,14 @@ void inspector_panel(PanelContext &context) {
     }
     ImGui::Separator();
     value_row("Position", triple(state.position) + " m");
-    value_row("Turned", turn_text(state.orientation));
+    value_row("Rotation", turn_text(state.orientation));
     if (info.kind == BodyKind::static_body) {
         joints_of(*simulation, frame, *body);
         return;
     }
     value_row("Velocity", triple(state.velocity) + " m/s");
     value_row("Speed", state.asleep ? "asleep" : number(glm::length(state.velocity), "m/s"));
-    value_row("Spin", triple(state.angular_velocity) + " 1/s");
+    value_row("Spin", triple(state.angular_velocity) + " rad/s");
     ImGui::Separator();
     contact_rows(frame, *body);
     joints_of(*simulation, frame, *body);

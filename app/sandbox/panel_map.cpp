@@ -130,8 +130,7 @@ void legend(const PanelContext &context, const StabilityMap &map) {
     const float em = context.fonts.small->FontSize;
     const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
     ImGui::PushFont(context.fonts.small);
-    ImGui::TextDisabled("%s; to the right: %s; up: %s",
-                        std::string(map.methods.front().method->title).c_str(),
+    ImGui::TextDisabled("%s; x: %s; y: %s", std::string(map.methods.front().method->title).c_str(),
                         axis_title(map.x).c_str(), axis_title(map.y).c_str());
     for (const FailingInfo &info : failings()) {
         const bool is_there =
@@ -169,11 +168,12 @@ void tell(const StabilityMap &map, double x, double y, const std::optional<MapRu
             ImGui::SameLine();
             ImGui::TextDisabled("%s", cell->failing.what.c_str());
         }
-        ImGui::TextDisabled("deepest %s, drift %s", number(cell->max_penetration, "m").c_str(),
+        ImGui::TextDisabled("penetration %s, joint drift %s",
+                            number(cell->max_penetration, "m").c_str(),
                             number(cell->max_joint_drift, "m").c_str());
     }
-    ImGui::TextDisabled(map.x.setting && map.y.setting ? "Click to go on with it."
-                                                       : "Click to begin with it, from the start.");
+    ImGui::TextDisabled(map.x.setting && map.y.setting ? "Click to apply"
+                                                       : "Click to restart with it");
     ImGui::EndTooltip();
 }
 
@@ -216,8 +216,8 @@ void axis_field(const char *id, const char *before, std::string &text, float wid
     ImGui::SameLine();
     ImGui::SetNextItemWidth(width);
     ImGui::InputText(id, &text);
-    tooltip("A setting or any number of the scene's file, and its values, as `plumb map` reads "
-            "them: dt=1/240..1/15:8log, substeps=1,2,4, body.ball.velocity.x=1..20:6.");
+    tooltip("A setting or any number in the scene file, and its values, as for `plumb map`: "
+            "dt=1/240..1/15:8log, substeps=1,2,4, body.ball.velocity.x=1..20:6.");
     ImGui::SameLine();
 }
 
@@ -248,7 +248,7 @@ void map_tab(PanelContext &context) {
         ImGui::SameLine();
     if (running || !failure.empty() || !map)
         study_state(context, running, study.done(), failure,
-                    "Where the method holds the scene and why it fails, over two numbers.");
+                    "Where the method holds the scene and why it fails, over two parameters.");
     if (map)
         draw_map(context, *map);
 }

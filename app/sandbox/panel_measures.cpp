@@ -20,7 +20,7 @@ void measures_panel(PanelContext &context) {
     const Ghost *ghost = context.session.ghost();
     if (ghost && ghost->lag(*context.session.simulation()) == 0)
         value_row(
-            "Ghost, farthest",
+            "Distance to ghost",
             number(ghost->farthest(*context.session.simulation(), context.session.present()).metres,
                    "m"));
 }

@@ -31,7 +31,7 @@ void subject_box(PanelContext &context, float width) {
         view.plot_of.clear();
     ImGui::SetNextItemWidth(width);
     if (!ImGui::BeginCombo("##of", view.plot_of.empty() ? "whole scene" : view.plot_of.c_str())) {
-        tooltip("What the quantity is of. What is clicked in the scene comes here, too.");
+        tooltip("Whose quantities to plot. Clicking something in the scene chooses it here, too.");
         return;
     }
     if (ImGui::Selectable("whole scene", view.plot_of.empty()))
@@ -86,7 +86,7 @@ void span_box(ViewState &view, float width) {
         }
         ImGui::EndCombo();
     }
-    tooltip("The time that is shown, up to now.");
+    tooltip("How much time is shown, up to now.");
 }
 
 // A name, its value now, and a cross that takes it away; as many to a line as fit.
@@ -125,7 +125,7 @@ void legend(PanelContext &context) {
                                             colour, 1.5f);
         ImGui::GetWindowDrawList()->AddLine({c.x - half, c.y + half}, {c.x + half, c.y - half},
                                             colour, 1.5f);
-        tooltip("Plots it no longer.");
+        tooltip("Remove");
         ImGui::PopID();
     }
     ImGui::PopFont();
@@ -149,11 +149,11 @@ void plots_tab(PanelContext &context) {
     if (ImGui::Button("Save CSV", {-1, 0}))
         context.save_plots = true;
     ImGui::EndDisabled();
-    tooltip("Writes all that is plotted, from the first step to this one.");
+    tooltip("Writes all curves, from the first step to this one.");
     if (context.session.plots().curves().empty()) {
         ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("Choose what it is of and then what to plot, as much as you like. What "
-                            "has one unit stands in one plot.");
+        ImGui::TextDisabled("Choose the scene, a body, a particle or a spring, then the quantities "
+                            "to plot. Those with the same unit share a plot.");
         ImGui::PopTextWrapPos();
         return;
     }

@@ -90,7 +90,7 @@ void scenes_panel(PanelContext &context) {
     const float buttons = ImGui::GetFrameHeightWithSpacing();
     ImGui::BeginChild("list", {0, -buttons});
     if (found.empty())
-        ImGui::TextDisabled(context.scenes.empty() ? "No scenes found." : "No scene has that.");
+        ImGui::TextDisabled(context.scenes.empty() ? "No scenes found." : "No match.");
     const std::string *subject = nullptr;
     for (const std::size_t i : found) {
         const SceneEntry &entry = context.scenes[i];

@@ -176,13 +176,13 @@ void settings_panel(PanelContext &context) {
     const float half = 0.5f * (ImGui::GetContentRegionAvail().x - spacing);
     if (ImGui::Button("As in scene", {half, 0}))
         context.restart_as_written = true;
-    tooltip("Starts again with the method and settings of the file and the command line.");
+    tooltip("Restarts with the method and settings of the file and the command line.");
     ImGui::SameLine();
     ImGui::BeginDisabled(!has_more);
     if (ImGui::Button("More", {half, 0}))
         ImGui::OpenPopup("settings");
     ImGui::EndDisabled();
-    tooltip("All others that this method reads.");
+    tooltip("The other settings of this method.");
     changed |= more_rows(method, settings);
     if (changed)
         context.session.set_settings(settings);

@@ -184,7 +184,7 @@ void legend(const PanelContext &context, const std::optional<StepTimes> &times) 
 } // namespace
 
 void diagnostics_panel(PanelContext &context) {
-    if (!title_bar(context, PanelId::diagnostics, "Time of a step",
+    if (!title_bar(context, PanelId::diagnostics, "Step time",
                    shortcut(Action::toggle_diagnostics)))
         return;
     const StepReport &report = context.session.simulation()->report();
@@ -204,6 +204,16 @@ void diagnostics_panel(PanelContext &context) {
     row("Contacts, points",
         std::to_string(report.contacts) + ", " + std::to_string(report.contact_points));
     row("Joints", std::to_string(report.joints));
+    const SoftParts &soft = context.session.simulation()->soft_parts();
+    if (!soft.particles.empty()) {
+        value_row("Particles", std::to_string(soft.particles.size()));
+        row("Particle contacts", std::to_string(report.particle_contacts));
+    }
+    if (!soft.springs.empty()) {
+        const std::size_t torn = soft.springs.size() - report.springs;
+        row("Springs", std::to_string(report.springs) +
+                           (torn > 0 ? ", " + std::to_string(torn) + " torn" : ""));
+    }
     row("Impacts, unresolved",
         std::to_string(report.impacts) + ", " + std::to_string(report.unresolved_impacts),
         report.unresolved_impacts > 0);

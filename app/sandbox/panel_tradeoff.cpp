@@ -15,8 +15,8 @@ namespace plumb {
 
 namespace {
 
-constexpr float usual_height = 15; // of the chart, heights of the text
-constexpr float least_height = 8;
+constexpr float usual_height = 17; // of the chart with its titles, heights of the text
+constexpr float least_height = 9;
 constexpr float mark_radius = 4.5f; // pixels at a scale of 1
 constexpr float pointer_reach = 12; // of the pointer
 
@@ -173,7 +173,7 @@ void tell(const SceneChart &chart, const ChartRun &run) {
     ImGui::BeginTooltip();
     ImGui::TextUnformatted(std::string(run.resolved.method->title).c_str());
     ImGui::TextDisabled("%s", run_text(run.resolved).c_str());
-    ImGui::Text("%s of CPU time a simulated second", duration(run.cost).c_str());
+    ImGui::Text("%s CPU time per simulated second", duration(run.cost).c_str());
     const std::string unit = chart.measure.unit == "1" ? "" : chart.measure.unit;
     if (!run.failure.empty())
         ImGui::TextColored(theme::error, "%s", run.failure.c_str());
@@ -182,7 +182,7 @@ void tell(const SceneChart &chart, const ChartRun &run) {
                            chart.measure.title.c_str(), number(run.error, unit).c_str());
     if (run.worst && !run.run.divergence)
         ImGui::TextDisabled("worst: %s", run.run.outcomes[*run.worst].desc.name.c_str());
-    ImGui::TextDisabled("Click to go on with it.");
+    ImGui::TextDisabled("Click to apply");
     ImGui::EndTooltip();
 }
 
@@ -214,14 +214,14 @@ void draw_chart(PanelContext &context, const SceneChart &chart) {
     float left = small_width(context.fonts, "exactly 0");
     for (const PlacedTick &tick : placed.layout.error_ticks)
         left = std::max(left, small_width(context.fonts, without_raised(tick.label)));
-    placed.min = {at.x + left + 8, at.y + 2};
-    placed.max = {at.x + room.x - 2, at.y + height - em - 5};
+    // The titles have lines of their own, above and below, so that they hide no mark.
+    placed.min = {at.x + left + 8, at.y + em + 4};
+    placed.max = {at.x + room.x - 2, at.y + height - 2 * em - 7};
     draw_axes(context, placed);
-    small_on_ground(context.fonts, placed.min.x + 6, placed.min.y + 4, placed.content.error_title);
+    small_at(context.fonts, placed.min.x, at.y, placed.content.error_title);
     const std::string &cost = placed.content.cost_title;
-    small_on_ground(context.fonts, placed.max.x - 6 - small_width(context.fonts, cost),
-                    placed.max.y - em - 4, cost);
-    // Over the titles, so that none is hidden.
+    small_at(context.fonts, placed.max.x - small_width(context.fonts, cost), placed.max.y + em + 5,
+             cost);
     draw_marks(placed, chart, *context.session.simulation(), mark_radius * scale);
     if (!ImGui::IsItemHovered())
         return;
@@ -241,7 +241,7 @@ void tradeoff_tab(PanelContext &context) {
     const float em = ImGui::GetFontSize();
     ImGui::SetNextItemWidth(0.55f * ImGui::GetContentRegionAvail().x);
     ImGui::InputTextWithHint("##sweeps", "substeps=1..16", &view.sweeps);
-    tooltip("The settings that it goes through, as `plumb chart --sweep` reads them: "
+    tooltip("The settings to sweep, as for `plumb chart --sweep`: "
             "substeps=1..16 dt=1/240..1/60. Empty: substeps=1..16.");
     ImGui::SameLine();
     const bool running = study.running();
@@ -261,7 +261,7 @@ void tradeoff_tab(PanelContext &context) {
     const std::string failure = view.sweep_mistake.empty() ? study.failure() : view.sweep_mistake;
     const bool any = chart && std::ranges::any_of(chart->runs, is_shown);
     study_state(context, running, study.done(), failure,
-                any ? "" : "What each method costs and how wrong it is.");
+                any ? "" : "What each method costs, against its error.");
     if (any)
         draw_chart(context, *chart);
 }

@@ -38,7 +38,7 @@ void status(const PanelContext &context) {
         missed = session.missed_since(i).has_value();
     if (trouble || missed) {
         light(trouble ? theme::error : theme::warning);
-        tooltip(trouble ? trouble->text : "Outside the tolerance of what the scene expects.");
+        tooltip(trouble ? trouble->text : "An expectation of the scene is out of tolerance.");
         ImGui::SameLine();
     }
     ImGui::TextColored(colour, "%s", state);
@@ -56,13 +56,14 @@ void status(const PanelContext &context) {
     ImGui::TextDisabled("%s", text.data());
 }
 
-// "×1, at 0.2 of real time" and "12 frames/s", while there is something to measure.
+// "×1 (actual ×0.2)" and "12 frames/s", while there is something to measure.
 void pace_row(const PanelContext &context) {
     const Pace &pace = context.pace;
     std::string speed = speed_text(context.clock.speed());
     std::string frames;
     if (!context.frozen && pace.frames_per_second() > 0) {
-        speed += ", at " + number(pace.of_real_time(), {}, 2) + " of real time";
+        if (!context.clock.paused())
+            speed += " (actual ×" + number(pace.of_real_time(), {}, 2) + ")";
         const double rate = pace.frames_per_second();
         frames = number(rate < 10 ? rate : std::round(rate), "frames/s", rate < 10 ? 2 : 6);
     }
@@ -103,8 +104,7 @@ void transport_panel(PanelContext &context) {
     if (ImGui::Button((speed_text(context.clock.speed()) + "##speed").c_str(),
                       {width * 1.5f, ImGui::GetFrameHeight() * 1.15f}))
         context.speed = 1.0;
-    tooltip("Simulated seconds to a real second. Click for \xC3\x97"
-            "1.");
+    tooltip("Simulated seconds per real second. Click for ×1.");
     const ImFont &small = *context.fonts.small;
     const float caption = small.CalcTextSizeA(small.FontSize, 1e9f, 0, "speed").x;
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + (width * 1.5f - caption) / 2);

@@ -102,11 +102,10 @@ void TroubleWatch::look_at_energy(const Simulation &simulation) {
     if (excess <= tolerated_energy_gain * simulation.measure().kinetic_energy)
         return;
     const double gain = excess + tolerated_energy_gain * energy_scale_;
-    trouble_ =
-        Trouble{Failing::energy_grew,
-                formatted("Energy grew by %.3g J, from %.4g J, until ", gain, energy - gain) +
-                    moment(simulation) + fastest(simulation) + ".",
-                simulation.step_count()};
+    trouble_ = Trouble{Failing::energy_grew,
+                       formatted("Energy grew by %.3g J, from %.4g J, by ", gain, energy - gain) +
+                           moment(simulation) + fastest(simulation) + ".",
+                       simulation.step_count()};
 }
 
 void TroubleWatch::look_at_depths(const Simulation &simulation) {
@@ -123,13 +122,13 @@ void TroubleWatch::look_at_depths(const Simulation &simulation) {
     const bool is_adrift = lasts(now.max_joint_drift, tolerated_.drift, adrift_from_);
     if (is_deep)
         trouble_ = Trouble{Failing::penetration,
-                           formatted("Penetration stays above %.3g m: %.3g m in ",
+                           formatted("Penetration stays above %.3g m: %.3g m at ",
                                      tolerated_.penetration, now.max_penetration) +
                                moment(simulation) + deepest(simulation) + ".",
                            step};
     else if (is_adrift)
         trouble_ = Trouble{Failing::drift,
-                           formatted("A joint stays more than %.3g m apart: %.3g m in ",
+                           formatted("A joint stays more than %.3g m apart: %.3g m at ",
                                      tolerated_.drift, now.max_joint_drift) +
                                moment(simulation) + worst_joint(simulation) + ".",
                            step};
@@ -153,7 +152,7 @@ void TroubleWatch::sample(const Simulation &simulation, const Frame &before, boo
         passages_->sample(simulation);
         if (!passages_->first().empty()) {
             trouble_ = Trouble{Failing::passed_through,
-                               "Passed through: " + passages_->first() + ", in " +
+                               "Passed through: " + passages_->first() + ", at " +
                                    moment(simulation) + ".",
                                simulation.step_count()};
             return;

@@ -121,7 +121,7 @@ bool Session::step() {
         times_.reset();
         const std::string why = reason(failure);
         troubles_->failed(*simulation_, why);
-        messages_.error("The step after " + std::to_string(simulation_->step_count()) +
+        messages_.error("Step " + std::to_string(simulation_->step_count() + 1) +
                         " failed: " + why);
         settle_poses();
         return false;
@@ -143,9 +143,9 @@ bool Session::step() {
         ghost_->catch_up(*simulation_);
     if (!report.finite) {
         stopped_ = true;
-        messages_.error(troubles_->trouble()->text + " Method " +
-                        std::string(simulation_->method().name) +
-                        ": a shorter step or more substeps may hold it.");
+        messages_.error(troubles_->trouble()->text + " With " +
+                        std::string(simulation_->method().title) +
+                        ", a shorter step or more substeps may help.");
         return false;
     }
     watch_->sample(*simulation_);
@@ -192,7 +192,7 @@ void Session::leave_recording() {
     if (!replay_)
         return;
     messages_.note("From step " + std::to_string(simulation_->step_count()) +
-                   " on this is no longer the recorded run.");
+                   " on, this is no longer the recorded run.");
     replay_.reset();
     has_grabbed_ = true;     // or the recording has
     if (simulation_->grab()) // nobody will release it

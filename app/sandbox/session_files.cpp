@@ -70,13 +70,13 @@ bool Session::open_recording(const std::filesystem::path &path) {
 
 bool Session::reload() {
     if (path_.empty()) {
-        messages_.note("This scene has no file to read again.");
+        messages_.note("This scene has no file to reload.");
         return false;
     }
     const std::filesystem::path path = path_; // open() assigns it
     if (!(recording_ ? open_recording(path) : open(path)))
         return false;
-    messages_.note("Read " + path.filename().string() + " again.");
+    messages_.note("Reloaded " + path.filename().string() + ".");
     return true;
 }
 

@@ -97,6 +97,65 @@ void draw_icon(ImDrawList &list, Icon icon, ImVec2 c, float s, ImU32 colour) {
     }
 }
 
+constexpr std::string_view hard_space = "\u00a0";
+
+std::string with_spaces(std::string_view text, std::string_view old, std::string_view wanted) {
+    std::string result(text);
+    for (std::size_t at = 0; (at = result.find(old, at)) != std::string::npos; at += wanted.size())
+        result.replace(at, old.size(), wanted);
+    return result;
+}
+
+// Takes words one by one and breaks them into lines.
+class Lines {
+  public:
+    explicit Lines(float width) : width_(width) {}
+
+    void add(std::string_view word) {
+        const std::string plain = with_spaces(word, hard_space, " ");
+        const std::string longer = line_ ? *line_ + " " + plain : plain;
+        const std::size_t hard = word.find(hard_space);
+        if (size_of(longer).x <= width_) {
+            line_ = longer;
+        } else if (hard != std::string_view::npos && size_of(plain).x > width_) {
+            add(word.substr(0, hard));
+            add(word.substr(hard + hard_space.size()));
+        } else {
+            if (line_)
+                end();
+            line_ = plain;
+        }
+    }
+    void end() {
+        text_ += line_.value_or("") + "\n";
+        line_.reset();
+    }
+    [[nodiscard]] std::string text() const { return text_ + line_.value_or(""); }
+
+  private:
+    float width_;
+    std::string text_;
+    std::optional<std::string> line_;
+};
+
+std::string broken(std::string_view text, float width) {
+    Lines lines(width);
+    while (!text.empty()) {
+        const std::size_t at = text.find_first_of(" \n");
+        lines.add(text.substr(0, at));
+        if (at == std::string_view::npos)
+            break;
+        if (text[at] == '\n')
+            lines.end();
+        text.remove_prefix(at + 1);
+    }
+    return lines.text();
+}
+
+float check_box_side() {
+    return std::round(ImGui::GetFrameHeight() * 0.62f);
+}
+
 } // namespace
 
 void heading(const Fonts &fonts, std::string_view text, std::string_view key) {
@@ -125,7 +184,7 @@ bool fold_title(const Fonts &fonts, std::string_view text, std::string_view at_r
     const bool pressed =
         ImGui::InvisibleButton(("##" + std::string(text)).c_str(),
                                {ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight()});
-    tooltip(open ? "Closes the panel to its title." : "Opens the panel.");
+    tooltip(open ? "Collapse" : "Expand");
     draw_fold_sign(at, open);
     ImGui::SetCursorPos({start.x + ImGui::GetFontSize() * fold_width, start.y});
     heading(fonts, text, at_right);
@@ -137,10 +196,19 @@ void tooltip(std::string_view text) {
     if (typed_in || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         return;
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 22);
-    ImGui::TextUnformatted(begin(text), end(text));
-    ImGui::PopTextWrapPos();
+    ImGui::TextUnformatted(broken(text, ImGui::GetFontSize() * 22).c_str());
     ImGui::EndTooltip();
+}
+
+void wrapped(std::string_view text, std::optional<float> width) {
+    const float room = width.value_or(ImGui::GetContentRegionAvail().x);
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room); // words that are too long for a line
+    ImGui::TextUnformatted(broken(text, room).c_str());
+    ImGui::PopTextWrapPos();
+}
+
+std::string unbroken(std::string_view text) {
+    return with_spaces(text, " ", hard_space);
 }
 
 void action_tooltip(Action action) {
@@ -179,16 +247,24 @@ bool action_button(const Fonts &fonts, Action action, float width) {
     const ImVec2 text = size_of(row.title);
     const ImVec2 small = size_of(*fonts.small, key);
     const float between = ImGui::GetStyle().ItemInnerSpacing.x;
-    const float start = at.x + (width - text.x - between - small.x) / 2;
+    const bool has_room = text.x + between + small.x + between <= width;
+    const float start = at.x + (width - text.x - (has_room ? between + small.x : 0)) / 2;
     ImGui::GetWindowDrawList()->AddText({std::round(start), at.y + (height - text.y) / 2},
                                         ImGui::GetColorU32(theme::text), begin(row.title),
                                         end(row.title));
-    draw_small(fonts, {start + text.x + between, at.y + (height - small.y) / 2 + 1}, key,
-               ImGui::GetColorU32(theme::dim));
+    if (has_room)
+        draw_small(fonts, {start + text.x + between, at.y + (height - small.y) / 2 + 1}, key,
+                   ImGui::GetColorU32(theme::dim));
     return pressed;
 }
 
-bool action_check_box(const Fonts &fonts, Action action, bool checked, float width) {
+float check_box_width(const Fonts &fonts, Action action, bool with_key) {
+    const float between = ImGui::GetStyle().ItemInnerSpacing.x;
+    return check_box_side() + between + size_of(info(action).title).x +
+           (with_key ? between + size_of(*fonts.small, shortcut(action)).x : 0);
+}
+
+bool action_check_box(const Fonts &fonts, Action action, bool checked, float width, bool with_key) {
     const ActionInfo &row = info(action);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = ImGui::GetFrameHeight();
@@ -196,7 +272,7 @@ bool action_check_box(const Fonts &fonts, Action action, bool checked, float wid
         ImGui::InvisibleButton(("##" + std::string(row.title)).c_str(), {width, height});
     action_tooltip(action);
     ImDrawList &list = *ImGui::GetWindowDrawList();
-    const float side = std::round(height * 0.62f);
+    const float side = check_box_side();
     const ImVec2 box(at.x, at.y + std::round((height - side) / 2));
     const Colour ground = checked                  ? theme::chosen
                           : ImGui::IsItemHovered() ? theme::hover
@@ -213,6 +289,8 @@ bool action_check_box(const Fonts &fonts, Action action, bool checked, float wid
     const float start = at.x + side + ImGui::GetStyle().ItemInnerSpacing.x;
     list.AddText({start, at.y + (height - text.y) / 2}, packed(theme::text), begin(row.title),
                  end(row.title));
+    if (!with_key)
+        return pressed;
     const std::string key = shortcut(action);
     const ImVec2 small = size_of(*fonts.small, key);
     draw_small(

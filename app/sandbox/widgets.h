@@ -4,6 +4,7 @@
 #include "app/sandbox/keys.h"
 #include "app/sandbox/theme.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,12 @@ void heading(const Fonts &fonts, std::string_view text, std::string_view key = {
 [[nodiscard]] bool fold_title(const Fonts &fonts, std::string_view text, std::string_view at_right,
                               bool open);
 
+// In lines of this width, or as wide as the rest of the line. ImGui's own wrapping would break
+// numbers at their points; this breaks at spaces, at non-breaking ones where nothing else helps.
+void wrapped(std::string_view text, std::optional<float> width = {});
+// All its spaces non-breaking.
+[[nodiscard]] std::string unbroken(std::string_view text);
+
 // What the action does and all its keys, over the last item.
 void action_tooltip(Action action);
 // Wrapped, over the last item.
@@ -28,10 +35,13 @@ void tooltip(std::string_view text);
 
 // A button with a drawn sign; the key stands under it. True when pressed.
 [[nodiscard]] bool icon_button(const Fonts &fonts, Icon icon, Action action, float width);
-// A button with the action's title, and its key in small.
+// A button with the action's title, and its key in small where there is room for it.
 [[nodiscard]] bool action_button(const Fonts &fonts, Action action, float width);
-// A check box with the action's title, and its key in small. True when clicked.
-[[nodiscard]] bool action_check_box(const Fonts &fonts, Action action, bool checked, float width);
+// A check box with the action's title, and its key in small if wanted. True when clicked.
+[[nodiscard]] bool action_check_box(const Fonts &fonts, Action action, bool checked, float width,
+                                    bool with_key);
+// The width that it needs.
+[[nodiscard]] float check_box_width(const Fonts &fonts, Action action, bool with_key);
 
 // A line of two columns: what, and its value at the right end, in the current window; two lines
 // where it is too narrow.

@@ -4,6 +4,7 @@
 #include "app/sandbox/layout.h"
 #include "app/sandbox/scene_catalog.h"
 #include "app/sandbox/theme.h"
+#include "app/sandbox/widgets.h"
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/fake_simulation.h"
 
@@ -409,14 +410,14 @@ TEST_F(UiTest, NoNumberIsCutInANarrowWindow) {
         EXPECT_TRUE(sandbox.open(scenes[2].path));
         sandbox.view().selected = 4;
         sandbox.view().diagnostics = false;
-        sandbox.view().opened[PanelId::settings] = true;
-        sandbox.view().opened[PanelId::details] = true;
+        for (const PanelId opened : {PanelId::settings, PanelId::view, PanelId::details})
+            sandbox.view().opened[opened] = true;
         Ui ui;
         ImGui::GetIO().Fonts->Build();
         const ImDrawData &data = settled(ui, sandbox, {window.x, window.y});
         return area_of(data, theme::text, panel);
     };
-    for (const char *panel : {"settings", "details"}) {
+    for (const char *panel : {"settings", "view", "details"}) {
         const double whole = text_in(panel, {1280, 900});
         EXPECT_GT(whole, 500);
         EXPECT_NEAR(text_in(panel, {1000, 900}), whole, 1e-3 * whole) << panel;
@@ -479,6 +480,44 @@ TEST_F(UiTest, AParticleThatIsSelectedIsShown) {
               sandbox.session().simulation()->soft_parts().particle_name(7));
     sandbox.view().selected_particle.reset();
     EXPECT_EQ(headings(), of_scene);
+}
+
+// Of a scene that has them, in rows of their own.
+TEST_F(UiTest, ParticlesAndSpringsAreCounted) {
+    const auto height = [&](const std::filesystem::path &scene) {
+        Sandbox sandbox(Session(), scenes);
+        EXPECT_TRUE(sandbox.open(scene));
+        EXPECT_TRUE(sandbox.session().step());
+        std::vector<Ui::Panel> panels;
+        static_cast<void>(
+            ui_snapshot(sandbox, *renderer, source / "shaders", {{1280, 1600}, 1, 1}, &panels));
+        const auto found = std::ranges::find(panels, PanelId::diagnostics, &Ui::Panel::id);
+        EXPECT_NE(found, panels.end());
+        return found->rect.size.y;
+    };
+    const float row = 16 + 4; // text and spacing
+    EXPECT_NEAR(height(source / "scenes/cloth/flag.toml"), height(scenes[0].path) + 3 * row, 2);
+}
+
+// A number stands in one line with its unit and tolerance, and words go to the next whole.
+TEST_F(UiTest, TextIsBrokenAtSpacesAlone) {
+    Ui ui;
+    ImGui::GetIO().Fonts->Build();
+    ui.fill_input({1280, 800}, 1.0f / 60);
+    ui.begin_frame();
+    ImGui::Begin("text");
+    const auto lines = [](const std::string &text, const std::string &as_wide_as) {
+        wrapped(text, ImGui::CalcTextSize(as_wide_as.c_str()).x);
+        return std::lround(ImGui::GetItemRectSize().y / ImGui::GetTextLineHeight());
+    };
+    EXPECT_EQ(lines("found 2.153", "found 2.153"), 1);
+    EXPECT_EQ(lines("found 2.153", "found 2.1"), 2);
+    EXPECT_EQ(lines("a b " + unbroken("1 ± 2 m"), "a b 1 ± 2"), 2);
+    EXPECT_EQ(lines("a b 1 ± 2 m", "a b 1 ± 2"), 2);
+    EXPECT_EQ(lines(unbroken("1 ± 2 m"), "1 ± 2"), 2); // which does not fit into one
+    EXPECT_EQ(lines("one\ntwo", "one two"), 2);
+    ImGui::End();
+    ImGui::EndFrame();
 }
 
 // Several samples stand on each column of pixels; which way they go does not show in the line.

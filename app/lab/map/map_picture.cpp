@@ -2,6 +2,8 @@
 
 #include "app/lab/chart/chart_pen.h"
 
+#include <glm/common.hpp>
+
 namespace plumb {
 
 using namespace chart_colour;
@@ -46,16 +48,38 @@ void draw_curve(ChartPen &pen, const std::vector<glm::vec2> &points) {
     }
 }
 
+// Whether a curve runs through the box, or close by.
+bool is_crossed(const PixelBox &box, const std::vector<std::vector<glm::vec2>> &curves) {
+    constexpr float close = 4;
+    const PixelBox around{box.min - close, box.max + close};
+    for (const std::vector<glm::vec2> &curve : curves)
+        for (std::size_t i = 1; i < curve.size(); ++i)
+            if (around.overlaps(
+                    {glm::min(curve[i - 1], curve[i]), glm::max(curve[i - 1], curve[i])}))
+                return true;
+    return false;
+}
+
+// Where a curve runs through it, on a halo of the cell's colour.
+void draw_mark(ChartPen &pen, const MapCellBox &cell, bool crossed) {
+    const unsigned rgb = info_of(cell.failing).colour;
+    if (crossed)
+        for (const glm::vec2 off :
+             {glm::vec2(-1, -1), glm::vec2(0, -1.5f), glm::vec2(1, -1), glm::vec2(-1.5f, 0),
+              glm::vec2(1.5f, 0), glm::vec2(-1, 1), glm::vec2(0, 1.5f), glm::vec2(1, 1)})
+            pen.text(cell.mark->box.min + off, cell.mark->text, Face::footer, colour(rgb));
+    draw_text(pen, *cell.mark, Face::footer, readable_on(rgb));
+}
+
 void draw_panel(ChartPen &pen, const MapPanel &panel) {
     pen.fill(panel.plot, paper);
-    for (const MapCellBox &cell : panel.cells) {
-        const unsigned rgb = info_of(cell.failing).colour;
-        pen.fill({cell.box.min + 0.5f, cell.box.max - 0.5f}, colour(rgb));
-        if (cell.mark)
-            draw_text(pen, *cell.mark, Face::footer, readable_on(rgb));
-    }
+    for (const MapCellBox &cell : panel.cells)
+        pen.fill({cell.box.min + 0.5f, cell.box.max - 0.5f}, colour(info_of(cell.failing).colour));
     for (const std::vector<glm::vec2> &curve : panel.curves)
         draw_curve(pen, curve);
+    for (const MapCellBox &cell : panel.cells)
+        if (cell.mark)
+            draw_mark(pen, cell, is_crossed(cell.mark->box, panel.curves));
     for (const glm::vec2 &limit : panel.limits)
         draw_limit(pen, limit);
     pen.outline(panel.plot, frame, 1);

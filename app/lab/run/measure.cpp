@@ -43,6 +43,8 @@ void write_header(CsvWriter &csv) {
                              "contacts",
                              "contact_points",
                              "joints",
+                             "springs",
+                             "particle_contacts",
                              "impacts",
                              "unresolved_impacts",
                              "find_pairs_wall_s",
@@ -74,8 +76,9 @@ void write_row(CsvWriter &csv, std::uint64_t step, const Measures &m, double cha
         .cell(m.mean_penetration)
         .cell(m.max_joint_drift)
         .cell(m.mean_joint_drift);
-    for (const std::uint32_t count : {r.moving_bodies, r.pairs, r.contacts, r.contact_points,
-                                      r.joints, r.impacts, r.unresolved_impacts})
+    for (const std::uint32_t count :
+         {r.moving_bodies, r.pairs, r.contacts, r.contact_points, r.joints, r.springs,
+          r.particle_contacts, r.impacts, r.unresolved_impacts})
         csv.cell(static_cast<std::uint64_t>(count));
     csv.cell(times.find_pairs)
         .cell(times.collide)
@@ -135,6 +138,8 @@ MeasureSummary measure_run(Simulation &simulation, const MeasureOptions &options
         summary.advance += times.advance;
         summary.finish += times.finish;
         summary.most_contacts = std::max(summary.most_contacts, report.contacts);
+        summary.most_particle_contacts =
+            std::max(summary.most_particle_contacts, report.particle_contacts);
         summary.impacts += report.impacts;
         summary.unresolved_impacts += report.unresolved_impacts;
         // Nothing can be measured of a world that is not finite: its geometry makes no sense.
@@ -191,8 +196,13 @@ void print(std::ostream &out, const MeasureSummary &s) {
     std::snprintf(line, sizeof line, "max joint drift   %.4g m at %.4g s\n", s.max_joint_drift,
                   s.max_joint_drift_time);
     out << line;
-    std::snprintf(line, sizeof line,
-                  "contacts          at most %u; %llu impacts, %llu unresolved\n", s.most_contacts,
+    std::snprintf(line, sizeof line, "contacts          at most %u", s.most_contacts);
+    out << line;
+    if (s.most_particle_contacts > 0) {
+        std::snprintf(line, sizeof line, " of bodies, %u of particles", s.most_particle_contacts);
+        out << line;
+    }
+    std::snprintf(line, sizeof line, "; %llu impacts, %llu unresolved\n",
                   static_cast<unsigned long long>(s.impacts),
                   static_cast<unsigned long long>(s.unresolved_impacts));
     out << line;

@@ -32,7 +32,7 @@ struct MeasureSummary {
     double max_joint_drift = 0, max_joint_drift_time = 0; // m, s
     // Wall time (s) of all steps together, as the steps report it.
     double find_pairs = 0, collide = 0, advance = 0, finish = 0;
-    std::uint32_t most_contacts = 0;
+    std::uint32_t most_contacts = 0, most_particle_contacts = 0;
     std::uint64_t impacts = 0, unresolved_impacts = 0;
     std::optional<Divergence> divergence;
     bool stopped = false;
