@@ -22,7 +22,7 @@ void refuse_options_of_scenes(const CLI::App &chart_command) {
     for (const CLI::Option *option : chart_command.get_options())
         if (option->count() > 0 && option->get_name() != "SCENE" &&
             option->get_name() != "--repeats" && option->get_name() != "--out")
-            throw std::invalid_argument("chart geometry takes --repeats and --out, but no " +
+            throw std::invalid_argument("chart geometry takes only --repeats and --out, not " +
                                         option->get_name());
 }
 
@@ -40,7 +40,8 @@ Shard parse_shard(const std::string &text) {
     if (!(in >> shard.n >> slash >> shard.of) || slash != '/' || !in.eof() || shard.n < 1 ||
         shard.n > shard.of)
         throw std::invalid_argument("--shard: '" + text +
-                                    "' is no shard; write 2/4 for the second of four");
+                                    "' must be I/N with I from 1 to N, as in 2/4 for the second "
+                                    "of four parts");
     return shard;
 }
 
@@ -57,9 +58,9 @@ void add_chart(CommandLine &line) {
         ->type_name("METHOD,...");
     chart_command
         ->add_option("--sweep", arguments->sweeps,
-                     "What to go through, any setting from `plumb list --settings`: substeps=1..16 "
+                     "What to vary, any setting from `plumb list --settings`: substeps=1..16 "
                      "(the default), iterations=1,2,8, dt=1/240..1/30; also precision=float,double "
-                     "and threads=1,2 (then by the clock on the wall); may be given several times")
+                     "and threads=1,2 (then in wall time); may be given several times")
         ->allow_extra_args(false);
     chart_command->add_option(
         "--expect", arguments->command.options.expect,
@@ -88,7 +89,7 @@ void add_chart(CommandLine &line) {
         " from states of one accurate run in double, the same for every method");
     chart_command
         ->add_option("--seed", arguments->command.options.seed,
-                     "Of the order in which each round of timings goes")
+                     "Random seed for the order of the timings in each round")
         ->capture_default_str();
     chart_command
         ->add_option("--shard", arguments->shard,

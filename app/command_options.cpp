@@ -71,7 +71,7 @@ std::vector<std::uint64_t> parse_steps(const std::string &text) {
         const auto read = std::from_chars(item.data(), end, step);
         if (read.ec != std::errc{} || read.ptr != end || step > most_steps)
             throw std::invalid_argument("--at: '" + item +
-                                        "' is no step; whole numbers up to 1000000000, like "
+                                        "' must be a step, a whole number up to 1000000000, as in "
                                         "0,60,240");
         steps.push_back(step);
     }

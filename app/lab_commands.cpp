@@ -36,8 +36,8 @@ struct TuneArguments {
 
 void add_check(CommandLine &line) {
     const auto all_methods = std::make_shared<bool>(false);
-    CLI::App *check_command = line.app.add_subcommand(
-        "check", "Runs scenes and holds them to what they expect of themselves");
+    CLI::App *check_command =
+        line.app.add_subcommand("check", "Runs scenes and checks their expectations");
     add_scenes(*check_command, line.common);
     add_run_options(*check_command, line.common);
     check_command->add_flag("--all-methods", *all_methods, "Every method that can run the scene");
@@ -94,10 +94,10 @@ void add_map(CommandLine &line) {
         "as body.ball.velocity.x, material.steel.friction or body.box.repeat.count; N values (10) "
         "in equal steps, or in equal ratios with log, as in dt=1/480..1/30:9log; or a list, "
         "substeps=1,2,4";
-    map_command->add_option("--x", arguments->x, "What goes to the right: " + axis_about)
+    map_command->add_option("--x", arguments->x, "The x axis: " + axis_about)
         ->required()
         ->type_name("NAME=FROM..TO[:N][log]");
-    map_command->add_option("--y", arguments->y, "What goes up, in the same way")
+    map_command->add_option("--y", arguments->y, "The y axis, in the same way")
         ->required()
         ->type_name("NAME=FROM..TO[:N][log]");
     map_command->add_option("--methods", arguments->methods, "Of " + method_names() + " (all)")
@@ -108,7 +108,7 @@ void add_map(CommandLine &line) {
                             "Where to write every cell and limit, as a table");
     map_command
         ->add_option("--seconds", arguments->command.options.duration,
-                     "How long each run of a scene that expects nothing of itself lasts (5)")
+                     "Duration of each run of a scene without expectations (5)")
         ->check(positive());
     add_run_options(*map_command, line.common, true);
     add_threads(*map_command, line.common);
@@ -132,10 +132,10 @@ void add_tune(CommandLine &line) {
     CLI::App *tune_command = line.app.add_subcommand(
         "tune",
         "Finds the cheapest method, precision, dt, substeps and iterations with which a scene "
-        "meets all that it expects of itself, with a margin and from several starts, and what its "
-        "model can then do without: " +
+        "meets all its expectations, with a margin and from several starts, and what its model can "
+        "then do without: " +
             model_parts_text() +
-            ". What is given by --methods, --precision, --set and the like stays as it is given");
+            ". What is given by --methods, --precision, --set and the like is kept");
     tune_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()
@@ -187,8 +187,8 @@ void add_reference(CommandLine &line) {
     const auto command = std::make_shared<ReferenceCommand>();
     CLI::App *reference_command = line.app.add_subcommand(
         "reference",
-        "Finds what a scene's truths are by refinement: of a run in double whose dt is halved "
-        "until that changes each by less than a tenth of its tolerance");
+        "Computes a scene's true values by refinement: runs it in double and halves dt until each "
+        "changes by less than a tenth of its tolerance");
     reference_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()

@@ -19,7 +19,7 @@ namespace {
 constexpr const char *exit_codes = "Exit codes:\n"
                                    "  0  fine\n"
                                    "  1  outside a tolerance, or pictures or a replay differ; "
-                                   "nothing meets what is tuned\n"
+                                   "nothing tuned meets the scene\n"
                                    "  2  a bad scene or argument\n"
                                    "  3  the world diverged\n"
                                    "  4  no GL context\n"

@@ -12,9 +12,13 @@
 #include "engine/scene/recording.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <system_error>
 
 namespace plumb {
 
@@ -126,10 +130,18 @@ int snapshot(const CommonOptions &common, const SnapshotArguments &arguments) {
     return code_of(make_snapshots(command, std::cout, std::cerr));
 }
 
+// The decoder does not say why a file could not be opened.
+Image read_picture(const std::filesystem::path &path) {
+    if (!std::ifstream(path))
+        throw std::runtime_error("cannot read " + path.string() + ": " +
+                                 std::generic_category().message(errno));
+    return read_png(path);
+}
+
 int compare(const std::filesystem::path &a_path, const std::filesystem::path &b_path, int tolerance,
             const std::filesystem::path &difference_path) {
-    const Image a = read_png(a_path);
-    const Image b = read_png(b_path);
+    const Image a = read_picture(a_path);
+    const Image b = read_picture(b_path);
     const ImageDifference difference = compare_images(a, b);
     if (!difference.same_size) {
         std::cout << "different sizes: " << a.width << "x" << a.height << " and " << b.width << "x"

@@ -106,8 +106,8 @@ glm::ivec2 parse_size(const std::string &text) {
             return size;
     }
     throw std::invalid_argument("'" + text +
-                                "' is no picture size; WIDTHxHEIGHT in pixels, 16 to "
-                                "8192 each, like 1280x720");
+                                "' must be WIDTHxHEIGHT in pixels, 16 to 8192 each, as in "
+                                "1280x720");
 }
 
 ExitCode make_snapshots(const SnapshotCommand &command, std::ostream &out, std::ostream &err) {

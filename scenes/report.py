@@ -274,8 +274,7 @@ class Report:
             stem = chart_stem(problem.scene, command)
             kind = ("error against dt" if "--convergence" in command else "error of a step against cost"
                     if "--one-step" in command else "error against cost")
-            if not problem.kind.startswith("published"):  # the page stays small; the command draws it
-                self.picture(stem + ".png", f"{problem.title}: {kind}")
+            self.picture(stem + ".png", f"{problem.title}: {kind}")
             if "--convergence" not in command:
                 charted = self.rows(stem + ".csv")
         if self.engines and "--one-step" not in commands[0]:

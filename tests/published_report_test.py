@@ -54,7 +54,7 @@ def main():
     assert not re.search(r"(^|[\s`(\"])/\w+/", page), "an absolute path"
     assert "-changed" not in page and re.search(r"commit [0-9a-f]{12}\b", page)
     size = sum(path.stat().st_size for path in folder.iterdir())
-    assert size < 3e6, f"{size} bytes"
+    assert size < 5e6, f"{size} bytes"
 
 
 if __name__ == "__main__":

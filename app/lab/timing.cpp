@@ -64,6 +64,11 @@ time_interleaved(const std::vector<std::function<std::uint64_t()>> &works,
     return times;
 }
 
+std::string timings_text(int rounds) {
+    return rounds == 1 ? "one timing"
+                       : "median of " + std::to_string(rounds) + " interleaved timings";
+}
+
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const std::size_t half = values.size() / 2;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace plumb {
@@ -21,6 +22,9 @@ struct TimingOptions {
 [[nodiscard]] std::vector<std::vector<double>>
 time_interleaved(const std::vector<std::function<std::uint64_t()>> &works,
                  const TimingOptions &options);
+
+// "median of 5 interleaved timings", "one timing"
+[[nodiscard]] std::string timings_text(int rounds);
 
 [[nodiscard]] double median(std::vector<double> values); // 0 of none
 

@@ -90,16 +90,18 @@ void set_run(WorldDesc &world, const MethodInfo &method, const StepSettings &set
 std::string why_not(const MethodInfo &method, const SceneDesc &scene) {
     const std::string name(method.name);
     if (!method.joints && !scene.joints.empty())
-        return name + " knows no joints, and the scene has " + std::to_string(scene.joints.size());
+        return name + " does not support joints, and the scene has " +
+               std::to_string(scene.joints.size());
     if (!method.springs && has_soft_parts(scene))
-        return name + " knows no particles and no springs, and the scene has some";
+        return name + " does not support particles and springs, and the scene has some";
     if (!method.contacts && !scene.bodies.empty() &&
         (!scene.particles.empty() || !scene.cloths.empty()))
-        return name + " knows no contacts, and the scene has particles and bodies that could touch";
+        return name + " does not support contacts, and the scene has particles and bodies that "
+                      "could touch";
     const bool any_dynamic = std::ranges::any_of(
         scene.bodies, [](const BodyDesc &b) { return b.kind == BodyKind::dynamic; });
     if (!method.contacts && any_dynamic && scene.bodies.size() > 1)
-        return name + " knows no contacts, and the scene has " +
+        return name + " does not support contacts, and the scene has " +
                std::to_string(scene.bodies.size()) + " bodies that could touch";
     return {};
 }

@@ -171,6 +171,20 @@ TEST(CommandLine, AnUnknownMethodIsAnsweredWithThoseThereAre) {
     }
 }
 
+TEST(CommandLine, AWrongValueIsAnsweredWithWhatWouldBeRight) {
+    for (const auto &[arguments, right] :
+         {std::pair{"tune pendulum --budget 1", "as in 1ms"},
+          std::pair{"chart pendulum --shard 3/2", "I from 1 to N"},
+          std::pair{"chart bvh", "bvh: only probes, and no motion to chart"}}) {
+        const ProgramResult result = run_program(arguments);
+        EXPECT_EQ(result.exit_code, 2) << arguments;
+        EXPECT_TRUE(has(result.err, right)) << result.err;
+    }
+    const ProgramResult bounds = run_program("reference slope_holds");
+    EXPECT_EQ(bounds.exit_code, 0) << bounds.err;
+    EXPECT_TRUE(has(bounds.out, "slope_holds: has no expectation with `equals`")) << bounds.out;
+}
+
 TEST(CommandLine, AnUnknownSceneIsAnsweredWithTheNearest) {
     const ProgramResult result = run_program("check pendulm");
     EXPECT_EQ(result.exit_code, 2);
@@ -409,7 +423,7 @@ TEST(CommandLine, CompareTellsPicturesApart) {
     EXPECT_TRUE(has(sizes.out, "32x24")) << sizes.out;
     const ProgramResult missing = compare("grey.png none.png");
     EXPECT_EQ(missing.exit_code, 2);
-    EXPECT_TRUE(has(missing.err, "none.png")) << missing.err;
+    EXPECT_TRUE(has(missing.err, "cannot read none.png: No such file or directory")) << missing.err;
 }
 
 TEST(CommandLine, ScenesAreFoundFromAnyFolder) {

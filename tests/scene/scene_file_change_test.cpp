@@ -81,7 +81,9 @@ TEST(SceneFileChange, SaysWhatAPathShouldBe) {
     EXPECT_EQ(complaint("bdy.ball.mass"),
               "\"bdy.ball.mass\": a scene has no \"bdy\"; did you mean \"body\"?");
     EXPECT_EQ(complaint("body.bal.mass"),
-              "\"body.bal.mass\": the scene's body has no \"bal\"; did you mean \"ball\"?");
+              "\"body.bal.mass\": there is no body \"bal\" in this scene; did you mean \"ball\"?");
+    EXPECT_EQ(complaint("spring.line.stiffness"),
+              "\"spring.line.stiffness\": there is no spring in this scene");
     EXPECT_NE(complaint("body.ball.velocity.w").find("write x, y or z"), std::string::npos);
     EXPECT_NE(complaint("body.ball.shape").find("is a string, not a number"), std::string::npos);
     EXPECT_NE(complaint("body.box.repeat").find("the only one is count"), std::string::npos)

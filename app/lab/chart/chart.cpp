@@ -4,8 +4,8 @@
 #include "app/lab/chart/pareto.h"
 #include "app/lab/csv.h"
 #include "app/lab/engines/engine_simulation.h"
-#include "app/lab/run/end_timer.h"
 #include "app/lab/run/run_text.h"
+#include "app/lab/run/run_timer.h"
 #include "app/lab/timing.h"
 #include "engine/core/check.h"
 #include "engine/core/random.h"
@@ -72,7 +72,7 @@ void set_cost(ChartRun &run) {
 
 void mark_front(SceneChart &chart) {
     std::vector<CostAndError> choices;
-    // What fails the scene is no choice, however cheap; nor are errors that are not told apart.
+    // What fails the scene is no choice, however cheap; nor are errors that are not resolved.
     const double floor = chart.steps_from ? chart.steps_from->floor() : 0;
     for (const ChartRun &run : chart.runs)
         choices.push_back(run.status == ChartStatus::fine && !chart.convergence
@@ -99,6 +99,11 @@ std::string_view status_name(ChartStatus status) {
         return "unfinished";
     }
     return "";
+}
+
+std::size_t SceneChart::finished() const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        runs, [](const ChartRun &run) { return run.status != ChartStatus::unfinished; }));
 }
 
 double SceneChart::median_spread() const {
@@ -151,10 +156,10 @@ class Charting {
         if (!(options_.timed > 0) || !(options_.duration > 0) || !(options_.budget > 0))
             throw std::invalid_argument("durations must be above 0 s");
         if (options_.shard.n < 1 || options_.shard.n > options_.shard.of)
-            throw std::invalid_argument("there is no such shard");
+            throw std::invalid_argument("a shard is I/N with I from 1 to N");
         if (options_.one_step && (options_.convergence || !options_.expect.empty()))
-            throw std::invalid_argument("a chart of single steps is of no expectation and of one "
-                                        "dt");
+            throw std::invalid_argument("--one-step goes neither with --convergence nor with "
+                                        "--expect");
         if (options_.convergence && options_.precisions.empty() && !options_.base.precision)
             options_.precisions = {Precision::f64};
         chart_.scene = scene;
@@ -249,14 +254,15 @@ class Charting {
         run.threads = next.threads;
         run.point = next.point;
         std::unique_ptr<Simulation> simulated = simulation(next, scene_);
-        std::unique_ptr<Simulation::Saved> saved;
+        const TimedParts parts = timed_parts(end_, chart_.timed);
+        RunTimer::Saves saved;
         JudgeOptions judging;
         judging.follow_errors = true;
         judging.wall_clock = chart_.wall_clock;
         judging.duration = options_.duration;
         judging.stop = options_.stop;
-        judging.at_time_seconds = end_ - chart_.timed;
-        judging.at_time = [&] { saved = simulated->save(); };
+        judging.times_called = parts.starts;
+        judging.at_time = [&] { saved.push_back(simulated->save()); };
         judging.progress = [&](double fraction) { progress(begin + share * fraction, run); };
         run.run = judge_run(*simulated, scene_, judging);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
@@ -276,8 +282,8 @@ class Charting {
         }
         set_cost(run);
         timers_.emplace_back();
-        if (saved && !run.run.divergence && !run.run.stopped && chart_.repeats > 0)
-            timers_.back().emplace(std::move(simulated), std::move(saved), chart_.timed, run.cost,
+        if (!run.run.divergence && !run.run.stopped && chart_.repeats > 0)
+            timers_.back().emplace(std::move(simulated), std::move(saved), parts.each, run.cost,
                                    chart_.wall_clock);
         const double seconds = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
         if (seconds > 0) {
@@ -287,8 +293,8 @@ class Charting {
         chart_.runs.push_back(std::move(run));
     }
 
-    // With what is known of it; where timings are missing it is stepped, unjudged, to where they
-    // begin.
+    // With what is known of it; where timings are missing it is stepped, unjudged, to what they are
+    // of.
     void go_on(std::size_t index, ChartRun known, double begin) {
         known.index = index;
         known.resolved = planned_[index].resolved;
@@ -298,13 +304,17 @@ class Charting {
             known.timings.size() < static_cast<std::size_t>(chart_.repeats))
             try {
                 std::unique_ptr<Simulation> simulated = simulation(planned_[index], scene_);
+                const TimedParts parts = timed_parts(end_, chart_.timed);
+                RunTimer::Saves saved;
                 const double slack = 1e-6 * simulated->settings().dt;
-                while (simulated->time() < end_ - chart_.timed - slack && !stopped()) {
-                    simulated->step();
-                    progress(begin, known);
+                for (const double start : parts.starts) {
+                    while (simulated->time() < start - slack && !stopped()) {
+                        simulated->step();
+                        progress(begin, known);
+                    }
+                    saved.push_back(simulated->save());
                 }
-                std::unique_ptr<Simulation::Saved> saved = simulated->save();
-                timers_.back().emplace(std::move(simulated), std::move(saved), chart_.timed,
+                timers_.back().emplace(std::move(simulated), std::move(saved), parts.each,
                                        known.cost, chart_.wall_clock);
             } catch (const CheckFailure &) {
                 timers_.back().reset();
@@ -354,7 +364,7 @@ class Charting {
     double states_share_ = 0; // of all the work
     std::vector<PlannedRun> planned_;
     std::map<int, std::unique_ptr<TaskPool>> pools_; // by threads; outlive the timers
-    std::vector<std::optional<EndTimer>> timers_;    // as many as runs
+    std::vector<std::optional<RunTimer>> timers_;    // as many as runs
 };
 
 } // namespace

@@ -50,7 +50,7 @@ struct ChartRun {
     // run.outcomes; none when all errors are 0.
     std::optional<std::size_t> worst;
     // Seconds per simulated second, CPU time of one thread or SceneChart::wall_clock: of each
-    // repeat, and their median, least and greatest. A run that could not be timed over its end
+    // repeat, and their median, least and greatest. A run that could not be timed again
     // (diverged, interrupted) has no repeats: its cost is what its full run took.
     std::vector<double> timings;
     double cost = 0, cost_low = 0, cost_high = 0;
@@ -84,7 +84,7 @@ struct ChartOptions {
     double budget = 1;          // s of CPU time per simulated second: at 60 Hz all of a frame
     double duration = 5;        // s, of scenes that expect nothing
     int repeats = 5;            // timings of each run; their median counts
-    double timed = 2;           // s, simulated: the end of the run, which is timed
+    double timed = 2;           // s, simulated: as much of the run is timed, in TimedParts
     std::uint64_t seed = 1;     // of the order in which each round of timings goes
     Shard shard;                // only these
     KnownRuns known;            // not run again; timed where timings are missing
@@ -129,6 +129,7 @@ struct SceneChart {
     [[nodiscard]] bool told_apart(const ChartRun &run) const {
         return !steps_from || run.error >= steps_from->floor();
     }
+    [[nodiscard]] std::size_t finished() const; // runs that were not interrupted
     [[nodiscard]] double median_spread() const; // of (greatest - least) / median over the runs
 };
 

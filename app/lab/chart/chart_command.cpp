@@ -7,6 +7,7 @@
 #include "app/lab/interrupt.h"
 #include "app/lab/partial_table.h"
 #include "app/lab/run/load_scenes.h"
+#include "app/lab/run/method_choice.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
 
@@ -76,7 +77,7 @@ ExitCode write_pictures(const SceneChart &chart, const std::filesystem::path &st
 // Whether any run has come to something, and what is to be said if not.
 ExitCode code_of(const SceneChart &chart, std::ostream &err) {
     if (chart.runs.empty() && chart.planned == 0) {
-        err << chart.scene.name << ": no method can run this scene\n";
+        err << chart.scene.name << ": " << why_no_method(chart.left_out) << '\n';
         return ExitCode::bad_input;
     }
     const bool any = std::ranges::any_of(
@@ -156,7 +157,12 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
             err << "two scenes are called " << scene.name << "; chart them into two folders\n";
             return ExitCode::bad_input;
         }
-    create_folder(command.out_dir);
+    // A scene without motion is passed over where others have some.
+    const bool any_moves = std::ranges::any_of(loaded.scenes, has_world);
+    if (any_moves)
+        create_folder(command.out_dir);
+    else
+        code = ExitCode::bad_input;
 
     const InterruptGuard interrupt;
     ProgressLine line(err);
@@ -166,7 +172,8 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
         if (InterruptGuard::requested())
             break;
         if (!has_world(scene)) {
-            out << "-     " << scene.name << ": only probes, and no motion to chart\n";
+            (any_moves ? out << "-     " : err)
+                << scene.name << ": only probes, and no motion to chart\n";
             continue;
         }
         try {
@@ -193,7 +200,8 @@ ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostre
             throw std::invalid_argument("cannot read " + path.string());
         tables.push_back({path.string(), {std::istreambuf_iterator<char>(in), {}}});
         if (scene_of_chart(tables.back().text).empty())
-            throw std::invalid_argument(path.string() + " is no table of `plumb chart` with rows");
+            throw std::invalid_argument(path.string() +
+                                        " is not a table of `plumb chart` with rows");
     }
     const std::filesystem::path scene =
         command.scene.empty() ? command.find_scene(scene_of_chart(tables[0].text)) : command.scene;

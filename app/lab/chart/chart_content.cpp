@@ -5,6 +5,7 @@
 #include "app/lab/provenance.h"
 #include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
+#include "app/lab/timing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,10 +66,10 @@ bool is_worth_saying(const SceneChart &chart, SettingNumber number) {
     });
 }
 
-// Whether the same method is there with just so many substeps and with at least so many.
+// Whether the same method is there with fixed and with adaptive substeps.
 bool has_both_modes(const SceneChart &chart) {
     return std::ranges::any_of(chart.runs, [&](const ChartRun &run) {
-        return curve_name(chart, run).find("so many") != std::string::npos;
+        return curve_name(chart, run).find(" substeps") != std::string::npos;
     });
 }
 
@@ -133,29 +134,26 @@ class FailedSeries {
     std::vector<Entry> all_;
 };
 
-// "4", or "4 (Soft step), 1 (Runge-Kutta 4)" where methods differ: each value once.
+// "4", or "4 (Soft step), 1 (Runge-Kutta 4)" where methods differ.
 std::string values_by_method(const SceneChart &chart, SettingNumber number) {
-    std::vector<std::pair<std::string, std::string>> groups; // value, titles
+    std::vector<std::pair<std::string, std::string>> values;
     const MethodInfo *last = nullptr;
-    for (const ChartRun &run : chart.runs) {
-        if (run.resolved.method == last)
-            continue;
-        last = run.resolved.method;
-        const std::string value =
-            setting_label(number, setting_value(run.resolved.settings, number));
-        const auto group =
-            std::ranges::find(groups, value, &std::pair<std::string, std::string>::first);
-        if (group == groups.end())
-            groups.emplace_back(value, last->title);
-        else
-            group->second += ", " + std::string(last->title);
-    }
-    if (groups.size() == 1)
-        return groups.front().first;
-    std::string each;
-    for (const auto &[value, titles] : groups)
-        each.append(each.empty() ? "" : ", ").append(value).append(" (").append(titles).append(")");
-    return each;
+    for (const ChartRun &run : chart.runs)
+        if (run.resolved.method != last) {
+            last = run.resolved.method;
+            values.emplace_back(
+                last->title, setting_label(number, setting_value(run.resolved.settings, number)));
+        }
+    return values_by_name(values);
+}
+
+// What the chart shows, as a sentence begins; a name stays as it is.
+std::string subtitle_of(const ErrorMeasure &measure) {
+    std::string text = measure.explanation;
+    if (measure.kind != ErrorMeasure::Kind::expectation && !text.empty() && text[0] >= 'a' &&
+        text[0] <= 'z')
+        text[0] = static_cast<char>(text[0] - 'a' + 'A');
+    return text;
 }
 
 } // namespace
@@ -166,15 +164,10 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
                     (chart.convergence  ? ": how the error falls with dt"
                      : chart.steps_from ? ": what a true step costs"
                                         : ": what truth costs");
-    content.subtitle = chart.measure.explanation;
-    if (chart.interrupted) {
-        const auto finished =
-            std::count_if(chart.runs.begin(), chart.runs.end(), [](const ChartRun &run) {
-                return run.status != ChartStatus::unfinished;
-            });
-        content.subtitle = "INTERRUPTED: " + std::to_string(finished) + " of " +
+    content.subtitle = subtitle_of(chart.measure);
+    if (chart.interrupted)
+        content.subtitle = "INTERRUPTED: " + std::to_string(chart.finished()) + " of " +
                            std::to_string(chart.planned) + " runs. " + content.subtitle;
-    }
     content.cost_title =
         chart.wall_clock ? "Wall time per simulated second" : "CPU time per simulated second";
     content.error_title = chart.measure.title;
@@ -191,7 +184,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.left_out = grouped_reasons(chart.left_out);
     if (chart.steps_from) {
         content.floor = chart.steps_from->floor();
-        content.floor_label = "not told apart below " + short_quantity(*content.floor, "m");
+        content.floor_label = "not resolved below " + short_quantity(*content.floor, "m");
     }
 
     if (chart.convergence) {
@@ -202,7 +195,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         content.budget = chart.budget;
         content.budget_label = chart.budget == 1 ? "60 Hz" : "budget";
     }
-    const std::vector<FittedOrder> orders = fitted_orders(chart);
+    const std::vector<CurveOrder> orders = curve_orders(chart);
     // Where many failed, so that their crosses stand close, the list says why.
     constexpr std::ptrdiff_t few = 6;
     const bool says_why = std::ranges::count_if(chart.runs, [](const ChartRun &run) {
@@ -218,9 +211,9 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         if (const std::string name = curve_name(chart, run); name != curve) {
             curve = name;
             ChartSeries series{name, style_of(*run.resolved.method, content.series), {{}}};
-            for (const FittedOrder &order : orders)
+            for (const CurveOrder &order : orders)
                 if (order.name == name)
-                    series.name += ": order " + order_text(order);
+                    series.name += ": " + order_text(order);
             content.series.push_back(std::move(series));
             others = rest;
         } else if (rest != others) {
@@ -275,14 +268,17 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
             add(std::string(precision_name(first.precision)) + " precision");
         const bool timed = std::any_of(chart.runs.begin(), chart.runs.end(),
                                        [](const ChartRun &run) { return !run.timings.empty(); });
-        const std::string on = chart.wall_clock ? "by the clock on the wall" : "one thread";
+        const std::string on = chart.wall_clock ? "wall time" : "one thread";
         if (timed) {
             char text[160];
-            std::snprintf(
-                text, sizeof text,
-                "%s, median of %d interleaved timings of the last %.4g s (spread %.0f %%)",
-                on.c_str(), chart.repeats, chart.timed, 100 * chart.median_spread());
-            add(text);
+            std::snprintf(text, sizeof text, "%s, %s of %.4g s spread over the run", on.c_str(),
+                          timings_text(chart.repeats).c_str(), chart.timed);
+            std::string all = text;
+            if (chart.repeats > 1) {
+                std::snprintf(text, sizeof text, " (spread %.0f %%)", 100 * chart.median_spread());
+                all += text;
+            }
+            add(all);
         } else if (!chart.convergence) {
             add(on + ", timed once");
         }

@@ -160,7 +160,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     if (any([](const ChartMark &mark) { return mark.outside && !mark.failed; })) {
         pen.mark({left + 12, y}, 0, mark_radius, soft_ink);
         pen.mark({left + 12, y}, 0, hollow_radius, paper);
-        entry("misses what the scene expects");
+        entry("misses an expectation");
     }
     if (layout.corner) {
         pen.fill({{left, y - 7}, {left + 24, y + 7}}, fine_tint);

@@ -44,7 +44,7 @@ struct ChartContent {
     std::string label_meaning;   // "substeps"
     std::optional<double> limit; // true enough at most; 0 where only an error of exactly zero is
     std::string limit_label;
-    std::optional<double> floor; // errors below it are not told apart
+    std::optional<double> floor; // errors below it are not resolved
     std::string floor_label;
     std::optional<double> budget; // what it may cost; true enough and within it is the corner
     std::string budget_label;

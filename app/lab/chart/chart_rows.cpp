@@ -197,17 +197,17 @@ SceneChart merged_chart(const SceneDesc &scene, const std::vector<NamedTable> &t
         std::istringstream in(each.text);
         CsvReader table(in);
         if (!knows_all_columns(table, scene))
-            throw std::invalid_argument(each.name + " is no chart of the scene " + scene.name +
-                                        " as it is now: it expects other things");
+            throw std::invalid_argument(each.name + " does not fit the scene " + scene.name +
+                                        " as it is now: its expectations differ");
         while (table.next()) {
             if (!chart) {
                 chart = read_head(table, scene);
                 head = head_text(table);
             }
             if (head_text(table) != head)
-                throw std::invalid_argument(each.name + " is of another chart than " +
+                throw std::invalid_argument(each.name + " belongs to another chart than " +
                                             tables.front().name +
-                                            ": other settings, or another commit");
+                                            ": the settings or the commit differ");
             if (auto run = read_run(table, scene, chart->sweep))
                 runs.insert_or_assign(run->index, std::move(*run));
             for (std::string &why : parsed_reasons(table.cell("left_out")))

@@ -2,6 +2,7 @@
 
 #include "app/lab/chart/chart_drawing.h"
 #include "app/lab/chart/chart_pen.h"
+#include "app/lab/chart/panel_chart.h"
 #include "app/lab/map/map_picture.h"
 
 #include <charconv>
@@ -105,6 +106,10 @@ void write_chart_svg(std::ostream &out, const ChartContent &content) {
 
 void write_chart_svg(std::ostream &out, const MapPicture &picture) {
     write(out, [&](ChartPen &pen) { draw_map(pen, picture); });
+}
+
+void write_chart_svg(std::ostream &out, const PanelChart &chart) {
+    write(out, [&](ChartPen &pen) { draw_panels(pen, chart); });
 }
 
 } // namespace plumb

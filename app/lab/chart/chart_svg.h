@@ -9,8 +9,10 @@
 namespace plumb {
 
 struct MapPicture;
+struct PanelChart;
 
 void write_chart_svg(std::ostream &out, const ChartContent &content);
 void write_chart_svg(std::ostream &out, const MapPicture &picture);
+void write_chart_svg(std::ostream &out, const PanelChart &chart);
 
 } // namespace plumb

@@ -152,10 +152,10 @@ void print(std::ostream &out, const SceneChart &chart) {
     if (chart.steps_from)
         out << "  states of " << chart.steps_from->accurate << ", whose own error is "
             << with_unit(chart.steps_from->own_error.rms, "m")
-            << "; ~: below ten times that, and not told apart\n";
+            << "; ~: below ten times that, and not resolved\n";
     char line[256];
-    std::snprintf(line, sizeof line, "  %-22s %9s %9s %10s %12s %8s %14s %14s\n", "method",
-                  "substeps", "iteration", "dt", chart.wall_clock ? "wall ms/s" : "CPU ms/s",
+    std::snprintf(line, sizeof line, "  %-22s %9s %10s %10s %12s %8s %14s %14s\n", "method",
+                  "substeps", "iterations", "dt", chart.wall_clock ? "wall ms/s" : "CPU ms/s",
                   "spread", chart.wall_clock ? "worst wall ms" : "worst CPU ms", "error");
     out << line;
     for (const ChartRun &run : chart.runs) {
@@ -168,7 +168,7 @@ void print(std::ostream &out, const SceneChart &chart) {
                 ? (chart.told_apart(run) ? "" : "~") + with_unit(run.error, chart.measure.unit)
                 : "-";
         std::snprintf(
-            line, sizeof line, "  %-22.22s %9s %9d %10s %12.5g %8s %14.4g %14s  %s%s",
+            line, sizeof line, "  %-22.22s %9s %10d %10s %12.5g %8s %14.4g %14s  %s%s",
             std::string(run.resolved.method->name).c_str(), substeps_text(run.resolved).c_str(),
             run.resolved.settings.iterations, format_dt(run.resolved.settings.dt).c_str(),
             1e3 * run.cost, spread, 1e3 * run.run.worst_step_time, error.c_str(),
@@ -182,15 +182,16 @@ void print(std::ostream &out, const SceneChart &chart) {
         if (!run.failure.empty())
             out << "    " << run.failure << '\n';
     }
-    for (const FittedOrder &fitted : fitted_orders(chart))
-        out << "  " << fitted.name << ": order " << order_text(fitted) << '\n';
+    for (const CurveOrder &order : curve_orders(chart))
+        out << "  " << order.name << ": " << order_text(order) << (order.fitted ? "" : ": ")
+            << order.why_none << '\n';
     if (!chart.runs.empty())
         out << "  worst: the step that took longest, of the first run of each\n";
     for (const std::string &why : grouped_reasons(chart.left_out))
         out << "  left out: " << why << '\n';
     if (chart.interrupted)
-        out << "  interrupted: " << chart.runs.size() << " of " << chart.planned
-            << " runs were begun\n";
+        out << "  interrupted: " << chart.finished() << " of " << chart.planned
+            << " runs are done\n";
 }
 
 } // namespace plumb

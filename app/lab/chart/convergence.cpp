@@ -26,7 +26,7 @@ std::string curve_name(const SceneChart &chart, const ChartRun &run) {
         return axis.setting.setting().name == "max_substeps";
     });
     if (both && !swept)
-        name += chooses(run) ? ", at least so many" : ", just so many";
+        name += chooses(run) ? ", adaptive substeps" : ", fixed substeps";
     if (any_differs([](const ChartRun &each) { return each.resolved.precision; }))
         name += ", " + std::string(precision_name(run.resolved.precision));
     if (any_differs([](const ChartRun &each) { return each.threads; }))
@@ -71,11 +71,11 @@ std::optional<FittedOrder> fitted_order(std::vector<std::pair<double, double>> e
         xx += (x[i] - x_mean) * (x[i] - x_mean);
         xy += (x[i] - x_mean) * (y[i] - y_mean);
     }
-    return FittedOrder{"", xy / xx, count};
+    return FittedOrder{xy / xx, count};
 }
 
-std::vector<FittedOrder> fitted_orders(const SceneChart &chart) {
-    std::vector<FittedOrder> orders;
+std::vector<CurveOrder> curve_orders(const SceneChart &chart) {
+    std::vector<CurveOrder> orders;
     if (!chart.convergence)
         return orders;
     std::vector<std::pair<std::string, std::vector<std::pair<double, double>>>> curves;
@@ -85,17 +85,24 @@ std::vector<FittedOrder> fitted_orders(const SceneChart &chart) {
             curves.emplace_back(name, std::vector<std::pair<double, double>>());
         curves.back().second.emplace_back(run.resolved.settings.dt, run.error);
     }
-    for (auto &[name, points] : curves)
-        if (auto fitted = fitted_order(std::move(points))) {
-            fitted->name = name;
-            orders.push_back(*fitted);
-        }
+    for (const auto &[name, points] : curves) {
+        const auto usable = std::ranges::count_if(points, [](const auto &point) {
+            return point.second > 0 && std::isfinite(point.second);
+        });
+        const auto fitted = fitted_order(points);
+        orders.push_back({name, fitted,
+                          fitted       ? ""
+                          : usable < 3 ? "fewer than three errors above 0"
+                                       : "the error does not fall steadily"});
+    }
     return orders;
 }
 
-std::string order_text(const FittedOrder &fitted) {
+std::string order_text(const CurveOrder &order) {
+    if (!order.fitted)
+        return "no order";
     char text[32];
-    std::snprintf(text, sizeof text, "%.2f", fitted.slope);
+    std::snprintf(text, sizeof text, "order %.2f", order.fitted->slope);
     return text;
 }
 

@@ -12,7 +12,6 @@ namespace plumb {
 
 // The slope of log error over log dt, by least squares.
 struct FittedOrder {
-    std::string name;     // of the curve, as curve_name has it
     double slope = 0;     // 2: half the dt, a quarter of the error
     std::size_t from = 0; // so many points
 };
@@ -27,9 +26,15 @@ struct FittedOrder {
 [[nodiscard]] std::optional<FittedOrder>
 fitted_order(std::vector<std::pair<double, double>> errors_by_dt);
 
-// Of each curve of a convergence chart that allows it; none of other charts.
-[[nodiscard]] std::vector<FittedOrder> fitted_orders(const SceneChart &chart);
+struct CurveOrder {
+    std::string name; // of the curve, as curve_name has it
+    std::optional<FittedOrder> fitted;
+    std::string why_none; // where there is none
+};
 
-[[nodiscard]] std::string order_text(const FittedOrder &fitted); // "1.98"
+// Of each curve of a convergence chart; none of other charts.
+[[nodiscard]] std::vector<CurveOrder> curve_orders(const SceneChart &chart);
+
+[[nodiscard]] std::string order_text(const CurveOrder &order); // "order 1.98", "no order"
 
 } // namespace plumb

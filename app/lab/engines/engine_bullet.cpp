@@ -150,7 +150,7 @@ class BulletEngine final : public Engine {
         const auto make = [&](const ColliderDesc &collider) {
             auto shape = std::visit(ShapeMaker{}, collider.shape);
             if (!shape)
-                throw std::invalid_argument("a shape that Bullet is not given");
+                throw std::invalid_argument("one of its shapes");
             shapes_.push_back(std::move(shape));
             return shapes_.back().get();
         };
@@ -227,7 +227,7 @@ class BulletEngine final : public Engine {
                 a, b, of(desc.anchor_a_local), of(desc.anchor_b_local), axis(desc.frame_a_local),
                 axis(desc.frame_b_local));
         } else {
-            throw std::invalid_argument("a joint that Bullet is not given");
+            throw std::invalid_argument("one of its joints");
         }
         world_.addConstraint(joint.get(), !desc.collide_connected);
         joints_.push_back(std::move(joint));

@@ -23,23 +23,23 @@ namespace {
 
 std::string beyond_engines(const BodyDesc &body, const ColliderDesc &collider) {
     if (std::holds_alternative<MeshDesc>(collider.shape))
-        return "a mesh";
+        return "meshes";
     if (std::holds_alternative<HeightFieldDesc>(collider.shape))
-        return "a height field";
+        return "height fields";
     if (collider.sensor)
-        return "a sensor";
+        return "sensors";
     if (collider.filter.layer != 0 || collider.filter.ignores != 0)
-        return "layers that ignore each other";
+        return "collision layers";
     if (!collider.material.empty() && collider.material != body.material)
-        return "a body of several materials";
+        return "bodies of several materials";
     return "";
 }
 
 std::string beyond_engines(const JointDesc &joint) {
     if (joint.type != JointType::ball && joint.type != JointType::hinge)
-        return "a joint that is no ball and no hinge";
+        return "joints other than ball and hinge";
     if (joint.limits || joint.motor_speed || joint.frequency > 0 || joint.break_force > 0)
-        return "a joint with limits, motor, spring or breaking force";
+        return "joints with limits, a motor, a spring or a breaking force";
     return "";
 }
 
@@ -57,20 +57,20 @@ std::string beyond_engines(const SceneDesc &scene) {
     if (!scene.particles.empty() || !scene.springs.empty() || !scene.cloths.empty())
         return "particles, springs or cloth";
     if (!scene.attractors.empty())
-        return "an attractor";
+        return "attractors";
     if (scene.step_count > 0)
-        return "a state that it goes on from";
+        return "saved states";
     if (scene.bodies.empty())
-        return "no bodies";
+        return "scenes without bodies";
     const SceneDesc described = Simulation::create(scene, {}, nullptr)->describe();
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const BodyDesc &body = scene.bodies[i];
         if (body.gravity_scale != 1 || body.linear_damping > 0 || body.angular_damping > 0)
-            return "a body with damping or gravity of its own";
+            return "bodies with damping or gravity of their own";
         if (std::ranges::find(body.locked, true) != body.locked.end())
-            return "a body with locked axes";
+            return "bodies with locked axes";
         if (body.kind == BodyKind::dynamic && !lies_in_its_mass_frame(body, described.bodies[i]))
-            return "a body whose frame is not that of its mass";
+            return "bodies whose frame is not that of their mass";
         for (const ColliderDesc &collider : body.colliders)
             if (std::string what = beyond_engines(body, collider); !what.empty())
                 return what;

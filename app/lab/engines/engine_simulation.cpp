@@ -98,7 +98,7 @@ class EngineSimulation final : public Simulation {
     const StepSettings &settings() const override { return run_.settings; }
     Precision precision() const override { return kind_.precision; }
     void apply(const Command &) override {
-        throw std::invalid_argument(std::string(kind_.info.title) + " obeys no commands");
+        throw std::invalid_argument(std::string(kind_.info.title) + " does not support commands");
     }
 
     struct Place final : Saved {

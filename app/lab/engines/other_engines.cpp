@@ -80,11 +80,12 @@ std::string why_not(const OtherEngine &engine, const SceneDesc &scene) {
             const EngineScene told(scene);
             if (engine.create(told))
                 return "";
-            what = "a shape or joint of this scene";
+            what = "one of its shapes or joints";
         } catch (const std::invalid_argument &refusal) {
             what = refusal.what();
         }
-    return std::string(engine.info.name) + " is not told of what the scene has: " + what;
+    return std::string(engine.info.name) + " cannot run this scene: the adapter does not support " +
+           what;
 }
 
 ResolvedRun resolve_run(const OtherEngine &engine, const SceneDesc &scene,

@@ -31,7 +31,8 @@ find_other_engines(const std::vector<std::string> &names);
 // Of our methods or the other engines; null when there is none of that name.
 [[nodiscard]] const MethodInfo *find_charted(std::string_view name);
 
-// Why an engine cannot run a scene ("bullet is not told of particles"); empty when it can.
+// Why an engine cannot run a scene ("bullet cannot run this scene: the adapter does not support
+// meshes"); empty when it can.
 [[nodiscard]] std::string why_not(const OtherEngine &engine, const SceneDesc &scene);
 
 // What it runs the scene with: the scene's own dt and gravity, one substep and the engine's own

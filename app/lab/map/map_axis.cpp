@@ -1,12 +1,12 @@
 #include "app/lab/map/map_axis.h"
 
+#include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
 #include "engine/scene/given_settings.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 namespace plumb {
@@ -41,12 +41,15 @@ std::optional<SettingNumber> find_setting_number(std::string_view whole, std::st
     } catch (const std::invalid_argument &error) {
         if (name.find('.') != std::string_view::npos)
             return std::nullopt;
-        refuse(whole, std::string(error.what()) +
-                          " A number of the scene file is named by its path, as in "
-                          "body.ball.velocity.x");
+        const std::string_view why = error.what();
+        refuse(whole, std::string(why) + (why.ends_with('?') ? " " : ". ") +
+                          "A number of the scene file is given by its path: body.NAME.mass, "
+                          "body.NAME.position.y (its height), body.NAME.velocity.x, "
+                          "material.NAME.friction, material.NAME.restitution, "
+                          "spring.NAME.stiffness");
     }
     if (numbers.size() > 1)
-        refuse(whole, std::string(name) + " is three numbers; take one of them, as in " +
+        refuse(whole, std::string(name) + " has three components; give one of them, as in " +
                           setting_name(numbers[1]) + "=-20..-1");
     return numbers.front();
 }
@@ -68,7 +71,7 @@ int take_count(std::string_view whole, std::string_view &range, bool &logarithmi
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), count);
     if (error != std::errc() || end != rest.data() + rest.size() || count < 2 ||
         count > most_values)
-        refuse(whole, "after the colon stands how many values, 2 to " +
+        refuse(whole, "after the colon comes the number of values, 2 to " +
                           std::to_string(most_values) +
                           ", and log for equal ratios: dt=1/240..1/15:9log");
     return count;
@@ -156,9 +159,7 @@ std::string value_label(const MapAxis &axis, double value) {
         if (label.starts_with("1/"))
             return label.substr(0, label.find(' '));
     }
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
+    return three_digits(value);
 }
 
 std::string axis_title(const MapAxis &axis) {

@@ -26,22 +26,11 @@ namespace {
 
 // Of a setting, "4", or "4 (soft_step), 1 (rk4)" where methods differ.
 std::string values_by_method(const StabilityMap &map, SettingNumber number) {
-    std::vector<std::pair<std::string, std::string>> groups; // value, methods
-    for (const MethodMap &of_method : map.methods) {
-        const std::string value = setting_label(number, setting_value(of_method.settings, number));
-        const auto group =
-            std::ranges::find(groups, value, &std::pair<std::string, std::string>::first);
-        if (group == groups.end())
-            groups.emplace_back(value, of_method.method->name);
-        else
-            group->second.append(", ").append(of_method.method->name);
-    }
-    if (groups.size() == 1)
-        return groups.front().first;
-    std::string each;
-    for (const auto &[value, methods] : groups)
-        each.append(each.empty() ? "" : ", ").append(value).append(" (" + methods + ")");
-    return each;
+    std::vector<std::pair<std::string, std::string>> values;
+    for (const MethodMap &of_method : map.methods)
+        values.emplace_back(of_method.method->name,
+                            setting_label(number, setting_value(of_method.settings, number)));
+    return values_by_name(values);
 }
 
 // Settings that are not on an axis, where they are not each method's defaults, and what made it.

@@ -139,7 +139,7 @@ MapPanel lay_out_panel(const Writer &write, const StabilityMap &map, const Metho
     const Frame frame(plot, map);
     panel.plot = plot;
     panel.title = write.place(
-        write.cut(std::string(of_method.method->name), axis_text, plot.max.x - plot.min.x),
+        write.cut(std::string(of_method.method->title), axis_text, plot.max.x - plot.min.x),
         axis_text, {plot.min.x, plot.min.y - 4}, {0, 1});
     for (std::size_t row = 0; row < map.y.values.size(); ++row)
         for (std::size_t column = 0; column < map.x.values.size(); ++column) {
@@ -265,7 +265,7 @@ MapLayout lay_out(const StabilityMap &map, const std::vector<TheoryCurve> &theor
     layout.subtitle = write.place(
         write.cut("Where each method holds the scene, and why it fails", subtitle_text, width),
         subtitle_text, {left_edge, 56});
-    layout.y_title = write.place(write.cut("up: " + axis_title(map.y), axis_text, width), axis_text,
+    layout.y_title = write.place(write.cut("y: " + axis_title(map.y), axis_text, width), axis_text,
                                  {left_edge, 84});
 
     // From the bottom up: small print, legend, the x axis.
@@ -286,8 +286,8 @@ MapLayout lay_out(const StabilityMap &map, const std::vector<TheoryCurve> &theor
         move_down(entry.text.box, y);
     }
     y -= 26;
-    layout.x_title = write.place(write.cut("to the right: " + axis_title(map.x), axis_text, width),
-                                 axis_text, {right_edge, y}, {1, 0});
+    layout.x_title = write.place(write.cut("x: " + axis_title(map.x), axis_text, width), axis_text,
+                                 {right_edge, y}, {1, 0});
 
     float labels_width = 0;
     for (const double value : map.y.values)

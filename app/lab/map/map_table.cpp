@@ -85,9 +85,9 @@ void write_map_csv(std::ostream &out, const StabilityMap &map) {
 }
 
 void print(std::ostream &out, const StabilityMap &map) {
-    out << map.scene.name << ": " << map.x.name << " from " << value_label(map.x, map.x.values[0])
-        << " to " << value_label(map.x, map.x.values.back()) << " to the right, " << map.y.name
-        << " upwards\n";
+    out << map.scene.name << ": x: " << map.x.name << " from "
+        << value_label(map.x, map.x.values[0]) << " to " << value_label(map.x, map.x.values.back())
+        << ", y: " << map.y.name << '\n';
     std::set<Failing> seen;
     std::set<std::string> missed;
     for (const MethodMap &of_method : map.methods) {
@@ -110,7 +110,7 @@ void print(std::ostream &out, const StabilityMap &map) {
     for (const std::string &why : grouped_reasons(map.left_out))
         out << "  left out: " << why << '\n';
     if (map.interrupted)
-        out << "  interrupted: what is blank was not run\n";
+        out << "  interrupted: blank cells were not run\n";
 }
 
 } // namespace plumb

@@ -22,13 +22,13 @@ std::vector<std::string> known_methods() {
     return names;
 }
 
-// The scene and the options of a run at one point of the map.
+// The scene and the options of a run at one point of the map, or of one of its axes alone.
 class Point {
   public:
-    Point(const SceneText &text, const MapAxis &x, const MapAxis &y, const RunOptions &base)
+    Point(const SceneText &text, const MapAxis &x, const MapAxis *y, const RunOptions &base)
         : text_(text), x_(x), y_(y), base_(base) {}
 
-    SceneDesc scene(double x, double y) const {
+    SceneDesc scene(double x, double y = 0) const {
         SceneFileResult result = parse(x, y);
         for (const SceneMessage &message : result.messages)
             if (message.severity == SceneMessage::Severity::error)
@@ -37,15 +37,15 @@ class Point {
                                             message.suggestion);
         return std::move(result.scene);
     }
-    bool is_fine(double x, double y) const { return parse(x, y).ok(); }
+    bool is_fine(double x) const { return parse(x, 0).ok(); }
 
     RunOptions run(const MethodInfo &method, double x, double y) const {
         RunOptions run = base_;
         run.method = std::string(method.name);
         if (x_.setting)
             run.settings.give(*x_.setting, x);
-        if (y_.setting)
-            run.settings.give(*y_.setting, y);
+        if (y_ != nullptr && y_->setting)
+            run.settings.give(*y_->setting, y);
         return run;
     }
 
@@ -54,17 +54,17 @@ class Point {
         std::vector<ChangedNumber> changed = text_.changed;
         if (!x_.setting)
             changed.push_back({x_.name, x});
-        if (!y_.setting)
-            changed.push_back({y_.name, y});
+        if (y_ != nullptr && !y_->setting)
+            changed.push_back({y_->name, y});
         return parse_scene(text_.text, text_.path.string(), known_methods(), changed);
     }
     std::string place(double x, double y) const {
-        return "with " + x_.name + "=" + value_label(x_, x) + " and " + y_.name + "=" +
-               value_label(y_, y);
+        const std::string along_x = "with " + x_.name + "=" + value_label(x_, x);
+        return y_ == nullptr ? along_x : along_x + " and " + y_->name + "=" + value_label(*y_, y);
     }
 
     const SceneText &text_;
-    const MapAxis &x_, &y_;
+    const MapAxis &x_, *y_; // y may be null
     const RunOptions &base_;
 };
 
@@ -77,15 +77,12 @@ MapAxis settled(const SceneText &text, const MapAxis &axis, const RunOptions &ba
     if (axis.name.starts_with(world) && find_setting(axis.name.substr(world.size())) != nullptr)
         throw std::invalid_argument(axis.name + " is a setting; write " +
                                     axis.name.substr(world.size()));
-    // The other axis stays out of it.
-    MapAxis none;
-    none.setting = SettingNumber{};
-    const Point point(text, axis, none, base);
+    const Point point(text, axis, nullptr, base);
     const double low = axis.values.front(), high = axis.values.back();
     const double broken = std::floor(low) + 0.5;
     const bool spans = low <= broken && broken <= high;
-    if (spans && !point.is_fine(broken, 0) && point.is_fine(std::ceil(low), 0) &&
-        point.is_fine(std::floor(high), 0))
+    if (spans && !point.is_fine(broken) && point.is_fine(std::ceil(low)) &&
+        point.is_fine(std::floor(high)))
         return in_whole_numbers(axis);
     return axis;
 }
@@ -98,16 +95,14 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
     const auto add_along = [&](const MapAxis &axis) {
         if (axis.setting)
             return;
-        MapAxis none;
-        none.setting = SettingNumber{};
-        const Point point(text, axis, none, base);
+        const Point point(text, axis, nullptr, base);
         std::map<std::string, std::string> where;
         for (const double value : axis.values) {
-            const SceneDesc variant = point.scene(value, 0);
+            const SceneDesc variant = point.scene(value);
             if (variant.expects.empty() && !map.scene.expects.empty())
                 throw std::invalid_argument("with " + axis.name + "=" + value_label(axis, value) +
-                                            " nothing is left that the scene expects: give an "
-                                            "expectation that is not of one of the bodies");
+                                            " no expectation is left to judge by: give one that is "
+                                            "not of a body which the axis removes");
             for (const ExpectDesc &expect : map.scene.expects)
                 if (std::ranges::find(variant.expects, expect.name, &ExpectDesc::name) ==
                     variant.expects.end()) {
@@ -118,11 +113,11 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
         for (const auto &[name, values] : where)
             unjudged.push_back(std::string("\"")
                                    .append(name)
-                                   .append("\" is of a body that is not there with ")
+                                   .append("\" is of a body that does not exist with ")
                                    .append(axis.name)
                                    .append(" = ")
                                    .append(values)
-                                   .append(", and left out there"));
+                                   .append(", and is not judged there"));
     };
     add_along(map.x);
     add_along(map.y);
@@ -133,7 +128,7 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
 class Runner {
   public:
     Runner(const SceneText &text, const StabilityMap &map, const MapOptions &options)
-        : point_(text, map.x, map.y, options.base), map_(map), options_(options) {}
+        : point_(text, map.x, &map.y, options.base), map_(map), options_(options) {}
 
     // Nothing when it was interrupted.
     std::optional<MapRun> run(const MethodInfo &method, double x, double y) {
@@ -281,8 +276,8 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     if (!has_world(map.scene))
         throw std::invalid_argument("the scene has only probes, and so no motion to map");
     if (options.duration && !map.scene.expects.empty())
-        throw std::invalid_argument("the scene says itself how long it runs: until the last window "
-                                    "of what it expects ends");
+        throw std::invalid_argument("the scene sets the duration itself: it runs until the last "
+                                    "window of its expectations ends");
     map.x = settled(scene, x, options.base);
     map.y = settled(scene, y, options.base);
     for (const MethodInfo *method : methods_for(map.scene, options.methods, map.left_out))
@@ -295,7 +290,7 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
         map.precision = resolved.precision;
     }
     if (map.methods.empty())
-        throw std::invalid_argument("no method can run this scene");
+        throw std::invalid_argument(why_no_method(map.left_out));
 
     map.unjudged = find_unjudged(scene, map, options.base);
     Runner runner(scene, map, options);

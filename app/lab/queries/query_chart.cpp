@@ -1,6 +1,7 @@
 #include "app/lab/queries/query_chart.h"
 
 #include "app/lab/csv.h"
+#include "app/lab/provenance.h"
 #include "app/lab/timing.h"
 
 #include <algorithm>
@@ -144,11 +145,12 @@ PanelChart panel_chart(const QueryChart &chart, const std::string &command) {
     if (!chart.runs.empty()) {
         char text[200];
         std::snprintf(text, sizeof text,
-                      "%zu hard inputs a query, seed %llu  ·  one thread, float, median of %d "
-                      "interleaved timings of batches of 1024 hot in the cache",
+                      "%zu hard inputs a query, seed %llu  ·  one thread, float, %s of batches of "
+                      "1024 hot in the cache  ·  ",
                       chart.options.adversarial,
-                      static_cast<unsigned long long>(chart.options.seed), chart.options.repeats);
-        result.footer.emplace_back(text);
+                      static_cast<unsigned long long>(chart.options.seed),
+                      timings_text(chart.options.repeats).c_str());
+        result.footer.push_back(text + machine() + "  ·  commit " + build_commit());
     }
     if (!command.empty())
         result.footer.push_back(command);

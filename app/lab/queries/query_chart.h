@@ -57,8 +57,9 @@ struct QueryChartCommand {
     std::string command; // for the footer
 };
 
-// Writes out_dir/geometry.csv and geometry.png, the table to `out` and everything else to `err`. On
-// Ctrl-C nothing that was complete is replaced; the rows so far stay in geometry.csv.partial.
+// Writes out_dir/geometry.csv, geometry.svg and geometry.png, the table to `out` and everything
+// else to `err`. On Ctrl-C nothing that was complete is replaced; the rows so far stay in
+// geometry.csv.partial.
 [[nodiscard]] ExitCode chart_geometry(const QueryChartCommand &command, std::ostream &out,
                                       std::ostream &err);
 

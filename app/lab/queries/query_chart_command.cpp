@@ -2,6 +2,7 @@
 
 #include "app/files/output_file.h"
 #include "app/lab/chart/chart_image.h"
+#include "app/lab/chart/chart_svg.h"
 #include "app/lab/interrupt.h"
 #include "app/render/context.h"
 #include "app/render/png.h"
@@ -30,10 +31,14 @@ ExitCode chart_geometry(const QueryChartCommand &command, std::ostream &out, std
     }
     csv.finish();
     err << "wrote " << csv.path().string() << '\n';
+    const PanelChart panels = panel_chart(chart, command.command);
+    OutputFile svg(command.out_dir / "geometry.svg");
+    write_chart_svg(svg.stream(), panels);
+    svg.finish();
+    err << "wrote " << svg.path().string() << '\n';
     try {
         const std::filesystem::path picture = command.out_dir / "geometry.png";
-        write_png(picture,
-                  ChartPainter(command.shader_dir).paint(panel_chart(chart, command.command)));
+        write_png(picture, ChartPainter(command.shader_dir).paint(panels));
         err << "wrote " << picture.string() << '\n';
     } catch (const ContextError &failure) {
         err << "no picture: " << failure.what() << '\n';

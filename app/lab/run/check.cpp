@@ -26,14 +26,19 @@ class Tally {
             ++nothing_;
     }
 
-    // "3 runs: 2 within tolerance, 1 with nothing to judge"
+    void skip() { ++skipped_; }
+
+    [[nodiscard]] std::size_t runs() const { return within_ + missed_ + nothing_; }
+
+    // "3 runs: 2 within tolerance, 1 with nothing to judge; 4 skipped"
     void print(std::ostream &out) const {
-        const std::size_t all = within_ + missed_ + nothing_;
-        if (all == 0) {
-            out << "nothing was checked\n";
+        const std::string skipped =
+            skipped_ == 0 ? "" : "; " + std::to_string(skipped_) + " skipped";
+        if (runs() == 0) {
+            out << "nothing was checked" << skipped << '\n';
             return;
         }
-        out << all << (all == 1 ? " run" : " runs");
+        out << runs() << (runs() == 1 ? " run" : " runs");
         const char *separator = ": ";
         const auto say = [&](std::size_t count, const char *what) {
             if (count == 0)
@@ -44,12 +49,21 @@ class Tally {
         say(within_, "within tolerance");
         say(missed_, "not within tolerance");
         say(nothing_, "with nothing to judge");
-        out << '\n';
+        out << skipped << '\n';
     }
 
   private:
-    std::size_t within_ = 0, missed_ = 0, nothing_ = 0;
+    std::size_t within_ = 0, missed_ = 0, nothing_ = 0, skipped_ = 0;
 };
+
+// Whether it is run: not where the method cannot, nor where the options are refused.
+bool can_run(const SceneDesc &scene, const RunOptions &options) {
+    try {
+        return why_not(*resolve_run(scene, options).method, scene).empty();
+    } catch (const std::invalid_argument &) {
+        return false;
+    }
+}
 
 const char *sign(Verdict verdict) {
     switch (verdict) {
@@ -93,7 +107,7 @@ ExitCode exit_code(const CheckOutcome &outcome) {
 
 void print(std::ostream &out, const CheckOutcome &outcome) {
     if (!outcome.why_not.empty()) {
-        out << "-     " << outcome.scene << ": " << outcome.why_not << '\n';
+        out << "-     " << outcome.scene << ": skipped: " << outcome.why_not << '\n';
         return;
     }
     const std::string how =
@@ -141,25 +155,31 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
     const InterruptGuard interrupt;
     ProgressLine line(err);
     Tally tally;
-    const std::size_t total = loaded.scenes.size() * runs.size();
-    std::size_t done = 0;
+    // Of a scene without a world no method makes a difference.
+    const auto is_repeated = [&](const SceneDesc &scene, const RunOptions &options) {
+        return !has_world(scene) && &options != &runs.front();
+    };
+    std::size_t total = 0;
+    for (const SceneDesc &scene : loaded.scenes)
+        for (const RunOptions &options : runs)
+            if (!is_repeated(scene, options) && can_run(scene, options))
+                ++total;
     const auto interrupted = [&] {
         tally.print(out);
-        err << "interrupted: " << done << " of " << total << " runs are done\n";
+        err << "interrupted: " << tally.runs() << " of " << total << " runs are done\n";
         return worse(code, ExitCode::outside_tolerance);
     };
     for (const SceneDesc &scene : loaded.scenes)
         for (const RunOptions &options : runs) {
-            if (!has_world(scene) && &options != &runs.front()) {
-                ++done; // no method makes a difference
+            if (is_repeated(scene, options))
                 continue;
-            }
             if (InterruptGuard::requested())
                 return interrupted();
             JudgeOptions judging;
             judging.stop = InterruptGuard::requested;
             judging.progress = [&](double fraction) {
-                line.show((static_cast<double>(done) + fraction) / static_cast<double>(total),
+                line.show((static_cast<double>(tally.runs()) + fraction) /
+                              static_cast<double>(std::max<std::size_t>(total, 1)),
                           scene.name + (options.method.empty() ? "" : ", " + options.method));
             };
             judging.progress(0);
@@ -168,8 +188,10 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
                 line.clear();
                 print(out, outcome);
                 out << std::flush;
-                if (!outcome.why_not.empty() && pass_over) {
-                    ++done;
+                if (!outcome.why_not.empty()) {
+                    if (!pass_over)
+                        code = worse(code, exit_code(outcome));
+                    tally.skip();
                     continue;
                 }
                 if (outcome.run.stopped)
@@ -180,8 +202,8 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
                 line.clear();
                 err << scene.name << ": " << error.what() << '\n';
                 code = ExitCode::bad_input;
+                tally.skip();
             }
-            ++done;
         }
     tally.print(out);
     return code;

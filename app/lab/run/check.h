@@ -41,8 +41,8 @@ struct CheckCommand {
 };
 
 // Checks and prints; goes on after a scene that fails, and counts at the end how many runs were
-// within tolerance, how many were not, and how many had nothing to be held to. Stops early on
-// Ctrl-C, and says so.
+// within tolerance, how many were not, how many had nothing to be held to, and how many were
+// skipped, as the method cannot run the scene. Stops early on Ctrl-C, and says so.
 [[nodiscard]] ExitCode check_scenes(const CheckCommand &command, std::ostream &out,
                                     std::ostream &err);
 

@@ -150,7 +150,7 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
     };
     const auto now = [&] { return options.wall_clock ? wall_time() : thread_cpu_time(); };
     LastPositions last_positions;
-    bool at_time_due = static_cast<bool>(options.at_time);
+    std::size_t called = 0;
     follow(true);
     while (true) {
         // A millionth of a step: more than time can be off by rounding, less than anything shows.
@@ -161,10 +161,10 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
             run.stopped = true;
             break;
         }
-        if (at_time_due && simulation.time() >= options.at_time_seconds - slack) {
+        for (; called < options.times_called.size() &&
+               simulation.time() >= options.times_called[called] - slack;
+             ++called)
             options.at_time();
-            at_time_due = false;
-        }
         last_positions.note(simulation);
         const std::uint64_t step = simulation.step_count();
         try {

@@ -45,9 +45,10 @@ struct JudgeOptions {
     std::function<bool()> stop;
     // Called after each step, with the fraction done. May be empty.
     std::function<void(double)> progress;
-    // Called once, before the step that begins at or after this time (s). May be empty.
+    // Called before the step that begins at or after each of these times (s), ascending. May be
+    // empty.
     std::function<void()> at_time;
-    double at_time_seconds = 0;
+    std::vector<double> times_called;
 };
 
 // What one run came to.

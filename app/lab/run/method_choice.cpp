@@ -9,12 +9,11 @@ namespace plumb {
 
 namespace {
 
-// "knows no joints" of one, "know no joints" of several.
+// "does not support joints" of one, "do not support joints" of several.
 std::string of_several(std::string_view reason) {
-    for (const auto &[one, several] : {std::pair{"knows ", "know "}, std::pair{"is ", "are "}})
-        if (reason.starts_with(one))
-            return several + std::string(reason.substr(std::string_view(one).size()));
-    return std::string(reason);
+    constexpr std::string_view one = "does ", several = "do ";
+    return std::string(reason.starts_with(one) ? several : "") +
+           std::string(reason.substr(reason.starts_with(one) ? one.size() : 0));
 }
 
 } // namespace
@@ -39,6 +38,16 @@ std::vector<std::string> grouped_reasons(const std::vector<std::string> &left_ou
         texts.push_back(text + " " + (names.size() > 1 ? of_several(reason) : std::string(reason)));
     }
     return texts;
+}
+
+std::string why_no_method(const std::vector<std::string> &left_out) {
+    std::string text = "no method can run this scene";
+    const char *separator = ": ";
+    for (const std::string &reason : grouped_reasons(left_out)) {
+        text += separator + reason;
+        separator = "; ";
+    }
+    return text;
 }
 
 std::vector<const MethodInfo *> methods_for(const SceneDesc &scene,

@@ -18,4 +18,7 @@ namespace plumb {
 // For people: methods with the same reason in one sentence.
 [[nodiscard]] std::vector<std::string> grouped_reasons(const std::vector<std::string> &left_out);
 
+// "no method can run this scene: a and c do not support joints; ..."
+[[nodiscard]] std::string why_no_method(const std::vector<std::string> &left_out);
+
 } // namespace plumb

@@ -210,8 +210,8 @@ ExitCode refine_scene(const ReferenceCommand &command, std::ostream &out, std::o
     if (command.write && std::ranges::none_of(scene.expects, estimated))
         throw std::invalid_argument(
             text->path.string() +
-            ": none of its truths is by refinement, so there is none to write; those with an "
-            "estimate are: estimate = 0");
+            ": no expectation has an `estimate`, and only those that have one are written; mark "
+            "one with estimate = 0");
     const InterruptGuard interrupt;
     ProgressLine line(err);
     RefineOptions options;
@@ -227,7 +227,8 @@ ExitCode refine_scene(const ReferenceCommand &command, std::ostream &out, std::o
         return ExitCode::fine; // the program says that it was interrupted
     }
     if (truths.empty())
-        out << "-     " << scene.name << ": expects no motion to be equal to anything\n";
+        out << "-     " << scene.name
+            << ": has no expectation with `equals`, so no true value to refine\n";
     print(out, scene.name, truths);
     out << std::flush;
     const bool wrong = std::ranges::any_of(truths, [&](const RefinedTruth &truth) {

@@ -28,6 +28,12 @@ std::string substeps_text(const ResolvedRun &run) {
     return std::to_string(s.substeps) + (chosen ? ".." + std::to_string(s.max_substeps) : "");
 }
 
+std::string three_digits(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
 std::string with_unit(double value, std::string_view unit) {
     char text[48];
     std::snprintf(text, sizeof text, "%.6g", value);

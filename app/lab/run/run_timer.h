@@ -1,4 +1,4 @@
-// Times the end of a run, again and again from the same state.
+// Times parts of a run, again and again from the same states.
 #pragma once
 
 #include "engine/scene/simulation.h"
@@ -6,15 +6,26 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace plumb {
 
-class EndTimer {
+// Stretches of a run that take as long as each other, and as much of it before them as after: what
+// falls, lands and sleeps counts as much as it lasts.
+struct TimedParts {
+    std::vector<double> starts; // s
+    double each = 0;            // s
+};
+// Of a run of `end` seconds, `timed` in all; the whole run where that is not less.
+[[nodiscard]] TimedParts timed_parts(double end, double timed);
+
+class RunTimer {
   public:
-    // `simulation`, and how it was `timed` seconds of simulated time before its end. `cost` is
-    // about what it takes: CPU seconds for a simulated second.
-    EndTimer(std::unique_ptr<Simulation> simulation, std::unique_ptr<Simulation::Saved> saved,
-             double timed, double cost, bool wall_clock = false);
+    using Saves = std::vector<std::unique_ptr<Simulation::Saved>>;
+    // `simulation`, and how it was at the start of each part, which are `each` seconds of simulated
+    // time long. `cost` is about what they take: CPU seconds for a simulated second.
+    RunTimer(std::unique_ptr<Simulation> simulation, Saves starts, double each, double cost,
+             bool wall_clock = false);
 
     // CPU seconds of this thread, or of the clock on the wall, per simulated second; nothing when a
     // step failed, or `stop`, asked some twenty times a second, was true.
@@ -22,8 +33,8 @@ class EndTimer {
 
   private:
     std::unique_ptr<Simulation> simulation_;
-    std::unique_ptr<Simulation::Saved> saved_;
-    int steps_ = 1;  // in the timed segment
+    Saves starts_;
+    int steps_ = 1;  // in each part
     int rounds_ = 1; // in one timing
     int asking_ = 1; // after how many steps
     bool wall_clock_;

@@ -32,7 +32,7 @@ void write_back(const SceneText &scene, const std::string &text, std::ostream &e
     const std::filesystem::path &path = scene.path;
     std::vector<SceneMessage> messages;
     if (!std::filesystem::is_regular_file(path))
-        throw std::invalid_argument(path.string() + " is no file that can be written to");
+        throw std::invalid_argument(path.string() + " is not a file that can be written to");
     if (read_scene_text(path, messages) != scene.text)
         throw std::invalid_argument(path.string() +
                                     " was changed in the meantime, and is left as it is");

@@ -35,7 +35,8 @@ SettingNumber parse_name(std::string_view whole, std::string_view name) {
         refuse_values(whole, error.what());
     }
     if (numbers.size() > 1)
-        refuse_values(whole, std::string(name) + " is three numbers; sweep one of them, as in " +
+        refuse_values(whole, std::string(name) +
+                                 " has three components; sweep one of them, as in " +
                                  setting_name(numbers[1]) + "=-20..-1");
     return numbers.front();
 }
@@ -158,10 +159,28 @@ std::string setting_label(SettingNumber setting, double value) {
     return label;
 }
 
+std::string values_by_name(const std::vector<std::pair<std::string, std::string>> &values) {
+    std::vector<std::pair<std::string, std::string>> groups; // value, names
+    for (const auto &[name, value] : values) {
+        const auto group =
+            std::ranges::find(groups, value, &std::pair<std::string, std::string>::first);
+        if (group == groups.end())
+            groups.emplace_back(value, name);
+        else
+            group->second.append(", ").append(name);
+    }
+    if (groups.size() == 1)
+        return groups.front().first;
+    std::string each;
+    for (const auto &[value, names] : groups)
+        each.append(each.empty() ? "" : ", ").append(value).append(" (" + names + ")");
+    return each;
+}
+
 std::string format_dt(double dt) {
     const double rate = 1 / dt;
     char text[48];
-    if (rate >= 1 && std::abs(rate - std::round(rate)) < 1e-6 * rate)
+    if (std::round(rate) > 1 && std::abs(rate - std::round(rate)) < 1e-6 * rate)
         std::snprintf(text, sizeof text, "1/%.0f s", rate);
     else
         std::snprintf(text, sizeof text, "%.4g s", dt);

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace plumb {
@@ -49,7 +50,12 @@ using SweepPoint = std::vector<double>;
 // "4", "0.02 m", "1/120 s"
 [[nodiscard]] std::string setting_label(SettingNumber setting, double value);
 
-// "1/60 s" where 1/dt is a whole number, else "0.0123 s".
+// "4", or "4 (soft_step), 1 (rk4)" where they differ, each value once: of pairs of a name and its
+// value.
+[[nodiscard]] std::string
+values_by_name(const std::vector<std::pair<std::string, std::string>> &values);
+
+// "1/60 s" where 1/dt is a whole number above 1, else "0.0123 s".
 [[nodiscard]] std::string format_dt(double dt);
 
 } // namespace plumb

@@ -86,17 +86,18 @@ TunedRun Trial::run(const RunOptions &options, const Progress &progress) const {
     return run;
 }
 
-EndTimer Trial::timer(const TunedRun &run) const {
+RunTimer Trial::timer(const TunedRun &run) const {
     auto simulation = make(scene(), run.options);
-    auto saved = simulation->save();
-    return {std::move(simulation), std::move(saved), run_end(scene(), 0), run.cost};
+    RunTimer::Saves start;
+    start.push_back(simulation->save());
+    return {std::move(simulation), std::move(start), run_end(scene(), 0), run.cost};
 }
 
 void time_in_turns(const std::vector<TimedRun> &runs, const TuneOptions &options,
                    const Progress &progress) {
     const auto stopped = [&] { return options.stop && options.stop(); };
     const double rounds = options.repeats;
-    std::vector<EndTimer> timers;
+    std::vector<RunTimer> timers;
     timers.reserve(runs.size());
     for (const auto &[trial, run] : runs)
         timers.push_back(trial->timer(*run));

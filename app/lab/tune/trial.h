@@ -1,7 +1,7 @@
 // Runs a scene with one combination of settings from each of its starts.
 #pragma once
 
-#include "app/lab/run/end_timer.h"
+#include "app/lab/run/run_timer.h"
 #include "app/lab/tune/tune.h"
 #include "engine/scene/scene_desc.h"
 
@@ -19,7 +19,7 @@ class Trial {
 
     // Of that run from start to end: what comes to rest sleeps, and costs next to nothing at the
     // end.
-    [[nodiscard]] EndTimer timer(const TunedRun &run) const;
+    [[nodiscard]] RunTimer timer(const TunedRun &run) const;
 
     // The scene as it is held to be: with so much of each tolerance.
     [[nodiscard]] const SceneDesc &scene() const { return tightened_.front(); }

@@ -8,6 +8,7 @@
 #include "app/lab/tune/trial.h"
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -117,20 +118,52 @@ void time_best(const Trial &trial, const TuneOptions &options, Tuning &tuning,
     time_in_turns(runs, options, progress);
 }
 
-// The cheapest; of those of its method that were not always dearer, what is the least work.
+bool both_timed(const TunedRun &a, const TunedRun &b) {
+    return !a.timings.empty() && !b.timings.empty();
+}
+
+// Of runs of one method that were not always dearer than the first of them, that of least work.
+std::size_t least_work(const Tuning &tuning, const std::vector<std::size_t> &choices,
+                       std::size_t first) {
+    std::size_t best = first;
+    for (const std::size_t i : choices) {
+        const TunedRun &run = tuning.runs[i], &other = tuning.runs[first];
+        if (run.resolved.method == other.resolved.method && both_timed(run, other) &&
+            !is_always_dearer(run, other) && run.work < tuning.runs[best].work)
+            best = i;
+    }
+    return best;
+}
+
+// The cheapest of each method; of those that cost the same as the cheapest of all, the truest, and
+// of those as true the first in the list of methods.
 std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choices) {
     const auto cost = [&](std::size_t i) {
         const TunedRun &run = tuning.runs[i];
         return std::tuple(run.timings.empty(), run.cost);
     };
+    const auto preference = [&](std::size_t i) {
+        const TunedRun &run = tuning.runs[i];
+        const auto place = std::ranges::find_if(
+            method_infos(), [&](const MethodInfo &each) { return &each == run.resolved.method; });
+        return std::tuple(run.error, place - method_infos().begin());
+    };
     const std::size_t least = *std::ranges::min_element(choices, {}, cost);
-    std::size_t best = least;
+    std::map<const MethodInfo *, std::size_t> of_method;
     for (const std::size_t i : choices) {
-        const TunedRun &run = tuning.runs[i], &first = tuning.runs[least];
-        if (run.resolved.method == first.resolved.method && !run.timings.empty() &&
-            !first.timings.empty() && !is_always_dearer(run, first) &&
-            run.work < tuning.runs[best].work)
-            best = i;
+        const auto [known, is_new] = of_method.emplace(tuning.runs[i].resolved.method, i);
+        if (!is_new && cost(i) < cost(known->second))
+            known->second = i;
+    }
+    std::size_t best = least_work(tuning, choices, least);
+    for (const auto &[method, first] : of_method) {
+        const TunedRun &run = tuning.runs[first], &other = tuning.runs[least];
+        if (method == other.resolved.method || !both_timed(run, other) ||
+            median_ratio(run.timings, other.timings) > same_cost)
+            continue;
+        const std::size_t own = least_work(tuning, choices, first);
+        if (preference(own) < preference(best))
+            best = own;
     }
     return best;
 }
@@ -157,12 +190,11 @@ void add_dearer(const Trial &trial, const TuneOptions &options, SubstepSearch &s
     time_in_turns(runs, options, progress);
 }
 
-// Whether that met the scene, and was timed as cheaper than what is chosen.
+// Whether that met the scene, and was timed as cheaper than what is chosen in every round.
 bool is_cheaper(const Tuning &tuning, std::optional<std::size_t> other) {
     return other && tuning.runs[*other].verdict == TuneVerdict::met &&
-           !tuning.runs[*other].timings.empty() &&
-           median_ratio(tuning.runs[*other].timings, tuning.runs[*tuning.chosen].timings) <
-               1 / same_cost;
+           both_timed(tuning.runs[*other], tuning.runs[*tuning.chosen]) &&
+           is_always_dearer(tuning.runs[*tuning.chosen], tuning.runs[*other]);
 }
 
 } // namespace
@@ -179,10 +211,10 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
     const std::vector<SceneDesc> starts = starts_of(text, options.starts);
     const SceneDesc &scene = starts.front();
     if (!has_world(scene) || scene.expects.empty())
-        throw std::invalid_argument(
-            scene.name + (has_world(scene) ? " expects nothing of itself; add an "
-                                             "[[expect]] that the settings can be held to"
-                                           : " has only probes, and no motion to tune"));
+        throw std::invalid_argument(scene.name + (has_world(scene)
+                                                      ? " has no expectations; add an [[expect]] "
+                                                        "for the settings to meet"
+                                                      : " has only probes, and no motion to tune"));
     Tuning tuning;
     tuning.scene = scene.name;
     tuning.expectations = scene.expects.size();
@@ -195,7 +227,7 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
     const std::vector<const MethodInfo *> methods =
         methods_for(scene, options.methods, tuning.left_out);
     if (methods.empty())
-        throw std::invalid_argument(tuning.left_out.front());
+        throw std::invalid_argument(why_no_method(tuning.left_out));
 
     const Trial trial(starts, options);
     const Rows rows(scene, options);

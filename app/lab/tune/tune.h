@@ -80,7 +80,8 @@ struct Tuning {
     [[nodiscard]] bool found() const { return chosen && !(budget && runs[*chosen].cost > *budget); }
 };
 
-// What is not dearer by so much in every turn may cost the same, and the counted work decides.
+// What is not dearer by so much in every turn may cost the same, and the counted work decides; of
+// two methods what is not by the median, and then the error decides.
 inline constexpr double same_cost = 1.03;
 // The most substeps that are tried.
 inline constexpr int most_substeps = 1024;

@@ -51,8 +51,7 @@ double parse_budget(const std::string &text) {
                 break;
             }
     throw std::invalid_argument("--budget: '" + text +
-                                "' is no time; write a positive number and its unit, s, ms or us, "
-                                "as in 1ms");
+                                "' must be a positive time with its unit (s, ms or us), as in 1ms");
 }
 
 ExitCode tune_scene(const TuneCommand &command, std::ostream &out, std::ostream &err) {
@@ -60,7 +59,7 @@ ExitCode tune_scene(const TuneCommand &command, std::ostream &out, std::ostream 
     if (!scene)
         return ExitCode::bad_input;
     if (command.write && !std::filesystem::is_regular_file(scene->path))
-        throw std::invalid_argument(scene->path.string() + " is no file that can be written to");
+        throw std::invalid_argument(scene->path.string() + " is not a file that can be written to");
     if (command.write && command.options.base.settings.has(*find_setting("gravity")))
         throw std::invalid_argument("--write keeps the scene's gravity: what is tuned for another "
                                     "cannot be written into it");

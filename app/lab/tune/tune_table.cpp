@@ -12,12 +12,6 @@ namespace plumb {
 
 namespace {
 
-std::string short_number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
-
 bool has_iterations(const MethodInfo &method) {
     return reads(method, *find_setting("iterations"));
 }
@@ -34,12 +28,12 @@ std::string in_words(const ResolvedRun &run) {
 }
 
 std::string error_text(const TunedRun &run) {
-    return short_number(run.error) + " of its tolerance" +
+    return three_digits(run.error) + " of its tolerance" +
            (run.worst.empty() ? "" : " (" + run.worst + ")");
 }
 
 std::string cost_text(const TunedRun &run) {
-    return short_number(1e3 * run.cost) + " ms of CPU time for a simulated second";
+    return three_digits(1e3 * run.cost) + " ms of CPU time for a simulated second";
 }
 
 std::string_view verdict_name(TuneVerdict verdict) {
@@ -58,20 +52,20 @@ std::string_view verdict_name(TuneVerdict verdict) {
 
 void print_table(std::ostream &out, const Tuning &tuning) {
     char line[256];
-    std::snprintf(line, sizeof line, "  %-20s %-7s %9s %9s %10s %10s %10s %9s\n", "method", "",
-                  "substeps", "iteration", "dt", "passes/s", "CPU ms/s", "error");
+    std::snprintf(line, sizeof line, "  %-20s %-7s %9s %10s %10s %10s %10s %9s\n", "method", "",
+                  "substeps", "iterations", "dt", "passes/s", "CPU ms/s", "error");
     out << line;
     for (std::size_t i = 0; i < tuning.runs.size(); ++i) {
         const TunedRun &run = tuning.runs[i];
         const ResolvedRun &r = run.resolved;
-        std::string cost = (run.timings.empty() ? "~" : "") + short_number(1e3 * run.cost);
-        std::snprintf(line, sizeof line, "  %-20.20s %-7s %9s %9s %10s %10.4g %10s %9s  %s",
+        std::string cost = (run.timings.empty() ? "~" : "") + three_digits(1e3 * run.cost);
+        std::snprintf(line, sizeof line, "  %-20.20s %-7s %9s %10s %10s %10.4g %10s %9s  %s",
                       std::string(r.method->name).c_str(),
                       std::string(precision_name(r.precision)).c_str(), substeps_text(r).c_str(),
                       has_iterations(*r.method) ? std::to_string(r.settings.iterations).c_str()
                                                 : "-",
                       format_dt(r.settings.dt).c_str(), run.work, cost.c_str(),
-                      run.verdict == TuneVerdict::diverged ? "-" : short_number(run.error).c_str(),
+                      run.verdict == TuneVerdict::diverged ? "-" : three_digits(run.error).c_str(),
                       std::string(verdict_name(run.verdict)).c_str());
         out << line;
         if (run.verdict == TuneVerdict::missed && run.starts > 1)
@@ -90,7 +84,7 @@ void print_table(std::ostream &out, const Tuning &tuning) {
 }
 
 std::string ratio_text(double ratio) {
-    return short_number(ratio) + " times as much";
+    return three_digits(ratio) + " times as much";
 }
 
 // As they were paired, where they were timed.
@@ -157,7 +151,8 @@ void print_plainer(std::ostream &out, const Tuning &tuning) {
     for (std::size_t i = 0; i < less.size(); ++i)
         out << (i == 0 ? "" : i + 1 < less.size() ? ", " : " and ") << less[i];
     const TunedRun &full = tuning.runs[*tuning.chosen], &plain = tuning.plainest();
-    out << ": that costs " << ratio_text(ratio) << ". What is left out would ";
+    out << (ratio < 1 / same_cost ? ": that costs " + ratio_text(ratio) : " at the same cost")
+        << ". What is left out would ";
     if (full.error < plain.error && error_text(full) != error_text(plain))
         out << "bring the worst error from " << error_text(plain) << " to " << error_text(full);
     else
@@ -186,7 +181,7 @@ void print(std::ostream &out, const Tuning &tuning, bool explain) {
     const std::string all = tuning.expectations == 1
                                 ? "its expectation"
                                 : "all " + std::to_string(tuning.expectations) + " expectations";
-    const std::string held = all + " within " + short_number(tuning.tolerance) + " of " +
+    const std::string held = all + " within " + three_digits(tuning.tolerance) + " of " +
                              (tuning.expectations == 1 ? "its tolerance" : "their tolerances") +
                              ", from " + std::to_string(tuning.starts) +
                              (tuning.starts == 1 ? " start" : " starts");
@@ -211,7 +206,7 @@ void print(std::ostream &out, const Tuning &tuning, bool explain) {
     if (!tuning.plainer.empty())
         print_plainer(out, tuning);
     if (!tuning.found())
-        out << "  That is beyond the budget, " << short_number(1e3 * *tuning.budget)
+        out << "  That is beyond the budget, " << three_digits(1e3 * *tuning.budget)
             << " ms for a simulated second.\n";
 }
 

@@ -68,8 +68,11 @@ toml::node *element(toml::array &array, Path &path) {
                 names.push_back(name->get());
     if (!names.empty()) {
         const std::string_view name = path.take_name(names);
-        if (name.empty())
-            path.refuse(path.take_key(), "the scene's " + in, names);
+        if (name.empty()) {
+            const std::string_view word = path.take_key();
+            path.refuse("there is no " + in + " " + in_quotes(word) + " in this scene; " +
+                        did_you_mean(word, names));
+        }
         for (toml::node &each : array)
             if (toml::table *table = each.as_table())
                 if (const auto *own = table->get_as<std::string>("name"); own && own->get() == name)
@@ -139,6 +142,8 @@ void change(toml::table &root, const ChangedNumber &number) {
         const std::string_view key = path.take_key();
         toml::node *node = table->get(key);
         if (node == nullptr) {
+            if (table == &root && std::ranges::find(scene_keys, key) != scene_keys.end())
+                path.refuse("there is no " + std::string(key) + " in this scene");
             if (table == &root)
                 path.refuse(key, in, scene_keys);
             if (!path.at_end())

@@ -193,7 +193,7 @@ class WorldSimulation final : public Simulation {
 void WorldSimulation::obey(const AddBody &command) {
     if (!world_.method().info.contacts)
         throw std::invalid_argument(std::string(world_.method().info.name) +
-                                    " knows no contacts, so no body can be added");
+                                    " does not support contacts, so no body can be added");
     if (book_->index_of.contains(command.body.name))
         throw std::invalid_argument("there is a body \"" + command.body.name + "\" already");
     if (soft_.has_name(command.body.name))

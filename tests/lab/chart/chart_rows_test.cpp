@@ -113,7 +113,8 @@ TEST(ChartRows, ShardsMakeTheWholeChart) {
         (void)merged_chart(scene, tables);
         FAIL() << "merged what does not belong together";
     } catch (const std::invalid_argument &refusal) {
-        EXPECT_NE(std::string(refusal.what()).find("other is of another chart"), std::string::npos);
+        EXPECT_NE(std::string(refusal.what()).find("other belongs to another chart"),
+                  std::string::npos);
     }
     options.shard = {4, 3};
     EXPECT_THROW((void)chart_scene(scene, options), std::invalid_argument);

@@ -77,7 +77,7 @@ TEST(Chart, ErrorsOfACurveAreItsWorstOrItsMean) {
     }
 }
 
-TEST(Chart, JustSoManySubstepsAndAtLeastSoManyAreTwoCurves) {
+TEST(Chart, FixedAndAdaptiveSubstepsAreTwoCurves) {
     ChartOptions options = quick(fakes());
     options.base = {};
     options.methods = {"soft_step", "tgs_soft"};
@@ -92,8 +92,8 @@ TEST(Chart, JustSoManySubstepsAndAtLeastSoManyAreTwoCurves) {
                         {1, 1}, {4, 1}, {1, 128}, {4, 128}, {1, 1}, {4, 1}}));
     const ChartContent content = chart_content(chart, "");
     ASSERT_EQ(content.series.size(), 3U);
-    EXPECT_EQ(content.series[0].name, "Soft step, just so many");
-    EXPECT_EQ(content.series[1].name, "Soft step, at least so many");
+    EXPECT_EQ(content.series[0].name, "Soft step, fixed substeps");
+    EXPECT_EQ(content.series[1].name, "Soft step, adaptive substeps");
     EXPECT_EQ(content.series[2].name, "TGS Soft");
     EXPECT_NE(content.series[0].style, content.series[1].style);
     EXPECT_EQ(content.footer.at(0).find("max_substeps"), std::string::npos) << content.footer[0];
@@ -161,6 +161,22 @@ TEST(Chart, InterruptedKeepsWhatIsThere) {
     const ChartContent content = chart_content(chart, "");
     EXPECT_EQ(content.marks.size(), 2U);
     EXPECT_NE(content.subtitle.find("INTERRUPTED: 2 of 4"), std::string::npos);
+    std::ostringstream table;
+    print(table, chart);
+    EXPECT_NE(table.str().find("interrupted: 2 of 4 runs are done"), std::string::npos);
+}
+
+TEST(Chart, TheFooterSaysHowOftenItWasTimed) {
+    ChartOptions options = quick(fakes());
+    for (const int repeats : {1, 3}) {
+        options.repeats = repeats;
+        const std::string footer =
+            chart_content(chart_scene(falling_scene(), options), "").footer.at(0);
+        const bool once = repeats == 1;
+        EXPECT_EQ(footer.find("one timing of ") != std::string::npos, once) << footer;
+        EXPECT_EQ(footer.find("median of 3 interleaved timings") != std::string::npos, !once);
+        EXPECT_EQ(footer.find("spread") != std::string::npos, !once) << footer;
+    }
 }
 
 TEST(Chart, MistakesAreExplained) {

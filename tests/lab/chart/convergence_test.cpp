@@ -2,6 +2,8 @@
 #include "app/lab/chart/convergence.h"
 
 #include "app/lab/chart/chart_svg.h"
+#include "app/lab/provenance.h"
+#include "app/lab/queries/query_chart.h"
 #include "engine/scene/scene_file.h"
 #include "tests/lab/chart/falling.h"
 
@@ -38,20 +40,48 @@ TEST(Convergence, SmoothMethodsHaveTheirOrder) {
     options.methods = {"velocity_verlet", "rk4"};
     options.sweep = {parse_sweep("dt=1/480..1/60")};
     const SceneChart chart = chart_scene(file.scene, options);
-    const std::vector<FittedOrder> orders = fitted_orders(chart);
+    const std::vector<CurveOrder> orders = curve_orders(chart);
     ASSERT_EQ(orders.size(), 2U);
-    EXPECT_NEAR(orders[0].slope, 2, 0.1);
-    EXPECT_NEAR(orders[1].slope, 4, 0.1);
+    ASSERT_TRUE(orders[0].fitted && orders[1].fitted);
+    EXPECT_NEAR(orders[0].fitted->slope, 2, 0.1);
+    EXPECT_NEAR(orders[1].fitted->slope, 4, 0.1);
     EXPECT_TRUE(chart.runs[0].timings.empty());
     EXPECT_EQ(chart.runs[0].resolved.precision, Precision::f64);
     EXPECT_EQ(chart.runs[0].resolved.settings.substeps, 1);
     const ChartContent content = chart_content(chart, "");
     EXPECT_EQ(content.cost_title, "dt");
-    EXPECT_EQ(content.series.at(1).name, "Runge-Kutta 4: order " + order_text(orders[1]));
+    EXPECT_EQ(content.series.at(1).name, "Runge-Kutta 4: " + order_text(orders[1]));
     EXPECT_DOUBLE_EQ(content.marks.at(0).cost, 1.0 / 480);
     EXPECT_FALSE(content.budget);
     options.sweep = {parse_sweep("substeps=1,2")};
     EXPECT_THROW((void)chart_scene(file.scene, options), std::invalid_argument);
+}
+
+TEST(Convergence, SaysWhereThereIsNoOrder) {
+    SceneChart chart;
+    chart.scene = falling_scene();
+    chart.convergence = true;
+    chart.sweep = {parse_sweep("dt=1/240..1/30")};
+    for (const auto &[method, wrong] : {std::pair{"rk4", true}, {"explicit_euler", false}})
+        for (const double dt : chart.sweep[0].values) {
+            ChartRun run;
+            run.resolved.method = find_method_info(method);
+            run.resolved.settings.dt = dt;
+            run.point = {dt};
+            run.cost = 1;
+            run.error = wrong ? 1e-9 + (dt > 0.01 ? 1e-12 : 0) : 0;
+            run.status = ChartStatus::fine;
+            chart.runs.push_back(run);
+        }
+    const std::vector<CurveOrder> orders = curve_orders(chart);
+    ASSERT_EQ(orders.size(), 2U);
+    EXPECT_FALSE(orders[0].fitted || orders[1].fitted);
+    std::ostringstream table;
+    print(table, chart);
+    for (const char *line : {"Runge-Kutta 4: no order: the error does not fall steadily\n",
+                             "Explicit Euler: no order: fewer than three errors above 0\n"})
+        EXPECT_NE(table.str().find(line), std::string::npos) << table.str();
+    EXPECT_EQ(chart_content(chart, "").series.at(0).name, "Runge-Kutta 4: no order");
 }
 
 TEST(ChartSweep, PrecisionAndThreadsAreCurvesOfTheirOwn) {
@@ -134,6 +164,25 @@ TEST(ChartSvg, SaysWhatThePictureSays) {
         ++closed;
     EXPECT_GT(opened, 20U);
     EXPECT_EQ(opened, closed);
+}
+
+TEST(ChartSvg, OfQueriesSaysWhatMadeIt) {
+    QueryChart chart;
+    chart.options.repeats = 1;
+    QueryRun run;
+    run.query = "ray against sphere";
+    run.timings = {2e-9};
+    run.cost = 2e-9;
+    run.families = {{"all of them", 100, 1}};
+    chart.runs = {run};
+    const PanelChart panels = panel_chart(chart, "the command");
+    for (const std::string &text :
+         {std::string("one timing of batches"), machine(), "commit " + build_commit()})
+        EXPECT_NE(panels.footer.at(0).find(text), std::string::npos) << panels.footer.at(0);
+    std::ostringstream out;
+    write_chart_svg(out, panels);
+    for (const char *text : {"<svg xmlns=", ">ray against sphere<", ">the command<", "</svg>\n"})
+        EXPECT_NE(out.str().find(text), std::string::npos) << text;
 }
 
 } // namespace

@@ -291,7 +291,7 @@ TEST(OneStepChart, WhatIsNotTenTimesAsFarOffAsTheAccurateRunIsNotToldApart) {
     EXPECT_TRUE(chart.runs[0].pareto && chart.runs[1].pareto);
     EXPECT_FALSE(chart.runs[2].pareto); // dearer, and not known to be truer
     const ChartContent content = chart_content(chart, "");
-    EXPECT_EQ(content.floor_label, "not told apart below 10 µm");
+    EXPECT_EQ(content.floor_label, "not resolved below 10 µm");
     const auto size = [](std::string_view text, float height) {
         return glm::vec2(0.5f * height * static_cast<float>(text.size()), height);
     };

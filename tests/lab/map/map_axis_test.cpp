@@ -56,10 +56,19 @@ TEST(MapAxis, PlacesValuesBetweenCells) {
     EXPECT_NEAR(cell_position(parse_map_axis("body.a.mass=1,2,6"), 4), 1.5, 1e-12);
 }
 
+TEST(MapAxis, LabelsAFractionOfASecondAsSuch) {
+    const MapAxis axis = parse_map_axis("dt=1/60..1");
+    EXPECT_EQ(value_label(axis, 1.0 / 60), "1/60");
+    EXPECT_EQ(value_label(axis, 0.3), "0.3");
+    EXPECT_EQ(value_label(axis, 1), "1");
+}
+
 TEST(MapAxis, SaysWhatIsWrong) {
     EXPECT_NE(complaint("dt").find("NAME=FROM..TO"), std::string::npos);
     EXPECT_NE(complaint("substep=1..4").find("did you mean \"substeps\"?"), std::string::npos);
     EXPECT_NE(complaint("gravity=0..1").find("gravity.y"), std::string::npos);
+    EXPECT_NE(complaint("stiffness=1..2").find(". A number of the scene file"), std::string::npos);
+    EXPECT_NE(complaint("stiffness=1..2").find("spring.NAME.stiffness"), std::string::npos);
     EXPECT_NE(complaint("dt=1..0.1").find("ascend"), std::string::npos);
     EXPECT_NE(complaint("dt=0.1..2").find("to 1 s"), std::string::npos);
     EXPECT_NE(complaint("gravity.y=-1..1:5log").find("above 0"), std::string::npos);

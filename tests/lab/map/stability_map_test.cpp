@@ -589,7 +589,7 @@ source = "rigid"
     EXPECT_NE(text.str().find(map.unjudged[0]), std::string::npos);
     // Where nothing else is expected there is nothing to hold it to.
     EXPECT_NE(complaint(stack.c_str(), "dt=1/120,1/60", "body.box.repeat.count=2,4")
-                  .find("nothing is left"),
+                  .find("no expectation is left"),
               std::string::npos);
 }
 
@@ -598,12 +598,27 @@ TEST(StabilityMap, SaysWhatIsWrongWithAnAxis) {
               std::string::npos);
     EXPECT_NE(complaint(falling_ball, "body.ball.radius=-1..2", "dt=0.1,0.2").find("radius"),
               std::string::npos);
+    for (const auto &[x, y] : {std::pair{"dt=0.1,0.2", "body.ball.mas=1..2:2"},
+                               std::pair{"body.ball.mas=1..2:2", "dt=0.1,0.2"}}) {
+        const std::string mass = complaint(falling_ball, x, y);
+        EXPECT_EQ(mass.rfind("with body.ball.mas=1: ", 0), 0U) << mass;
+    }
     EXPECT_NE(complaint(falling_ball, "body.ball.rdius=1..2", "dt=0.1,0.2").find("\"radius\"?"),
               std::string::npos);
     EXPECT_NE(complaint(falling_ball, "world.substeps=1..2", "dt=0.1,0.2").find("write substeps"),
               std::string::npos);
     EXPECT_NE(complaint(falling_ball, "dt=0.1,0.2", "dt=0.1,0.2").find("both axes"),
               std::string::npos);
+    const std::string two = std::string(falling_ball) + "[[body]]\nname = \"other\"\n"
+                                                        "shape = \"sphere\"\nradius = 0.5\n";
+    try {
+        (void)map_of(two.c_str(), "dt=0.1,0.2", "substeps=1,2", {"rk4"});
+        ADD_FAILURE();
+    } catch (const std::invalid_argument &error) {
+        const std::string why = error.what();
+        EXPECT_EQ(why.rfind("no method can run this scene: rk4 ", 0), 0U) << why;
+        EXPECT_NE(why.find("contacts"), std::string::npos) << why;
+    }
     MapOptions options;
     options.duration = 3;
     EXPECT_THROW((void)map_scene({"scene.toml", falling_ball}, parse_map_axis("dt=0.1,0.2"),

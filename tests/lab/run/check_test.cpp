@@ -121,6 +121,24 @@ TEST_F(LabCommands, CheckCountsScenesThatExpectNothingApart) {
         << out_.str();
 }
 
+// What the method cannot run is no run.
+TEST_F(LabCommands, CheckSkipsWhatTheMethodCannotRun) {
+    const fs::path pendulum = PLUMB_SOURCE_DIR "/scenes/joints/pendulum.toml";
+    CheckCommand command;
+    command.scenes = {pendulum};
+    command.run.method = "rk4";
+    EXPECT_EQ(check_scenes(command, out_, err_), ExitCode::bad_input) << err_.str();
+    EXPECT_NE(out_.str().find("-     pendulum: skipped: rk4 "), std::string::npos) << out_.str();
+    EXPECT_NE(out_.str().find("nothing was checked; 1 skipped\n"), std::string::npos) << out_.str();
+    out_.str("");
+    command.run.method.clear();
+    command.scenes.push_back(file("fall.toml", fall + "0.1\n"));
+    command.methods = {"rk4"};
+    EXPECT_EQ(check_scenes(command, out_, err_), ExitCode::fine) << err_.str();
+    EXPECT_NE(out_.str().find("1 run: 1 within tolerance; 1 skipped\n"), std::string::npos)
+        << out_.str();
+}
+
 TEST_F(LabCommands, CheckDoesNotJudgeWhatASavedStateHasBehindIt) {
     std::string saved = fall + "0.1\n[[expect]]\nname = \"way\"\nquantity = \"displacement\"\n"
                                "body = \"ball\"\nto = 3\nat_most = 1e3\nsource = \"test\"\n";

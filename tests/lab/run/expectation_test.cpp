@@ -306,7 +306,7 @@ TEST(Expectation, FollowedErrorsAreTheWorstOfTheRun) {
     options.follow_errors = true;
     options.duration = 1;
     bool at_time = false;
-    options.at_time_seconds = 0.5;
+    options.times_called = {0.5};
     options.at_time = [&] {
         at_time = true;
         EXPECT_DOUBLE_EQ(fake.time(), 0.5);

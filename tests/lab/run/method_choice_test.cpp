@@ -6,15 +6,21 @@ namespace plumb {
 namespace {
 
 TEST(MethodChoice, SaysAReasonOnce) {
-    EXPECT_EQ(grouped_reasons({"a knows no joints, and the scene has 1",
-                               "b is not told of what the scene has: cloth",
-                               "c knows no joints, and the scene has 1",
-                               "d knows no contacts, and the scene has 2 bodies",
-                               "e knows no joints, and the scene has 1",
-                               "f is not told of what the scene has: cloth"}),
-              (std::vector<std::string>{"a, c and e know no joints, and the scene has 1",
-                                        "b and f are not told of what the scene has: cloth",
-                                        "d knows no contacts, and the scene has 2 bodies"}));
+    const std::vector<std::string> reasons{
+        "a does not support joints, and the scene has 1",
+        "b cannot run this scene: the adapter does not support cloth",
+        "c does not support joints, and the scene has 1",
+        "d does not support contacts, and the scene has 2 bodies",
+        "e does not support joints, and the scene has 1",
+        "f cannot run this scene: the adapter does not support cloth"};
+    EXPECT_EQ(grouped_reasons(reasons),
+              (std::vector<std::string>{
+                  "a, c and e do not support joints, and the scene has 1",
+                  "b and f cannot run this scene: the adapter does not support cloth",
+                  "d does not support contacts, and the scene has 2 bodies"}));
+    EXPECT_EQ(why_no_method({reasons[0], reasons[3]}),
+              "no method can run this scene: a does not support joints, and the scene has 1; "
+              "d does not support contacts, and the scene has 2 bodies");
     EXPECT_TRUE(grouped_reasons({}).empty());
 }
 

@@ -109,5 +109,15 @@ TEST(Sweep, SettingsThatAMethodDoesNotReadMakeNoDifference) {
         }
 }
 
+TEST(Sweep, ASecondIsNoFraction) {
+    EXPECT_EQ(format_dt(0.5), "1/2 s");
+    EXPECT_EQ(format_dt(1), "1 s");
+}
+
+TEST(Sweep, ValuesThatAreTheSameAreSaidOnce) {
+    EXPECT_EQ(values_by_name({{"a", "4"}, {"b", "4"}}), "4");
+    EXPECT_EQ(values_by_name({{"a", "4"}, {"b", "1"}, {"c", "4"}}), "4 (a, c), 1 (b)");
+}
+
 } // namespace
 } // namespace plumb

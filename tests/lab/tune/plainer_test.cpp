@@ -125,7 +125,7 @@ source = "s = g t^2 / 2"
     EXPECT_TRUE(without(tuning, "the box of box (a sphere will do)").is_enough) << printed(tuning);
     EXPECT_EQ(tuning.plainest().resolved.settings.sleep_after, 0);
     EXPECT_NE(printed(tuning).find("It can do without sleep, collisions, the rotation of box and "
-                                   "the box of box (a sphere will do): that costs "),
+                                   "the box of box (a sphere will do)"),
               std::string::npos)
         << printed(tuning);
     EXPECT_NE(printed(tuning).find(" What is left out would buy nothing: the worst error is "),
@@ -190,6 +190,22 @@ TEST(Plainer, OfTwoBodiesNeitherIsTriedByItself) {
     ASSERT_TRUE(tuning.chosen) << printed(tuning);
     EXPECT_EQ(collisions_of(tuning), (std::vector<std::string>{"collisions"}));
     EXPECT_EQ(without(tuning, "collisions").run.verdict, TuneVerdict::missed);
+}
+
+// Noise is not told as a cost.
+TEST(Plainer, SaysTheCostWhereItIsLess) {
+    Tuning tuning;
+    tuning.runs.emplace_back().resolved = resolve_run({}, {});
+    tuning.chosen = 0;
+    PlainerModel model{"sleep", tuning.runs[0], 1.02, true};
+    tuning.plainer = {model};
+    EXPECT_NE(printed(tuning, false).find("do without sleep at the same cost. What is left out"),
+              std::string::npos)
+        << printed(tuning, false);
+    tuning.plainer[0].times_as_dear = 0.5;
+    EXPECT_NE(printed(tuning, false).find("do without sleep: that costs 0.5 times as much. What"),
+              std::string::npos)
+        << printed(tuning, false);
 }
 
 TEST(Plainer, EachPartOfAModelIsInTheHelp) {
