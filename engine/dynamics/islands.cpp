@@ -23,7 +23,7 @@ constexpr double spare = 1.25;
 constexpr int most_wanted_in_turns = 4;
 // Slow is what is slower than such a share of what gravity adds in a step.
 constexpr double slow_share = 0.35;
-// Of contacts and joints: what hangs together of more gains nothing by one more pass.
+// Contacts: what hangs together of more gains nothing by one more pass.
 constexpr int most_settled = 48;
 
 } // namespace
@@ -113,7 +113,9 @@ void World::gather_needs() {
         const Joint &joint = model_->joints[i];
         if (!holds(i))
             continue;
-        ++islands.needs[islands.root_of(island_body(joint.a, joint.b))].work;
+        Islands::Needs &needs = islands.needs[islands.root_of(island_body(joint.a, joint.b))];
+        ++needs.work;
+        needs.is_joined = true;
     }
     if (model_->has_particles())
         gather_particle_needs();
@@ -174,7 +176,7 @@ void World::share_budget() {
 void World::find_unsettled() {
     Scratch &s = scratch_;
     const auto may_settle = [](const Islands::Needs &needs) {
-        return needs.touches && needs.is_slow && needs.work <= most_settled;
+        return needs.touches && !needs.is_joined && needs.is_slow && needs.work <= most_settled;
     };
     std::int64_t work = 0;
     for (const std::uint32_t root : s.islands.roots) {
@@ -239,14 +241,7 @@ void World::group_freely() {
 void World::group_islands() {
     Scratch &s = scratch_;
     s.group_count = 0;
-    const auto group_with = [&](const IslandPace &pace) -> IslandGroup & {
-        for (std::size_t i = 0; i < s.group_count; ++i)
-            if (s.groups[i].pace == pace)
-                return s.groups[i];
-        if (s.groups.size() == s.group_count)
-            s.groups.emplace_back();
-        IslandGroup &group = s.groups[s.group_count++];
-        group.pace = pace;
+    const auto empty = [&](IslandGroup &group) {
         // As if all were in each, so that nothing is allocated when islands change groups.
         group.moving.clear();
         group.moving.reserve(s.moving.size());
@@ -256,6 +251,16 @@ void World::group_islands() {
         group.joints.reserve(model_->alive_joints);
         group.holds_grab = false;
         group.has_particles = false;
+    };
+    const auto group_with = [&](const IslandPace &pace) -> IslandGroup & {
+        for (std::size_t i = 0; i < s.group_count; ++i)
+            if (s.groups[i].pace == pace)
+                return s.groups[i];
+        if (s.groups.size() == s.group_count)
+            s.groups.emplace_back();
+        IslandGroup &group = s.groups[s.group_count++];
+        group.pace = pace;
+        empty(group);
         return group;
     };
     const bool chooses = chooses_substeps();
@@ -278,6 +283,9 @@ void World::group_islands() {
         const auto particles = static_cast<std::uint32_t>(model_->bodies.size());
         group_of(particles).has_particles = true;
     }
+    // One to spare, for when one of several islands settles.
+    if (s.groups.size() == s.group_count)
+        empty(s.groups.emplace_back());
     if (s.joint_systems.size() < s.group_count)
         s.joint_systems.resize(s.group_count);
 }

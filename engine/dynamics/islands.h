@@ -62,6 +62,7 @@ struct Islands {
         bool rests = true;
         bool is_slow = true;
         bool touches = false;    // has contacts
+        bool is_joined = false;  // has joints
         bool was_let_go = false; // see JointGroup, of any of its joints
         IslandPace pace;
     };

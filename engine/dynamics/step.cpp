@@ -226,6 +226,7 @@ void World::advance() {
 
 void World::advance_groups() {
     Scratch &s = scratch_;
+    std::size_t joint_systems = 0; // the same for the same joints, whatever settles
     for (std::size_t i = 0; i < s.group_count; ++i) {
         std::optional<StepSettings> own;
         if (s.groups[i].pace.substeps != settings_.substeps) {
@@ -251,7 +252,8 @@ void World::advance_groups() {
                             s.point_penalties,
                             s.joint_penalties,
                             s.tasks};
-        s.solver.joint_system = s.groups[i].joints.empty() ? &s.no_joints : &s.joint_systems[i];
+        s.solver.joint_system =
+            s.groups[i].joints.empty() ? &s.no_joints : &s.joint_systems[joint_systems++];
         method_->advance(context);
         if (chooses_substeps())
             note_needs(s.groups[i]);

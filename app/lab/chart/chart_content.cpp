@@ -271,7 +271,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         const std::string on = chart.wall_clock ? "wall time" : "one thread";
         if (timed) {
             char text[160];
-            std::snprintf(text, sizeof text, "%s, %s of %.4g s spread over the run", on.c_str(),
+            std::snprintf(text, sizeof text, "%s, %s of %.4g s, all over the run", on.c_str(),
                           timings_text(chart.repeats).c_str(), chart.timed);
             std::string all = text;
             if (chart.repeats > 1) {
