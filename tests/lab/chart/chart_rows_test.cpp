@@ -84,7 +84,7 @@ TEST(ChartRows, ShardsMakeTheWholeChart) {
     options.methods = {"soft_step", "rk4", "velocity_verlet"};
     const SceneChart whole = chart_scene(scene, options);
     std::vector<NamedTable> tables;
-    for (const std::size_t n : {3, 1, 2}) {
+    for (const std::size_t n : {3U, 1U, 2U}) {
         options.shard = {n, 3};
         const SceneChart shard = chart_scene(scene, options);
         EXPECT_EQ(shard.runs.size(), n == 1 ? 2U : 1U);
