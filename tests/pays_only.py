@@ -13,12 +13,14 @@ sensor costs a flag each contact, which no count of calls shows.
 So that nothing is proven of names that are there no more: each pattern must match a function of the
 program, and each that a world is to be without must be called by a world that has it.
 
-Exit code 1 when something is paid for that is not used; 77 without valgrind.
+Exit code 1 when something is paid for that is not used; 77 without valgrind, or where it does not know
+this processor's instructions.
 """
 
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -140,6 +142,11 @@ def main():
     program = sys.argv[1] if len(sys.argv) > 1 else str(root / "build/release/bin/plumb")
     if shutil.which("valgrind") is None:
         print("needs valgrind (Debian's package)")
+        return 77
+    started = subprocess.run(["valgrind", "--tool=none", program, "--version"], capture_output=True,
+                             text=True, check=False)
+    if started.returncode == -signal.SIGILL:
+        print("valgrind does not know this processor's instructions")
         return 77
     wrong = 0
     there = functions(program)
