@@ -1,3 +1,4 @@
+#include "engine/dynamics/joint_groups.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>

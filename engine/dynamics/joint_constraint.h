@@ -77,9 +77,6 @@ Real size_of(const RowBlock &rows);
 // (scratch.changed).
 void follow_loads(StepContext &context, Real h);
 
-// Makes the limits that bear something rows of their group, as long as it is held. Says whether
-// anything changed.
-bool choose_limits(StepContext &context, const JointGroup &group);
 // Blocks of the joints that are alive and not broken, in order, then of the grab, at the present
 // poses.
 void prepare_joints(StepContext &context);
@@ -106,13 +103,8 @@ void foresee_turns(StepContext &context, Real h);
 // Applies what springs do in the rest of the substep, after Springs::midpoint.
 void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);
-// The groups that are held once more, where contacts were solved after them.
-void hold_touched_groups(StepContext &context, const JointPass &pass);
 // One alone.
 void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &pass);
-// What the joints of a group answer to an impact: changes velocities so that the joints hold them.
-// Nothing for JointSystem::none, or a group that is not held.
-void answer_impact(StepContext &context, std::uint32_t group);
 // Hands the accumulated impulses back for the next step, and breaks what bore too much.
 void store_joints(StepContext &context);
 

@@ -1,6 +1,7 @@
 #include "engine/dynamics/joint_impulse.h"
 
 #include "engine/dynamics/contact_constraint.h"
+#include "engine/dynamics/method.h"
 
 #include <algorithm>
 #include <cmath>
@@ -193,6 +194,15 @@ Vec3 half_bend(const RowBlock &rows, const SolverBody &a, const SolverBody &b, R
         v.x += Real(0.5) * h * (glm::dot(parting, parting) - along * along) / rows.swing_length;
     }
     return v;
+}
+
+void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
+    const RowBlock &rows = joint.rows;
+    const Vec3 along = world_impulse(rows, impulse);
+    if (joint.moves_a)
+        apply(context.bodies[joint.a], rows, rows.r_a, -along);
+    if (joint.moves_b)
+        apply(context.bodies[joint.b], rows, rows.r_b, along);
 }
 
 Vec3 pushed(const Vec3 &bias, Real most) {

@@ -52,6 +52,9 @@ inline void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const
     else
         body.apply_impulse(impulse, arm);
 }
+// An impulse along a joint's rows. What does not move by forces is not written to: joints of other
+// bodies, that are solved at the same time, hang on it, too.
+void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse);
 // No faster than `most`.
 Vec3 pushed(const Vec3 &bias, Real most);
 // What a pass adds to the rows' impulse.

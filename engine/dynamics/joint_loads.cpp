@@ -1,4 +1,5 @@
 // How joints' forces stiffen the bodies that they act on, and what is done about it.
+#include "engine/dynamics/joint_groups.h"
 #include "engine/dynamics/joint_impulse.h"
 #include "engine/dynamics/method.h"
 

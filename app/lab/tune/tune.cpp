@@ -8,7 +8,6 @@
 #include "app/lab/tune/trial.h"
 
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -142,30 +141,24 @@ std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choic
         const TunedRun &run = tuning.runs[i];
         return std::tuple(run.timings.empty(), run.cost);
     };
-    const auto preference = [&](std::size_t i) {
-        const TunedRun &run = tuning.runs[i];
-        const auto place = std::ranges::find_if(
-            method_infos(), [&](const MethodInfo &each) { return &each == run.resolved.method; });
-        return std::tuple(run.error, place - method_infos().begin());
-    };
     const std::size_t least = *std::ranges::min_element(choices, {}, cost);
-    std::map<const MethodInfo *, std::size_t> of_method;
-    for (const std::size_t i : choices) {
-        const auto [known, is_new] = of_method.emplace(tuning.runs[i].resolved.method, i);
-        if (!is_new && cost(i) < cost(known->second))
-            known->second = i;
-    }
-    std::size_t best = least_work(tuning, choices, least);
-    for (const auto &[method, first] : of_method) {
-        const TunedRun &run = tuning.runs[first], &other = tuning.runs[least];
-        if (method == other.resolved.method || !both_timed(run, other) ||
-            median_ratio(run.timings, other.timings) > same_cost)
+    std::optional<std::size_t> best;
+    for (const MethodInfo &method : method_infos()) {
+        std::vector<std::size_t> own = choices;
+        std::erase_if(own,
+                      [&](std::size_t i) { return tuning.runs[i].resolved.method != &method; });
+        if (own.empty())
             continue;
-        const std::size_t own = least_work(tuning, choices, first);
-        if (preference(own) < preference(best))
-            best = own;
+        const std::size_t first = *std::ranges::min_element(own, {}, cost);
+        const TunedRun &run = tuning.runs[first], &other = tuning.runs[least];
+        if (first != least &&
+            (!both_timed(run, other) || median_ratio(run.timings, other.timings) > same_cost))
+            continue;
+        const std::size_t found = least_work(tuning, own, first);
+        if (!best || tuning.runs[found].error < tuning.runs[*best].error)
+            best = found;
     }
-    return best;
+    return best.value_or(least);
 }
 
 // The chosen settings with twice the substeps, timed beside all that were.
