@@ -1,7 +1,7 @@
 // The command line's options that several commands share, and how they are read.
 #pragma once
 
-#include "app/sandbox/scene_catalog.h"
+#include "app/sandbox/session/scene_catalog.h"
 #include "engine/scene/simulation.h"
 
 #include <CLI/CLI.hpp>

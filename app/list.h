@@ -1,7 +1,7 @@
 // `plumb list`: what there is.
 #pragma once
 
-#include "app/sandbox/scene_catalog.h"
+#include "app/sandbox/session/scene_catalog.h"
 
 #include <ostream>
 #include <vector>

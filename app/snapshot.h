@@ -3,7 +3,7 @@
 
 #include "app/lab/exit_code.h"
 #include "app/render/context.h"
-#include "app/sandbox/scene_catalog.h"
+#include "app/sandbox/session/scene_catalog.h"
 #include "engine/scene/simulation.h"
 
 #include <cstdint>

@@ -18,16 +18,16 @@ LIBRARIES = [
     (r"toml\+\+/|toml\.hpp", r"engine/scene/file/table\.h", 1),
     (r"tiny_obj_loader", r"engine/scene/[^/]+\.cpp", 1),
     (r"hwy/", r"engine/(geometry|space)/[^/]+|engine/math/wide_vector-inl\.h"
-     r"|engine/dynamics/(columns-inl\.h|(contact|joint|spring)_kernels\.cpp)|"
+     r"|engine/dynamics/(columns-inl\.h|\w+/(contact|joint|spring)_kernels\.cpp)|"
      r"tests/(geometry|space|dynamics)/[^/]+", None),
     (r"Eigen/", r"engine/math/sparse_cholesky\.cpp", 1),
     (r"benchmark/", r"app/lab/timing\.cpp", 1),
     (r"Bullet|LinearMath/|fcl/|embree|\bode/|btBullet",
      r"tests/bench/[^/]+|app/lab/engines/engine_(bullet|ode)\.cpp", None),
-    (r"GLFW/", r"app/render/window_context\.cpp|app/sandbox/[^/]+\.cpp", 3),
+    (r"GLFW/", r"app/render/window_context\.cpp|app/sandbox/(\w+/)?[^/]+\.cpp", 3),
     (r"GL/osmesa\.h", r"app/render/[^/]+\.cpp", 1),
     (r"glad/|GL/", r"app/render/[^/]+", None),
-    (r"imgui|backends/imgui", r"app/render/(imgui_renderer|fonts)[^/]*|app/sandbox/[^/]+"
+    (r"imgui|backends/imgui", r"app/render/(imgui_renderer|fonts)[^/]*|app/sandbox/(\w+/)?[^/]+"
                               r"|app/lab/chart/[^/]+|tests/(render|sandbox|app)/[^/]+", None),
     (r"stb_|stb/", r"app/render/[^/]+\.cpp", None),
     (r"CLI/", r"app/main\.cpp|app/[^/]+\.(cpp|h)", None),
@@ -157,8 +157,8 @@ SOUND = {
     "app/render/window_context.cpp": "#include <GLFW/glfw3.h>\n",
     "app/render/osmesa_context.cpp": "#include <glad/gl.h>\n#include <GL/osmesa.h>\n",
     "app/lab/sweep.h": '#pragma once\n#include "app/render/renderer.h" // no glfw\n',
-    "app/sandbox/panel.h": '#pragma once\n#include <imgui.h>\n#include "app/lab/sweep.h"\n',
-    "app/main.cpp": '#include <CLI/CLI.hpp>\n#include "app/sandbox/panel.h"\n',
+    "app/sandbox/panels/panel.h": '#pragma once\n#include <imgui.h>\n#include "app/lab/sweep.h"\n',
+    "app/main.cpp": '#include <CLI/CLI.hpp>\n#include "app/sandbox/panels/panel.h"\n',
     "tests/lab/sweep_test.cpp": '#include "app/lab/sweep.h"\n#include "tests/lab/oracle.h"\n',
     "tests/lab/oracle.h": "#pragma once\n",
 }
@@ -172,9 +172,11 @@ VIOLATIONS = [
     ("engine/core/a.cpp", '#include "engine/plumb.h"\n', "for users of the engine"),
     ("engine/extra/a.cpp", '#include "engine/core/check.h"\n', "unknown room engine/extra"),
     ("app/extra/a.cpp", '#include "app/lab/sweep.h"\n', "unknown room app/extra"),
-    ("app/render/a.cpp", '#include "app/sandbox/panel.h"\n', "app/render may not know app/sandbox"),
+    ("app/render/a.cpp", '#include "app/sandbox/panels/panel.h"\n',
+     "app/render may not know app/sandbox"),
     ("app/render/a.cpp", '#include "app/lab/sweep.h"\n', "app/render may not know app/lab"),
-    ("app/lab/a.cpp", '#include "app/sandbox/panel.h"\n', "app/lab may not know app/sandbox"),
+    ("app/lab/a.cpp", '#include "app/sandbox/panels/panel.h"\n',
+     "app/lab may not know app/sandbox"),
     ("app/lab/a.cpp", "auto c = create_window_context(request);\n", "the lab opens no window"),
     ("app/lab/a.cpp", "#include <GLFW/glfw3.h>\n", "<GLFW/glfw3.h> is not for this file"),
     ("app/render/a.cpp", "#include <GLFW/glfw3.h>\n", "<GLFW/glfw3.h> is not for this file"),

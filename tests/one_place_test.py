@@ -68,13 +68,13 @@ KINDS = [
     Kind("joint",
          [("engine/dynamics/kinds.h", "JOINT(fixed)\n", "JOINT(fixed) JOINT(dummy)\n")],
          [("engine/scene/joint_type.cpp", NOT_HANDLED)],
-         ["engine/dynamics/joints/dummy.cpp"]),
+         ["engine/dynamics/joints/kinds/dummy.cpp"]),
     Kind("shape",
          [("engine/scene/shape_desc.h", "using ShapeDesc = std::variant<",
            "struct DummyDesc {};\n\nusing ShapeDesc = std::variant<DummyDesc, ")],
          [("engine/scene/shape_desc.cpp", NO_VISIT),
           ("engine/scene/real/solid_shape.cpp", NO_VISIT),
-          ("app/sandbox/shape_draw.cpp", NO_VISIT)],
+          ("app/sandbox/draw/shape_draw.cpp", NO_VISIT)],
          ["engine/scene/shape_kinds.h"],
          [("engine/scene/file/shape.cpp", "incomplete type .*Kind<plumb::DummyDesc>")]),
     Kind("geometric shape",
@@ -82,9 +82,11 @@ KINDS = [
            "struct Dummy {};\n\nusing Shape = std::variant<Dummy, ")],
          [("engine/geometry/mass.cpp", r"no matching function for call to .*mass_properties_of"),
           ("engine/geometry/manifold.cpp", "each two kinds of Shape need unchecked::collide"),
-          ("engine/dynamics/approach.cpp", r"no matching function for call to .*distance"),
-          ("engine/dynamics/inner_edges.cpp", r"no matching function for call to .*core_of"),
-          ("engine/dynamics/surface_contact.cpp", r"no matching function for call to .*core_of"),
+          ("engine/dynamics/contacts/approach.cpp", r"no matching function for call to .*distance"),
+          ("engine/dynamics/contacts/inner_edges.cpp",
+           r"no matching function for call to .*core_of"),
+          ("engine/dynamics/contacts/surface_contact.cpp",
+           r"no matching function for call to .*core_of"),
           ("engine/dynamics/hash.cpp", r"no matching function for call to .*add_shape")]),
 ]
 
@@ -152,6 +154,8 @@ def check_methods(source, commands, build):
                           (REGISTRY, "    METHOD(rk4)", "    METHOD(rk4) METHOD(dummy)"), "dummy")
     methods = os.path.dirname(os.path.join(source, REGISTRY))
     for name in sorted(os.listdir(methods)):
+        if os.path.isdir(os.path.join(methods, name)):
+            continue  # what several methods share
         with open(os.path.join(methods, name)) as stream:
             defined = re.findall(r"^Method (\w+)\(\) {", stream.read(), re.MULTILINE)
         if name != os.path.basename(REGISTRY) and not (defined and set(defined) <= listed):
@@ -161,8 +165,8 @@ def check_methods(source, commands, build):
 
 def check_panels(source, commands, build):
     return check_linked(
-        source, commands, build, "panel", "app/sandbox/ui.cpp",
-        ("app/sandbox/panels.h", "    PANEL(help, by_itself, help, false)",
+        source, commands, build, "panel", "app/sandbox/panels/ui.cpp",
+        ("app/sandbox/panels/panels.h", "    PANEL(help, by_itself, help, false)",
          "    PANEL(help, by_itself, help, false) PANEL(dummy, left, world, true)"),
         "dummy_panel")
 

@@ -8,9 +8,9 @@
 #include "app/render/imgui_renderer.h"
 #include "app/render/png.h"
 #include "app/render/renderer.h"
-#include "app/sandbox/layout.h"
+#include "app/sandbox/panels/layout.h"
+#include "app/sandbox/panels/ui.h"
 #include "app/sandbox/sandbox.h"
-#include "app/sandbox/ui.h"
 #include "app/sandbox/window_input.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/render/context.h"
-#include "app/sandbox/scene_catalog.h"
+#include "app/sandbox/session/scene_catalog.h"
 #include "engine/core/task_pool.h"
 #include "engine/scene/simulation.h"
 

@@ -1,9 +1,9 @@
 #include "app/sandbox/sandbox.h"
 
-#include "app/sandbox/framing.h"
-#include "app/sandbox/joint_draw.h"
-#include "app/sandbox/probe_draw.h"
-#include "app/sandbox/world_draw.h"
+#include "app/sandbox/draw/framing.h"
+#include "app/sandbox/draw/joint_draw.h"
+#include "app/sandbox/draw/probe_draw.h"
+#include "app/sandbox/draw/world_draw.h"
 #include "engine/dynamics/method_info.h"
 
 #include <algorithm>

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "app/render/draw_list.h"
-#include "app/sandbox/clock.h"
 #include "app/sandbox/keys.h"
-#include "app/sandbox/pace.h"
-#include "app/sandbox/panel.h"
-#include "app/sandbox/scene_catalog.h"
-#include "app/sandbox/session.h"
+#include "app/sandbox/panels/panel.h"
+#include "app/sandbox/session/clock.h"
+#include "app/sandbox/session/pace.h"
+#include "app/sandbox/session/scene_catalog.h"
+#include "app/sandbox/session/session.h"
 #include "app/sandbox/tools.h"
 #include "app/sandbox/view_state.h"
 

@@ -1,7 +1,7 @@
 #include "app/sandbox/tools.h"
 
-#include "app/sandbox/probe_draw.h"
-#include "app/sandbox/soft_draw.h"
+#include "app/sandbox/draw/probe_draw.h"
+#include "app/sandbox/draw/soft_draw.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/render/camera.h"
-#include "app/sandbox/session.h"
+#include "app/sandbox/session/session.h"
 #include "app/sandbox/view_state.h"
 
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "app/render/framebuffer.h"
 #include "app/render/imgui_renderer.h"
-#include "app/sandbox/layout.h"
+#include "app/sandbox/panels/layout.h"
 
 namespace plumb {
 

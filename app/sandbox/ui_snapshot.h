@@ -3,8 +3,8 @@
 
 #include "app/render/image.h"
 #include "app/render/renderer.h"
+#include "app/sandbox/panels/ui.h"
 #include "app/sandbox/sandbox.h"
-#include "app/sandbox/ui.h"
 
 #include <filesystem>
 

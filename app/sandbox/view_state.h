@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/render/camera.h"
-#include "app/sandbox/layout.h"
+#include "app/sandbox/panels/layout.h"
 #include "engine/scene/probe.h"
 
 #include <cstddef>

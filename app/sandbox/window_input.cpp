@@ -1,6 +1,6 @@
 #include "app/sandbox/window_input.h"
 
-#include "app/sandbox/layout.h"
+#include "app/sandbox/panels/layout.h"
 
 #include <optional>
 #include <utility>

@@ -1,7 +1,7 @@
 // What happened within a step.
 #pragma once
 
-#include "engine/dynamics/contact.h"
+#include "engine/dynamics/contacts/contact.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 

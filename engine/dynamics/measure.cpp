@@ -1,5 +1,5 @@
 // What can be read off a world: energies, momenta, errors, loads.
-#include "engine/dynamics/surface_contact.h"
+#include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
 #include "engine/math/basis.h"
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "engine/dynamics/attractor.h"
-#include "engine/dynamics/body.h"
-#include "engine/dynamics/joint.h"
-#include "engine/dynamics/particles.h"
+#include "engine/dynamics/bodies/body.h"
+#include "engine/dynamics/joints/joint.h"
+#include "engine/dynamics/particles/particles.h"
 
 #include <vector>
 

@@ -1,12 +1,12 @@
 // All that survives a step.
 #pragma once
 
-#include "engine/dynamics/body.h"
-#include "engine/dynamics/contact.h"
-#include "engine/dynamics/islands.h"
-#include "engine/dynamics/joint.h"
-#include "engine/dynamics/particles.h"
-#include "engine/dynamics/penalty.h"
+#include "engine/dynamics/bodies/body.h"
+#include "engine/dynamics/contacts/contact.h"
+#include "engine/dynamics/islands/islands.h"
+#include "engine/dynamics/joints/joint.h"
+#include "engine/dynamics/methods/parts/penalty.h"
+#include "engine/dynamics/particles/particles.h"
 
 #include <vector>
 

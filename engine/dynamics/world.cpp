@@ -2,9 +2,9 @@
 #include "engine/dynamics/world.h"
 
 #include "engine/core/check.h"
-#include "engine/dynamics/approach.h"
+#include "engine/dynamics/bodies/mass_frame.h"
 #include "engine/dynamics/check_value.h"
-#include "engine/dynamics/mass_frame.h"
+#include "engine/dynamics/contacts/approach.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 // engine/scene/real/world_simulation.cpp.
 #pragma once
 
-#include "engine/dynamics/grab_spring.h"
+#include "engine/dynamics/joints/grab_spring.h"
 #include "engine/scene/scene_desc.h"
 
 #include <string>

@@ -1,5 +1,5 @@
 // What a body is made from: colliders, mass frame, locks, damping.
-#include "engine/dynamics/mass_frame.h"
+#include "engine/dynamics/bodies/mass_frame.h"
 #include "engine/geometry/quickhull.h"
 #include "tests/dynamics/worlds.h"
 

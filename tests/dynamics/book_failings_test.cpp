@@ -1,5 +1,5 @@
 // Where the simple methods fail that books teach, and the engine's do not: side by side.
-#include "engine/dynamics/motion.h"
+#include "engine/dynamics/bodies/motion.h"
 #include "tests/dynamics/rigid_spin.h"
 #include "tests/dynamics/worlds.h"
 

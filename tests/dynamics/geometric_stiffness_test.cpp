@@ -1,4 +1,4 @@
-#include "engine/dynamics/geometric_stiffness.h"
+#include "engine/dynamics/joints/geometric_stiffness.h"
 
 #include "tests/dynamics/worlds.h"
 

@@ -1,5 +1,5 @@
 // Ball joints in columns come to the bits of the functions for single joints, in the same order.
-#include "engine/dynamics/joint_columns.h"
+#include "engine/dynamics/joints/joint_columns.h"
 
 #include "engine/dynamics/method.h"
 #include "tests/dynamics/worlds.h"

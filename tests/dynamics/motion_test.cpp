@@ -1,4 +1,4 @@
-#include "engine/dynamics/motion.h"
+#include "engine/dynamics/bodies/motion.h"
 
 #include "engine/geometry/mass.h"
 #include "tests/dynamics/rigid_spin.h"

@@ -1,5 +1,5 @@
 // Bodies on meshes and height fields.
-#include "engine/dynamics/surface_contact.h"
+#include "engine/dynamics/contacts/surface_contact.h"
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {

@@ -3,7 +3,7 @@
 
 #include "app/render/draw_list.h"
 #include "app/render/image.h"
-#include "app/sandbox/world_draw.h"
+#include "app/sandbox/draw/world_draw.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "app/sandbox/background.h"
+#include "app/sandbox/studies/background.h"
 
 #include "tests/sandbox/hurry.h"
 

@@ -1,4 +1,4 @@
-#include "app/sandbox/clock.h"
+#include "app/sandbox/session/clock.h"
 
 #include "engine/core/check.h"
 #include "engine/core/random.h"

@@ -1,7 +1,7 @@
 // A world simple enough to know by heart, for tests of what is around a world: points in free fall.
 #pragma once
 
-#include "app/sandbox/session.h"
+#include "app/sandbox/session/session.h"
 #include "engine/core/hash.h"
 #include "engine/dynamics/method_info.h"
 

@@ -1,4 +1,4 @@
-#include "app/sandbox/framing.h"
+#include "app/sandbox/draw/framing.h"
 
 #include "engine/core/random.h"
 

@@ -1,4 +1,4 @@
-#include "app/sandbox/ghost.h"
+#include "app/sandbox/studies/ghost.h"
 
 #include "app/sandbox/sandbox.h"
 

@@ -1,5 +1,5 @@
 // States to step back to: how many are kept, in how much memory, and that each is as it was.
-#include "app/sandbox/history.h"
+#include "app/sandbox/session/history.h"
 
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/fake_simulation.h"

@@ -1,4 +1,4 @@
-#include "app/sandbox/joint_draw.h"
+#include "app/sandbox/draw/joint_draw.h"
 
 #include "app/render/palette.h"
 

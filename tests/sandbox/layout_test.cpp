@@ -1,4 +1,4 @@
-#include "app/sandbox/layout.h"
+#include "app/sandbox/panels/layout.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "app/sandbox/pace.h"
+#include "app/sandbox/session/pace.h"
 
+#include "app/sandbox/panels/widgets.h"
 #include "app/sandbox/sandbox.h"
-#include "app/sandbox/widgets.h"
 #include "tests/sandbox/fake_simulation.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "app/sandbox/plots.h"
+#include "app/sandbox/studies/plots.h"
 
-#include "app/sandbox/plot_axis.h"
-#include "app/sandbox/session.h"
+#include "app/sandbox/panels/plot_axis.h"
+#include "app/sandbox/session/session.h"
 #include "engine/core/random.h"
 #include "tests/sandbox/fake_simulation.h"
 

@@ -1,4 +1,4 @@
-#include "app/sandbox/pose_blend.h"
+#include "app/sandbox/draw/pose_blend.h"
 
 #include <cmath>
 

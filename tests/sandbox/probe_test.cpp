@@ -1,5 +1,5 @@
 // Probes in the sandbox: drawn, dragged, put back, saved.
-#include "app/sandbox/probe_draw.h"
+#include "app/sandbox/draw/probe_draw.h"
 #include "app/sandbox/sandbox.h"
 #include "engine/scene/scene_file.h"
 

@@ -1,6 +1,6 @@
-#include "app/sandbox/run_trouble.h"
+#include "app/sandbox/session/run_trouble.h"
 
-#include "app/sandbox/session.h"
+#include "app/sandbox/session/session.h"
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/fake_simulation.h"
 

@@ -1,7 +1,7 @@
 #include "app/sandbox/sandbox.h"
 
 #include "app/render/palette.h"
-#include "app/sandbox/world_draw.h"
+#include "app/sandbox/draw/world_draw.h"
 #include "tests/sandbox/fake_simulation.h"
 
 #include <algorithm>

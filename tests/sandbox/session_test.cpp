@@ -1,4 +1,4 @@
-#include "app/sandbox/session.h"
+#include "app/sandbox/session/session.h"
 
 #include "engine/dynamics/method_info.h"
 #include "engine/scene/recording.h"

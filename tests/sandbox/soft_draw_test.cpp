@@ -1,9 +1,9 @@
 // Particles, springs and cloth as drawn, picked and dragged.
-#include "app/sandbox/soft_draw.h"
+#include "app/sandbox/draw/soft_draw.h"
 
-#include "app/sandbox/framing.h"
+#include "app/sandbox/draw/framing.h"
+#include "app/sandbox/draw/world_draw.h"
 #include "app/sandbox/sandbox.h"
-#include "app/sandbox/world_draw.h"
 #include "engine/scene/scene_file.h"
 
 #include <algorithm>

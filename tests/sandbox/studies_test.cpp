@@ -1,8 +1,8 @@
-#include "app/sandbox/studies.h"
+#include "app/sandbox/studies/studies.h"
 
 #include "app/render/context.h"
+#include "app/sandbox/panels/ui.h"
 #include "app/sandbox/sandbox.h"
-#include "app/sandbox/ui.h"
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/hurry.h"
 

@@ -1,6 +1,6 @@
 #include "app/sandbox/tools.h"
 
-#include "app/sandbox/world_draw.h"
+#include "app/sandbox/draw/world_draw.h"
 #include "tests/sandbox/fake_simulation.h"
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 #include "app/sandbox/ui_snapshot.h"
 
 #include "app/render/context.h"
-#include "app/sandbox/layout.h"
-#include "app/sandbox/scene_catalog.h"
-#include "app/sandbox/theme.h"
-#include "app/sandbox/widgets.h"
+#include "app/sandbox/panels/layout.h"
+#include "app/sandbox/panels/theme.h"
+#include "app/sandbox/panels/widgets.h"
+#include "app/sandbox/session/scene_catalog.h"
 #include "engine/scene/scene_file.h"
 #include "tests/sandbox/fake_simulation.h"
 

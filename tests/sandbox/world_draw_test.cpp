@@ -1,4 +1,4 @@
-#include "app/sandbox/world_draw.h"
+#include "app/sandbox/draw/world_draw.h"
 
 #include "app/render/palette.h"
 #include "engine/scene/scene_file.h"

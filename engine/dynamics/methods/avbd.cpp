@@ -16,9 +16,9 @@
 // paper has none of, are TGS Soft's; spin is gyroscopic by the implicit rule that all methods
 // share.
 #include "engine/core/renew.h"
+#include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
-#include "engine/dynamics/motion.h"
-#include "engine/dynamics/pose_correction.h"
+#include "engine/dynamics/methods/parts/pose_correction.h"
 
 #include <algorithm>
 

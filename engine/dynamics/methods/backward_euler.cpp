@@ -7,8 +7,8 @@
 // would be soft there, and is taken as 0, so that the matrix stays positive (Choi and Ko 2002,
 // "Stable but Responsive Cloth", section 4). An attractor pulls the harder the nearer it is, which
 // is a soft spring, too; of that as much is taken as leaves the matrix half of the mass.
+#include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
-#include "engine/dynamics/motion.h"
 
 #include <algorithm>
 #include <array>

@@ -8,8 +8,8 @@
 //
 // Contacts are those that overlap when the step begins. Where the book takes the lesser restitution
 // of two bodies, a pair has that of all methods here, and free spin is theirs, too.
+#include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
-#include "engine/dynamics/motion.h"
 
 #include <algorithm>
 #include <array>

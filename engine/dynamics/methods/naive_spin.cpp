@@ -2,7 +2,7 @@
 // of inertia were the same. Euler's equations (Landau, Lifshitz 1976, "Mechanics", eq. (36.5))
 // without their gyroscopic term: angular momentum and energy are those of another motion, however
 // short the step.
-#include "engine/dynamics/free_substeps.h"
+#include "engine/dynamics/methods/parts/free_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 

@@ -5,7 +5,7 @@
 // gradient, and what the passes before did is repeated as far as it keeps shrinking. So an error
 // that Gauss-Seidel hands on from contact to contact, and that is cut by little a pass, goes in
 // about the square root of the passes. All else is as in sequential_impulses, whose pass it is.
-#include "engine/dynamics/impulse_substeps.h"
+#include "engine/dynamics/methods/parts/impulse_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 

@@ -1,8 +1,8 @@
 // The classical fourth-order Runge-Kutta method for free bodies, particles and springs (Kutta 1901;
 // Hairer, Norsett, Wanner 1993, "Solving Ordinary Differential Equations I", table II.1.2), on
 // position, velocity, orientation and spin.
+#include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
-#include "engine/dynamics/motion.h"
 
 #include <array>
 

@@ -5,7 +5,7 @@
 // That, impacts that are propagated in sweeps, the implicit gyroscopic term and the order of passes
 // are ours: a contact's points are taken from the first to the last and back in turns. Always from
 // the first, each pass leaves the last one too much, stacks sway by it, and eight cubes fall.
-#include "engine/dynamics/impulse_substeps.h"
+#include "engine/dynamics/methods/parts/impulse_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 

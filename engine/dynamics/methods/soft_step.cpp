@@ -12,9 +12,9 @@
 // something, as long as the substep can follow them, and again after the contacts of their bodies;
 // contacts of what rests are kept as they were found (kept_travel), those of what moves fast for
 // its size are found where it will be (looks_ahead), and all are solved in columns.
-#include "engine/dynamics/joint_groups.h"
+#include "engine/dynamics/bodies/motion.h"
+#include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/method.h"
-#include "engine/dynamics/motion.h"
 
 #include <algorithm>
 

@@ -3,7 +3,7 @@
 // for Rigid Body Dynamics in the Solar System"; Hairer, Lubich, Wanner 2006, "Geometric Numerical
 // Integration", sec. VII.5.3). Second order and symplectic: energy errs by the square of the step
 // and stays there; the angular momentum in the world is kept but for rounding. Explicit.
-#include "engine/dynamics/free_substeps.h"
+#include "engine/dynamics/methods/parts/free_substeps.h"
 
 #include <array>
 #include <glm/gtc/quaternion.hpp>

@@ -10,9 +10,9 @@
 // friction's bound is an impulse here (the paper's mixes it with a speed; Catto 2024, "Solver2D",
 // notes the same), restitution_threshold stands for the paper's 2 |g| h, spin is gyroscopic by the
 // implicit rule that all methods share.
+#include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
-#include "engine/dynamics/motion.h"
-#include "engine/dynamics/pose_correction.h"
+#include "engine/dynamics/methods/parts/pose_correction.h"
 
 #include <algorithm>
 #include <numbers>

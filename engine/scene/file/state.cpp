@@ -1,4 +1,4 @@
-#include "engine/dynamics/grab_spring.h"
+#include "engine/dynamics/joints/grab_spring.h"
 #include "engine/scene/file/particle.h"
 #include "engine/scene/file/reading.h"
 

@@ -1,7 +1,7 @@
 // A body of a scene as the world wants it.
 #pragma once
 
-#include "engine/dynamics/body.h"
+#include "engine/dynamics/bodies/body.h"
 #include "engine/scene/scene_desc.h"
 
 namespace plumb::inline PLUMB_PRECISION {

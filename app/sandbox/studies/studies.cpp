@@ -1,0 +1,97 @@
+#include "app/sandbox/studies/studies.h"
+
+#include "engine/scene/file/change.h"
+#include "engine/scene/scene_file.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace plumb {
+
+namespace {
+
+// Few enough that a first answer is there soon; the command line takes more.
+constexpr int repeats = 3;
+
+template <typename Wanted>
+void give_running(GivenSettings &settings, const Simulation &simulation, const Wanted &wanted) {
+    for (const SettingNumber number : setting_numbers())
+        if (wanted(number.setting()))
+            settings.give(number, setting_value(simulation.settings(), number));
+}
+
+} // namespace
+
+void start_chart(ChartStudy &study, const Session &session, const std::string &sweeps) {
+    const Simulation &simulation = *session.simulation();
+    ChartOptions options;
+    std::istringstream words(sweeps);
+    for (std::string word; words >> word;)
+        add_sweep(options, word);
+    static_cast<void>(sweep_points(options.sweep));
+    options.repeats = repeats;
+    options.timed = 1;
+    options.base = session.options();
+    options.base.method.clear();
+    options.base.precision = simulation.precision();
+    give_running(options.base.settings, simulation, [](const SettingRow &row) {
+        return row.group == SettingGroup::world || row.member == SettingMember(&StepSettings::dt);
+    });
+    study.start([scene = session.scene(), options](ChartStudy::Desk &desk) {
+        ChartOptions mine = options;
+        mine.stop = [&] { return desk.stopped(); };
+        mine.progress = [&](double done, const std::string &) { desk.set_done(done); };
+        desk.publish(
+            chart_scene(scene, mine, [&](const SceneChart &chart) { desk.publish(chart); }));
+    });
+}
+
+void start_map(MapStudy &study, const Session &session, const std::string &x,
+               const std::string &y) {
+    const Simulation &simulation = *session.simulation();
+    const MapAxis along_x = parse_map_axis(x);
+    const MapAxis along_y = parse_map_axis(y);
+    if (along_x.name == along_y.name)
+        throw std::invalid_argument(along_x.name + " is on both axes");
+    MapOptions options;
+    options.methods = {std::string(simulation.method().name)};
+    options.base.precision = simulation.precision();
+    give_running(options.base.settings, simulation,
+                 [&](const SettingRow &row) { return reads(simulation.method(), row); });
+    study.start([text = session.scene_text(), along_x, along_y, options,
+                 settings = simulation.settings()](MapStudy::Desk &desk) {
+        MapOptions mine = options;
+        mine.stop = [&] { return desk.stopped(); };
+        mine.progress = [&](double done, const std::string &) { desk.set_done(done); };
+        mine.changed = [&](const StabilityMap &map) { desk.publish({map, settings, text}); };
+        desk.publish({map_scene(text, along_x, along_y, mine), settings, text});
+    });
+}
+
+RunChoice choice_of(const ChartRun &run) {
+    return {std::string(run.resolved.method->name), run.resolved.settings, {}, {}};
+}
+
+RunChoice choice_of(const MethodStudy &study, double x, double y) {
+    const StabilityMap &map = study.map;
+    RunChoice choice{std::string(map.methods.front().method->name), study.settings, {}, study.text};
+    bool any_changed = false;
+    for (const auto &[axis, value] : {std::pair(&map.x, x), std::pair(&map.y, y)})
+        if (axis->setting) {
+            set_setting(choice.settings, *axis->setting, value);
+        } else {
+            std::erase_if(choice.text.changed, [name = axis->name](const ChangedNumber &number) {
+                return number.path == name;
+            });
+            choice.text.changed.push_back({axis->name, value});
+            any_changed = true;
+        }
+    if (any_changed) // the map was made of it, so that it is a scene
+        choice.scene =
+            parse_scene(choice.text.text, choice.text.path.string(), {}, choice.text.changed).scene;
+    return choice;
+}
+
+} // namespace plumb

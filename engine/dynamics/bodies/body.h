@@ -1,0 +1,170 @@
+// Bodies: what they are made from, what stays the same while they live, and how they move.
+#pragma once
+
+#include "engine/dynamics/islands/islands.h"
+#include "engine/dynamics/kinds.h"
+#include "engine/geometry/hull_mesh.h"
+#include "engine/geometry/shapes.h"
+#include "engine/space/triangle_surface.h"
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// Stays valid until the body is removed; a removed body's id never names another body.
+struct BodyId {
+    std::uint32_t index = UINT32_MAX;
+    std::uint32_t generation = 0;
+    friend auto operator<=>(const BodyId &, const BodyId &) = default;
+};
+
+// Friction of a pair: the geometric mean; restitution of a pair: the larger.
+struct Material {
+    Real friction = Real(0.5);  // Coulomb, >= 0
+    Real restitution = Real(0); // Newton, 0..1
+};
+
+// Two colliders collide unless one of them ignores the other's layer.
+struct Filter {
+    std::uint32_t layer = 0;   // 0..31
+    std::uint32_t ignores = 0; // bit n: layer n
+    friend bool operator==(const Filter &, const Filter &) = default;
+};
+inline bool may_collide(const Filter &a, const Filter &b) {
+    return (a.ignores >> b.layer & 1U) == 0 && (b.ignores >> a.layer & 1U) == 0;
+}
+
+// One of the shapes of a body: a solid, or a surface of triangles.
+struct ColliderDef {
+    Shape shape = Sphere{Vec3{Real(0)}, Real(0.5)}; // in the body's frame
+    std::shared_ptr<const HullMesh> hull;           // keeps the mesh of a ConvexHull
+    std::shared_ptr<const TriangleSurface>
+        surface;            // instead of `shape`; bodies that are not dynamic
+    Transform surface_pose; // in the body's frame
+    Material material;
+    Filter filter;
+    bool sensor = false;    // is touched, pushes nothing
+    Real density = Real(0); // kg/m^3; 0: as heavy for its volume as the others
+};
+
+// What a body is made from. A dynamic body's mass is `mass`; without one it is that of its
+// colliders' densities. Centre of mass and moments are those of the colliders unless given.
+struct BodyDef {
+    BodyKind kind = BodyKind::dynamic;
+    std::vector<ColliderDef> colliders; // at least one; at most 65,535
+    std::optional<Real> mass;           // kg, > 0; dynamic bodies only
+    std::optional<Vec3> center_of_mass; // in the body's frame
+    std::optional<Vec3> inertia; // kg m^2, about the body's axes through the centre of mass; > 0
+    Transform pose;              // of the body's frame
+    std::optional<Transform> mass_pose; // instead of `pose`, to the last bit: centre of mass and
+                                        // principal axes, as of a world that is continued
+    Vec3 velocity{Real(0)};             // of the centre of mass, m/s
+    Vec3 angular_velocity{Real(0)};     // rad/s, world
+    // Of the world's axes: which translations, then which rotations, never change.
+    std::array<bool, 6> locked{};
+    Real gravity_scale = Real(1);
+    Real linear_damping = Real(0);  // 1/s, >= 0: v' = -c v
+    Real angular_damping = Real(0); // 1/s, likewise
+};
+
+// One collider as it is in the model: its shape placed in the body's mass frame.
+struct Collider {
+    Shape shape;
+    std::shared_ptr<const HullMesh> hull;
+    std::shared_ptr<const TriangleSurface> surface;
+    Transform surface_pose;
+    Material material;
+    Filter filter;
+    bool sensor = false;
+    // The part of the surface's distance that turning the body does not change: the radius of a
+    // sphere or capsule.
+    Real rounding = Real(0);
+    Real extent = Real(0);     // how far turning the body moves its surface at most, a radian (m)
+    Real half_width = Real(0); // half of its least width (m); infinite for surfaces
+    std::uint32_t body = UINT32_MAX; // none: a hole
+    std::uint16_t child = 0;         // which of the body's colliders
+
+    bool is_half_space() const { return !surface && std::holds_alternative<HalfSpace>(shape); }
+};
+
+inline constexpr std::uint32_t no_body = UINT32_MAX;
+
+// What stays the same while a body lives.
+struct Body {
+    BodyKind kind = BodyKind::static_body;
+    bool alive = false;
+    std::uint32_t generation = 0;
+    std::uint32_t first_collider = 0;
+    std::uint32_t collider_count = 0;
+    std::uint32_t collider_room = 0; // of holes behind the first that a successor may use
+    // The centre of mass and the principal axes, in the body's frame. At identity for bodies that
+    // are not dynamic.
+    Transform mass_frame;
+    bool has_mass_frame = false; // it is not the identity
+    Real mass = Real(0);         // kg; 0 for static and kinematic
+    Vec3 inertia{Real(0)};       // kg m^2, principal; 0 for static and kinematic
+    Vec3 inv_inertia{Real(0)};   // 1 / inertia, or 0
+    std::array<bool, 6> locked{};
+    bool has_locks = false;
+    Real gravity_scale = Real(1);
+    Real linear_damping = Real(0);
+    Real angular_damping = Real(0);
+};
+
+// How a body moves: the state of the world, one for each body, in the same order.
+struct Motion {
+    Vec3 position{Real(0)};            // of the centre of mass
+    Quat rotation = identity_rotation; // of the principal axes
+    Vec3 velocity{Real(0)};            // of the centre of mass
+    Vec3 angular_velocity{Real(0)};    // world
+
+    // Of a point at r from the centre of mass (world).
+    Vec3 velocity_at(const Vec3 &r) const { return velocity + glm::cross(angular_velocity, r); }
+};
+
+// Where a collider's surface is in the world.
+inline Transform surface_pose(const Collider &collider, const Motion &motion) {
+    return {motion.position + motion.rotation * collider.surface_pose.position,
+            motion.rotation * collider.surface_pose.rotation};
+}
+
+// A body as the methods work on it: its motion, and what follows from it. In single precision two
+// cache lines.
+struct alignas(64) SolverBody : Motion {
+    Vec3 inv_mass{Real(0)};    // along the world's axes, which differ where one is locked
+    Mat3 inv_inertia{Real(0)}; // world; follows the rotation
+    Vec3 moved{Real(0)};       // since the step began (m)
+    Vec3 turned{Real(0)};      // likewise, as a rotation vector (rad, world)
+    bool has_locked_translation = false;
+
+    // `impulse` (N s) acts at `r` from the centre of mass, all in world axes.
+    void apply_impulse(const Vec3 &impulse, const Vec3 &r) {
+        velocity += inv_mass * impulse;
+        angular_velocity += inv_inertia * glm::cross(r, impulse);
+    }
+    void apply_angular_impulse(const Vec3 &impulse) { angular_velocity += inv_inertia * impulse; }
+    // 1 / mass along a unit vector.
+    Real inv_mass_along(const Vec3 &unit) const {
+        return has_locked_translation ? glm::dot(unit, inv_mass * unit) : inv_mass.x;
+    }
+};
+
+// What moved and turned a body since its step began and its pose, too coarse for it, has not (Kahan
+// 1965): far from the origin, or in many substeps, it would else stand still at a speed that its
+// contacts see, and creep or never rest.
+struct RoundedOff {
+    Vec3 position{Real(0)};
+    Quat rotation{Real(0), Real(0), Real(0), Real(0)};
+};
+
+// Such a body is nowhere, and collides with nothing.
+inline bool has_diverged(const Motion &motion) {
+    return !is_finite(motion.position) || !is_unit(glm::dot(motion.rotation, motion.rotation));
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

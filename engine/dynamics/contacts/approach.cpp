@@ -1,0 +1,332 @@
+#include "engine/dynamics/contacts/approach.h"
+
+#include "engine/dynamics/bodies/motion.h"
+#include "engine/geometry/face_gap.h"
+#include "engine/geometry/gjk.h"
+#include "engine/geometry/half_space.h"
+#include "engine/geometry/hull_queries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// How far apart two solids are, and along which unit normal from A to B; a
+// distance of 0 has none.
+struct Gap {
+    Real distance = Real(0);
+    Vec3 normal{Real(0)};
+};
+
+Transform pose_of(const Motion &motion) {
+    return {motion.position, motion.rotation};
+}
+
+// `guess`: a direction from A to B to look along first, of any length; zero: from middle to middle.
+template <typename A, typename B> ClosestPoints closest(const A &a, const B &b, const Vec3 &guess) {
+    if constexpr (requires {
+                      core_of(a, Vec3{});
+                      core_of(b, Vec3{});
+                  }) {
+        const Vec3 origin = place_of(a);
+        const auto core_a = core_of(a, origin);
+        const auto core_b = core_of(b, origin);
+        if constexpr (HaveFaceGap<decltype(core_a), decltype(core_b)>)
+            if (guess != Vec3{Real(0)}) {
+                const auto known =
+                    face_gap(core_a, core_b, guess, std::numeric_limits<Real>::infinity());
+                if (known && known->separation > Real(0))
+                    return {known->separation, origin + known->on_a, origin + known->on_b,
+                            known->normal};
+            }
+        if constexpr (!HasNearestPoints<decltype(core_a), decltype(core_b)>)
+            return closest_points(
+                gjk(core_a, core_b,
+                    guess == Vec3{Real(0)} ? core_b.middle() - core_a.middle() : guess,
+                    std::numeric_limits<Real>::infinity()),
+                core_a.radius, core_b.radius, origin);
+    }
+    return distance(a, b);
+}
+
+template <typename A, typename B> Gap gap_between(const A &a, const B &b, const Vec3 &guess) {
+    if constexpr (std::same_as<A, HalfSpace> && std::same_as<B, HalfSpace>) {
+        return {std::numeric_limits<Real>::infinity(), Vec3{Real(0), Real(1), Real(0)}};
+    } else {
+        const ClosestPoints found = closest(a, b, guess);
+        return {found.distance, found.normal};
+    }
+}
+
+Gap gap_between(const Shape &a, const Shape &b, const Vec3 &guess) {
+    return std::visit(
+        [&](const auto &first, const auto &second) { return gap_between(first, second, guess); }, a,
+        b);
+}
+
+// How far the core of a shape reaches along a vector of any length, from the
+// origin of its frame.
+Real core_reach(const Shape &local, const Vec3 &along) {
+    return std::visit(
+        [&]<typename Solid>(const Solid &solid) -> Real {
+            if constexpr (std::same_as<Solid, Sphere>)
+                return glm::dot(solid.center, along);
+            else if constexpr (std::same_as<Solid, Box>)
+                return glm::dot(solid.center, along) +
+                       glm::dot(solid.half_extents,
+                                glm::abs(glm::conjugate(solid.rotation) * along));
+            else if constexpr (std::same_as<Solid, Capsule>)
+                return std::max(glm::dot(solid.a, along), glm::dot(solid.b, along));
+            else if constexpr (std::same_as<Solid, Cylinder>) {
+                const Vec3 axis = solid.b - solid.a;
+                const Vec3 outward = along - (glm::dot(axis, along) / glm::dot(axis, axis)) * axis;
+                return std::max(glm::dot(solid.a, along), glm::dot(solid.b, along)) +
+                       solid.radius * glm::length(outward);
+            } else if constexpr (std::same_as<Solid, ConvexHull>) {
+                const Vec3 inside = glm::conjugate(solid.rotation) * along;
+                const std::uint32_t farthest = support_vertex(*solid.mesh, inside);
+                return glm::dot(solid.position, along) +
+                       glm::dot(solid.mesh->vertices[farthest], inside);
+            } else {
+                return std::numeric_limits<Real>::infinity();
+            }
+        },
+        local);
+}
+
+Real core_reach(const Triangle &local, const Vec3 &along) {
+    return std::max({glm::dot(local.a, along), glm::dot(local.b, along), glm::dot(local.c, along)});
+}
+
+Real rounding_of(const Shape &shape) {
+    if (const auto *sphere = std::get_if<Sphere>(&shape))
+        return sphere->radius;
+    const auto *capsule = std::get_if<Capsule>(&shape);
+    return capsule != nullptr ? capsule->radius : Real(0);
+}
+
+Real rounding_of(const Triangle & /*triangle*/) {
+    return Real(0);
+}
+
+// How far a turning solid reaches along a unit vector n, to first order in its
+// turn, and what that leaves out at the most: a point p of its core comes to n
+// . (p + t w x p) = (n + t n x w) . p, and at most (w t)^2 / 2 of its distance
+// from the middle farther.
+template <typename Solid> struct TurningReach {
+    const Solid &solid;
+    Vec3 along;   // n, in the solid's frame
+    Vec3 turning; // n x w, likewise
+    Real rounding;
+    Real bend;
+
+    TurningReach(const Solid &what, const Motion &motion, Real extent, const Vec3 &n, Real t)
+        : solid(what), rounding(rounding_of(what)),
+          bend(Real(0.5) * glm::dot(motion.angular_velocity, motion.angular_velocity) * extent) {
+        const Quat back = glm::conjugate(turned(motion.rotation, motion.angular_velocity, t));
+        along = back * n;
+        turning = back * glm::cross(n, motion.angular_velocity);
+    }
+    Real operator()(Real later) const {
+        return core_reach(solid, along + later * turning) + rounding + bend * later * later;
+    }
+};
+
+// For how long two solids stay apart along the normal of their gap at t, at the
+// least: what the bound above leaves of their distance is concave in time, so a
+// chord of it never says too much. `left` when they do not come as near as
+// `least` until then; `stays` is set when they stay `enough` apart as well.
+template <typename B>
+Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real extent_a,
+                const B &b, const Motion &motion_b, Real extent_b, Real t, Real left, Real least,
+                Real enough, bool &stays) {
+    const Vec3 velocity = motion_b.velocity - motion_a.velocity;
+    const Vec3 between = (motion_b.position - motion_a.position) + t * velocity;
+    const TurningReach reach_a(a, motion_a, extent_a, normal, t);
+    const TurningReach reach_b(b, motion_b, extent_b, -normal, t);
+    const auto apart = [&](Real later) {
+        return glm::dot(between + later * velocity, normal) - reach_a(later) - reach_b(later);
+    };
+    const Real at_end = apart(left);
+    stays = at_end >= enough;
+    if (at_end > least)
+        return left;
+    Real time = Real(0);
+    Real now = apart(Real(0));
+    constexpr int most_chords = 5;
+    for (int i = 0; i < most_chords && now > Real(2) * least && std::isfinite(at_end); ++i) {
+        time += (now - least) / (now - at_end) * (left - time);
+        now = apart(time);
+    }
+    return time;
+}
+
+// The pair on its way. `gap_after(t, guess)` gives the gap after t seconds, looked for along the
+// guess first;
+// `apart_for(n, t, left, least, stays)` is time_apart.
+template <typename GapAfter, typename ApartFor>
+Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Motion &a,
+                 Real extent_a, const Motion &b, Real extent_b, Real duration, Real margin,
+                 Vec3 guess) {
+    const Vec3 velocity = b.velocity - a.velocity;
+    const auto straight = [&](const Gap &gap) { return -glm::dot(velocity, gap.normal); };
+    // A point of a turning body at distance r moves along n with at most |n x w|
+    // r.
+    const auto turning = [&](const Gap &gap) {
+        return glm::length(glm::cross(gap.normal, a.angular_velocity)) * extent_a +
+               glm::length(glm::cross(gap.normal, b.angular_velocity)) * extent_b;
+    };
+    constexpr int step_limit = 32;
+    constexpr Real near = Real(1e-3); // of the margin: as good as a touch
+    constexpr Real close = Real(0.05);
+    Real gap_before = Real(0);
+    Approach best{Real(0), std::numeric_limits<Real>::infinity()};
+    Real t = Real(0);
+    Real before = Real(0);        // the time of the step before,
+    bool was_approaching = false; // and whether they came nearer then
+    for (int step = 0; step < step_limit; ++step) {
+        const Gap gap = gap_after(t, guess);
+        guess = gap.normal;
+        if (gap.distance <= near * margin)
+            return {t, Real(0)};
+        // Hardly nearer than a step ago: they slide or roll along each other, and the bounds, which
+        // know of the whole body's turn, would creep to the touch.
+        if (step > 0 && gap.distance <= close * margin && gap.distance > Real(0.5) * gap_before)
+            return {t, Real(0)};
+        gap_before = gap.distance;
+        const Real closing = straight(gap);
+        if (gap.distance < best.distance)
+            best = {t, gap.distance};
+        if (was_approaching && !(closing > Real(0))) {
+            // The closest point lies between: there the distance stops falling.
+            Real low = before;
+            Real high = t;
+            // So near that what is left of the approach does not count over the whole
+            // time.
+            constexpr int most_cuts = 30;
+            for (int cut = 0; cut < most_cuts; ++cut) {
+                const Real middle = Real(0.5) * (low + high);
+                const Gap between = gap_after(middle, guess);
+                if (between.distance < best.distance)
+                    best = {middle, between.distance};
+                if (between.distance <= near * margin)
+                    return {middle, Real(0)};
+                const Real rest = straight(between);
+                if (std::abs(rest) * duration < Real(0.1) * between.distance)
+                    return {middle, between.distance};
+                (rest > Real(0) ? low : high) = middle;
+            }
+        }
+        const Real fastest = closing + turning(gap);
+        const Real left = duration - t;
+        if (!(left > Real(0)) || !(fastest > Real(0)) || gap.distance - fastest * left >= margin)
+            return best;
+        was_approaching = closing > Real(0);
+        before = t;
+        bool stays = false;
+        // Out of the margin, or about as far apart as they are now all along this normal: nothing
+        // that is made of it would push.
+        const Real enough = std::min(margin, Real(0.5) * gap.distance);
+        const Real apart = apart_for(gap.normal, t, left, Real(0.5) * near * margin, enough, stays);
+        if (stays)
+            return best;
+        t = std::min(t + std::max(apart, gap.distance / fastest), duration);
+    }
+    return best.distance <= margin ? Approach{best.time, Real(0)} : best;
+}
+
+} // namespace
+
+Motion ahead(const Motion &motion, Real t) {
+    return {motion.position + t * motion.velocity,
+            turned(motion.rotation, motion.angular_velocity, t), motion.velocity,
+            motion.angular_velocity};
+}
+
+Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
+                  const Vec3 &guess) {
+    const auto gap_after = [&](Real t, const Vec3 &along) {
+        return gap_between(placed(*a.shape, pose_of(ahead(a.motion, t))),
+                           placed(*b.shape, pose_of(ahead(b.motion, t))), along);
+    };
+    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, Real enough,
+                               bool &stays) {
+        return time_apart(normal, *a.shape, a.motion, a.extent, *b.shape, b.motion, b.extent, t,
+                          left, least, enough, stays);
+    };
+    return advance(gap_after, apart_for, a.motion, a.extent, b.motion, b.extent, duration, margin,
+                   guess);
+}
+
+Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
+                  Real duration, Real margin, const Vec3 &guess) {
+    const auto gap_after = [&](Real t, const Vec3 &along) {
+        const Triangle triangle = placed(b, pose_of(ahead(motion_b, t)));
+        return std::visit([&](const auto &solid) { return gap_between(solid, triangle, along); },
+                          placed(*a.shape, pose_of(ahead(a.motion, t))));
+    };
+    const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, Real enough,
+                               bool &stays) {
+        return time_apart(normal, *a.shape, a.motion, a.extent, b, motion_b, extent_b, t, left,
+                          least, enough, stays);
+    };
+    return advance(gap_after, apart_for, a.motion, a.extent, motion_b, extent_b, duration, margin,
+                   guess);
+}
+
+Real core_extent(const Shape &local) {
+    return std::visit(
+        []<typename Solid>(const Solid &solid) -> Real {
+            if constexpr (std::same_as<Solid, Sphere>)
+                return glm::length(solid.center);
+            else if constexpr (std::same_as<Solid, Box>)
+                return glm::length(solid.center) + glm::length(solid.half_extents);
+            else if constexpr (std::same_as<Solid, Capsule>)
+                return std::max(glm::length(solid.a), glm::length(solid.b));
+            else if constexpr (std::same_as<Solid, Cylinder>)
+                return std::max(glm::length(solid.a), glm::length(solid.b)) + solid.radius;
+            else if constexpr (std::same_as<Solid, ConvexHull>) {
+                Real farthest = Real(0);
+                for (const Vec3 &vertex : solid.mesh->vertices)
+                    farthest = std::max(farthest, glm::dot(vertex, vertex));
+                return glm::length(solid.position) + std::sqrt(farthest);
+            } else {
+                return Real(0);
+            }
+        },
+        local);
+}
+
+Real half_width(const Shape &local) {
+    return std::visit(
+        []<typename Solid>(const Solid &solid) -> Real {
+            if constexpr (std::same_as<Solid, Sphere> || std::same_as<Solid, Capsule>)
+                return solid.radius;
+            else if constexpr (std::same_as<Solid, Box>)
+                return std::min({solid.half_extents.x, solid.half_extents.y, solid.half_extents.z});
+            else if constexpr (std::same_as<Solid, Cylinder>)
+                return std::min(solid.radius, Real(0.5) * glm::distance(solid.a, solid.b));
+            else if constexpr (std::same_as<Solid, ConvexHull>) {
+                // From the face planes: the least distance across one of them.
+                Real least = std::numeric_limits<Real>::infinity();
+                for (const Plane &plane : solid.mesh->planes) {
+                    Real lowest = plane.offset;
+                    for (const Vec3 &vertex : solid.mesh->vertices)
+                        lowest = std::min(lowest, glm::dot(plane.normal, vertex));
+                    least = std::min(least, plane.offset - lowest);
+                }
+                return Real(0.5) * least;
+            } else {
+                return std::numeric_limits<Real>::infinity();
+            }
+        },
+        local);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

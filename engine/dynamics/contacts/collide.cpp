@@ -1,0 +1,362 @@
+// The narrow phase: where the candidates touch, and what is remembered of it.
+#include "engine/dynamics/contacts/surface_contact.h"
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// Of the width of the smaller body: the farthest that speculative_distance and kept_travel go: a
+// margin that is small for a crate may be more than the thickness of a match.
+constexpr Real speculative_share = Real(0.2);
+constexpr Real kept_share = Real(0.05);
+
+// What the solver remembered, point by point of the same features. What points bore that are gone
+// is shared out among those that are new, so that a rocking box keeps its load while its corners
+// pass from one edge to the next.
+void carry_over(std::span<const PointMemory> from, Contact &to) {
+    std::array<bool, 4> found{};
+    Vec3 lost{Real(0)};
+    int fresh = to.manifold.count;
+    for (const PointMemory &old : from) {
+        bool gone = true;
+        for (int k = 0; k < to.manifold.count && gone; ++k) {
+            const auto index = static_cast<std::size_t>(k);
+            if (found[index] || old.feature != to.manifold.points[index].feature)
+                continue;
+            to.impulses[index] = old.impulse;
+            found[index] = true;
+            gone = false;
+            --fresh;
+        }
+        if (gone)
+            lost += old.impulse;
+    }
+    if (fresh == 0)
+        return;
+    const Vec3 share = lost / static_cast<Real>(fresh);
+    for (int k = 0; k < to.manifold.count; ++k)
+        if (!found[static_cast<std::size_t>(k)])
+            to.impulses[static_cast<std::size_t>(k)] = share;
+}
+
+const ContactMemory *find_memory(const State &state, const ContactKey &key) {
+    const auto found = std::ranges::lower_bound(state.contacts, key, {}, &ContactMemory::key);
+    return found != state.contacts.end() && found->key == key ? &*found : nullptr;
+}
+
+// The angle between two rotations, for small ones (rad).
+Real turn_between(const Quat &from, const Quat &to) {
+    const Quat turn = glm::conjugate(from) * to;
+    return Real(2) * glm::length(Vec3{turn.x, turn.y, turn.z});
+}
+
+ContactOrigin origin_of(const Vec3 &normal, const Motion &a, const Motion &b) {
+    return {normal, b.position - a.position, a.rotation, b.rotation};
+}
+
+bool touches(const Manifold &manifold) {
+    for (int k = 0; k < manifold.count; ++k)
+        if (manifold.points[static_cast<std::size_t>(k)].separation <= Real(0))
+            return true;
+    return false;
+}
+
+// How far two solids go against each other in a step before it matters that they turn around each
+// other on the way: their distance then changes by way^2 / (2 width).
+Real predicted_from(const Collider &a, const Collider &b) {
+    return Real(0.02) * std::min(a.half_width, b.half_width);
+}
+
+} // namespace
+
+// How far apart the two may be and still meet within the step although they do not move: what
+// gravity adds, and a little. Two bodies that feel the same gravity fall together.
+Real World::contact_reach(const Candidate &candidate) const {
+    const auto dt = static_cast<Real>(settings_.dt);
+    const Vec3 falling =
+        scratch_.reach[candidate.collider_b].pull - scratch_.reach[candidate.collider_a].pull;
+    return std::min(static_cast<Real>(settings_.speculative_distance),
+                    speculative_share * moving_width(candidate)) +
+           glm::length(falling) * dt * dt;
+}
+
+// The least width of what moves by forces of the two.
+Real World::moving_width(const Candidate &candidate) const {
+    Real width = std::numeric_limits<Real>::infinity();
+    for (const auto &[body, collider] : {std::pair{candidate.key.a, candidate.collider_a},
+                                         std::pair{candidate.key.b, candidate.collider_b}})
+        if (model_->bodies[body].kind == BodyKind::dynamic)
+            width = std::min(width, 2 * model_->colliders[collider].half_width);
+    return width;
+}
+
+// How far apart the two may be and still meet within the step; NaN when they are about to diverge.
+Real World::contact_margin(const Candidate &candidate) const {
+    const ColliderReach &a = scratch_.reach[candidate.collider_a];
+    const ColliderReach &b = scratch_.reach[candidate.collider_b];
+    return contact_reach(candidate) +
+           glm::length(b.velocity - a.velocity) * static_cast<Real>(settings_.dt) + a.turning +
+           b.turning;
+}
+
+// Where between the two surfaces a contact acts: -1 on a's, 1 on b's, 0 midway. On that of a body
+// which moves by forces, where the other does not, so that a ball rolls on its own radius though
+// it sinks in a little.
+Real World::acting_side(const ContactKey &key) const {
+    const bool a_moves = model_->bodies[key.a].kind == BodyKind::dynamic;
+    const bool b_moves = model_->bodies[key.b].kind == BodyKind::dynamic;
+    return static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
+}
+
+namespace {
+
+// The part of a surface's distance along a normal that rolling on it does not change: the radius of
+// a ball or capsule. Of a cylinder on its side, or on a rim near that: from its axis, along the
+// normal. What is left of the way to the middle lies on the axis then, and rolling does not move
+// it; a coin that leans would else sink in as it rolls, be pushed out, and gain energy.
+Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal) {
+    const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
+    if (cylinder == nullptr || collider.surface)
+        return collider.rounding;
+    constexpr Real leaning = Real(0.2);
+    const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
+    return std::abs(sine) <= leaning ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
+                                     : Real(0);
+}
+
+// Once its origin is known.
+void set_rounding(Contact &contact, const Model &model) {
+    const ContactOrigin &origin = contact.origin;
+    contact.rounding_a =
+        rounding_along(model.colliders[contact.collider_a], origin.rotation_a, origin.normal);
+    contact.rounding_b =
+        rounding_along(model.colliders[contact.collider_b], origin.rotation_b, origin.normal);
+}
+
+} // namespace
+
+// A contact without its manifold.
+Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle,
+                              std::vector<Contact> &out) const {
+    Contact &contact = out.emplace_back();
+    contact.key = candidate.key;
+    contact.key.triangle = triangle;
+    contact.collider_a = candidate.collider_a;
+    contact.collider_b = candidate.collider_b;
+    const Collider &a = model_->colliders[candidate.collider_a];
+    const Collider &b = model_->colliders[candidate.collider_b];
+    contact.friction = std::sqrt(a.material.friction * b.material.friction);
+    contact.restitution = std::max(a.material.restitution, b.material.restitution);
+    contact.sensor = a.sensor || b.sensor;
+    return contact;
+}
+
+// Of a point of the manifold, which was found with the bodies so.
+void World::set_anchor(Contact &contact, std::size_t k, const Motion &a, const Motion &b) const {
+    const Vec3 &normal = contact.manifold.normal;
+    const ManifoldPoint &point = contact.manifold.points[k];
+    ContactAnchor &anchor = contact.anchors[k];
+    const Real side = acting_side(contact.key);
+    // The midpoint lies half the separation off either surface.
+    const Real half = Real(0.5) * point.separation;
+    anchor.arm_a = point.position - a.position;
+    anchor.arm_b = point.position - b.position;
+    anchor.core_a =
+        glm::conjugate(a.rotation) * (anchor.arm_a - (half + contact.rounding_a) * normal);
+    anchor.core_b =
+        glm::conjugate(b.rotation) * (anchor.arm_b + (half + contact.rounding_b) * normal);
+    anchor.arm_a += side * half * normal;
+    anchor.arm_b += side * half * normal;
+}
+
+Real World::separation_now(const Contact &contact, std::size_t k) const {
+    const ContactAnchor &anchor = contact.anchors[k];
+    return separation_along(contact.manifold.normal, anchor.core_a, anchor.core_b,
+                            contact.rounding_a + contact.rounding_b, state_.motions[contact.key.a],
+                            state_.motions[contact.key.b]);
+}
+
+void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
+                        const ContactMemory *before, const FoundManifold &found,
+                        std::vector<Contact> &out) const {
+    if (found.manifold.count == 0)
+        return;
+    Contact &contact = begin_contact(candidate, triangle, out);
+    contact.manifold = found.manifold;
+    contact.moment = found.moment;
+    contact.is_turning = found.is_turning;
+    contact.origin = origin_of(contact.manifold.normal, found.a, found.b);
+    set_rounding(contact, *model_);
+    for (int k = 0; k < contact.manifold.count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        set_anchor(contact, index, found.a, found.b);
+        if (found.moment != Moment::start || found.is_turning)
+            contact.manifold.points[index].separation = separation_now(contact, index);
+    }
+    contact.is_new = before == nullptr;
+    if (!contact.is_new)
+        carry_over(std::span(state_.points).subspan(before->first_point, before->point_count),
+                   contact);
+}
+
+// Whether a body's loads ask for more substeps than its island has: its contacts are softer then
+// than they should be. With far too few it sinks in and does not stand at all.
+bool World::gets_too_few_substeps(std::uint32_t body) const {
+    constexpr int far_too_few = 10; // times: contacts are 100 times as deep as they should be
+    const Pace &pace = state_.paces[body]; // no substeps: nothing is chosen
+    return pace.wanted > pace.substeps && pace.wanted < far_too_few * pace.substeps;
+}
+
+// While two bodies have hardly moved against each other since their manifold was found, it stays:
+// normal and lever arms as they were, separations following the poses. That saves finding it again,
+// and it makes the contact linear about the poses where it was found: without it a column of
+// contacts, each as soft as the step lets it be, buckles under its own weight. After Box3D (Catto),
+// which names PhysX's persistent manifolds as the source. Contacts that are softer than they should
+// be buckle sooner, and are kept longer: a pyramid of base 100 falls after 10 s without that.
+bool World::keep_contact(const Candidate &candidate, const ContactMemory *before,
+                         std::vector<Contact> &out) const {
+    if (before == nullptr || before->point_count < 2)
+        return false;
+    const Motion &motion_a = state_.motions[candidate.key.a];
+    const Motion &motion_b = state_.motions[candidate.key.b];
+    const ContactOrigin &origin = before->origin;
+    const auto points = std::span(state_.points).subspan(before->first_point, before->point_count);
+    Real arm_a = Real(0);
+    Real arm_b = Real(0);
+    for (const PointMemory &point : points) {
+        arm_a = std::max(arm_a, glm::dot(point.core_a, point.core_a));
+        arm_b = std::max(arm_b, glm::dot(point.core_b, point.core_b));
+    }
+    const Real travel = glm::length((motion_b.position - motion_a.position) - origin.offset) +
+                        std::sqrt(arm_a) * turn_between(origin.rotation_a, motion_a.rotation) +
+                        std::sqrt(arm_b) * turn_between(origin.rotation_b, motion_b.rotation);
+    const auto usual = static_cast<Real>(settings_.kept_travel);
+    // A full face has no corners that were left out and could come to touch.
+    const bool stays_longer =
+        before->point_count == 4 && way_of(candidate) <= usual &&
+        (gets_too_few_substeps(candidate.key.a) || gets_too_few_substeps(candidate.key.b));
+    const Real share = kept_share * moving_width(candidate);
+    const Real most = stays_longer ? share : std::min(usual, share);
+    if (!(travel <= most))
+        return false;
+    Contact &contact = begin_contact(candidate, ContactKey::no_triangle, out);
+    contact.origin = origin;
+    set_rounding(contact, *model_);
+    const Real side = acting_side(candidate.key);
+    const Vec3 &normal = origin.normal;
+    const Mat3 then_a = glm::mat3_cast(origin.rotation_a);
+    const Mat3 then_b = glm::mat3_cast(origin.rotation_b);
+    const Mat3 now_a = glm::mat3_cast(motion_a.rotation);
+    const Mat3 now_b = glm::mat3_cast(motion_b.rotation);
+    const Vec3 offset = motion_b.position - motion_a.position;
+    contact.manifold.normal = normal;
+    contact.manifold.count = static_cast<int>(before->point_count);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const PointMemory &point = points[k];
+        contact.impulses[k] = point.impulse;
+        ContactAnchor &anchor = contact.anchors[k];
+        anchor.core_a = point.core_a;
+        anchor.core_b = point.core_b;
+        const Vec3 surface_a = then_a * point.core_a + contact.rounding_a * normal;
+        const Vec3 surface_b = then_b * point.core_b - contact.rounding_b * normal;
+        const Vec3 half =
+            Real(0.5) * glm::dot(origin.offset + (surface_b - surface_a), normal) * normal;
+        anchor.arm_a = surface_a + (Real(1) + side) * half;
+        anchor.arm_b = surface_b - (Real(1) - side) * half;
+        ManifoldPoint &to = contact.manifold.points[k];
+        const Vec3 core_a = now_a * point.core_a;
+        const Vec3 core_b = now_b * point.core_b;
+        to.feature = point.feature;
+        to.separation = glm::dot(offset + (core_b - core_a), normal) -
+                        (contact.rounding_a + contact.rounding_b);
+        to.position =
+            motion_a.position + core_a + (contact.rounding_a + Real(0.5) * to.separation) * normal;
+    }
+    return true;
+}
+
+bool World::keeps_contacts() const {
+    return settings_.kept_travel > 0 &&
+           std::ranges::find(method_->info.reads, SettingGroup::kept) != method_->info.reads.end();
+}
+
+void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &out,
+                              std::vector<std::uint32_t> &triangles) const {
+    const Real margin = candidate.margin;
+    const Collider &a = model_->colliders[candidate.collider_a];
+    const Collider &b = model_->colliders[candidate.collider_b];
+    const std::uint32_t i = candidate.collider_a;
+    const std::uint32_t j = candidate.collider_b;
+    const Motion &motion_a = state_.motions[candidate.key.a];
+    const Motion &motion_b = state_.motions[candidate.key.b];
+    const bool is_predicted = method_->info.looks_ahead && !a.sensor && !b.sensor &&
+                              way_of(candidate) > predicted_from(a, b);
+    const bool is_turning = is_turned(candidate);
+    if (!a.surface && !b.surface) {
+        const ContactMemory *before = find_memory(state_, candidate.key);
+        if (!is_turning && keeps_contacts() && keep_contact(candidate, before, out))
+            return;
+        const Vec3 guess = before == nullptr ? Vec3{Real(0)} : before->origin.normal;
+        FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin, guess),
+                            motion_a, motion_b};
+        if (found.manifold.count > 0 && is_predicted && !touches(found.manifold))
+            found = predicted_manifold(candidate, found.manifold.normal);
+        else if (found.manifold.count > 0 && is_predicted)
+            guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
+        found.is_turning = is_turning;
+        drop_inner_edges(candidate, ContactKey::no_triangle, found);
+        add_contact(candidate, ContactKey::no_triangle, before, found, out);
+        return;
+    }
+    if (a.surface && b.surface)
+        return; // surfaces are never dynamic
+    const bool solid_first = !a.surface;
+    const Shape &solid = scratch_.placed[solid_first ? i : j];
+    if (std::holds_alternative<HalfSpace>(solid))
+        return;
+    const Collider &surface = solid_first ? b : a;
+    const Transform pose = surface_pose(surface, state_.motions[surface.body]);
+    // The solid's box in the surface's frame.
+    const Aabb box = bounds(solid);
+    const Box around{Real(0.5) * (box.min + box.max), identity_rotation,
+                     Real(0.5) * (box.max - box.min) + margin};
+    const Transform back{glm::conjugate(pose.rotation) * -pose.position,
+                         glm::conjugate(pose.rotation)};
+    surface.surface->each_touching(
+        bounds(placed(around, back)), triangles, [&](std::uint32_t triangle) {
+            FoundManifold found{plumb::collide(solid, *surface.surface, pose, triangle, margin),
+                                motion_a, motion_b};
+            if (!solid_first)
+                found.manifold.normal = -found.manifold.normal;
+            if (is_predicted && !touches(found.manifold))
+                found = predicted_manifold(candidate, found.manifold.normal, triangle);
+            found.is_turning = is_turning;
+            drop_inner_edges(candidate, triangle, found);
+            ContactKey key = candidate.key;
+            key.triangle = triangle;
+            add_contact(candidate, triangle, find_memory(state_, key), found, out);
+        });
+}
+
+// Manifolds of all candidates, with the impulses of those that were contacts before.
+void World::collide() const {
+    Scratch &s = scratch_;
+    // About 20 microseconds of work in a part: enough to pay for handing it out.
+    constexpr std::size_t grain = 64;
+    const std::size_t count = s.candidates.size();
+    s.triangles.resize(std::max(s.triangles.size(), part_count(s.tasks, count, grain)));
+    collect(s.tasks, count, grain, s.contact_parts, s.contacts,
+            [&](std::size_t begin, std::size_t end, std::size_t part, std::vector<Contact> &out) {
+                for (std::size_t i = begin; i < end; ++i)
+                    collide_candidate(s.candidates[i], out, s.triangles[part]);
+            });
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,421 @@
+#include "engine/dynamics/contacts/contact_columns.h"
+
+#include "engine/dynamics/colours.h"
+#include "engine/dynamics/contacts/approach.h"
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <bit>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+constexpr std::uint32_t colours = 64;
+constexpr std::uint32_t most_points = 4;
+// What finds no colour is solved alone.
+constexpr std::uint32_t alone = colours * most_points;
+
+bool is_dynamic(const StepContext &context, std::uint32_t body) {
+    return context.model.bodies[body].kind == BodyKind::dynamic;
+}
+
+void set(ColumnsSymmetric &columns, std::size_t lane, const Mat3 &m) {
+    columns.xx.lanes[lane] = m[0][0];
+    columns.yy.lanes[lane] = m[1][1];
+    columns.zz.lanes[lane] = m[2][2];
+    columns.xy.lanes[lane] = m[1][0];
+    columns.xz.lanes[lane] = m[2][0];
+    columns.yz.lanes[lane] = m[2][1];
+}
+
+// The first colour that neither body has a contact of. The order is that of the contacts' keys, so
+// the colours depend on nothing but the state.
+void colour(StepContext &context) {
+    ContactSchedule &schedule = context.scratch.schedule;
+    schedule.lanes.clear();
+    schedule.bucket_sizes.assign(alone + 1, 0);
+    schedule.colours_of_body.assign(context.bodies.size(), 0);
+    // Those with what cannot be pushed take later colours than all others: then nothing is left
+    // going into a wall by what pushes it there.
+    std::uint64_t of_others = 0;
+    std::uint64_t used = 0;
+    const std::vector<std::uint32_t> &active = context.active.contacts;
+    const std::size_t count = active.size();
+    for (std::size_t turn = 0; turn < 2 * count; ++turn) {
+        const std::uint32_t i = active[turn < count ? turn : turn - count];
+        const ContactEnds &contact = context.ends[i];
+        const bool moves_a = is_dynamic(context, contact.a);
+        const bool moves_b = is_dynamic(context, contact.b);
+        const bool is_last = !moves_a || !moves_b;
+        if (turn == count)
+            of_others = used;
+        if (is_last != (turn >= count))
+            continue;
+        schedule.any_turning = schedule.any_turning || contact.is_turning;
+        std::uint64_t &of_a = schedule.colours_of_body[contact.a];
+        std::uint64_t &of_b = schedule.colours_of_body[contact.b];
+        const std::uint64_t taken = of_others | (moves_a ? of_a : 0) | (moves_b ? of_b : 0);
+        const auto chosen = static_cast<std::uint32_t>(std::countr_one(taken));
+        std::uint32_t bucket = alone;
+        if (chosen < colours) {
+            used |= std::uint64_t{1} << chosen;
+            of_a |= std::uint64_t{1} << chosen;
+            of_b |= std::uint64_t{1} << chosen;
+            bucket = chosen * most_points + contact.points - 1U;
+        }
+        schedule.lanes.push_back({i, bucket});
+        ++schedule.bucket_sizes[bucket];
+    }
+}
+
+void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,
+               std::uint32_t index) {
+    const Contact &contact = context.contacts[index];
+    const SolverBody &a = context.bodies[contact.key.a];
+    const SolverBody &b = context.bodies[contact.key.b];
+    block.contacts[lane] = index;
+    block.body_a.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.a * BodyReals::stride);
+    block.body_b.lanes[lane] = static_cast<IndexColumn::Index>(contact.key.b * BodyReals::stride);
+    const auto bit = static_cast<std::uint16_t>(1U << lane);
+    for (const std::uint32_t body : {contact.key.a, contact.key.b})
+        block.inertia_turns =
+            block.inertia_turns || !is_isotropic(context.model.bodies[body].inertia);
+    if (is_dynamic(context, contact.key.a))
+        block.writes_a = static_cast<std::uint16_t>(block.writes_a | bit);
+    if (is_dynamic(context, contact.key.b))
+        block.writes_b = static_cast<std::uint16_t>(block.writes_b | bit);
+    set(block.normal, lane, contact.manifold.normal);
+    set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
+    block.friction.lanes[lane] = contact.friction;
+    block.bounces.lanes[lane] = contact.restitution > Real(0) ? Real(1) : Real(0);
+    block.rounding_a.lanes[lane] = contact.rounding_a;
+    block.rounding_b.lanes[lane] = contact.rounding_b;
+    set(block.inv_mass_a, lane, a.inv_mass);
+    set(block.inv_mass_b, lane, b.inv_mass);
+    set(block.inv_inertia_a, lane, a.inv_inertia);
+    set(block.inv_inertia_b, lane, b.inv_inertia);
+    block.is_new = block.is_new || contact.is_new;
+    block.points_used = std::max(block.points_used, contact.manifold.count);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        ContactBlock::Point &point = block.points[k];
+        set(point.r_a, lane, contact.anchors[k].arm_a);
+        set(point.r_b, lane, contact.anchors[k].arm_b);
+        point.separation.lanes[lane] = contact.manifold.points[k].separation;
+        set(point.impulse, lane, contact.impulses[k]);
+        set(point.remembered, lane, contact.impulses[k]);
+    }
+}
+
+bool is_ahead(const StepContext &context, const ContactBlock &block) {
+    return std::any_of(block.contacts, block.contacts + block.used, [&](std::uint32_t contact) {
+        return context.contacts[contact].moment != Moment::start ||
+               context.contacts[contact].is_turning;
+    });
+}
+
+void fill_start_arms(const StepContext &context, const ContactBlock &block, StartArms &arms) {
+    arms = {};
+    for (std::size_t lane = 0; lane < block.used; ++lane) {
+        const Contact &contact = context.contacts[block.contacts[lane]];
+        const Quat &rotation_a = context.starts[contact.key.a].rotation;
+        const Quat &rotation_b = context.starts[contact.key.b].rotation;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+            set(arms.points[k].core_a, lane, rotation_a * contact.anchors[k].core_a);
+            set(arms.points[k].core_b, lane, rotation_b * contact.anchors[k].core_b);
+        }
+    }
+}
+
+template <class Use> void for_blocks(StepContext &context, Use &&use) {
+    for_blocks(context.tasks, std::span(context.scratch.schedule.blocks), use);
+}
+template <class Use> void for_colours(StepContext &context, Use &&use) {
+    ContactSchedule &schedule = context.scratch.schedule;
+    for_colours(context.tasks, std::span(schedule.blocks), schedule.colour_ends, use);
+}
+
+// Normal, tangents and arms of one contact as they are t seconds from now; and its separation along
+// that normal when the step began, on top of which comes what the bodies moved since.
+void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    const StartArms &arms = context.scratch.schedule.start_arms[block.ahead];
+    const Vec3 offset =
+        context.starts[contact.key.b].position - context.starts[contact.key.a].position;
+    const Real rounding = block.rounding_a.lanes[lane] + block.rounding_b.lanes[lane];
+    const Motion a = ahead(context.bodies[contact.key.a], t);
+    const Motion b = ahead(context.bodies[contact.key.b], t);
+    const bool a_moves = is_dynamic(context, contact.key.a);
+    const bool b_moves = is_dynamic(context, contact.key.b);
+    const Quat turn = a_moves ? b.rotation * glm::conjugate(contact.origin.rotation_b)
+                              : a.rotation * glm::conjugate(contact.origin.rotation_a);
+    const Vec3 n = turn * contact.manifold.normal;
+    set(block.normal, lane, n);
+    set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
+    const Real side = static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        const ContactAnchor &anchor = contact.anchors[k];
+        const Vec3 on_a = a.rotation * anchor.core_a + block.rounding_a.lanes[lane] * n;
+        const Vec3 on_b = b.rotation * anchor.core_b - block.rounding_b.lanes[lane] * n;
+        const Vec3 half = Real(0.5) * glm::dot((b.position - a.position) + (on_b - on_a), n) * n;
+        set(block.points[k].r_a, lane, on_a + (Real(1) + side) * half);
+        set(block.points[k].r_b, lane, on_b - (Real(1) - side) * half);
+        const Vec3 cores = get(arms.points[k].core_b, lane) - get(arms.points[k].core_a, lane);
+        block.points[k].separation.lanes[lane] = glm::dot(offset + cores, n) - rounding;
+    }
+}
+
+// The share of a contact's impulses that is remembered.
+Real remembered_share(const ContactBlock &block, std::size_t lane) {
+    if (block.struck.lanes[lane] == Real(0))
+        return Real(1);
+    Real sum = Real(0);
+    for (int k = 0; k < block.points_used; ++k)
+        sum += block.points[k].impulse.x.lanes[lane];
+    const Real most = std::max(remembered_blow * sum, growing_blow * block.began.lanes[lane]);
+    return sum > most ? most / sum : Real(1);
+}
+
+// As the kernels have it between substeps (warm_start_impl).
+Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane, Real kept) {
+    Vec3 impulse = get(point.impulse, lane);
+    const Real relaxed = impulse.x - point.remembered.x.lanes[lane];
+    impulse *= kept;
+    const Real most = relaxed_share * impulse.x;
+    impulse.x += std::max(std::min(relaxed, most), -most);
+    return impulse;
+}
+
+// Impulses along a normal and tangents that turned with the contact, as those of the manifold that
+// the next step will find there.
+void express_anew(Contact &contact, const Vec3 &normal, const Vec3 &t1) {
+    const Vec3 t2 = glm::cross(normal, t1);
+    const TangentBasis next = tangent_basis(normal);
+    contact.manifold.normal = normal;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        Vec3 &impulse = contact.impulses[k];
+        const Vec3 friction = impulse.y * t1 + impulse.z * t2;
+        impulse.y = glm::dot(friction, next.t1);
+        impulse.z = glm::dot(friction, next.t2);
+    }
+}
+
+bool any_has_turned_far(const StepContext &context) {
+    return std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
+        return has_turned_far(context.bodies[body].turned);
+    });
+}
+
+// Whether a body has turned so far since the step began that its corners are elsewhere: what a
+// substep of a fast one makes of their arms. A thin one, sooner: along an arm that has turned by t
+// against a stick, K grows by about 3 t^2 / m times its largest over its least inertia, and passes
+// with the mass of the step's start would push ever harder.
+bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces) {
+    constexpr Real far = Real(0.2);
+    constexpr Real share = Real(0.1);
+    const Vec3 &turn = context.bodies[body].turned;
+    const Real squared = glm::dot(turn, turn);
+    if (!(squared > Real(0)) || !is_dynamic(context, body))
+        return false;
+    const Vec3 &inertia = context.model.bodies[body].inertia;
+    const Real least = std::min({inertia.x, inertia.y, inertia.z});
+    const Real most = std::max({inertia.x, inertia.y, inertia.z});
+    // What bounces has been answered where it struck; but a thin one cannot be left so.
+    if (bounces && least > Real(0.25) * most)
+        return false;
+    return squared > std::min(far * far, share * least / most);
+}
+bool has_other_arms(const StepContext &context, const Contact &contact, std::uint32_t body,
+                    std::uint32_t collider) {
+    return context.model.colliders[collider].extent > Real(0) &&
+           has_other_arms(context, body, contact.restitution > Real(0));
+}
+bool has_other_arms(const StepContext &context, const Contact &contact) {
+    return !contact.is_turning &&
+           (has_other_arms(context, contact, contact.key.a, contact.collider_a) ||
+            has_other_arms(context, contact, contact.key.b, contact.collider_b));
+}
+
+// Where a point is on two bodies as they are now: on the surface of the one that has turned.
+struct Arms {
+    Vec3 a;
+    Vec3 b;
+};
+Arms present_arms(const StepContext &context, const Contact &contact, std::size_t k) {
+    const SolverBody &a = context.bodies[contact.key.a];
+    const SolverBody &b = context.bodies[contact.key.b];
+    const Vec3 &n = contact.manifold.normal;
+    const Vec3 between = b.position - a.position;
+    const ContactAnchor &anchor = contact.anchors[k];
+    if (has_other_arms(context, contact, contact.key.a, contact.collider_a)) {
+        const Vec3 arm = a.rotation * anchor.core_a + contact.rounding_a * n;
+        return {arm, arm - between};
+    }
+    const Vec3 arm = b.rotation * anchor.core_b - contact.rounding_b * n;
+    return {arm + between, arm};
+}
+
+// Arms and inertias of a lane as the bodies are now.
+void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lane) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    set(block.inv_inertia_a, lane, context.bodies[contact.key.a].inv_inertia);
+    set(block.inv_inertia_b, lane, context.bodies[contact.key.b].inv_inertia);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        const Arms arms = present_arms(context, contact, k);
+        set(block.points[k].r_a, lane, arms.a);
+        set(block.points[k].r_b, lane, arms.b);
+    }
+}
+
+} // namespace
+
+// What rides on a turntable is turned by friction all the time. With the arms of the step's start
+// it would be turned all at once, in the first substep, and friction cannot hold that.
+void turn_contact_columns(StepContext &context, Real t) {
+    if (!context.scratch.schedule.any_turning)
+        return;
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        for (ContactBlock &block : blocks)
+            for (std::size_t lane = 0; block.ahead != ContactBlock::none && lane < block.used;
+                 ++lane)
+                if (context.contacts[block.contacts[lane]].is_turning)
+                    turn_lane(context, block, lane, t);
+    });
+}
+
+void rearm_contact_columns(StepContext &context) {
+    if (context.scratch.schedule.blocks.empty())
+        return;
+    if (!std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
+            return has_other_arms(context, body, false);
+        }))
+        return;
+    ContactSchedule &schedule = context.scratch.schedule;
+    for (ContactBlock &block : schedule.blocks) {
+        bool any = false;
+        for (std::size_t lane = 0; lane < block.used; ++lane) {
+            if (!has_other_arms(context, context.contacts[block.contacts[lane]]))
+                continue;
+            if (block.ahead == ContactBlock::none) {
+                block.ahead = static_cast<std::uint32_t>(schedule.start_arms.size());
+                fill_start_arms(context, block, schedule.start_arms.emplace_back());
+            }
+            rearm_lane(context, block, lane);
+            any = true;
+        }
+        if (any)
+            kernels::finish(std::span(&block, 1));
+    }
+    // And of their impacts: what these do not see coming, the passes would stop for good.
+    for (ContactConstraint &bouncing : context.scratch.contacts) {
+        const Contact &contact = context.contacts[bouncing.contact];
+        if (!has_other_arms(context, contact))
+            continue;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(bouncing.count); ++k) {
+            const Arms arms = present_arms(context, contact, k);
+            bouncing.points[k].r_a = arms.a;
+            bouncing.points[k].r_b = arms.b;
+        }
+    }
+}
+
+void prepare_contact_columns(StepContext &context) {
+    ContactSchedule &schedule = context.scratch.schedule;
+    schedule.blocks.clear();
+    schedule.start_arms.clear();
+    schedule.colour_ends.clear();
+    schedule.lanes.clear();
+    schedule.any_turning = false;
+    if (context.active.contacts.empty())
+        return;
+    colour(context);
+    // A bucket's blocks come in order; the last bucket's have one lane each.
+    constexpr auto width = static_cast<std::uint32_t>(column_lanes);
+    std::uint32_t block_count = 0;
+    std::vector<std::uint32_t> &next = schedule.bucket_sizes; // becomes: the bucket's next lane
+    for (std::uint32_t bucket = 0; bucket <= alone; ++bucket) {
+        const std::uint32_t size = next[bucket];
+        next[bucket] = block_count * width;
+        block_count += bucket == alone ? size : (size + width - 1) / width;
+        const bool ends_colour = bucket % most_points == most_points - 1;
+        if (ends_colour && block_count * width > next[bucket + 1 - most_points])
+            schedule.colour_ends.push_back(block_count);
+    }
+    constexpr std::uint32_t none = UINT32_MAX;
+    schedule.contacts.assign(std::size_t{block_count} * width, none);
+    for (const ContactSchedule::Lane &lane : schedule.lanes) {
+        schedule.contacts[next[lane.bucket]] = lane.contact;
+        next[lane.bucket] += lane.bucket == alone ? width : 1;
+    }
+    schedule.blocks.resize(block_count);
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        const std::uint32_t *contact =
+            schedule.contacts.data() + (blocks.data() - schedule.blocks.data()) * width;
+        for (ContactBlock &block : blocks) {
+            // Lanes that are not used, and points that a lane does not have, are zeros: of no mass.
+            block = ContactBlock{};
+            for (std::uint32_t lane = 0; lane < width; ++lane, ++contact)
+                if (*contact != none)
+                    fill_lane(context, block, block.used++, *contact);
+        }
+        kernels::finish(blocks);
+    });
+    std::uint32_t ahead = 0;
+    for (ContactBlock &block : schedule.blocks)
+        if (is_ahead(context, block))
+            block.ahead = ahead++;
+    schedule.start_arms.resize(ahead);
+    if (ahead > 0)
+        for_blocks(context, [&](std::span<const ContactBlock> blocks) {
+            for (const ContactBlock &block : blocks)
+                if (block.ahead != ContactBlock::none)
+                    fill_start_arms(context, block, schedule.start_arms[block.ahead]);
+        });
+}
+
+void warm_start_contact_columns(StepContext &context, Real share, bool remember_first) {
+    if (context.scratch.schedule.blocks.empty())
+        return;
+    const BodyReals bodies = reals_of(context.bodies);
+    for_colours(context, [&](std::span<ContactBlock> blocks) {
+        kernels::warm_start(blocks, bodies, share, remember_first);
+    });
+    context.report.constraint_passes += context.scratch.schedule.lanes.size();
+}
+
+void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h) {
+    if (context.scratch.schedule.blocks.empty())
+        return;
+    const BodyReals bodies = reals_of(context.bodies);
+    const bool any_far = any_has_turned_far(context);
+    const std::span<const StartArms> start_arms = context.scratch.schedule.start_arms;
+    for_colours(context, [&](std::span<ContactBlock> blocks) {
+        kernels::solve(blocks, start_arms, bodies, bias, Real(1) / h, any_far);
+    });
+    context.report.constraint_passes += context.scratch.schedule.lanes.size();
+}
+
+bool anything_is_struck(const StepContext &context) {
+    return std::ranges::any_of(context.scratch.schedule.blocks, [](const ContactBlock &block) {
+        return std::ranges::any_of(std::span(block.struck.lanes).first(block.used),
+                                   [](Real struck) { return struck > Real(0); });
+    });
+}
+
+void store_contact_columns(StepContext &context) {
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        for (const ContactBlock &block : blocks)
+            for (std::size_t lane = 0; lane < block.used; ++lane) {
+                Contact &contact = context.contacts[block.contacts[lane]];
+                const Real kept = remembered_share(block, lane);
+                for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
+                    contact.impulses[k] = next_impulse(block.points[k], lane, kept);
+                if (contact.is_turning)
+                    express_anew(contact, get(block.normal, lane), get(block.t1, lane));
+            }
+    });
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,116 @@
+// Contacts as velocity constraints: prepared once a step, solved many times.
+#pragma once
+
+#include "engine/dynamics/bodies/body.h"
+#include "engine/dynamics/contacts/contact.h"
+#include "engine/dynamics/softness.h"
+#include "engine/math/basis.h"
+
+#include <array>
+#include <limits>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+// One contact point, seen from both centres of mass.
+struct ContactPointConstraint {
+    Vec3 r_a{Real(0)}; // world, from a's centre of mass, at the start of the step
+    Vec3 r_b{Real(0)};
+    // The same points without the rounding of their surfaces, in the body's frame: a
+    // round surface keeps its distance when the body rolls, so only the core's point turns with it.
+    Vec3 core_a{Real(0)};
+    Vec3 core_b{Real(0)};
+    Real rounding = Real(0);    // of both
+    Real normal_mass = Real(0); // 1 / (n^T K n)
+    // 1 / (the largest eigenvalue of K in the tangent plane). One number for both directions: the
+    // step is then along the sliding velocity, and the cone's projection ends at the friction of
+    // maximal dissipation. With K's inverse the four corners of a box brace against each other
+    // sideways and lose 6 % of their grip.
+    Real tangent_mass = Real(0);
+    Vec3 impulse{Real(0)};     // accumulated in this substep: normal, t1, t2 (N s)
+    Vec3 remembered{Real(0)};  // of the substep before
+    Real separation = Real(0); // refresh_separations (m)
+    Real approach = Real(0);   // relative normal velocity at the start of the step (m/s)
+    Real pushed = Real(0);     // normal impulse of all substeps so far (N s)
+};
+
+struct StepContext;
+
+struct ContactConstraint {
+    std::uint32_t contact = 0; // index in the context
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    Vec3 normal{Real(0)};
+    TangentBasis tangents;
+    Real friction = Real(0);
+    Real restitution = Real(0);
+    int count = 0;
+    std::array<ContactPointConstraint, 4> points{};
+};
+
+// What the bias of one solver pass does about penetration.
+struct ContactBias {
+    Softness softness;            // of penetrating points
+    Real push_velocity = Real(0); // m/s; 0: leave penetration alone
+    Real slop = Real(0);          // m, penetration left alone
+    // Whether points that are apart and bear nothing are left to the next substep, as in a relaxing
+    // pass: what they would prevent lies beyond the end of this one.
+    bool loaded_only = false;
+    // Whether the pass leaves friction alone, as one over pseudo velocities does.
+    bool frictionless = false;
+    // m/s; contacts that close faster are swept more than once (soft_step).
+    Real struck_speed = std::numeric_limits<Real>::infinity();
+    // Whether the points of each contact are taken from the last to the first.
+    bool backwards = false;
+    // Of penetrating points against what has no inverse mass.
+    Softness on_static{};
+};
+
+// 1 / (K along n): the effective mass of two points against each other along a unit vector.
+Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
+                            const Vec3 &r_b, const Vec3 &direction);
+
+// ContactPointConstraint::tangent_mass at the present poses.
+Real tangent_mass_of(const ContactPointConstraint &point, const TangentBasis &tangents,
+                     const SolverBody &a, const SolverBody &b);
+// Changes the tangential impulse of a point so that it stops sliding, the total cut to `limit` (N
+// s) in length: Coulomb's circular cone.
+void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, SolverBody &a,
+                    SolverBody &b, Real limit);
+
+// One constraint for each contact that is no sensor's, in order; or for those that bounce alone.
+enum class Prepare { all, bouncing };
+void prepare_contacts(StepContext &context, Prepare which = Prepare::all);
+// The separation of a point at the present poses (m).
+Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
+                        const SolverBody &a, const SolverBody &b);
+// At the present poses, for solve_contacts: these stay as they are in its passes.
+void refresh_separations(StepContext &context);
+// Warm starting: a substep begins by remembering what the one before accumulated, and starts from
+// it, all at once or in shares: adds it to the accumulated impulses and applies it.
+void remember_contacts(StepContext &context);
+void warm_start_contacts(StepContext &context, Real share);
+// One Gauss-Seidel pass. Points that are still apart may close the gap within h and no faster.
+void solve_contacts(StepContext &context, const ContactBias &bias, Real h);
+// Hands the accumulated impulses back to the world's contacts for the next step.
+void store_contacts(StepContext &context);
+
+// Bounces once a step, after its substeps (Catto 2024, "Solver2D"): a point that approached faster
+// than the threshold at the start, and bore something since, leaves at its restitution times that
+// speed.
+void note_approach(StepContext &context);
+void note_loads(StepContext &context);
+void restitute(StepContext &context, Real threshold);
+
+// Notes a bounce, at the middle of where it acts, by the normal impulse of each point (N s); no
+// impulse: none.
+void record_impact(StepContext &context, const ContactConstraint &contact,
+                   const std::array<Real, 4> &normal_impulse);
+
+// Bounces: every contact with restitution that would be struck within the next h gets Newton's
+// impact law, one pair of bodies after another, until none approaches: so an impact runs through a
+// row of touching bodies as it does in a cradle. Where gravity acts along the way, the rebound
+// speed is the one that the body would have at its present height had it bounced at the surface:
+// energy is kept whatever h is. Comes at the start of a substep, before gravity is applied.
+void resolve_impacts(StepContext &context, Real h);
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,256 @@
+// Contacts of bodies that do not touch yet: found where they will touch within the step, or come
+// closest. The nearest points of now say little about that: a ball that comes past another has the
+// other's side in front of it, and would be stopped by the plane through it.
+#include "engine/dynamics/contacts/approach.h"
+#include "engine/dynamics/contacts/inner_edges.h"
+#include "engine/dynamics/contacts/surface_contact.h"
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+Transform placement(const Motion &motion) {
+    return {motion.position, motion.rotation};
+}
+
+} // namespace
+
+// How a body is expected to move in this step: as it does at its start, until it was seen to go
+// another way.
+const Motion &World::going(std::uint32_t body) const {
+    return scratch_.surprised.empty() ? state_.motions[body] : scratch_.going[body];
+}
+
+// How far two colliders may move against each other in a step (m).
+Real World::way_of(const Candidate &candidate) const {
+    const Motion &a = going(candidate.key.a);
+    const Motion &b = going(candidate.key.b);
+    const Real turning =
+        glm::length(a.angular_velocity) * model_->colliders[candidate.collider_a].extent +
+        glm::length(b.angular_velocity) * model_->colliders[candidate.collider_b].extent;
+    return (glm::length(b.velocity - a.velocity) + turning) * static_cast<Real>(settings_.dt);
+}
+
+// How far the parts of a body may go by its spin alone in a step, when that is much for its size
+// (m): no farther than to its other side.
+Real World::turning_reach(std::uint32_t index) const {
+    if (!method_->info.looks_ahead)
+        return Real(0);
+    const Real spin = glm::length(going(index).angular_velocity) * static_cast<Real>(settings_.dt);
+    if (spin == Real(0))
+        return Real(0);
+    const Real extent = extent_of(index);
+    return spin * extent > Real(0.5) * least_half_width(model_->bodies[index])
+               ? std::min(spin, Real(2)) * extent
+               : Real(0);
+}
+
+Real World::extent_of(std::uint32_t index) const {
+    const Body &body = model_->bodies[index];
+    Real extent = Real(0);
+    for (std::uint32_t c = 0; c < body.collider_count; ++c)
+        extent = std::max(extent, model_->colliders[body.first_collider + c].extent);
+    return extent;
+}
+
+namespace {
+
+// The middle of a solid that turning moves, if any does.
+std::optional<Vec3> middle_of(const Shape &shape) {
+    return std::visit(
+        []<typename Solid>(const Solid &solid) -> std::optional<Vec3> {
+            if constexpr (std::same_as<Solid, Box>)
+                return solid.center;
+            else if constexpr (std::same_as<Solid, Capsule> || std::same_as<Solid, Cylinder>)
+                return Real(0.5) * (solid.a + solid.b);
+            else if constexpr (std::same_as<Solid, ConvexHull>)
+                return solid.position + solid.rotation * solid.mesh->center;
+            else
+                return std::nullopt;
+        },
+        shape);
+}
+
+// What strikes with a corner is spun so fast that others could pass the plane of contact within the
+// step, and the whole body with them: its middle, at least, stays before it. `normal` points from
+// the solid to what it strikes, `plane` is a point of that.
+ManifoldPoint guard(const Vec3 &middle, Real half_width, const Vec3 &plane, const Vec3 &normal) {
+    constexpr std::uint32_t guard_feature = 0xFFFFFFFEU;
+    const Real separation = glm::dot(plane - middle, normal) - half_width;
+    return {middle + Real(0.5) * separation * normal, separation, guard_feature};
+}
+
+// Adds the guard of a solid to its manifold with another, if that has something beneath the middle.
+// `sign` is 1 when the manifold's normal points away from the solid.
+void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Shape &other,
+               Real sign) {
+    const std::optional<Vec3> middle = middle_of(solid);
+    if (manifold.count == 0 || !middle)
+        return;
+    const Vec3 normal = sign * manifold.normal;
+    const ManifoldPoint &first = manifold.points[0];
+    const Vec3 plane = first.position + (Real(0.5) * first.separation) * normal;
+    const Vec3 beneath = *middle + glm::dot(plane - *middle, normal) * normal;
+    if (distance_to(other, beneath) > Real(0.1) * half_width)
+        return;
+    const ManifoldPoint point = guard(*middle, half_width, plane, normal);
+    if (manifold.count < 4)
+        manifold.points[static_cast<std::size_t>(manifold.count++)] = point;
+    else
+        *std::ranges::max_element(manifold.points, {}, &ManifoldPoint::separation) = point;
+}
+
+} // namespace
+
+// For the one of two solids that is small for the way that they come towards each other in a step.
+void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
+                         Manifold &manifold) const {
+    const Real way = static_cast<Real>(settings_.dt) *
+                     glm::dot(going(candidate.key.a).velocity - going(candidate.key.b).velocity,
+                              manifold.normal);
+    const Real width_a = model_->colliders[candidate.collider_a].half_width;
+    const Real width_b = model_->colliders[candidate.collider_b].half_width;
+    const bool a_moves = model_->bodies[candidate.key.a].kind == BodyKind::dynamic;
+    const bool b_moves = model_->bodies[candidate.key.b].kind == BodyKind::dynamic;
+    const bool is_a = a_moves && (!b_moves || width_a <= width_b);
+    if (is_a && way > width_a)
+        add_guard(manifold, solid_a, width_a, solid_b, Real(1));
+    else if (!is_a && way > width_b)
+        add_guard(manifold, solid_b, width_b, solid_a, Real(-1));
+}
+
+FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &normal) const {
+    const Collider &a = model_->colliders[candidate.collider_a];
+    const Collider &b = model_->colliders[candidate.collider_b];
+    const Motion &motion_a = going(candidate.key.a);
+    const Motion &motion_b = going(candidate.key.b);
+    const auto dt = static_cast<Real>(settings_.dt);
+    const Real near = contact_reach(candidate);
+    const Approach met =
+        approach({&a.shape, motion_a, a.extent}, {&b.shape, motion_b, b.extent}, dt, near, normal);
+    if (met.distance >= near)
+        return {};
+    const Motion at_a = ahead(motion_a, met.time);
+    const Motion at_b = ahead(motion_b, met.time);
+    // What will touch goes on against each other for the rest of the step.
+    const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
+    const Shape solid_a = placed(a.shape, placement(at_a));
+    const Shape solid_b = placed(b.shape, placement(at_b));
+    FoundManifold found{plumb::collide(solid_a, solid_b, near + left * way_of(candidate), normal),
+                        at_a, at_b, Moment::touch};
+    guard_middle(candidate, solid_a, solid_b, found.manifold);
+    return found;
+}
+
+FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &normal,
+                                        std::uint32_t triangle) const {
+    const bool solid_first = !model_->colliders[candidate.collider_a].surface;
+    const std::uint32_t solid_body = solid_first ? candidate.key.a : candidate.key.b;
+    const std::uint32_t surface_body = solid_first ? candidate.key.b : candidate.key.a;
+    const Collider &solid =
+        model_->colliders[solid_first ? candidate.collider_a : candidate.collider_b];
+    const Collider &surface =
+        model_->colliders[solid_first ? candidate.collider_b : candidate.collider_a];
+    const Motion &motion = going(solid_body);
+    const Motion &surface_motion = going(surface_body);
+    const auto dt = static_cast<Real>(settings_.dt);
+    const Real near = contact_reach(candidate);
+    const Triangle local = surface.surface->triangle(triangle);
+    const Approach met =
+        approach({&solid.shape, motion, solid.extent}, placed(local, surface.surface_pose),
+                 surface_motion, surface.extent, dt, near, solid_first ? normal : -normal);
+    if (met.distance >= near)
+        return {};
+    const Motion at_solid = ahead(motion, met.time);
+    const Motion at_surface = ahead(surface_motion, met.time);
+    const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
+    const Shape solid_then = placed(solid.shape, placement(at_solid));
+    const Transform pose_then = surface_pose(surface, at_surface);
+    // What another triangle is to stop passes this one's plane on, and would touch it from there.
+    const auto was_behind = is_behind(
+        bounds(scratch_.placed[solid_first ? candidate.collider_a : candidate.collider_b]),
+        placed(local, surface_pose(surface, state_.motions[surface_body])));
+    if (was_behind != is_behind(bounds(solid_then), placed(local, pose_then)))
+        return {};
+    Manifold manifold = plumb::collide(solid_then, *surface.surface, pose_then, triangle,
+                                       near + left * way_of(candidate));
+    if (solid_first)
+        return {manifold, at_solid, at_surface, Moment::touch};
+    manifold.normal = -manifold.normal;
+    return {manifold, at_surface, at_solid, Moment::touch};
+}
+
+Real World::least_half_width(const Body &body) const {
+    Real least = std::numeric_limits<Real>::infinity();
+    for (std::uint32_t c = 0; c < body.collider_count; ++c)
+        least = std::min(least, model_->colliders[body.first_collider + c].half_width);
+    return least;
+}
+
+// After a try of the step: whether bodies that something struck went far, for their size, where
+// nothing was looked for, and met something there. Its contacts are added, and the step is to be
+// tried again.
+bool World::find_surprises() {
+    if (!method_->info.looks_ahead)
+        return false;
+    Scratch &s = scratch_;
+    const auto dt = static_cast<Real>(settings_.dt);
+    bool any = false;
+    for (const std::uint32_t i : s.moving) {
+        const Body &body = model_->bodies[i];
+        if (body.kind != BodyKind::dynamic || has_diverged(s.bodies[i]))
+            continue;
+        const Vec3 way = s.bodies[i].position - state_.motions[i].position;
+        const Real enough = Real(0.5) * least_half_width(body);
+        if (!(glm::length(way) > enough) || !(glm::length(way - dt * going(i).velocity) > enough))
+            continue;
+        if (s.surprised.empty()) {
+            s.surprised.assign(state_.motions.size(), 0);
+            s.going = state_.motions;
+        }
+        s.surprised[i] = 1;
+        s.going[i].velocity = way / dt;
+        s.going[i].angular_velocity = s.bodies[i].angular_velocity;
+        any = true;
+    }
+    if (!any)
+        return false;
+    const std::vector<Candidate> expected = s.candidates;
+    find_pairs();
+    s.more.clear();
+    if (s.triangles.empty())
+        s.triangles.resize(1);
+    for (const Candidate &candidate : s.candidates)
+        collide_candidate(candidate, s.more, s.triangles.front());
+    // find_missed_points looks at both.
+    s.candidates.insert(s.candidates.end(), expected.begin(), expected.end());
+    std::ranges::sort(s.candidates, {}, &Candidate::key);
+    const auto is_same = [](const Candidate &a, const Candidate &b) { return a.key == b.key; };
+    s.candidates.erase(std::unique(s.candidates.begin(), s.candidates.end(), is_same),
+                       s.candidates.end());
+    std::erase_if(s.more, [&](const Contact &contact) {
+        return std::ranges::binary_search(s.contacts, contact.key, {}, &Contact::key);
+    });
+    if (s.more.empty())
+        return false;
+    if (wake_touched(s.more)) {
+        s.surprised.clear();
+        find_contacts();
+        return true;
+    }
+    s.contacts.insert(s.contacts.end(), s.more.begin(), s.more.end());
+    std::ranges::sort(s.contacts, {}, &Contact::key);
+    return true;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

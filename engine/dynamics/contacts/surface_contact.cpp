@@ -1,0 +1,164 @@
+#include "engine/dynamics/contacts/surface_contact.h"
+
+#include "engine/geometry/raycast.h"
+#include "engine/geometry/support.h"
+#include "engine/geometry/triangle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// The one point of a solid that is deepest against a face, when the contact is the face's alone.
+constexpr std::uint32_t deepest_point_feature = 0xFFFFFFFFU;
+
+// The point of the solid that is farthest along a direction of unit length.
+Vec3 farthest(const Shape &solid, const Vec3 &direction) {
+    return std::visit(
+        [&]<typename Solid>(const Solid &shape) -> Vec3 {
+            if constexpr (std::same_as<Solid, HalfSpace>) {
+                return Vec3{Real(0)};
+            } else {
+                const Vec3 origin = place_of(shape);
+                const auto core = core_of(shape, origin);
+                return origin + core.support(direction) + core.radius * direction;
+            }
+        },
+        solid);
+}
+
+Manifold collide_triangle(const Shape &solid, const Triangle &triangle, Real margin) {
+    return std::visit(
+        [&]<typename Solid>(const Solid &shape) -> Manifold {
+            if constexpr (std::same_as<Solid, HalfSpace>)
+                return {};
+            else
+                return unchecked::collide(shape, triangle, margin);
+        },
+        solid);
+}
+
+struct PlacedTriangle {
+    std::array<Vec3, 3> corners{};
+    Vec3 face{Real(0)}; // unit
+    Real size = Real(0);
+
+    // How far a point is beyond an edge, in the triangle's plane.
+    Real beyond(const Vec3 &point, std::size_t edge) const {
+        const Vec3 &from = corners[edge];
+        const Vec3 along = corners[(edge + 1) % 3] - from;
+        return glm::dot(glm::cross(along, face), point - from) / glm::length(along);
+    }
+};
+
+// Whether the surface allows a contact at `point` whose normal leans to `out`: over a border, or
+// over a ridge by no more than the face beyond it.
+bool may_lean(const TriangleSurface &surface, const Transform &pose, std::uint32_t index,
+              const PlacedTriangle &triangle, const Vec3 &point, const Vec3 &out) {
+    const Real near = Real(1e-3) * triangle.size;
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+        const int number = static_cast<int>(edge);
+        if (std::abs(triangle.beyond(point, edge)) > near || !surface.is_outer_edge(index, number))
+            continue;
+        const Vec3 along = triangle.corners[(edge + 1) % 3] - triangle.corners[edge];
+        const Vec3 outward = glm::cross(along, triangle.face);
+        if (glm::dot(outward, out) < Real(0))
+            continue; // leans to the inside of this edge
+        const Vec3 beyond = to_world_vector(pose, surface.normal_beyond(index, number));
+        const Real bend = glm::dot(beyond, triangle.face);
+        const bool is_border = bend >= Real(1) - Real(1e-6);
+        if (is_border || std::abs(glm::dot(out, triangle.face)) >= bend - Real(1e-3))
+            return true;
+    }
+    return false;
+}
+
+// Whether a point so deep under a face, and so far beyond its edge, lies where a hollow opens:
+// below both faces it is beyond the edge of each. The face that it is deeper under has it, or both.
+bool is_in_hollow(Real bend, Real depth, Real beyond) {
+    constexpr Real rounding = Real(1.01);
+    return depth > Real(0) && beyond * std::sqrt(std::max(Real(1) + bend, Real(0))) <=
+                                  rounding * depth * std::sqrt(std::max(Real(1) - bend, Real(0)));
+}
+
+} // namespace
+
+bool is_behind(const Aabb &solid, const Triangle &triangle) {
+    const Vec3 middle = Real(0.5) * (solid.min + solid.max);
+    const Vec3 front = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
+    return glm::dot(front, middle - triangle.a) < Real(0);
+}
+
+Manifold collide(const Shape &solid, const TriangleSurface &surface, const Transform &pose,
+                 std::uint32_t index, Real margin) {
+    if (std::holds_alternative<HalfSpace>(solid))
+        return {};
+    const Triangle local = surface.triangle(index);
+    const Triangle placed_one = placed(local, pose);
+    PlacedTriangle triangle{{placed_one.a, placed_one.b, placed_one.c}};
+    const Vec3 cross = glm::cross(placed_one.b - placed_one.a, placed_one.c - placed_one.a);
+    const Real doubled_area = glm::length(cross);
+    if (!(doubled_area > Real(0)))
+        return {};
+    triangle.face = cross / doubled_area;
+    triangle.size = std::sqrt(doubled_area);
+
+    const Aabb box = bounds(solid);
+    const bool from_behind = is_behind(box, placed_one);
+    if (from_behind && surface.sides() == Sides::front)
+        return {};
+    Manifold manifold = collide_triangle(solid, placed_one, margin);
+    if (manifold.count == 0)
+        return manifold;
+    const Vec3 out = -manifold.normal;
+    const Vec3 face = from_behind ? -triangle.face : triangle.face;
+    const Real lean = glm::dot(out, face);
+    if (lean >= Real(1) - Real(1e-6))
+        return manifold;
+    if (lean > Real(0)) {
+        if (may_lean(surface, pose, index, triangle, manifold.points[0].position, out))
+            return manifold;
+    }
+    // The face's contact: the deepest point, when it is over this triangle. When it lies over a
+    // ridge's other side, whose own deepest point may lie over this one: where the ridge is, of
+    // which neither would know. (Over a hollow, or in the plane, the other triangle has it.)
+    Vec3 deepest = farthest(solid, -face);
+    Real separation = glm::dot(face, deepest - placed_one.a);
+    if (separation > margin)
+        return {};
+    bool is_over = true;
+    for (std::size_t edge = 0; edge < 3; ++edge)
+        if (const Real beyond = triangle.beyond(deepest, edge);
+            beyond > Real(1e-4) * triangle.size) {
+            const int number = static_cast<int>(edge);
+            if (surface.is_outer_edge(index, number)) {
+                is_over = false;
+            } else {
+                const Vec3 other = to_world_vector(pose, surface.normal_beyond(index, number));
+                if (!is_in_hollow(glm::dot(other, triangle.face), -separation, beyond))
+                    return {};
+            }
+        }
+    if (!is_over) {
+        const Vec3 on_ridge = closest_point(placed_one, deepest);
+        const Real depth = glm::length(box.max - box.min) + margin;
+        const auto inside = ray_interval(solid, {on_ridge - depth * face, face});
+        if (!inside || inside->t_enter >= depth) // what is still above it comes down beyond
+            return {};
+        separation = inside->t_enter - depth;
+        deepest = on_ridge + separation * face;
+    }
+    Manifold result;
+    result.normal = -face;
+    result.count = 1;
+    result.points[0] = {deepest - Real(0.5) * separation * face, separation, deepest_point_feature};
+    return result;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

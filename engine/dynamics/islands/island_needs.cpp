@@ -1,0 +1,317 @@
+// How many substeps bodies ask for: from what joints and contacts bore in the last step, and from
+// how fast they move for their size.
+#include "engine/dynamics/joints/joint_impulse.h"
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// Rates times substep that joints' forces may reach: of joints that are solved together, and of
+// others (joint_loads.cpp, with some to spare).
+constexpr double followed_together = 1.2;
+constexpr double followed_alone = 1.1;
+
+// Rates times substep of joints that are springs, and of what rods under tension hold back aside:
+// others at their bodies add to them.
+constexpr double followed_swing = 0.6;
+constexpr double followed_damping = 16;
+
+// How far a body that touches another may turn in a substep (rad): with lever arms that are those
+// of another pose, impulses do work.
+constexpr double followed_roll = 0.4;
+
+// What joints solved together did not follow is stepped again with so many times the substeps.
+constexpr double finer = 4;
+
+// How far a body under load may turn on its joints in a substep (rad): what it loses of its energy
+// falls with the square of that.
+constexpr double followed_turn = 0.08;
+
+std::uint16_t count_of(double substeps) {
+    constexpr double most = std::numeric_limits<std::uint16_t>::max();
+    // Not a number comes of what is about to diverge: that asks for nothing.
+    return substeps > 0 ? static_cast<std::uint16_t>(std::ceil(std::min(substeps, most))) : 0;
+}
+
+double square(double x) {
+    return x * x;
+}
+
+double largest(const Vec3 &v) {
+    return static_cast<double>(std::max({v.x, v.y, v.z}));
+}
+
+// use(body, arm) for each end of a joint; the arm of a, which bears the opposite force, turned
+// round.
+template <typename Use> void for_ends(const JointConstraint &joint, Use &&use) {
+    if (joint.a != Joint::world)
+        use(joint.a, -joint.rows.r_a);
+    if (joint.b != Joint::world)
+        use(joint.b, joint.rows.r_b);
+}
+
+bool is_loaded(const JointConstraint &joint) {
+    return joint.joint != JointConstraint::grab && joint.rows.kind != RowKind::angular &&
+           joint.rows.bounds != RowBounds::motor && !joint.is_spring();
+}
+
+// How far moments turn the joints that bear them: such angles add up along a beam. A block that is
+// solved with its group is as soft as `factor` makes it, and at rest half of its impulse turns it
+// by the half of its error that a substep takes back. What has been torn apart stays so at any
+// number of substeps, and asks for none.
+void note_moment_needs(Scratch &s, const StepSettings &settings, int substeps) {
+    const double h = settings.dt / substeps;
+    JointSystem &system = *s.solver.joint_system;
+    for (const JointGroup &joints : system.groups())
+        for (std::uint32_t place = joints.first; joints.is_held && place < joints.last; ++place) {
+            const JointConstraint &joint = s.solver.joints[system.block(place)];
+            if (joint.rows.kind != RowKind::angular)
+                continue;
+            const auto turn =
+                h * static_cast<double>(glm::length(system.softening(place) * joint.impulse));
+            const double squared = square(substeps) * turn / settings.substep_tolerance;
+            for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
+                s.loads[body] = std::max(s.loads[body], squared);
+            });
+        }
+}
+
+} // namespace
+
+// What joints will bear in their first step is not known: as much as if all of the island hung on
+// each of them. Begun too coarsely they would be stretched, and give that energy back when they are
+// stiffened.
+void World::guess_needs() {
+    Scratch &s = scratch_;
+    Islands &islands = s.islands;
+    const auto is_first = [&](std::uint32_t body) {
+        return islands.needs[islands.root_of(body)].before == 0;
+    };
+    if (std::ranges::none_of(s.moving, is_first))
+        return;
+    s.guessed_stiffness.assign(s.bodies.size(), Vec3{Real(0)});
+    const auto load = [&](std::uint32_t body, const Vec3 &arm) {
+        if (body != Joint::world && model_->bodies[body].kind == BodyKind::dynamic)
+            s.guessed_stiffness[body] +=
+                greatest_axial_stiffness(arm, model_->bodies[body].inertia);
+    };
+    for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
+        const Joint &joint = model_->joints[i];
+        if (!holds(i) || joint.frequency > Real(0))
+            continue;
+        load(joint.a, joint.anchor_a_local);
+        load(joint.b, joint.anchor_b_local);
+    }
+    for (const std::uint32_t i : s.moving)
+        islands.needs[islands.root_of(i)].mass += static_cast<double>(model_->bodies[i].mass);
+    for (const std::uint32_t i : s.moving) {
+        const Body &body = model_->bodies[i];
+        if (body.kind != BodyKind::dynamic || !is_first(i))
+            continue;
+        Islands::Needs &needs = islands.needs[islands.root_of(i)];
+        // What is let go suddenly pulls twice as hard at first.
+        const double weight = 2 * needs.mass * glm::length(settings_.gravity);
+        const double rate = std::sqrt(
+            weight * static_cast<double>(squared_rate(s.guessed_stiffness[i], body.inertia)));
+        needs.wanted =
+            std::max(needs.wanted, int{count_of(rate * settings_.dt / followed_together)});
+    }
+}
+
+bool World::is_solved_together(std::uint32_t body) const {
+    return scratch_.solver.joint_system->group_of(body) != JointSystem::none;
+}
+
+// The depth of a soft contact of frequency w under the force F is F / (2 m w^2): the warm start
+// acts in two halves, before and after the move. With w = 2 pi ratio n / dt that is the n below.
+void World::note_contact_needs(const IslandGroup &group) {
+    Scratch &s = scratch_;
+    const double ratio = 2 * std::numbers::pi * settings_.contact_frequency_ratio;
+    const auto wanted_of = [&](const Contact &contact) {
+        const std::uint32_t a = contact.key.a;
+        const std::uint32_t b = contact.key.b;
+        // What is struck is not loaded yet; but the first step knows nothing else.
+        if (contact.is_new && state_.paces[island_body(a, b)].substeps > 0)
+            return 0.0;
+        double load = 0;
+        for (int k = 0; k < contact.manifold.count; ++k)
+            load += static_cast<double>(contact.impulses[static_cast<std::size_t>(k)].x);
+        const double inverse = largest(s.bodies[a].inv_mass) + largest(s.bodies[b].inv_mass);
+        double width = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t body : {a, b})
+            if (model_->bodies[body].kind == BodyKind::dynamic)
+                width = std::min(width,
+                                 2 * static_cast<double>(least_half_width(model_->bodies[body])));
+        const double depth = settings_.substep_tolerance * width;
+        return 0.5 * load * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * depth);
+    };
+    const auto roll_of = [&](std::uint32_t body) {
+        const Vec3 &spin = s.bodies[body].angular_velocity;
+        const double roll =
+            static_cast<double>(glm::dot(spin, spin)) * square(settings_.dt / followed_roll);
+        const bool is_fast = roll > square(settings_.substeps);
+        return is_fast && model_->bodies[body].kind == BodyKind::dynamic &&
+                       extent_of(body) > Real(0)
+                   ? roll
+                   : 0.0;
+    };
+    constexpr std::size_t contacts_a_part = 256;
+    s.contact_loads.resize(group.contacts.size());
+    for_parts(s.tasks, group.contacts.size(), contacts_a_part,
+              [&](std::size_t begin, std::size_t end) {
+                  for (std::size_t i = begin; i < end; ++i)
+                      s.contact_loads[i] = wanted_of(s.contacts[group.contacts[i]]);
+              });
+    for (std::size_t i = 0; i < group.contacts.size(); ++i) {
+        const ContactEnds &ends = s.ends[group.contacts[i]];
+        for (const std::uint32_t body : {ends.a, ends.b})
+            s.loads[body] = std::max({s.loads[body], s.contact_loads[i], roll_of(body)});
+    }
+}
+
+// Depths and drifts, and springs that share bodies.
+void World::note_joint_needs(const IslandGroup &group) {
+    Scratch &s = scratch_;
+    const double ratio = 2 * std::numbers::pi * settings_.joint_frequency_ratio;
+    const auto ask = [&](const JointConstraint &joint, double squared) {
+        for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
+            s.loads[body] = std::max(s.loads[body], squared);
+        });
+    };
+    for (const std::uint32_t i : group.moving)
+        s.stiffness[i] = {};
+    for (const JointConstraint &joint : s.solver.joints) {
+        if (joint.is_spring()) {
+            const double swing =
+                2 * std::numbers::pi * static_cast<double>(joint.rows.frequency) * settings_.dt;
+            const double slowing = 2 * static_cast<double>(joint.rows.damping_ratio) * swing;
+            ask(joint,
+                std::max(square(swing / followed_swing), square(slowing / followed_damping)));
+        }
+        if (!is_loaded(joint))
+            continue;
+        const double impulse = static_cast<double>(glm::length(joint.impulse)); // of a substep
+        double inverse = 0;
+        bool is_together = false;
+        const Vec3 force = static_cast<Real>(group.pace.substeps / settings_.dt) *
+                           world_impulse(joint.rows, joint.impulse);
+        for_ends(joint, [&](std::uint32_t body, const Vec3 &arm) {
+            s.stiffness[body].add_bound(force, arm);
+            if (!is_isotropic(model_->bodies[body].inertia))
+                s.stiffness[body].add_tensor(force, arm);
+            inverse += largest(s.bodies[body].inv_mass);
+            is_together = is_together || is_solved_together(body);
+        });
+        if (joint.rows.swing_length > Real(0)) {
+            // A rod under tension holds what is at its ends back aside, and turns with them.
+            const double length = static_cast<double>(joint.rows.swing_length);
+            const double tension = impulse * group.pace.substeps / settings_.dt;
+            ask(joint, 4 * tension / length * inverse * square(settings_.dt / followed_swing));
+        }
+        if (is_together)
+            continue;
+        const double drift = settings_.substep_tolerance * static_cast<double>(size_of(joint.rows));
+        const double squared =
+            0.5 * impulse * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * drift);
+        ask(joint, squared);
+    }
+    note_moment_needs(s, settings_, group.pace.substeps);
+}
+
+// How fast joints' forces turn their bodies, and how fast these turn.
+void World::note_turn_needs(const IslandGroup &group) {
+    Scratch &s = scratch_;
+    for (const std::uint32_t i : group.moving) {
+        const Body &body = model_->bodies[i];
+        if (body.kind != BodyKind::dynamic || !(s.stiffness[i].most > Real(0)))
+            continue;
+        const auto squared = static_cast<double>(squared_rate(
+            axial_stiffness(s.stiffness[i], body.inertia, s.bodies[i].rotation), body.inertia));
+        const double rate =
+            settings_.dt / (is_solved_together(i) ? followed_together : followed_alone);
+        s.loads[i] = std::max(s.loads[i], squared * rate * rate);
+    }
+    const double turn = settings_.dt / followed_turn;
+    // Only about what stands still: a chain that whips would be stiffened in the midst of it.
+    for (const JointConstraint &joint : s.solver.joints)
+        if (!moves(joint.a) || !moves(joint.b))
+            for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
+                if (model_->bodies[body].kind != BodyKind::dynamic ||
+                    !(s.stiffness[body].most > Real(0)))
+                    return;
+                const Vec3 &spin = s.bodies[body].angular_velocity;
+                s.loads[body] = std::max(s.loads[body],
+                                         static_cast<double>(glm::dot(spin, spin)) * turn * turn);
+            });
+}
+
+// What joints solved together did not follow is stepped again, finer. What has been torn apart is a
+// loaded spring, and is stiffened bit by bit.
+void World::note_let_go(const IslandGroup &group) {
+    Scratch &s = scratch_;
+    const double more = square(round_substeps_up(group.pace.substeps + 1));
+    JointSystem &system = *s.solver.joint_system;
+    for (const JointGroup &joints : system.groups()) {
+        const auto note = [&](std::uint32_t body, const Vec3 &) {
+            double &load = s.loads[body];
+            if (joints.was_let_go) {
+                load = std::max(load, square(finer * group.pace.substeps));
+                s.islands.needs[s.islands.root_of(body)].was_let_go = true;
+            } else if (state_.paces[body].substeps > 0) {
+                load = std::min(load, more);
+            }
+        };
+        for (std::uint32_t place = joints.first; place < joints.last; ++place)
+            if (joints.was_let_go || joints.was_torn)
+                for_ends(s.solver.joints[system.block(place)], note);
+    }
+}
+
+// After a group was advanced: what its loads ask of the next step.
+void World::note_needs(const IslandGroup &group) {
+    Scratch &s = scratch_;
+    if (group.is_free()) {
+        for (const std::uint32_t i : group.moving)
+            s.paces[i].wanted = 0;
+        return;
+    }
+    s.loads.resize(s.bodies.size());
+    s.stiffness.resize(s.bodies.size());
+    for (const std::uint32_t i : group.moving)
+        s.loads[i] = 0;
+    note_contact_needs(group);
+    note_joint_needs(group);
+    note_turn_needs(group);
+    note_let_go(group);
+    for (const std::uint32_t i : group.moving)
+        s.paces[i].wanted = count_of(std::sqrt(s.loads[i]));
+}
+
+// Whether bodies that had no pace before asked for more than they got, or joints were let go that
+// more substeps may follow.
+bool World::went_too_coarsely() const {
+    const Scratch &s = scratch_;
+    if (!chooses_substeps())
+        return false;
+    const auto has_begun = [&](std::uint32_t i) {
+        return state_.paces[i].substeps == 0 && s.paces[i].wanted > s.paces[i].substeps &&
+               s.paces[i].substeps < settings_.max_substeps;
+    };
+    const auto was_let_go = [&](Islands::Needs needs) {
+        needs.wanted = needs.before = static_cast<int>(finer) * needs.pace.substeps;
+        return needs.was_let_go &&
+               chosen_substeps(needs, settings_.substep_budget) > needs.pace.substeps;
+    };
+    return std::ranges::any_of(s.moving, has_begun) ||
+           std::ranges::any_of(s.islands.needs, was_let_go);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,293 @@
+#include "engine/dynamics/islands/islands.h"
+
+#include "engine/dynamics/world.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// An island goes down by one number in so many steps, at the most.
+constexpr std::uint64_t steps_to_go_down = 4;
+
+// The part of wanted substeps by which an island must be better off before it goes down.
+constexpr double spare = 1.25;
+// An island that wants more than so many times the substeps that it gets takes its points in one
+// order: in pyramids of base 45 and up, of which the passes balance but a part, points taken in
+// turns feed waves.
+constexpr int most_wanted_in_turns = 4;
+// Slow is what is slower than such a share of what gravity adds in a step.
+constexpr double slow_share = 0.35;
+// Contacts: what hangs together of more gains nothing by one more pass.
+constexpr int most_settled = 48;
+
+} // namespace
+
+int round_substeps_up(int n) {
+    const auto digits = static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(n, 0))));
+    const int step = 1 << std::max(digits - 3, 0);
+    return (n + step - 1) / step * step;
+}
+
+int round_substeps_down(int n) {
+    const int up = round_substeps_up(n);
+    return up > n ? fewer_substeps(up) : n;
+}
+
+int fewer_substeps(int n) {
+    const auto digits = static_cast<int>(std::bit_width(static_cast<unsigned>(n - 1)));
+    return n - (1 << std::max(digits - 3, 0));
+}
+
+bool World::chooses_substeps() const {
+    return settings_.max_substeps > settings_.substeps && method_->info.chooses_substeps();
+}
+
+int World::substeps_of(std::uint32_t body) const {
+    const int own = state_.paces[body].substeps;
+    return own > 0 ? own : settings_.substeps;
+}
+
+bool World::moves(std::uint32_t body) const {
+    return body != Joint::world && scratch_.still[body] == 0;
+}
+
+// Whether a joint is there, whole, and between what moves.
+bool World::holds(std::uint32_t joint) const {
+    const Joint &one = model_->joints[joint];
+    return one.alive && !scratch_.joints[joint].broken && (moves(one.a) || moves(one.b));
+}
+
+void World::find_islands() {
+    Scratch &s = scratch_;
+    Islands &islands = s.islands;
+    islands.start(model_->bodies.size());
+    for (const ContactEnds &contact : s.ends)
+        if (!contact.is_sensor && moves(contact.a) && moves(contact.b))
+            islands.join(contact.a, contact.b);
+    for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
+        const Joint &joint = model_->joints[i];
+        if (holds(i) && moves(joint.a) && moves(joint.b))
+            islands.join(joint.a, joint.b);
+    }
+    if (model_->has_particles())
+        join_particles();
+}
+
+std::uint32_t World::island_body(std::uint32_t a, std::uint32_t b) const {
+    const auto is = [&](std::uint32_t body, BodyKind kind) {
+        return body != Joint::world && model_->bodies[body].kind == kind;
+    };
+    const bool is_b = is(b, BodyKind::dynamic) && !is(a, BodyKind::dynamic);
+    return is_b || is(a, BodyKind::static_body) || a == Joint::world ? b : a;
+}
+
+void World::gather_needs() {
+    Scratch &s = scratch_;
+    Islands &islands = s.islands;
+    islands.needs.assign(islands.parent.size(), {});
+    const auto slow = static_cast<Real>(slow_share * glm::length(settings_.gravity) * settings_.dt);
+    for (const std::uint32_t i : s.moving) {
+        Islands::Needs &needs = islands.needs[islands.root_of(i)];
+        needs.wanted = std::max(needs.wanted, int{s.paces[i].wanted});
+        needs.before = std::max(needs.before, int{s.paces[i].substeps});
+        const Real fast = static_cast<Real>(settings_.substep_tolerance / settings_.dt) *
+                          least_half_width(model_->bodies[i]);
+        const Vec3 &velocity = state_.motions[i].velocity;
+        needs.rests = needs.rests && glm::dot(velocity, velocity) <= fast * fast;
+        needs.is_slow = needs.is_slow && glm::dot(velocity, velocity) <= slow * slow;
+    }
+    for (const ContactEnds &contact : s.ends)
+        if (!contact.is_sensor) {
+            Islands::Needs &needs =
+                islands.needs[islands.root_of(island_body(contact.a, contact.b))];
+            ++needs.work;
+            needs.touches = true;
+        }
+    for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
+        const Joint &joint = model_->joints[i];
+        if (!holds(i))
+            continue;
+        Islands::Needs &needs = islands.needs[islands.root_of(island_body(joint.a, joint.b))];
+        ++needs.work;
+        needs.is_joined = true;
+    }
+    if (model_->has_particles())
+        gather_particle_needs();
+}
+
+// Up at once; down slowly and at rest: what stretched softly while it moved and is stiffened again
+// gains energy by it, and a tall stack would rock itself to pieces.
+int World::chosen_substeps(const Islands::Needs &needs, int budget) const {
+    const int least = settings_.substeps;
+    const int affordable = needs.work > 0 ? budget / needs.work : least;
+    const int most =
+        std::max(least, round_substeps_down(std::min(settings_.max_substeps, affordable)));
+    const auto rounded = [&](double wanted) {
+        const int up =
+            wanted < most ? round_substeps_up(static_cast<int>(std::ceil(wanted))) : most;
+        return std::clamp(up, least, most);
+    };
+    const int wanted = rounded(needs.wanted);
+    if (wanted >= needs.before)
+        return wanted;
+    const bool may_go_down = state_.clock.step_count % steps_to_go_down == 0 && needs.rests &&
+                             rounded(spare * needs.wanted) < needs.before;
+    return std::clamp(may_go_down ? fewer_substeps(needs.before) : needs.before, least, most);
+}
+
+// Each island may take as much of the budget as any other; as much as keeps all of them to it.
+void World::share_budget() {
+    Scratch &s = scratch_;
+    std::vector<std::uint32_t> &roots = s.islands.roots;
+    roots.clear();
+    for (std::uint32_t i = 0; i < s.islands.needs.size(); ++i) {
+        s.islands.needs[i].pace.substeps = settings_.substeps;
+        if (s.islands.needs[i].work > 0)
+            roots.push_back(i);
+    }
+    std::int64_t work = 0;
+    int each = settings_.substep_budget;
+    do {
+        work = 0;
+        for (const std::uint32_t root : roots) {
+            Islands::Needs &needs = s.islands.needs[root];
+            needs.pace.substeps = chosen_substeps(needs, each);
+            if (needs.pace.substeps > settings_.substeps)
+                work += std::int64_t{needs.work} * needs.pace.substeps;
+        }
+        each = fewer_substeps(each);
+    } while (work > settings_.substep_budget);
+    for (const std::uint32_t root : roots) {
+        IslandPace &pace = s.islands.needs[root].pace;
+        pace.alternates = s.islands.needs[root].wanted <= most_wanted_in_turns * pace.substeps;
+    }
+    find_unsettled();
+}
+
+// One pass feeds slow sways in what is tall and thin: it would never sleep, or even fall. What is
+// slow takes another until it has been at rest for long enough to sleep, as long as all of that
+// costs no more than the budget.
+void World::find_unsettled() {
+    Scratch &s = scratch_;
+    const auto may_settle = [](const Islands::Needs &needs) {
+        return needs.touches && !needs.is_joined && needs.is_slow && needs.work <= most_settled;
+    };
+    std::int64_t work = 0;
+    for (const std::uint32_t root : s.islands.roots) {
+        const Islands::Needs &needs = s.islands.needs[root];
+        work += may_settle(needs) ? std::int64_t{needs.work} * needs.pace.substeps : 0;
+    }
+    if (2 * work > settings_.substep_budget)
+        return;
+    const std::uint16_t enough = steps_to_sleep();
+    for (const std::uint32_t i : s.moving) {
+        Islands::Needs &needs = s.islands.needs[s.islands.root_of(i)];
+        if (may_settle(needs) && s.paces[i].rested < enough)
+            needs.pace.settles = true;
+    }
+}
+
+// Remembered impulses stay as they are, though they are of one substep: scaled to the new number of
+// substeps they changed no stack, pyramid or pile that was tried, and chains gained energy.
+void World::choose_substeps() {
+    Scratch &s = scratch_;
+    if (s.contacts.empty() && model_->alive_joints == 0 && !s.grab.is_holding() &&
+        !model_->has_particles()) {
+        group_freely();
+        return;
+    }
+    const bool chooses = chooses_substeps();
+    s.solver.has_spring_rates = chooses && model_->has_particles(); // by gather_needs
+    if (chooses) {
+        find_islands();
+        gather_needs();
+        guess_needs();
+        share_budget();
+    }
+    group_islands();
+    for (const std::uint32_t i : s.moving)
+        s.paces[i].substeps =
+            chooses
+                ? static_cast<std::uint16_t>(s.islands.needs[s.islands.root_of(i)].pace.substeps)
+                : std::uint16_t{0};
+}
+
+// All that moves in one group, where each body is by itself.
+void World::group_freely() {
+    Scratch &s = scratch_;
+    s.islands.needs.clear();
+    const int substeps = chooses_substeps() ? settings_.substeps : 0;
+    for (const std::uint32_t i : s.moving)
+        s.paces[i].substeps = static_cast<std::uint16_t>(substeps);
+    s.group_count = s.moving.empty() ? 0 : 1;
+    if (s.groups.empty())
+        s.groups.emplace_back();
+    IslandGroup &group = s.groups.front();
+    group.pace = {.substeps = settings_.substeps};
+    group.moving.assign(s.moving.begin(), s.moving.end());
+    group.contacts.clear();
+    group.joints.clear();
+    group.holds_grab = false;
+    group.has_particles = false;
+}
+
+// In the order of their substeps.
+void World::group_islands() {
+    Scratch &s = scratch_;
+    s.group_count = 0;
+    const auto empty = [&](IslandGroup &group) {
+        // As if all were in each, so that nothing is allocated when islands change groups.
+        group.moving.clear();
+        group.moving.reserve(s.moving.size());
+        group.contacts.clear();
+        group.contacts.reserve(s.contacts.capacity());
+        group.joints.clear();
+        group.joints.reserve(model_->alive_joints);
+        group.holds_grab = false;
+        group.has_particles = false;
+    };
+    const auto group_with = [&](const IslandPace &pace) -> IslandGroup & {
+        for (std::size_t i = 0; i < s.group_count; ++i)
+            if (s.groups[i].pace == pace)
+                return s.groups[i];
+        if (s.groups.size() == s.group_count)
+            s.groups.emplace_back();
+        IslandGroup &group = s.groups[s.group_count++];
+        group.pace = pace;
+        empty(group);
+        return group;
+    };
+    const bool chooses = chooses_substeps();
+    const auto group_of = [&](std::uint32_t body) -> IslandGroup & {
+        if (!chooses)
+            return group_with({.substeps = settings_.substeps});
+        return group_with(s.islands.needs[s.islands.root_of(body)].pace);
+    };
+    for (const std::uint32_t i : s.moving)
+        group_of(i).moving.push_back(i);
+    for (std::uint32_t i = 0; i < s.ends.size(); ++i)
+        if (!s.ends[i].is_sensor)
+            group_of(island_body(s.ends[i].a, s.ends[i].b)).contacts.push_back(i);
+    for (std::uint32_t i = 0; i < model_->joints.size(); ++i)
+        if (holds(i))
+            group_of(island_body(model_->joints[i].a, model_->joints[i].b)).joints.push_back(i);
+    if (s.grab.is_holding())
+        group_of(s.grab.body).holds_grab = true;
+    if (model_->has_particles()) {
+        const auto particles = static_cast<std::uint32_t>(model_->bodies.size());
+        group_of(particles).has_particles = true;
+    }
+    // One to spare, for when one of several islands settles.
+    if (s.groups.size() == s.group_count)
+        empty(s.groups.emplace_back());
+    if (s.joint_systems.size() < s.group_count)
+        s.joint_systems.resize(s.group_count);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

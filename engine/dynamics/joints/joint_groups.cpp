@@ -1,0 +1,362 @@
+#include "engine/dynamics/joints/joint_groups.h"
+
+#include "engine/dynamics/joints/joint_impulse.h"
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// The right-hand sides of a group's equations, its own among those of all.
+std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
+    return std::span(context.scratch.sides).subspan(group.first, group.last - group.first);
+}
+
+// It bears nothing yet.
+void set_bearing(JointConstraint &joint, BearingLimit bearing) {
+    joint.bearing = bearing;
+    joint.rows.count = 2;
+    joint.rows.axes[2] = Vec3{Real(0)};
+    joint.rows.error.z = joint.impulse.z = joint.remembered.z = Real(0);
+    if (bearing != BearingLimit::none)
+        add_limit_row(joint);
+    for (JointConstraint &limit : limits_of(joint)) {
+        limit.impulse = limit.remembered = Vec3{Real(0)};
+        limit.is_held = bearing != BearingLimit::none;
+        limit.is_weighed = !limit.is_held; // again: weigh_again
+    }
+}
+
+// A limit pushes, and does not pull.
+bool pulls(BearingLimit bearing, Real impulse) {
+    return (bearing == BearingLimit::lower && impulse < Real(0)) ||
+           (bearing == BearingLimit::upper && impulse > Real(0));
+}
+
+// Leaves a limit to Gauss-Seidel, bearing nothing.
+void release_limit(StepContext &context, JointConstraint &joint) {
+    apply(context, joint, {Real(0), Real(0), -joint.impulse.z});
+    set_bearing(joint, BearingLimit::none);
+}
+
+// Releases those that pull. Returns whether there were any.
+bool release_limits(StepContext &context, JointGroup &group) {
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[context.scratch.joint_system->block(place)];
+        if (!pulls(joint.bearing, joint.impulse.z))
+            continue;
+        release_limit(context, joint);
+        any = true;
+    }
+    if (any)
+        factor_again(context, group);
+    return any;
+}
+
+// How fast rows that are solved together take their drift back. A limit may be anywhere when it
+// is reached: the others' drift is not to wait for it.
+Vec3 held_bias(const JointConstraint &joint, const JointPass &pass) {
+    const Real rate = pass.held_share / pass.h;
+    if (joint.bearing == BearingLimit::none)
+        return pushed(rate * joint.rows.error, pass.push_velocity);
+    const Vec3 &error = joint.rows.error;
+    Vec3 bias = pushed(rate * Vec3{error.x, error.y, Real(0)}, pass.push_velocity);
+    const bool is_off = pulls(joint.bearing, -error.z); // comes to its limit in this substep
+    bias.z = is_off ? error.z / pass.h
+                    : std::clamp(rate * error.z, -pass.push_velocity, pass.push_velocity);
+    return bias;
+}
+
+// What strikes open the limits that bore less in the last substep than the blow, whose answers are
+// in the right-hand sides, would have them pull. Returns whether there were any.
+bool open_limits(StepContext &context, JointGroup &group) {
+    JointSystem &system = *context.scratch.joint_system;
+    const std::span<const Vec3> sides = sides_of(context, group);
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        if (!pulls(joint.bearing, joint.impulse.z + sides[place - group.first].z))
+            continue;
+        set_bearing(joint, BearingLimit::none);
+        any = true;
+    }
+    if (any)
+        factor_again(context, group);
+    return any;
+}
+
+// All rows of a group at once. Where bodies turn far within the substep, the ends of their arms
+// move along circles, and it takes some of Newton's steps until they meet. Returns whether they do.
+bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &pass) {
+    const JointSystem &system = *context.scratch.joint_system;
+    const std::span<Vec3> sides = sides_of(context, group);
+    // Far more than it takes when a body turns a radian within the substep.
+    constexpr int most_steps = 8;
+    constexpr Real tolerance = Real(1e-6); // of the arms' lengths
+    for (int step = 0; step < (pass.at_the_end ? most_steps : 1); ++step) {
+        bool holds = step > 0;
+        for (std::uint32_t place = group.first; place < group.last; ++place) {
+            const JointConstraint &joint = context.scratch.joints[system.block(place)];
+            Vec3 side =
+                row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), pass);
+            if (pass.held_share > Real(0))
+                side += held_bias(joint, pass) + system.softening(place) * joint.impulse;
+            sides[place - group.first] = -side;
+            if (holds) {
+                const Real most = tolerance * size_of(joint.rows) / pass.h;
+                holds = glm::dot(side, side) <= most * most;
+            }
+        }
+        if (holds)
+            return true;
+        system.solve(group, sides);
+        for (std::uint32_t place = group.first; place < group.last; ++place) {
+            JointConstraint &joint = context.scratch.joints[system.block(place)];
+            const Vec3 &change = sides[place - group.first];
+            joint.impulse += change;
+            apply(context, joint, change);
+        }
+    }
+    return !pass.at_the_end;
+}
+
+// What a group answers to an impulse along the rows of a joint that is not of it, such as a limit:
+// the impulses that keep the speeds of the group's rows, in its right-hand sides. Returns the sum
+// of their products with what the impulse did to those rows.
+Real find_answer(StepContext &context, const JointConstraint &joint, const JointGroup &group,
+                 const Vec3 &impulse) {
+    const JointSystem &system = *context.scratch.joint_system;
+    const std::span<Vec3> sides = sides_of(context, group);
+    const auto struck = [&](std::uint32_t body) {
+        SolverBody motion = context.body(body);
+        motion.velocity = motion.angular_velocity = Vec3{Real(0)};
+        return motion;
+    };
+    SolverBody a = struck(joint.a);
+    SolverBody b = struck(joint.b);
+    const Vec3 along = world_impulse(joint.rows, impulse);
+    if (joint.moves_a)
+        apply(a, joint.rows, joint.rows.r_a, -along);
+    if (joint.moves_b)
+        apply(b, joint.rows, joint.rows.r_b, along);
+    const SolverBody still;
+    const auto after = [&](std::uint32_t body) -> const SolverBody & {
+        return body == Joint::world ? still : body == joint.a ? a : body == joint.b ? b : still;
+    };
+    const auto effect = [&](std::uint32_t place) {
+        const JointConstraint &other = context.scratch.joints[system.block(place)];
+        return row_velocity(other.rows, after(other.a), after(other.b), JointPass{});
+    };
+    for (std::uint32_t place = group.first; place < group.last; ++place)
+        sides[place - group.first] = -effect(place);
+    system.solve(group, sides);
+    Real sum = Real(0);
+    for (std::uint32_t place = group.first; place < group.last; ++place)
+        sum -= glm::dot(effect(place), sides[place - group.first]);
+    return sum;
+}
+
+// Calls use(group) for those that the joint's bodies hang on, as far as they are held.
+template <typename Use>
+void for_held_groups(StepContext &context, const JointConstraint &joint, Use &&use) {
+    JointSystem &system = *context.scratch.joint_system;
+    std::uint32_t last = JointSystem::none;
+    for (const std::uint32_t body : {joint.a, joint.b}) {
+        const std::uint32_t group =
+            body == Joint::world ? JointSystem::none : system.group_of(body);
+        if (group == JointSystem::none || group == last || !system.groups()[group].is_held)
+            continue;
+        last = group;
+        use(system.groups()[group]);
+    }
+}
+
+bool hangs_on_changed_group(StepContext &context, const JointConstraint &joint) {
+    JointSystem &system = *context.scratch.joint_system;
+    const auto has = [&](std::uint32_t body) {
+        const std::uint32_t group =
+            body == Joint::world ? JointSystem::none : system.group_of(body);
+        return group != JointSystem::none && system.groups()[group].has_changed;
+    };
+    return has(joint.a) || has(joint.b);
+}
+
+} // namespace
+
+void find_limits(std::span<JointConstraint> blocks) {
+    const auto lower =
+        std::ranges::find(blocks, RowBounds::at_least,
+                          [](const JointConstraint &joint) { return joint.rows.bounds; });
+    if (lower == blocks.end())
+        return;
+    for (JointConstraint &joint : blocks)
+        if (joint.rows.bounds == RowBounds::equal && joint.rows.count == 2 &&
+            joint.rows.kind == lower->rows.kind)
+            joint.limits = static_cast<std::uint8_t>(&*lower - &joint);
+}
+
+std::span<JointConstraint, 2> limits_of(JointConstraint &joint) {
+    return std::span<JointConstraint, 2>(&joint + joint.limits, 2);
+}
+
+void add_limit_row(JointConstraint &joint) {
+    const RowBlock &limit = limits_of(joint)[joint.bearing == BearingLimit::upper ? 1 : 0].rows;
+    joint.rows.count = 3;
+    joint.rows.axes[2] = limit.axes[0];
+    joint.rows.error.z = limit.error.x;
+}
+
+bool choose_limits(StepContext &context, const JointGroup &group) {
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[context.scratch.joint_system->block(place)];
+        if (joint.limits == 0)
+            continue;
+        const std::span<JointConstraint, 2> limits = limits_of(joint);
+        BearingLimit bearing = joint.bearing;
+        Real load = joint.impulse.z;
+        if (bearing == BearingLimit::none) {
+            load = limits[0].impulse.x + limits[1].impulse.x;
+            bearing = load > Real(0) ? BearingLimit::lower : BearingLimit::upper;
+        }
+        if (limits[0].rows.error.x == limits[1].rows.error.x)
+            bearing = BearingLimit::shut;
+        else if (load == Real(0))
+            bearing = BearingLimit::none;
+        if (!group.is_held)
+            bearing = BearingLimit::none;
+        if (bearing == joint.bearing)
+            continue;
+        set_bearing(joint, bearing);
+        if (bearing != BearingLimit::none)
+            joint.impulse.z = load;
+        any = true;
+    }
+    // What has torn it apart may have been a blow at those limits, which is not to go on.
+    for (std::uint32_t place = group.first; any && !group.is_held && place < group.last; ++place)
+        context.scratch.joints[context.scratch.joint_system->block(place)].impulse = Vec3{Real(0)};
+    return any;
+}
+
+void factor_again(StepContext &context, JointGroup &group) {
+    context.scratch.joint_system->factor(context, group, held_compliance);
+    group.has_changed = true;
+}
+
+bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass) {
+    do
+        if (!solve_rows(context, group, pass))
+            return false;
+    while (release_limits(context, group));
+    return true;
+}
+
+void hold_touched_groups(StepContext &context, const JointPass &pass) {
+    const std::span<JointGroup> groups = context.scratch.joint_system->groups();
+    for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
+        for (JointGroup &group : groups.subspan(begin, end - begin))
+            if (group.is_held && group.is_touched)
+                solve_group(context, group, pass);
+    });
+    weigh_again(context);
+}
+
+void remember_anew(StepContext &context, const JointGroup &group, Real share) {
+    const JointSystem &system = *context.scratch.joint_system;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        joint.remembered = joint.impulse / share;
+    }
+}
+
+void let_go(StepContext &context, JointGroup &group) {
+    const JointSystem &system = *context.scratch.joint_system;
+    group.is_held = false;
+    group.was_let_go = !group.was_torn;
+    group.has_changed = true;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        apply(context, joint, -joint.impulse);
+        joint.impulse = joint.remembered = Vec3{Real(0)};
+        joint.is_held = false;
+        if (joint.bearing != BearingLimit::none)
+            release_limit(context, joint);
+        joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
+    }
+}
+
+void weigh(StepContext &context, JointConstraint &joint) {
+    joint.is_weighed = false;
+    Real &mass = joint.mass[0][0];
+    if (joint.is_held || joint.rows.count != 1 || joint.is_spring() || !(mass > Real(0)))
+        return;
+    const Real alone = Real(1) / mass;
+    Real inverse = alone;
+    for_held_groups(context, joint, [&](const JointGroup &group) {
+        inverse -= find_answer(context, joint, group, Vec3{Real(1), Real(0), Real(0)});
+        joint.is_weighed = true;
+    });
+    mass = Real(1) / std::max(inverse, Real(1e-3) * alone);
+}
+
+bool any_has_changed(StepContext &context) {
+    return std::ranges::any_of(context.scratch.joint_system->groups(), &JointGroup::has_changed);
+}
+
+void weigh_again(StepContext &context, const std::function<void(JointConstraint &)> &use) {
+    if (!any_has_changed(context))
+        return;
+    for (JointConstraint &joint : context.scratch.joints)
+        if (joint.is_weighed && hangs_on_changed_group(context, joint)) {
+            joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
+            weigh(context, joint);
+            use(joint);
+        }
+}
+void weigh_again(StepContext &context) {
+    weigh_again(context, [](JointConstraint &) {});
+    for (JointGroup &group : context.scratch.joint_system->groups())
+        group.has_changed = false;
+}
+
+void answer(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
+    for_held_groups(context, joint, [&](const JointGroup &group) {
+        find_answer(context, joint, group, impulse);
+        const std::span<const Vec3> sides = sides_of(context, group);
+        for (std::uint32_t place = group.first; place < group.last; ++place) {
+            JointConstraint &other =
+                context.scratch.joints[context.scratch.joint_system->block(place)];
+            other.impulse += sides[place - group.first];
+            apply(context, other, sides[place - group.first]);
+        }
+    });
+}
+
+void answer_impact(StepContext &context, std::uint32_t group) {
+    if (group == JointSystem::none)
+        return;
+    JointSystem &system = *context.scratch.joint_system;
+    JointGroup &all = system.groups()[group];
+    if (!all.is_held)
+        return;
+    const std::span<Vec3> sides = sides_of(context, all);
+    do {
+        for (std::uint32_t place = all.first; place < all.last; ++place) {
+            const JointConstraint &joint = context.scratch.joints[system.block(place)];
+            sides[place - all.first] = -row_velocity(joint.rows, context.body(joint.a),
+                                                     context.body(joint.b), JointPass{});
+        }
+        system.solve(all, sides);
+    } while (open_limits(context, all));
+    for (std::uint32_t place = all.first; place < all.last; ++place) {
+        const JointConstraint &joint = context.scratch.joints[system.block(place)];
+        apply(context, joint, sides[place - all.first]);
+    }
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,255 @@
+#include "engine/dynamics/joints/joint_impulse.h"
+
+#include "engine/dynamics/contacts/contact_constraint.h"
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// K of a point-to-point constraint: (1/ma + 1/mb) 1 - [ra] Ia^-1 [ra] - [rb] Ib^-1 [rb]
+// (Catto 2009, "Modeling and Solving Constraints", slide 52, in 3D).
+Mat3 point_matrix(const SolverBody &a, const SolverBody &b, const Vec3 &r_a, const Vec3 &r_b) {
+    Mat3 k{Real(0)};
+    for (int i = 0; i < 3; ++i)
+        k[i][i] = a.inv_mass[i] + b.inv_mass[i];
+    const auto subtract = [&](const Mat3 &inv_inertia, const Vec3 &r) {
+        const Mat3 crossed{glm::cross(r, inv_inertia[0]), glm::cross(r, inv_inertia[1]),
+                           glm::cross(r, inv_inertia[2])};
+        k[0] -= r.z * crossed[1] - r.y * crossed[2];
+        k[1] -= r.x * crossed[2] - r.z * crossed[0];
+        k[2] -= r.y * crossed[0] - r.x * crossed[1];
+    };
+    subtract(a.inv_inertia, r_a);
+    subtract(b.inv_inertia, r_b);
+    return k;
+}
+
+// K between two rows: u^T K v (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers").
+Real row_coupling(const RowBlock &rows, const SolverBody &a, const SolverBody &b, const Vec3 &u,
+                  const Vec3 &v) {
+    if (rows.kind == RowKind::angular)
+        return glm::dot(u, a.inv_inertia * v) + glm::dot(u, b.inv_inertia * v);
+    return glm::dot(u, (a.inv_mass + b.inv_mass) * v) +
+           glm::dot(a.inv_inertia * glm::cross(rows.r_a, u), glm::cross(rows.r_a, v)) +
+           glm::dot(b.inv_inertia * glm::cross(rows.r_b, u), glm::cross(rows.r_b, v));
+}
+
+// The inverse of a symmetric matrix that is not negative; nothing where it is 0.
+Mat3 inverse_of(Mat3 k) {
+    const Real trace = k[0][0] + k[1][1] + k[2][2];
+    if (!(trace > Real(0)))
+        return Mat3{Real(0)};
+    constexpr Real small = Real(1e-6);
+    if (trace > small && trace < Real(1) / small)
+        return glm::inverse(k + locked_compliance(k));
+    // The determinant of what is very heavy would be too small a number. By a power of two: that
+    // rounds nothing.
+    const Real scale = std::exp2(static_cast<Real>(-std::ilogb(trace)));
+    k *= scale;
+    return scale * glm::inverse(k + locked_compliance(k));
+}
+
+Softness spring_softness(const RowBlock &rows, const JointPass &pass) {
+    const Real time =
+        pass.springs == Springs::midpoint ? spring_share(rows, pass.h) * pass.h : pass.h;
+    return make_soft(rows.frequency, rows.damping_ratio, time);
+}
+
+// The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
+// and -1 for an upper one.
+Real limit_change(const JointConstraint &joint, Real speed, const Softness &softness,
+                  const JointPass &pass, Real side) {
+    const Real gap = side * joint.rows.error.x;
+    const Real impulse = side * joint.impulse.x;
+    const bool is_off = gap > Real(0);
+    if (is_off && joint.is_spring())
+        return -joint.impulse.x; // a slack spring does not pull
+    if (is_off && pass.loaded_only && impulse == Real(0))
+        return Real(0);
+    const Softness used = is_off ? Softness{} : softness;
+    const Real target = is_off ? gap / pass.h : used.bias_rate * gap;
+    const Real change = -used.mass_scale * joint.mass[0][0] * (side * speed + target) -
+                        used.impulse_scale * impulse;
+    return side * (std::max(impulse + change, Real(0)) - impulse);
+}
+
+} // namespace
+
+Mat3 locked_compliance(const Mat3 &k) {
+    const Real size = (k[0][0] + k[1][1] + k[2][2]) / Real(3);
+    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
+    if (!(size > Real(0)) || glm::determinant(k) > least * size * size * size)
+        return Mat3{Real(0)};
+    // Next to 1 along what nothing can move, and next to 0 along all else.
+    constexpr Real small = Real(1e-4);
+    const Mat3 locked = small * glm::inverse(k / size + Mat3{small});
+    return (Real(1e3) * size) * (locked * locked);
+}
+
+Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
+    if (rows.kind == RowKind::point)
+        return inverse_of(point_matrix(a, b, rows.r_a, rows.r_b));
+    if (rows.count == 1) {
+        const Real k = rows.kind == RowKind::linear
+                           ? inverse_effective_mass(a, b, rows.r_a, rows.r_b, rows.axes[0])
+                           : row_coupling(rows, a, b, rows.axes[0], rows.axes[0]);
+        Mat3 mass{Real(0)};
+        mass[0][0] = k > Real(0) ? Real(1) / k : Real(0);
+        return mass;
+    }
+    Mat3 k{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        for (int j = 0; j <= i; ++j)
+            k[i][j] = k[j][i] = row_coupling(rows, a, b, rows.axes[static_cast<std::size_t>(i)],
+                                             rows.axes[static_cast<std::size_t>(j)]);
+    Mat3 mass{Real(0)};
+    if (rows.count == 2) {
+        const Real determinant = k[0][0] * k[1][1] - k[1][0] * k[0][1];
+        const Real size = Real(0.5) * (k[0][0] + k[1][1]);
+        if (determinant > Real(1e-6) * size * size) {
+            mass[0][0] = k[1][1] / determinant;
+            mass[1][1] = k[0][0] / determinant;
+            mass[1][0] = mass[0][1] = -k[1][0] / determinant;
+        } else {
+            for (int i = 0; i < 2; ++i)
+                mass[i][i] = k[i][i] > Real(0) ? Real(1) / (k[0][0] + k[1][1]) : Real(0);
+        }
+    } else {
+        mass = inverse_of(k);
+    }
+    return mass;
+}
+
+Real size_of(const RowBlock &rows) {
+    return rows.kind == RowKind::angular
+               ? Real(1)
+               : glm::length(rows.r_a) + glm::length(rows.r_b) + rows.swing_length;
+}
+
+// The chord of its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
+Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
+    const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);
+    Real along = Real(1) - squared / Real(6) * (Real(1) - squared / Real(20));
+    Real inward = Real(0.5) - squared / Real(24) * (Real(1) - squared / Real(30));
+    if (squared > Real(0.04)) { // the series' next terms show
+        const Real angle = std::sqrt(squared);
+        along = std::sin(angle) / angle;
+        inward = (Real(1) - std::cos(angle)) / squared;
+    }
+    const Vec3 turning = glm::cross(angular_velocity, r);
+    return along * turning + (inward * h) * glm::cross(angular_velocity, turning);
+}
+
+Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                    const JointPass &pass) {
+    Vec3 v{Real(0)};
+    const auto along = [&](const Vec3 &way) {
+        for (int i = 0; i < rows.count; ++i)
+            v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], way);
+    };
+    if (rows.kind == RowKind::angular) {
+        along(b.angular_velocity - a.angular_velocity);
+        return v;
+    }
+    Vec3 relative = point_velocity(rows, a, b, pass);
+    if (pass.at_the_end && rows.turns_with_a) {
+        const Vec3 now = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+        relative += chord_velocity(-a.angular_velocity, pass.h * now, pass.h);
+    }
+    along(relative);
+    if (pass.at_the_end && rows.swing_length > Real(0)) {
+        // How much longer the line between the anchors becomes while they swing aside.
+        const Real distance = rows.swing_length;
+        const Vec3 aside = pass.h * (relative - v.x * rows.axes[0]);
+        const Real squared = std::min(glm::dot(aside, aside), distance * distance);
+        v.x += squared / (distance + std::sqrt(distance * distance - squared)) / pass.h;
+    }
+    return v;
+}
+
+Vec3 half_bend(const RowBlock &rows, const SolverBody &a, const SolverBody &b, Real h) {
+    const auto towards_axis = [](const Vec3 &w, const Vec3 &r) {
+        return glm::cross(w, glm::cross(w, r));
+    };
+    const Vec3 bend =
+        Real(0.5) * h *
+        (towards_axis(b.angular_velocity, rows.r_b) - towards_axis(a.angular_velocity, rows.r_a));
+    if (rows.kind == RowKind::point)
+        return bend;
+    const Vec3 parting = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
+    const Vec3 seen = rows.turns_with_a ? bend - h * glm::cross(a.angular_velocity, parting) : bend;
+    Vec3 v{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], seen);
+    if (rows.swing_length > Real(0)) {
+        const Real along = glm::dot(rows.axes[0], parting);
+        v.x += Real(0.5) * h * (glm::dot(parting, parting) - along * along) / rows.swing_length;
+    }
+    return v;
+}
+
+void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
+    const RowBlock &rows = joint.rows;
+    const Vec3 along = world_impulse(rows, impulse);
+    if (joint.moves_a)
+        apply(context.bodies[joint.a], rows, rows.r_a, -along);
+    if (joint.moves_b)
+        apply(context.bodies[joint.b], rows, rows.r_b, along);
+}
+
+Vec3 pushed(const Vec3 &bias, Real most) {
+    const Real speed = glm::length(bias);
+    return speed > most ? (most / speed) * bias : bias;
+}
+
+Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
+                    const JointPass &pass) {
+    const RowBlock &rows = joint.rows;
+    const Softness softness = joint.is_spring() ? spring_softness(rows, pass) : pass.softness;
+    const Vec3 v = row_velocity(rows, a, b, pass) + joint.turning;
+    const Real most =
+        joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
+    const auto towards = [&](const Vec3 &error) {
+        if (rows.count == 1)
+            return Vec3{-softness.mass_scale * joint.mass[0][0] *
+                                (v.x + std::clamp(softness.bias_rate * error.x, -most, most)) -
+                            softness.impulse_scale * joint.impulse.x,
+                        Real(0), Real(0)};
+        return -softness.mass_scale *
+                   (joint.mass * (v + pushed(softness.bias_rate * error, most))) -
+               softness.impulse_scale * joint.impulse;
+    };
+    switch (rows.bounds) {
+    case RowBounds::equal:
+        return towards(rows.error);
+    case RowBounds::at_least:
+        return {limit_change(joint, v.x, softness, pass, Real(1)), Real(0), Real(0)};
+    case RowBounds::at_most:
+        return {limit_change(joint, v.x, softness, pass, Real(-1)), Real(0), Real(0)};
+    case RowBounds::motor: {
+        const Real limit = rows.max_force * pass.h * pass.force_share;
+        const Real change = -joint.mass[0][0] * (v.x - rows.speed);
+        return {std::clamp(joint.impulse.x + change, -limit, limit) - joint.impulse.x, Real(0),
+                Real(0)};
+    }
+    case RowBounds::pull: {
+        const Real limit = rows.max_force * pass.h * pass.force_share;
+        Vec3 total = joint.impulse + towards(rows.error);
+        const Real length = glm::length(total);
+        if (length > limit)
+            total *= limit / length;
+        return total - joint.impulse;
+    }
+    }
+    return Vec3{Real(0)};
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

@@ -1,0 +1,331 @@
+#include "engine/dynamics/joints/joint_system.h"
+
+#include "engine/dynamics/joints/joint_impulse.h"
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include <glm/matrix.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// Products of elimination that a block may cost on the average: a chain costs 1, a loop of a few
+// joints 3, a net of 10 x 10 some hundred.
+constexpr std::size_t work_a_block = 12;
+
+// A diagonal value stands for one above the entries: no target is both.
+constexpr std::uint32_t on_diagonal = UINT32_C(1) << 31;
+
+bool is_rigid(const JointConstraint &joint) {
+    return joint.joint != JointConstraint::grab && joint.rows.bounds == RowBounds::equal &&
+           !joint.is_spring();
+}
+
+} // namespace
+
+void JointSystem::arrange(StepContext &context) {
+    find_order(context);
+    for (JointGroup &group : groups_)
+        group.is_factored = group.is_touched = group.was_torn = group.was_let_go =
+            group.has_changed = false;
+    note_touched(context);
+}
+
+void JointSystem::note_touched(const StepContext &context) {
+    const auto note = [&](std::uint32_t body) {
+        if (group_of_body_[body] != none)
+            groups_[group_of_body_[body]].is_touched = true;
+    };
+    if (groups_.empty())
+        return;
+    for (const std::uint32_t i : context.active.contacts) {
+        note(context.ends[i].a);
+        note(context.ends[i].b);
+    }
+    for (const ParticleContact &contact : context.particle_contacts)
+        note(contact.body);
+}
+
+void JointSystem::find_order(StepContext &context) {
+    std::vector<JointConstraint> &joints = context.scratch.joints;
+    const auto is_dynamic = [&](std::uint32_t body) {
+        return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
+    };
+    const auto key_of = [&](const JointConstraint &joint) {
+        const std::uint64_t a = is_dynamic(joint.a) ? joint.a : Joint::world;
+        const std::uint64_t b = is_dynamic(joint.b) ? joint.b : Joint::world;
+        return is_rigid(joint) ? a << 32 | b : ~std::uint64_t{0};
+    };
+    is_arranged_ = true;
+    if (!key_.empty() && key_.front() == context.bodies.size() &&
+        std::ranges::equal(std::span(key_).subspan(1), joints, {}, {}, key_of)) {
+        context.scratch.sides.resize(std::max(context.scratch.sides.size(), order_.size()));
+        return;
+    }
+    key_.assign(1, context.bodies.size());
+    for (const JointConstraint &joint : joints)
+        key_.push_back(key_of(joint));
+    groups_.clear();
+    order_.clear();
+    column_start_.assign(1, 0);
+    rows_.clear();
+    targets_.clear();
+    target_start_.assign(1, 0);
+    group_of_body_.assign(context.bodies.size(), none);
+
+    // All lists are kept for their memory.
+    const auto clear_lists = [](std::vector<std::vector<std::uint32_t>> &lists, std::size_t count) {
+        lists.resize(std::max(lists.size(), count));
+        for (std::size_t i = 0; i < count; ++i)
+            lists[i].clear();
+    };
+    clear_lists(blocks_of_, context.bodies.size());
+    clear_lists(neighbours_, joints.size());
+    const auto bodies_of = [&](std::uint32_t block) {
+        return std::array{joints[block].a, joints[block].b};
+    };
+    for (std::uint32_t i = 0; i < joints.size(); ++i)
+        if (is_rigid(joints[i]))
+            for (const std::uint32_t body : bodies_of(i))
+                if (is_dynamic(body))
+                    blocks_of_[body].push_back(i);
+    std::vector<std::uint8_t> is_seen(joints.size(), 0);
+    std::vector<std::uint32_t> members;
+    place_of_.resize(joints.size());
+    for (std::uint32_t seed = 0; seed < joints.size(); ++seed) {
+        if (is_seen[seed] != 0 || !is_rigid(joints[seed]))
+            continue;
+        members.assign(1, seed);
+        is_seen[seed] = 1;
+        std::size_t pairs = 0;
+        for (std::size_t next = 0; next < members.size(); ++next)
+            for (const std::uint32_t body : bodies_of(members[next]))
+                if (is_dynamic(body)) {
+                    pairs += blocks_of_[body].size();
+                    for (const std::uint32_t other : blocks_of_[body])
+                        if (is_seen[other] == 0) {
+                            is_seen[other] = 1;
+                            members.push_back(other);
+                        }
+                }
+        if (pairs > 4 * work_a_block * members.size())
+            continue; // all at one hub
+        for (const std::uint32_t member : members)
+            for (const std::uint32_t body : bodies_of(member))
+                if (is_dynamic(body))
+                    for (const std::uint32_t other : blocks_of_[body])
+                        if (other != member)
+                            neighbours_[member].push_back(other);
+        for (const std::uint32_t member : members) {
+            std::ranges::sort(neighbours_[member]);
+            neighbours_[member].erase(
+                std::unique(neighbours_[member].begin(), neighbours_[member].end()),
+                neighbours_[member].end());
+        }
+        if (!eliminate(members))
+            continue;
+        for (const std::uint32_t member : members)
+            for (const std::uint32_t body : bodies_of(member))
+                if (is_dynamic(body))
+                    group_of_body_[body] = static_cast<std::uint32_t>(groups_.size() - 1);
+    }
+    context.scratch.sides.resize(std::max(context.scratch.sides.size(), order_.size()));
+    effects_.resize(order_.size());
+    softening_.resize(order_.size());
+    diagonal_.resize(order_.size());
+    lower_.resize(rows_.size());
+}
+
+// Orders one group by least degree and finds what fills in; false, and nothing done, when that is
+// too much.
+bool JointSystem::eliminate(const std::vector<std::uint32_t> &members) {
+    const auto first = static_cast<std::uint32_t>(order_.size());
+    std::vector<std::uint32_t> joined;
+    queue_.clear();
+    const auto enqueue = [&](std::uint32_t block) {
+        queue_.emplace_back(neighbours_[block].size(), block);
+        std::ranges::push_heap(queue_, std::ranges::greater{});
+    };
+    for (const std::uint32_t member : members)
+        enqueue(member);
+    std::size_t work = 0;
+    while (!queue_.empty()) {
+        std::ranges::pop_heap(queue_, std::ranges::greater{});
+        const std::size_t degree = queue_.back().first;
+        const std::uint32_t pivot = queue_.back().second;
+        queue_.pop_back();
+        std::vector<std::uint32_t> &around = neighbours_[pivot];
+        if (degree != around.size())
+            continue; // has been enqueued again, or is done
+        work += degree * (degree + 1) / 2;
+        if (work > work_a_block * members.size()) {
+            order_.resize(first);
+            column_start_.resize(first + 1);
+            rows_.resize(column_start_.back());
+            return false;
+        }
+        for (const std::uint32_t one : around) {
+            joined.clear();
+            std::ranges::set_union(neighbours_[one], around, std::back_inserter(joined));
+            std::erase_if(joined, [&](std::uint32_t i) { return i == one || i == pivot; });
+            std::swap(neighbours_[one], joined);
+            enqueue(one);
+        }
+        order_.push_back(pivot);
+        rows_.insert(rows_.end(), around.begin(), around.end());
+        column_start_.push_back(static_cast<std::uint32_t>(rows_.size()));
+        around.clear();
+    }
+
+    const auto last = static_cast<std::uint32_t>(order_.size());
+    for (std::uint32_t place = first; place < last; ++place)
+        place_of_[order_[place]] = place;
+    for (std::uint32_t place = first; place < last; ++place) {
+        const auto column = std::span(rows_).subspan(
+            column_start_[place], column_start_[place + 1] - column_start_[place]);
+        for (std::uint32_t &row : column)
+            row = place_of_[row];
+        std::ranges::sort(column);
+    }
+    for (std::uint32_t place = first; place < last; ++place) {
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
+            targets_.push_back(rows_[i] | on_diagonal);
+            const auto begin = rows_.begin() + column_start_[rows_[i]];
+            const auto end = rows_.begin() + column_start_[rows_[i] + 1];
+            for (std::uint32_t j = i + 1; j < column_start_[place + 1]; ++j)
+                targets_.push_back(static_cast<std::uint32_t>(
+                    std::lower_bound(begin, end, rows_[j]) - rows_.begin()));
+        }
+        target_start_.push_back(static_cast<std::uint32_t>(targets_.size()));
+    }
+    groups_.push_back({.first = first, .last = last});
+    return true;
+}
+
+void JointSystem::find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
+                              Effect &out) {
+    out.body = is_b ? joint.b : joint.a;
+    if (out.body == Joint::world)
+        return;
+    const RowBlock &rows = joint.rows;
+    const SolverBody &body = context.bodies[out.body];
+    out.is_linear = rows.kind != RowKind::angular;
+    out.is_point = rows.kind == RowKind::point;
+    out.sign = is_b ? Real(1) : Real(-1);
+    out.arm = is_b ? rows.r_b : rows.r_a;
+    out.inv_mass = body.inv_mass;
+    if (out.is_point) {
+        const Mat3 &inverse = body.inv_inertia;
+        const Vec3 arm = out.sign * out.arm;
+        out.turned = {arm.z * inverse[1] - arm.y * inverse[2],
+                      arm.x * inverse[2] - arm.z * inverse[0],
+                      arm.y * inverse[0] - arm.x * inverse[1]};
+        return;
+    }
+    out.linear = out.angular = out.moved = Mat3{Real(0)};
+    for (int i = 0; i < rows.count; ++i) {
+        const Vec3 axis = out.sign * rows.axes[static_cast<std::size_t>(i)];
+        out.angular[i] = out.is_linear ? glm::cross(out.arm, axis) : axis;
+        if (out.is_linear) {
+            out.linear[i] = axis;
+            out.moved[i] = out.inv_mass * axis;
+        }
+    }
+    out.turned = body.inv_inertia * out.angular;
+}
+
+// u^T M^-1 v for one body; `u` gives the rows of the result.
+void JointSystem::add_coupling(const Effect &u, const Effect &v, Mat3 &sum) {
+    if (u.is_point) // the transpose of a cross product's matrix is its negative
+        for (int i = 0; i < 3; ++i)
+            sum[i] += u.sign * glm::cross(v.turned[i], u.arm);
+    else
+        sum += glm::transpose(u.angular) * v.turned;
+    if (!u.is_linear || !v.is_linear)
+        return;
+    if (u.is_point && v.is_point)
+        for (int i = 0; i < 3; ++i)
+            sum[i][i] += (u.sign * v.sign) * u.inv_mass[i];
+    else if (v.is_point)
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                sum[i][j] += v.sign * u.moved[j][i];
+    else if (u.is_point)
+        sum += u.sign * v.moved;
+    else
+        sum += glm::transpose(u.linear) * v.moved;
+}
+
+void JointSystem::factor(StepContext &context, const JointGroup &group, Real compliance) {
+    const std::vector<JointConstraint> &joints = context.scratch.joints;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const JointConstraint &joint = joints[order_[place]];
+        find_effect(context, joint, false, effects_[place][0]);
+        find_effect(context, joint, true, effects_[place][1]);
+    }
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const int count = joints[order_[place]].rows.count;
+        Mat3 own{Real(0)};
+        for (const Effect &effect : effects_[place])
+            if (effect.body != Joint::world)
+                add_coupling(effect, effect, own);
+        const Real size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Real>(count);
+        Mat3 all = own;
+        for (int i = count; i < 3; ++i)
+            all[i][i] = size;
+        softening_[place] = compliance * own + locked_compliance(all);
+        for (int i = 0; i < count; ++i)
+            softening_[place][i][i] += Real(1e-5) * size; // for rounding
+        own += softening_[place];
+        for (int i = 0; i < 3; ++i) // rows that are not there
+            if (i >= count || !(size > Real(0)))
+                own[i][i] += Real(1);
+        diagonal_[place] = own;
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
+            lower_[i] = Mat3{Real(0)};
+            for (const Effect &u : effects_[rows_[i]])
+                for (const Effect &v : effects_[place])
+                    if (u.body == v.body && u.body != Joint::world)
+                        add_coupling(u, v, lower_[i]);
+        }
+    }
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const Mat3 inverse = glm::inverse(diagonal_[place]);
+        diagonal_[place] = inverse;
+        const std::uint32_t end = column_start_[place + 1];
+        const std::uint32_t *target = targets_.data() + target_start_[place];
+        for (std::uint32_t i = column_start_[place]; i < end; ++i) {
+            // Row i of L; the rows after it are still K's.
+            const Mat3 row = lower_[i] * inverse;
+            const Mat3 across = glm::transpose(row);
+            for (std::uint32_t j = i; j < end; ++j, ++target) {
+                const Mat3 product = lower_[j] * across;
+                if ((*target & on_diagonal) != 0)
+                    diagonal_[*target & ~on_diagonal] -= product;
+                else
+                    lower_[*target] -= product;
+            }
+            lower_[i] = row;
+        }
+    }
+}
+
+void JointSystem::solve(const JointGroup &group, std::span<Vec3> sides) const {
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        Vec3 &own = sides[place - group.first];
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
+            sides[rows_[i] - group.first] -= lower_[i] * own;
+        own = diagonal_[place] * own;
+    }
+    for (std::uint32_t place = group.last; place-- > group.first;)
+        for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
+            sides[place - group.first] -= glm::transpose(lower_[i]) * sides[rows_[i] - group.first];
+}
+
+} // namespace plumb::inline PLUMB_PRECISION

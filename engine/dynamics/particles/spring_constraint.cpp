@@ -1,0 +1,368 @@
+#include "engine/dynamics/particles/spring_constraint.h"
+
+#include "engine/dynamics/method.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// Slower springs keep their energy to a thousandth if they pull along the lines before and after
+// the move, which keeps the angular momentum to rounding.
+constexpr Real swift_turn = Real(0.1);
+
+// As many as leave the energy of what swings through `turn` rad a substep right to a hundredth, and
+// angular momentum to 1e-5, over hundreds of steps.
+int passes_for(Real turn) {
+    return turn <= swift_turn ? 1 : 2 + static_cast<int>(std::min(Real(2.5) * turn, Real(3)));
+}
+
+// With fewer, energy grows by up to 2e-5 of it a radian; damping takes more.
+constexpr Real least_damping = Real(0.01); // of the rate at which it swings
+int passes_for_damped(Real turn) {
+    return turn <= Real(0.6) ? 1 : turn <= Real(1.5) ? 2 : passes_for(turn);
+}
+
+// What a spring's end is fastened to, as far as impulses move it.
+struct EndMass {
+    const StepContext &context;
+    const SpringEnd &end;
+    const Vec3 &arm;
+
+    Vec3 answer(const Vec3 &impulse) const {
+        if (end.kind == SpringEnd::Kind::particle)
+            return context.model.particles[end.index].inv_mass * impulse;
+        if (end.kind == SpringEnd::Kind::world)
+            return Vec3{Real(0)};
+        const SolverBody &body = context.bodies[end.index];
+        return body.inv_mass * impulse +
+               glm::cross(body.inv_inertia * glm::cross(arm, impulse), arm);
+    }
+    Real inverse_along(const Vec3 &axis) const {
+        if (end.kind == SpringEnd::Kind::particle)
+            return context.model.particles[end.index].inv_mass;
+        if (end.kind == SpringEnd::Kind::world)
+            return Real(0);
+        const SolverBody &body = context.bodies[end.index];
+        const Vec3 turn = glm::cross(arm, axis);
+        return body.inv_mass_along(axis) + glm::dot(body.inv_inertia * turn, turn);
+    }
+};
+
+void apply(StepContext &context, const SpringEnd &end, const Vec3 &arm, const Vec3 &impulse) {
+    if (end.kind == SpringEnd::Kind::particle)
+        context.particles[end.index].velocity +=
+            context.model.particles[end.index].inv_mass * impulse;
+    else if (end.kind == SpringEnd::Kind::body)
+        context.bodies[end.index].apply_impulse(impulse, arm);
+}
+
+Vec3 velocity_at(const StepContext &context, const SpringEnd &end, const Vec3 &arm) {
+    if (end.kind == SpringEnd::Kind::particle)
+        return context.particles[end.index].velocity;
+    return end.kind == SpringEnd::Kind::body ? context.bodies[end.index].velocity_at(arm)
+                                             : Vec3{Real(0)};
+}
+
+void apply(StepContext &context, const SpringConstraint &row, Real impulse) {
+    const Spring &spring = context.model.springs[row.spring];
+    apply(context, spring.a, row.r_a, -impulse * row.axis);
+    apply(context, spring.b, row.r_b, impulse * row.axis);
+}
+
+Real speed_of(const StepContext &context, const SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    return glm::dot(velocity_at(context, spring.b, row.r_b) -
+                        velocity_at(context, spring.a, row.r_a),
+                    row.axis);
+}
+
+// The line between a spring's ends as they are now; its length.
+Real align(const StepContext &context, SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    const SpringPoint a = spring_point(spring.a, context.bodies, context.particles);
+    const SpringPoint b = spring_point(spring.b, context.bodies, context.particles);
+    const Vec3 line = b.position - a.position;
+    const Real length = glm::length(line);
+    row.axis = length > Real(0) ? line / length : Vec3{Real(0)};
+    row.r_a = a.arm;
+    row.r_b = b.arm;
+    return length;
+}
+
+Vec2 rates_at(const StepContext &context, const SpringEnd &end) {
+    switch (end.kind) {
+    case SpringEnd::Kind::world:
+        break;
+    case SpringEnd::Kind::particle:
+        return context.scratch.spring_rates[context.bodies.size() + end.index];
+    case SpringEnd::Kind::body:
+        return context.scratch.spring_rates[end.index];
+    }
+    return Vec2{Real(0)};
+}
+
+// The larger of the two ends: none swings or slows down faster than twice that.
+Vec2 rates_of(const StepContext &context, const Spring &spring) {
+    return Real(2) * glm::max(rates_at(context, spring.a), rates_at(context, spring.b));
+}
+
+void set_mass(const StepContext &context, SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
+                         EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+    row.mass = inverse > Real(0) ? Real(1) / (inverse + row.softness) : Real(0);
+}
+
+void solve(StepContext &context, SpringConstraint &row) {
+    if (row.mass == Real(0))
+        return;
+    const Real change =
+        -row.mass * (speed_of(context, row) + row.bias + row.softness * row.impulse);
+    row.impulse += change;
+    apply(context, row, change);
+}
+
+// V = k (l - r)^2 / 2 as a discrete gradient between lengths l0 and l1: the force -k (1 - 2 r / (l0
+// + l1)) times the mean of the two lines does the work V(l0) - V(l1).
+struct Pull {
+    Vec3 middle;  // the mean of the lines
+    Real across;  // of the stiffness, so much acts across it
+    Vec3 impulse; // of the spring's share of the substep, on b
+};
+Pull pull_of(const Spring &spring, const Vec3 &line, const Vec3 &half_move, Real time) {
+    const Vec3 middle = line + half_move;
+    const Real lengths = glm::length(line) + glm::length(middle + half_move);
+    const Real across =
+        lengths > Real(0) ? Real(1) - Real(2) * spring.rest_length / lengths : Real(0);
+    return {middle, across, -time * spring.stiffness * across * middle};
+}
+
+void apply(StepContext &context, const SpringConstraint &row, const Vec3 &impulse) {
+    const Spring &spring = context.model.springs[row.spring];
+    apply(context, spring.a, row.r_a, -impulse);
+    apply(context, spring.b, row.r_b, impulse);
+}
+
+Vec3 relative_velocity(const StepContext &context, const SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    return velocity_at(context, spring.b, row.r_b) - velocity_at(context, spring.a, row.r_a);
+}
+
+// One step of Newton's method for the impulse, as if nothing else changed the ends' velocities.
+void solve_midpoint(StepContext &context, SpringConstraint &row, Real h) {
+    if (!row.time.is_swift)
+        return;
+    const Spring &spring = context.model.springs[row.spring];
+    const Real ahead = row.time.share * h;
+    const Pull pull = pull_of(spring, row.line, ahead * relative_velocity(context, row), ahead);
+    const EndMass a{context, spring.a, row.r_a}, b{context, spring.b, row.r_b};
+    const Real squared = glm::dot(pull.middle, pull.middle);
+    const Real across = std::max(pull.across, Real(0));
+    Mat3 slope{Real(1)};
+    for (int i = 0; i < 3; ++i) {
+        Vec3 unit{Real(0)};
+        unit[i] = Real(1);
+        const Vec3 answer = a.answer(unit) + b.answer(unit);
+        const Real along = squared > Real(0) ? glm::dot(pull.middle, answer) / squared : Real(0);
+        slope[i] += ahead * ahead * spring.stiffness *
+                    (across * answer + (Real(1) - across) * along * pull.middle);
+    }
+    const Vec3 change = glm::inverse(slope) * (pull.impulse - row.pull);
+    row.pull += change;
+    apply(context, row, change);
+}
+
+void refresh_midpoint(StepContext &context, SpringConstraint &row, Real h) {
+    row.line = align(context, row) * row.axis;
+    const Real ahead = row.time.share * h;
+    const Vec3 half_move =
+        row.time.is_swift ? ahead * relative_velocity(context, row) : Vec3{Real(0)};
+    row.pull = row.time.guessed *
+               pull_of(context.model.springs[row.spring], row.line, half_move, ahead).impulse;
+}
+
+// Begins with the impulse of the explicit force at the end of the substep, as far as that is
+// stable.
+void refresh(StepContext &context, SpringConstraint &row) {
+    const Spring &spring = context.model.springs[row.spring];
+    const Real length = align(context, row);
+    row.impulse = Real(0);
+    row.mass = Real(0);
+    if (row.axis == Vec3{Real(0)} || row.time.softness == Real(0))
+        return;
+    row.softness = row.time.softness;
+    row.bias = row.time.bias_rate * (length - spring.rest_length);
+    set_mass(context, row);
+    // For all springs from the same velocities.
+    if (row.mass != Real(0))
+        row.impulse = -row.time.guessed * (row.bias + speed_of(context, row)) / row.softness;
+}
+
+// The rest of the impulse; and what the two have done too much or too little, as far as the passes
+// have left that, or contacts or turning bodies have made it.
+void repeat(StepContext &context, SpringConstraint &row, Real h) {
+    const Spring &spring = context.model.springs[row.spring];
+    const Vec3 line = align(context, row) * row.axis;
+    if (!row.time.is_swift) {
+        apply(context, row, pull_of(spring, line, Vec3{Real(0)}, Real(0.5) * h).impulse);
+        return;
+    }
+    const Vec3 both = row.pull / row.time.share;
+    const Vec3 move = line - row.line;
+    const Vec3 held = pull_of(spring, row.line, Real(0.5) * move, h).impulse;
+    apply(context, row, both - row.pull);
+    const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
+                         EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+    apply(context, row,
+          returned_impulse(speed_of(context, row), inverse, glm::dot(move, both - held) / h));
+}
+
+// The damping, over all of the substep: of the velocities that the pulls before and after the move
+// have left, which are 0 where these balance. It takes energy out however few the passes are;
+// within the move it would take away what the pulls hand on.
+void damp(StepContext &context, Real h) {
+    const auto for_damped = [&](auto &&use) {
+        for (SpringConstraint &row : context.scratch.springs)
+            if (context.model.springs[row.spring].damping > Real(0))
+                use(row);
+    };
+    for_damped([&](SpringConstraint &row) {
+        const Real damping = h * context.model.springs[row.spring].damping;
+        row.bias = Real(0);
+        row.impulse = -row.time.damped * damping * speed_of(context, row);
+        row.softness = Real(0);
+        set_mass(context, row);
+        if (row.mass == Real(0))
+            return;
+        row.softness = decay_softness(Real(1) / row.mass, damping);
+        set_mass(context, row);
+    });
+    aim_spring_columns(context, SpringPart::damping);
+    for_damped([&](SpringConstraint &row) { apply(context, row, row.impulse); });
+    begin_spring_columns(context, SpringPart::damping);
+    for (int i = 0; i < context.settings.iterations; ++i) {
+        for_damped([&](SpringConstraint &row) { solve(context, row); });
+        solve_spring_columns(context, SpringPart::damping);
+    }
+}
+
+} // namespace
+
+SpringTime spring_time(const StepContext &context, const Spring &spring, Real h, SpringRule rule) {
+    SpringTime out;
+    const Vec2 rates = rates_of(context, spring);
+    if (rule == SpringRule::midpoint) {
+        const Real turn = h * std::sqrt(rates.x);
+        out.share = turn <= Real(2) ? Real(0.5) : Real(1) - Real(1) / turn;
+        out.guessed = Real(1) / std::max(Real(1), out.share * out.share * turn * turn);
+        out.is_swift = turn > swift_turn;
+        out.damped = Real(1) / std::max(Real(1), h * rates.y);
+        return out;
+    }
+    const Real pull = spring.damping + h * spring.stiffness;
+    if (!(pull > Real(0)))
+        return out;
+    out.softness = Real(1) / (h * pull);
+    out.bias_rate = spring.stiffness / pull;
+    out.guessed = Real(1) / std::max(Real(1), h * (h * rates.x + rates.y));
+    return out;
+}
+
+Real returned_impulse(Real speed, Real inverse, Real gained) {
+    const Real squared = speed * speed;
+    const Real change = Real(2) * inverse * gained;
+    const Real root = std::copysign(std::sqrt(std::max(Real(0), squared - change)), speed);
+    const Real sum = speed + root; // the difference of the roots would round
+    if (!(squared + had_for_given * change > Real(0)) || sum == Real(0))
+        return Real(0);
+    return -(change > squared ? squared / inverse : Real(2) * gained) / sum;
+}
+
+Real decay_softness(Real inverse, Real damping) {
+    constexpr Real none_left = Real(40); // e^-x is far below rounding
+    return inverse / std::expm1(std::min(damping * inverse, none_left));
+}
+
+void prepare_springs(StepContext &context, SpringRule rule) {
+    SolverScratch &s = context.scratch;
+    const Real h = context.substep();
+    if (!s.has_spring_rates)
+        find_spring_rates(context.model, context.bodies, context.particles, context.torn,
+                          s.particle_stiffness, s.spring_rates);
+    for (std::uint32_t i = 0; i < context.model.springs.size(); ++i) {
+        if (context.torn[i] != 0)
+            continue;
+        const Spring &spring = context.model.springs[i];
+        if (rule == SpringRule::midpoint && spring.a.kind == SpringEnd::Kind::particle &&
+            spring.b.kind == SpringEnd::Kind::particle)
+            s.spring_schedule.springs.push_back(i);
+        else
+            s.springs.emplace_back().spring = i;
+    }
+    prepare_spring_columns(context, h);
+    Real damped = Real(0), undamped = Real(0);
+    for (const Vec2 &rates : s.spring_rates) {
+        const bool is_damped = rates.y > least_damping * std::sqrt(rates.x);
+        Real &most = is_damped ? damped : undamped;
+        most = std::max(most, h * std::sqrt(Real(2) * rates.x));
+    }
+    s.spring_schedule.passes = std::max(passes_for(undamped), passes_for_damped(damped));
+}
+
+void begin_springs(StepContext &context, Real h, SpringRule rule) {
+    std::vector<SpringConstraint> &rows = context.scratch.springs;
+    for (SpringConstraint &row : rows) {
+        row.time = spring_time(context, context.model.springs[row.spring], h, rule);
+        if (rule == SpringRule::midpoint)
+            refresh_midpoint(context, row, h);
+        else
+            refresh(context, row);
+    }
+    aim_spring_columns(context, SpringPart::pull);
+    for (const SpringConstraint &row : rows)
+        if (rule == SpringRule::midpoint)
+            apply(context, row, row.pull);
+        else
+            apply(context, row, row.impulse);
+    begin_spring_columns(context, SpringPart::pull);
+}
+
+int spring_passes(const StepContext &context) {
+    return context.scratch.spring_schedule.passes;
+}
+
+void solve_springs(StepContext &context, SpringRule rule) {
+    for (SpringConstraint &row : context.scratch.springs)
+        if (rule == SpringRule::midpoint)
+            solve_midpoint(context, row, context.substep());
+        else
+            solve(context, row);
+    solve_spring_columns(context, SpringPart::pull);
+    context.report.constraint_passes +=
+        context.scratch.springs.size() + context.scratch.spring_schedule.springs.size();
+}
+
+void warm_start_springs(StepContext &context, Real share) {
+    for (SpringConstraint &row : context.scratch.springs) {
+        const Real start = share * row.remembered;
+        row.impulse += start;
+        apply(context, row, start);
+    }
+    context.report.constraint_passes += context.scratch.springs.size();
+}
+
+void repeat_particle_springs(StepContext &context, Real h) {
+    for (SpringConstraint &row : context.scratch.springs)
+        repeat(context, row, h);
+    repeat_spring_columns(context);
+    damp(context, h);
+}
+
+} // namespace plumb::inline PLUMB_PRECISION
