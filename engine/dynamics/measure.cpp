@@ -78,8 +78,7 @@ double World::energy() const {
 Manifold World::present_manifold(const Contact &contact) const {
     const auto place = [&](std::uint32_t collider, std::uint32_t body) {
         const Motion &motion = state_.motions[body];
-        return placed(model_->colliders[collider].shape,
-                      Transform{motion.position, motion.rotation});
+        return placed(model_->colliders[collider].shape, mass_pose(motion));
     };
     const Collider &a = model_->colliders[contact.collider_a];
     const Collider &b = model_->colliders[contact.collider_b];

@@ -432,7 +432,7 @@ Transform World::pose_of(std::uint32_t body) const {
     const Motion &motion = state_.motions[body];
     const Body &what = bodies()[body];
     if (!what.has_mass_frame)
-        return {motion.position, motion.rotation};
+        return mass_pose(motion);
     const Quat rotation = motion.rotation * glm::conjugate(what.mass_frame.rotation);
     return {motion.position - rotation * what.mass_frame.position, rotation};
 }
@@ -593,7 +593,7 @@ std::optional<WorldHit> World::raycast(const Ray &ray) const {
     };
     for (std::uint32_t i = 0; i < bodies().size(); ++i) {
         const Motion &motion = state_.motions[i];
-        const Transform pose{motion.position, motion.rotation};
+        const Transform pose = mass_pose(motion);
         const Body &body = bodies()[i];
         if (!body.alive || has_diverged(motion))
             continue; // it is nowhere

@@ -1,8 +1,6 @@
 // What stands comes to rest and stays there: long, and at every width of the processor's vectors.
-#include "engine/geometry/quickhull.h"
 #include "tests/dynamics/particles.h"
 
-#include <glm/gtc/quaternion.hpp>
 #include <hwy/highway.h>
 #include <hwy/targets.h>
 
@@ -221,31 +219,14 @@ TEST(Rest, WhatFrictionHoldsDoesNotCreepDownASlope) {
     }
 }
 
-// A half circle of wedges. In many substeps each turn is less than a quaternion's rounding.
+// In many substeps each turn is less than a quaternion's rounding.
 TEST(Rest, AnArchDoesNotCreepHoweverFineItsSubsteps) {
-    constexpr int stones = 13;
-    constexpr double inner = 2, outer = 2.6, deep = 0.3;
-    const double half = 0.5 * pi / stones;
-    std::vector<Vec3> corners;
-    for (const double radius : {inner, outer})
-        for (const double side : {-1.0, 1.0})
-            for (const double z : {-deep, deep})
-                corners.push_back(
-                    narrow(V{side * radius * std::sin(half), radius * std::cos(half), z}));
-    const auto mesh = std::make_shared<const HullMesh>(*convex_hull(corners, 64).mesh);
     StepSettings settings = settings_for("soft_step");
     settings.substeps = 64;
     settings.max_substeps = 1;
     settings.sleep_after = 0;
     World world("soft_step", settings);
-    world.add_body(ground(0.7, 0));
-    for (int i = 0; i < stones; ++i) {
-        BodyDef stone =
-            dynamic_body(ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation}, 100, V{0});
-        stone.colliders[0].hull = mesh;
-        stone.pose.rotation = narrow(glm::angleAxis((2 * i + 1) * half - pi / 2, V{0, 0, 1}));
-        world.add_body(with_material(stone, 0.7, 0));
-    }
+    add_arch(world);
     run(world, 60 * 20);
     const std::vector<Motion> before(world.motions().begin(), world.motions().end());
     run(world, 60 * 20);

@@ -3,12 +3,15 @@
 
 #include "engine/core/random.h"
 #include "engine/dynamics/world.h"
+#include "engine/geometry/quickhull.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -137,6 +140,29 @@ inline void add_joined_net(World &world, int n, const V &corner) {
         joint.b = world.body_id(first + static_cast<std::uint32_t>(i));
         joint.anchor_a_local = world.pose_of(joint.b.index).position;
         world.add_joint(joint);
+    }
+}
+
+// A half circle of wedges of 100 kg, from 2 to 2.6 m, upon the ground, that bear each other by
+// their shape alone.
+inline void add_arch(World &world) {
+    constexpr int stones = 13;
+    constexpr double inner = 2, outer = 2.6, deep = 0.3;
+    const double half = 0.5 * pi / stones;
+    std::vector<Vec3> corners;
+    for (const double radius : {inner, outer})
+        for (const double side : {-1.0, 1.0})
+            for (const double z : {-deep, deep})
+                corners.push_back(
+                    narrow(V{side * radius * std::sin(half), radius * std::cos(half), z}));
+    const auto mesh = std::make_shared<const HullMesh>(*convex_hull(corners, 64).mesh);
+    world.add_body(ground(0.7, 0));
+    for (int i = 0; i < stones; ++i) {
+        BodyDef stone =
+            dynamic_body(ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation}, 100, V{0});
+        stone.colliders[0].hull = mesh;
+        stone.pose.rotation = narrow(glm::angleAxis((2 * i + 1) * half - pi / 2, V{0, 0, 1}));
+        world.add_body(with_material(stone, 0.7, 0));
     }
 }
 

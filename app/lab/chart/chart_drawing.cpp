@@ -53,6 +53,15 @@ void draw_grid(ChartPen &pen, const ChartContent &content, const ChartLayout &la
     pen.text({plot.max.x, plot.max.y + 30}, content.cost_title, Face::axis, ink, {1, 0});
 }
 
+// A cross, with the series' own mark in it: there are fewer colours than methods.
+void draw_failed(ChartPen &pen, glm::vec2 p, std::size_t style, ImU32 c) {
+    constexpr float arm = chart_style::mark_radius + 1, small = 0.62f * chart_style::mark_radius;
+    pen.cross(p, arm, paper, 5);
+    pen.cross(p, arm, c, 2.2f);
+    pen.mark(p, style, small + 1.2f, paper);
+    pen.mark(p, style, small, c);
+}
+
 void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
     using chart_style::mark_radius;
     const PixelBox &field = layout.field;
@@ -101,8 +110,7 @@ void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &l
         const ChartSeries &series = content.series[mark.series];
         const glm::vec2 p = layout.marks[i];
         if (mark.failed) {
-            pen.cross(p, mark_radius, paper, 5);
-            pen.cross(p, mark_radius, series_colour(series), 2.5f);
+            draw_failed(pen, p, series.style, series_colour(series));
             continue;
         }
         if (mark.pareto) {
@@ -154,7 +162,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         entry("nothing cheaper is truer");
     }
     if (layout.failed_line) {
-        pen.cross({left + 12, y}, mark_radius - 1, soft_ink, 2.2f);
+        draw_failed(pen, {left + 12, y}, 0, soft_ink);
         entry("diverged, or no result");
     }
     if (any([](const ChartMark &mark) { return mark.outside && !mark.failed; })) {

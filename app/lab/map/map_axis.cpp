@@ -2,6 +2,7 @@
 
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
+#include "engine/scene/file/change.h"
 #include "engine/scene/given_settings.h"
 
 #include <algorithm>
@@ -38,20 +39,28 @@ std::optional<SettingNumber> find_setting_number(std::string_view whole, std::st
     std::vector<SettingNumber> numbers;
     try {
         numbers = find_setting_numbers(name);
-    } catch (const std::invalid_argument &error) {
-        if (name.find('.') != std::string_view::npos)
-            return std::nullopt;
-        const std::string_view why = error.what();
-        refuse(whole, std::string(why) + (why.ends_with('?') ? " " : ". ") +
-                          "A number of the scene file is given by its path: body.NAME.mass, "
-                          "body.NAME.position.y (its height), body.NAME.velocity.x, "
-                          "material.NAME.friction, material.NAME.restitution, "
-                          "spring.NAME.stiffness");
+    } catch (const std::invalid_argument &) {
+        return std::nullopt; // then it is in the scene, or nowhere
     }
     if (numbers.size() > 1)
         refuse(whole, std::string(name) + " has three components; give one of them, as in " +
                           setting_name(numbers[1]) + "=-20..-1");
     return numbers.front();
+}
+
+// Of a key that is no setting's and stands nowhere in the scene.
+std::string why_unknown(std::string_view key) {
+    try {
+        (void)find_setting_numbers(key);
+        return {};
+    } catch (const std::invalid_argument &error) {
+        const std::string why = error.what();
+        return why + (why.ends_with('?') ? " " : ". ") +
+               "A number of the scene file is given by its path: body.NAME.mass, "
+               "body.NAME.position.y (its height), body.NAME.velocity.x, "
+               "material.NAME.friction, material.NAME.restitution, spring.NAME.stiffness; "
+               "or by its key alone, if the file has it once";
+    }
 }
 
 // Cuts ":N", "log" and ":Nlog" off the end of a range.
@@ -125,6 +134,24 @@ MapAxis parse_map_axis(std::string_view text) {
     else
         set_list(text, range, axis);
     return axis.setting && is_whole(axis.setting->setting()) ? in_whole_numbers(axis) : axis;
+}
+
+MapAxis with_whole_path(MapAxis axis, std::string_view scene_text) {
+    if (axis.setting || axis.name.find('.') != std::string::npos)
+        return axis;
+    const std::vector<std::string> paths = number_paths(scene_text, axis.name);
+    if (paths.empty())
+        refuse(axis.name, why_unknown(axis.name));
+    if (paths.size() > 1) {
+        constexpr std::size_t most_named = 8;
+        std::string which;
+        for (std::size_t i = 0; i < std::min(paths.size(), most_named); ++i)
+            which += (i > 0 ? ", " : "") + paths[i];
+        refuse(axis.name, "this scene has " + std::to_string(paths.size()) + "; give one of " +
+                              which + (paths.size() > most_named ? ", ..." : ""));
+    }
+    axis.name = paths.front();
+    return axis;
 }
 
 MapAxis in_whole_numbers(MapAxis axis) {

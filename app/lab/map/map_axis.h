@@ -12,7 +12,7 @@ namespace plumb {
 
 struct MapAxis {
     std::string name;                     // "dt", "gravity.y", "body.ball.velocity.x"
-    std::optional<SettingNumber> setting; // when it is one; else it is a path into the scene file
+    std::optional<SettingNumber> setting; // when it is one; else a path into the scene file, or a key
     std::vector<double> values;           // ascending, distinct, at least two
     bool logarithmic = false;
     bool whole = false; // it takes whole numbers alone
@@ -23,6 +23,10 @@ struct MapAxis {
 // Throws std::invalid_argument that says what is wrong and what would be right. Whether a number of
 // the scene file is there, and what it may be, only the scene can tell.
 [[nodiscard]] MapAxis parse_map_axis(std::string_view text);
+
+// A last key alone, such as "stiffness", as the path of the one number in this scene that it can
+// stand for. Throws std::invalid_argument where there is none, or several, which it names.
+[[nodiscard]] MapAxis with_whole_path(MapAxis axis, std::string_view scene_text);
 
 // The axis with its values rounded to whole numbers, each once. Throws std::invalid_argument when
 // fewer than two are left.

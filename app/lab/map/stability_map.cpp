@@ -70,7 +70,8 @@ class Point {
 
 // A number of the file takes whole numbers alone when the scene refuses what lies between two, and
 // nothing else.
-MapAxis settled(const SceneText &text, const MapAxis &axis, const RunOptions &base) {
+MapAxis settled(const SceneText &text, const MapAxis &given, const RunOptions &base) {
+    const MapAxis axis = with_whole_path(given, text.text);
     if (axis.setting)
         return axis;
     const std::string world = "world.";
@@ -263,8 +264,6 @@ bool narrow_down(Runner &runner, const MapAxis &axis, LimitItem &item) {
 
 StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &y,
                        const MapOptions &options) {
-    if (x.name == y.name)
-        throw std::invalid_argument(x.name + " is on both axes");
     if (options.duration && !(*options.duration > 0))
         throw std::invalid_argument("a run must last longer than 0 s");
     StabilityMap map;
@@ -280,6 +279,8 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
                                     "window of its expectations ends");
     map.x = settled(scene, x, options.base);
     map.y = settled(scene, y, options.base);
+    if (map.x.name == map.y.name)
+        throw std::invalid_argument(map.x.name + " is on both axes");
     for (const MethodInfo *method : methods_for(map.scene, options.methods, map.left_out))
         map.methods.push_back({method, {}, {}});
     for (MethodMap &of_method : map.methods) {

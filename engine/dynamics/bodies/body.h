@@ -127,6 +127,11 @@ struct Motion {
     Vec3 velocity_at(const Vec3 &r) const { return velocity + glm::cross(angular_velocity, r); }
 };
 
+// Of the centre of mass and the principal axes.
+inline Transform mass_pose(const Motion &motion) {
+    return {motion.position, motion.rotation};
+}
+
 // Where a collider's surface is in the world.
 inline Transform surface_pose(const Collider &collider, const Motion &motion) {
     return {motion.position + motion.rotation * collider.surface_pose.position,

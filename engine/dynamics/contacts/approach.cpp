@@ -24,10 +24,6 @@ struct Gap {
     Vec3 normal{Real(0)};
 };
 
-Transform pose_of(const Motion &motion) {
-    return {motion.position, motion.rotation};
-}
-
 // `guess`: a direction from A to B to look along first, of any length; zero: from middle to middle.
 template <typename A, typename B> ClosestPoints closest(const A &a, const B &b, const Vec3 &guess) {
     if constexpr (requires {
@@ -252,8 +248,8 @@ Motion ahead(const Motion &motion, Real t) {
 Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
                   const Vec3 &guess) {
     const auto gap_after = [&](Real t, const Vec3 &along) {
-        return gap_between(placed(*a.shape, pose_of(ahead(a.motion, t))),
-                           placed(*b.shape, pose_of(ahead(b.motion, t))), along);
+        return gap_between(placed(*a.shape, mass_pose(ahead(a.motion, t))),
+                           placed(*b.shape, mass_pose(ahead(b.motion, t))), along);
     };
     const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, Real enough,
                                bool &stays) {
@@ -267,9 +263,9 @@ Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Rea
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
                   Real duration, Real margin, const Vec3 &guess) {
     const auto gap_after = [&](Real t, const Vec3 &along) {
-        const Triangle triangle = placed(b, pose_of(ahead(motion_b, t)));
+        const Triangle triangle = placed(b, mass_pose(ahead(motion_b, t)));
         return std::visit([&](const auto &solid) { return gap_between(solid, triangle, along); },
-                          placed(*a.shape, pose_of(ahead(a.motion, t))));
+                          placed(*a.shape, mass_pose(ahead(a.motion, t))));
     };
     const auto apart_for = [&](const Vec3 &normal, Real t, Real left, Real least, Real enough,
                                bool &stays) {

@@ -126,7 +126,7 @@ bool World::place_collider(std::uint32_t i) const {
         s.reach[i] = {going(collider.body).velocity, pull_on(collider.body),
                       turning_reach(collider.body)};
     if (!collider.surface)
-        s.placed[i] = placed(collider.shape, Transform{motion.position, motion.rotation});
+        s.placed[i] = placed(collider.shape, mass_pose(motion));
     if (collider.is_half_space())
         return false;
     s.boxes[i] = collider.surface ? surface_bounds(collider, motion) : bounds(s.placed[i]);

@@ -23,10 +23,6 @@ constexpr Real missed_share = Real(0.25);
 // About the same side of both, for unit normals.
 constexpr Real same_side = Real(0.4);
 
-Transform placement(const Motion &motion) {
-    return {motion.position, motion.rotation};
-}
-
 Vec3 middle_of(const Aabb &box) {
     return Real(0.5) * (box.min + box.max);
 }
@@ -153,7 +149,7 @@ bool World::find_missed_points(Contact &contact) const {
     if (!(turning > deep) || contact.manifold.count == 4)
         return false;
     Manifold now =
-        plumb::collide(placed(a.shape, placement(at_a)), placed(b.shape, placement(at_b)), Real(0),
+        plumb::collide(placed(a.shape, mass_pose(at_a)), placed(b.shape, mass_pose(at_b)), Real(0),
                        contact.manifold.normal);
     if (!(glm::dot(now.normal, contact.manifold.normal) > same_side))
         return false;
@@ -184,8 +180,8 @@ bool World::find_passed_points(const Candidate &candidate) {
     const Transform pose = surface_pose(surface, s.bodies[surface.body]);
     Passage passage;
     passage.before = compose(inverse(surface_pose(surface, state_.motions[surface.body])),
-                             placement(state_.motions[solid.body]));
-    passage.after = compose(inverse(pose), placement(s.bodies[solid.body]));
+                             mass_pose(state_.motions[solid.body]));
+    passage.after = compose(inverse(pose), mass_pose(s.bodies[solid.body]));
     const Real deep = missed_share * solid.half_width;
     if (!(passage.way(solid.extent) > deep))
         return false;

@@ -17,14 +17,6 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-namespace {
-
-Transform placement(const Motion &motion) {
-    return {motion.position, motion.rotation};
-}
-
-} // namespace
-
 // How a body is expected to move in this step: as it does at its start, until it was seen to go
 // another way.
 const Motion &World::going(std::uint32_t body) const {
@@ -144,8 +136,8 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
     const Motion at_b = ahead(motion_b, met.time);
     // What will touch goes on against each other for the rest of the step.
     const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
-    const Shape solid_a = placed(a.shape, placement(at_a));
-    const Shape solid_b = placed(b.shape, placement(at_b));
+    const Shape solid_a = placed(a.shape, mass_pose(at_a));
+    const Shape solid_b = placed(b.shape, mass_pose(at_b));
     FoundManifold found{plumb::collide(solid_a, solid_b, near + left * way_of(candidate), normal),
                         at_a, at_b, Moment::touch};
     guard_middle(candidate, solid_a, solid_b, found.manifold);
@@ -174,7 +166,7 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
     const Motion at_solid = ahead(motion, met.time);
     const Motion at_surface = ahead(surface_motion, met.time);
     const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
-    const Shape solid_then = placed(solid.shape, placement(at_solid));
+    const Shape solid_then = placed(solid.shape, mass_pose(at_solid));
     const Transform pose_then = surface_pose(surface, at_surface);
     // What another triangle is to stop passes this one's plane on, and would touch it from there.
     const auto was_behind = is_behind(

@@ -134,6 +134,25 @@ void put(toml::table &table, std::string_view key, double value) {
     put(value, [&](auto number) { table.insert_or_assign(key, number); });
 }
 
+// Names go before indices, as `element` reads them.
+void add_paths(const toml::table &table, const std::string &before, std::string_view wanted,
+               std::vector<std::string> &paths) {
+    for (const auto &[key, value] : table) {
+        const std::string path = before + std::string(key.str());
+        if (key.str() == wanted && is_number(value))
+            paths.push_back(path);
+        if (const toml::table *inner = value.as_table())
+            add_paths(*inner, path + ".", wanted, paths);
+        const toml::array *array = value.as_array();
+        for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
+            if (const toml::table *inner = array->get(i)->as_table()) {
+                const auto *name = inner->get_as<std::string>("name");
+                const std::string which = name ? name->get() : std::to_string(i);
+                add_paths(*inner, path + "." + which + ".", wanted, paths);
+            }
+    }
+}
+
 void change(toml::table &root, const ChangedNumber &number) {
     Path path(number.path);
     toml::table *table = &root;
@@ -190,6 +209,14 @@ SceneFileResult parse_scene(std::string_view text, const std::string &path,
     reading.counts_may_differ = !changed.empty();
     read_scene(reading, Table(reading.report, *root, "the top level of a scene", scene_keys));
     return {std::move(reading.scene), reading.report.in_file_order()};
+}
+
+std::vector<std::string> number_paths(std::string_view text, std::string_view key) {
+    std::vector<std::string> paths;
+    std::vector<SceneMessage> messages;
+    if (const std::optional<toml::table> root = parse_toml(text, "", messages))
+        add_paths(*root, "", key, paths);
+    return paths;
 }
 
 std::optional<std::string> read_scene_text(const std::filesystem::path &path,

@@ -29,6 +29,11 @@ SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             const std::vector<std::string> &known_methods,
                             std::span<const ChangedNumber> changed);
 
+// The paths of all numbers that the text gives under this key: "stiffness" may stand for
+// "spring.left.stiffness" and "spring.right.stiffness". Of three numbers in brackets none. Empty
+// when the text is not TOML.
+std::vector<std::string> number_paths(std::string_view text, std::string_view key);
+
 // A scene file's text; empty, with the message of load_scene, when it cannot be read.
 std::optional<std::string> read_scene_text(const std::filesystem::path &path,
                                            std::vector<SceneMessage> &messages);

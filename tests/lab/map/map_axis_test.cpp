@@ -65,16 +65,51 @@ TEST(MapAxis, LabelsAFractionOfASecondAsSuch) {
 
 TEST(MapAxis, SaysWhatIsWrong) {
     EXPECT_NE(complaint("dt").find("NAME=FROM..TO"), std::string::npos);
-    EXPECT_NE(complaint("substep=1..4").find("did you mean \"substeps\"?"), std::string::npos);
     EXPECT_NE(complaint("gravity=0..1").find("gravity.y"), std::string::npos);
-    EXPECT_NE(complaint("stiffness=1..2").find(". A number of the scene file"), std::string::npos);
-    EXPECT_NE(complaint("stiffness=1..2").find("spring.NAME.stiffness"), std::string::npos);
     EXPECT_NE(complaint("dt=1..0.1").find("ascend"), std::string::npos);
     EXPECT_NE(complaint("dt=0.1..2").find("to 1 s"), std::string::npos);
     EXPECT_NE(complaint("gravity.y=-1..1:5log").find("above 0"), std::string::npos);
     for (const char *text : {"dt=0.1..0.2:1", "dt=0.1..0.2:65", "dt=0.1..0.2:x",
                              "dt=0.1..0.2:", "dt=0.1", "dt=", "dt=0.1..", "=1..2"})
         EXPECT_FALSE(complaint(text).empty()) << text;
+}
+
+TEST(MapAxis, TakesAKeyForTheOneNumberThatHasIt) {
+    const std::string scene = R"(
+        [world]
+        seed = 3
+        [[particle]]
+        mass = 2
+        [[spring]]
+        name = "left"
+        stiffness = 100
+        [[body]]
+        name = "a.b"
+        mass = 1
+        position = [0, 1, 0]
+        repeat = { count = 4 }
+    )";
+    const auto path = [&](const std::string &key) {
+        return with_whole_path(parse_map_axis(key + "=1..2"), scene).name;
+    };
+    EXPECT_EQ(path("stiffness"), "spring.left.stiffness");
+    EXPECT_EQ(path("count"), "body.a.b.repeat.count");
+    EXPECT_EQ(path("seed"), "world.seed");
+    EXPECT_EQ(path("substeps"), "substeps");
+    EXPECT_EQ(path("body.a.b.position.y"), "body.a.b.position.y");
+    const auto complaint_of = [&](const std::string &key) -> std::string {
+        try {
+            return path(key);
+        } catch (const std::invalid_argument &error) {
+            return error.what();
+        }
+    };
+    EXPECT_NE(complaint_of("mass").find("2; give one of body.a.b.mass, particle.0.mass"),
+              std::string::npos)
+        << complaint_of("mass");
+    EXPECT_NE(complaint_of("substep").find("did you mean \"substeps\"?"), std::string::npos);
+    EXPECT_NE(complaint_of("friction").find(". A number of the scene file"), std::string::npos);
+    EXPECT_NE(complaint_of("position").find("material.NAME.friction"), std::string::npos);
 }
 
 } // namespace
