@@ -58,6 +58,52 @@ TEST(SoftStepBlow, StacksLandUpright) {
         }
 }
 
+// However tall, and however small the cubes.
+TEST(SoftStepBlow, TallStacksStayDown) {
+    for (const double side : {0.05, 0.2, 1.0})
+        for (const int count : {5, 20, 30})
+            for (const double drop : {1.0, 5.0, 10.0}) { // in sides
+                World world("soft_step", settings_for("soft_step"));
+                world.add_body(ground(0.5, 0));
+                BodyId top;
+                for (int i = 0; i < count; ++i)
+                    top = world.add_body(dynamic_body(block(V{side / 2}), 1000 * side * side * side,
+                                                      V{0, (drop + 0.5 + i) * side, 0}));
+                const double speed = std::sqrt(2 * gravity * drop * side);
+                double up = 0;
+                for (int step = 0; step < 300; ++step) {
+                    world.step(nullptr);
+                    up = std::max(up, velocity_of(world, top).y);
+                }
+                EXPECT_LT(up, 0.45 * speed) << count << " of " << side << ", " << drop;
+                EXPECT_LT(tilt_of(world, top), 0.1) << count << " of " << side << ", " << drop;
+                EXPECT_NEAR(position_of(world, top).y, (count - 0.5) * side, 0.1 * side)
+                    << count << " of " << side << ", " << drop;
+            }
+}
+
+// A slab up to eleven times as heavy as what it lands on.
+TEST(SoftStepBlow, AHeavySlabStaysDown) {
+    for (const double mass : {10.0, 100.0, 300.0}) {
+        World world("soft_step", settings_for("soft_step"));
+        world.add_body(ground(0.5, 0));
+        for (int i = 0; i < 27; ++i)
+            world.add_body(
+                dynamic_body(block(V{0.1}), 1,
+                             V{0.204 * (i % 3 - 1), 0.1 + 0.2 * (i / 9), 0.204 * (i / 3 % 3 - 1)}));
+        const BodyId slab =
+            world.add_body(dynamic_body(block(V{0.5, 0.1, 0.5}), mass, V{0, 1.2, 0}));
+        double up = 0;
+        for (int step = 0; step < 240; ++step) {
+            world.step(nullptr);
+            up = std::max(up, velocity_of(world, slab).y);
+        }
+        EXPECT_LT(up, mass < 200 ? 0.5 : 1) << mass; // it came at 3.1 m/s
+        EXPECT_LT(tilt_of(world, slab), 0.02) << mass;
+        EXPECT_NEAR(position_of(world, slab).y, 0.7, 2e-3) << mass;
+    }
+}
+
 // However thin, and however it spins: a needle, a match, a blade, a pole.
 TEST(SoftStepBlow, WhatIsThinAndSpinsGainsNoEnergy) {
     for (const double restitution : {0.0, 0.5})

@@ -404,6 +404,13 @@ bool anything_is_struck(const StepContext &context) {
     });
 }
 
+bool any_is_corrected(const StepContext &context, Real speed) {
+    return std::ranges::any_of(context.scratch.schedule.blocks, [&](const ContactBlock &block) {
+        return std::ranges::any_of(std::span(block.corrected.lanes).first(block.used),
+                                   [&](Real corrected) { return corrected > speed; });
+    });
+}
+
 void store_contact_columns(StepContext &context) {
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (const ContactBlock &block : blocks)

@@ -54,6 +54,7 @@ struct ContactBlock {
     Column friction;
     Column bounces;    // 1 where there is restitution
     Column struck;     // 1 where the bodies closed faster than struck_speed in this substep
+    Column corrected;  // by how much the last pass changed a point's speed, at most (m/s)
     Column began;      // all normal impulses that were remembered as it began (N s)
     Column rounding_a; // radius by which a round surface lies beyond its core (m)
     Column rounding_b;
@@ -102,6 +103,8 @@ void warm_start_contact_columns(StepContext &context, Real share, bool remember_
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
 // Whether any bodies closed faster than struck_speed in this substep.
 bool anything_is_struck(const StepContext &context);
+// Whether the last pass changed the speed of any contact's point by more than this (m/s).
+bool any_is_corrected(const StepContext &context, Real speed);
 void store_contact_columns(StepContext &context);
 
 // Compiled for each instruction set (contact_kernels.cpp).

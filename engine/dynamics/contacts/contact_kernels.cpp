@@ -237,7 +237,7 @@ template <typename SeparationAt, typename TargetOf>
 HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, const Vector &n,
                              Mask chosen, Mask fast, bool loaded_only, Lanes soft_mass,
                              Lanes soft_impulse, const SeparationAt &separation_at,
-                             const TargetOf &target_of) {
+                             const TargetOf &target_of, Lanes &corrected) {
     const Lanes zero = hn::Zero(tag);
     const Lanes one = all(Real(1));
     const Lanes huge = all(std::numeric_limits<Real>::max());
@@ -293,6 +293,7 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
     const Lanes yielding = hn::IfThenZeroElse(stops, hn::Mul(share, softest));
     const Lanes sum = hn::Mul(need, inverse(hn::Add(k_n, yielding)));
     const Lanes each = hn::IfThenElseZero(evenly, max(hn::Mul(share, sum), hn::Neg(least_load)));
+    corrected = hn::IfThenZeroElse(hn::Eq(each, zero), hn::Abs(need));
     pair.apply(times(hn::Mul(count, each), n), r_a, r_b);
     for (int k = 0; k < block.points_used; ++k) {
         ContactBlock::Point &point = block.points[k];
@@ -405,9 +406,10 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         auto struck = hn::Lt(first_speed, struck_speed);
         const auto even = hn::Gt(hn::Abs(first_speed), even_speed);
         auto stops = hn::FirstN(tag, 0);
+        Lanes corrected = zero;
         if (!hn::AllFalse(tag, even))
             stops = solve_evenly(block, lane, pair, n, even, struck, bias.loaded_only, soft_mass,
-                                 soft_impulse, separation_at, target_of);
+                                 soft_impulse, separation_at, target_of, corrected);
         // What is struck is swept again, too: of its corners, the first would take most of the
         // blow, and tilt it. (Zeros are lanes without a point.)
         auto again = hn::FirstN(tag, sweeps_all ? column_lanes : 0);
@@ -445,6 +447,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                                            before, total);
                 if (!is_first)
                     total = hn::IfThenElse(again, total, before);
+                corrected = max(corrected, hn::IfThenZeroElse(hn::Eq(total, before),
+                                                              hn::Abs(hn::Add(speed, target))));
                 pair.apply(times(hn::Sub(total, before), n), r_a, r_b);
                 store(total, point.impulse.x, lane);
             }
@@ -456,6 +460,7 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         store_pair(pair, block, bodies, lane);
         const Lanes before = pushes ? zero : load(block.struck, lane);
         store(hn::IfThenElse(struck, one, before), block.struck, lane);
+        store(corrected, block.corrected, lane);
     }
     block.is_new = block.is_new && pushes;
 }

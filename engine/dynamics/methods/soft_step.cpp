@@ -27,20 +27,29 @@ int holding_passes(const StepContext &context) {
 }
 
 // One pass takes only a part of the push out of the velocities of what lies on each other: a stack
-// that lands would be thrown up again. Where something was struck there are two for each contact
-// that it may go through, as far as the budget allows: the top of ten cubes then goes up again at a
-// sixth of its speed at most, not as fast as it came.
+// that lands would be thrown up again, and a heavy slab by what it lands on. Where something was
+// struck there are up to two for each contact that it may go through, as long as they change
+// something (still_relaxes). A blow lasts a few steps, so they may cost a multiple of the budget;
+// but where that buys only a few they do nothing for what is tall, and there is one as elsewhere.
 int relaxing_passes(const StepContext &context) {
-    constexpr std::size_t most = 32;
+    constexpr std::size_t for_each_contact = 2, most = 128, least = 24, budgets = 16;
     const StepSettings &settings = context.settings;
-    const std::size_t contacts = context.active.contacts.size();
-    const auto affordable = static_cast<std::size_t>(settings.substep_budget / settings.substeps);
+    const auto affordable =
+        static_cast<std::size_t>(settings.substep_budget / settings.substeps) * budgets;
     // Each group's share of the budget is that of its contacts.
     const std::size_t passes =
         affordable / (context.contacts.size() + context.active.joints.size() + 1);
-    const auto wanted = static_cast<int>(std::min({passes, 2 * contacts, most}));
     const int usual = holding_passes(context);
-    return wanted > usual && anything_is_struck(context) ? wanted : usual;
+    if (passes < least || !anything_is_struck(context))
+        return usual;
+    const std::size_t wanted = for_each_contact * context.active.contacts.size();
+    return std::max(static_cast<int>(std::min({passes, wanted, most})), usual);
+}
+
+// Whether the pass before changed enough for another one.
+bool still_relaxes(const StepContext &context, const ContactBias &relax_bias) {
+    constexpr Real enough = Real(0.2); // of struck_speed
+    return any_is_corrected(context, enough * relax_bias.struck_speed);
 }
 
 void advance_soft_step(StepContext &context) {
@@ -136,8 +145,8 @@ void advance_soft_step(StepContext &context) {
             kick_particles(context, gravity, Real(0.5) * h);
             repeat_particle_springs(context, h);
         }
-        const int passes = relaxing_passes(context);
-        for (int i = 0; i < passes; ++i) {
+        const int usual = holding_passes(context), passes = relaxing_passes(context);
+        for (int i = 0; i < passes && (i < usual || still_relaxes(context, relax_bias)); ++i) {
             solve_joints(context, relaxing);
             if (has_particles)
                 solve_particle_contacts(context, {.loaded_only = true}, h);
