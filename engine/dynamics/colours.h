@@ -10,8 +10,9 @@
 
 namespace plumb {
 
-// Some microseconds of work.
-inline constexpr std::size_t blocks_a_part = 8;
+// About a microsecond of work, as long as it takes to hand it out; but a colour has few blocks, and
+// with more in a part some threads would have nothing to do.
+inline constexpr std::size_t blocks_a_part = 1;
 
 // Calls use(blocks) for parts of blocks that nobody else writes to.
 template <class Block, class Use>

@@ -98,12 +98,13 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"substep_budget", &StepSettings::substep_budget, "", 0, 65536, SettingGroup::chosen,
      "How much work bodies may cost together, in contacts and joints times substeps, before they "
      "get fewer substeps than they ask for: what is small is made true, what is large stays "
-     "fast."},
+     "fast. A blow may cost sixteen times as much."},
     {"sleep_after", &StepSettings::sleep_after, "s", 0, 1e9, SettingGroup::sleep,
      "Bodies that act on each other and have been at rest for so long sleep, and cost nothing, "
      "until something touches them or they are changed; 0: never."},
     {"iterations", &StepSettings::iterations, "", 1, 10000, SettingGroup::constraints,
-     "Passes over all constraints in each substep."},
+     "Passes over all constraints in each substep; soft_step makes one more over few contacts that "
+     "move slowly and do not rest yet, and more after a blow."},
     {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,
      SettingGroup::speculative,
      "Contacts closer than this are made before they touch, so that nothing falls into its "

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
+#include <unistd.h>
 
 #include <gtest/gtest.h>
 
@@ -15,9 +17,9 @@ namespace {
 
 class PngFile : public testing::Test {
   protected:
-    std::filesystem::path dir =
-        std::filesystem::temp_directory_path() /
-        (std::string("plumb_png_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::path dir = std::filesystem::temp_directory_path() /
+                                ("plumb_png_" + std::to_string(::getpid()) + "_" +
+                                 testing::UnitTest::GetInstance()->current_test_info()->name());
     void SetUp() override {
         std::filesystem::remove_all(dir);
         std::filesystem::create_directory(dir);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <unistd.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -556,8 +557,8 @@ TEST_F(OffScreen, AnImpossibleCameraOrLightIsRefused) {
 }
 
 TEST_F(OffScreen, ShaderErrorsNameFileAndLine) {
-    const std::filesystem::path dir =
-        std::filesystem::temp_directory_path() / "plumb_broken_shaders";
+    const std::filesystem::path dir = std::filesystem::temp_directory_path() /
+                                      ("plumb_broken_shaders_" + std::to_string(::getpid()));
     std::filesystem::remove_all(dir);
     const auto message = [&] {
         try {

@@ -6,6 +6,8 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <unistd.h>
 
 #include <sys/resource.h>
 
@@ -92,7 +94,8 @@ TEST_F(ProbeTest, BesideTheDiscsTheCameraTurns) {
 
 // What is expected holds where the scene has the probe, and nowhere else.
 TEST_F(ProbeTest, ASavedSceneHasTheMovedProbeAndExpectsNothingOfIt) {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "moved.toml";
+    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) /
+                                       ("moved_" + std::to_string(::getpid()) + ".toml");
     sandbox.session().move_probe(0, 0, {0.25, 0, 0});
     ASSERT_TRUE(sandbox.session().save_scene(file));
     const SceneFileResult again = load_scene(file);
@@ -103,8 +106,8 @@ TEST_F(ProbeTest, ASavedSceneHasTheMovedProbeAndExpectsNothingOfIt) {
 }
 
 TEST_F(ProbeTest, ASavedSceneTakesTheFilesOfItsMeshesAlong) {
-    const std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) / "plumb_saved_mesh";
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
+                                         ("plumb_saved_mesh_" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder);
     const std::filesystem::path gears = PLUMB_SOURCE_DIR "/scenes/geometry/mesh_file.toml";
     ASSERT_TRUE(sandbox.session().open(gears));
@@ -139,8 +142,8 @@ class FullDisk {
 };
 
 TEST_F(ProbeTest, OnAFullDiskNoPartOfASavedSceneIsLeft) {
-    const std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) / "plumb_full_disk";
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
+                                         ("plumb_full_disk_" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder);
     const auto fails = [&] {
         const FullDisk full(100);

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -332,7 +333,8 @@ shapes = [{ shape = "plane", position = [0, 0, 0] }, { shape = "sphere", radius 
 }
 
 TEST(ProbeFile, AMeshFileThatCannotBeUsedIsAnErrorInTheSceneAndInTheFile) {
-    const fs::path folder = fs::path(testing::TempDir()) / "plumb_probe_mesh";
+    const fs::path folder =
+        fs::path(testing::TempDir()) / ("plumb_probe_mesh_" + std::to_string(::getpid()));
     fs::create_directories(folder);
     std::ofstream(folder / "bad.obj") << "v 0 0 0\nv 1 0 0\nf 1 2 9\n";
     const auto said_of = [&](const std::string &mesh) {

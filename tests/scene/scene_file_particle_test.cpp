@@ -11,6 +11,8 @@
 #include <fstream>
 #include <numbers>
 #include <sstream>
+#include <string>
+#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -306,8 +308,8 @@ class ClothMesh : public testing::Test {
     SceneFileResult read(const std::string &more) const {
         return parse_scene("[[cloth]]\nname = \"c\"\n" + more, (folder / "s.toml").string());
     }
-    std::filesystem::path folder =
-        std::filesystem::path(testing::TempDir()) / "plumb_cloth_mesh_test";
+    std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
+                                   ("plumb_cloth_mesh_test_" + std::to_string(::getpid()));
 };
 
 TEST_F(ClothMesh, IsMadeOfVerticesAndEdges) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -201,7 +202,8 @@ TEST(SceneFileShapes, MistakesAreToldWhereTheyAre) {
 
 TEST(SceneFileShapes, APointsFileIsScaledAndNamedAgain) {
     namespace fs = std::filesystem;
-    const fs::path folder = fs::path(testing::TempDir()) / "plumb_shape_files";
+    const fs::path folder =
+        fs::path(testing::TempDir()) / ("plumb_shape_files_" + std::to_string(::getpid()));
     fs::create_directories(folder);
     std::ofstream(folder / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\n"
                                        "f 1 4 3\nf 2 3 4\n";

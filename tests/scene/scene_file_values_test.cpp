@@ -7,6 +7,7 @@
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <unistd.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -282,7 +283,8 @@ TEST(SceneFileValues, LoadSaysWhenItCannotRead) {
 
 TEST(SceneFileValues, LoadReadsAFile) {
     const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) / "plumb_scene_file_values.toml";
+        std::filesystem::path(testing::TempDir()) /
+        ("plumb_scene_file_values_" + std::to_string(::getpid()) + ".toml");
     std::ofstream(path) << ball;
     const SceneFileResult result = load_scene(path);
     EXPECT_TRUE(result.ok());
@@ -293,7 +295,8 @@ TEST(SceneFileValues, LoadReadsAFile) {
 
 TEST(SceneFileValues, LoadRefusesAFileWithNothingToRun) {
     const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) / "plumb_scene_file_nothing.toml";
+        std::filesystem::path(testing::TempDir()) /
+        ("plumb_scene_file_nothing_" + std::to_string(::getpid()) + ".toml");
     for (const std::string text : {"", "# nothing\n", "title = \"T\"\n[world]\ndt = 0.01\n",
                                    "[[material]]\nname = \"wood\"\n"}) {
         std::ofstream(path) << text;

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -182,7 +184,8 @@ TEST(SceneLimits, OfManyMistakesTheFirstInTheFileAreListed) {
 
 TEST(SceneLimits, AFileHasALargestSize) {
     const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) / "plumb_large_scene.toml";
+        std::filesystem::path(testing::TempDir()) /
+        ("plumb_large_scene_" + std::to_string(::getpid()) + ".toml");
     std::ofstream(path)
         << "title = \"large\"\n[[body]]\nname = \"a\"\nshape = \"sphere\"\nradius = 1\n#";
     std::filesystem::resize_file(path, max_scene_file_bytes); // zeros are no TOML, but are read

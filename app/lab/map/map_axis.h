@@ -11,9 +11,10 @@
 namespace plumb {
 
 struct MapAxis {
-    std::string name;                     // "dt", "gravity.y", "body.ball.velocity.x"
-    std::optional<SettingNumber> setting; // when it is one; else a path into the scene file, or a key
-    std::vector<double> values;           // ascending, distinct, at least two
+    std::string name; // "dt", "gravity.y", "body.ball.velocity.x"
+    // When it is one; else a path into the scene file, or a key.
+    std::optional<SettingNumber> setting;
+    std::vector<double> values; // ascending, distinct, at least two
     bool logarithmic = false;
     bool whole = false; // it takes whole numbers alone
 };

@@ -293,21 +293,33 @@ void rearm_contact_columns(StepContext &context) {
         }))
         return;
     ContactSchedule &schedule = context.scratch.schedule;
-    for (ContactBlock &block : schedule.blocks) {
-        bool any = false;
-        for (std::size_t lane = 0; lane < block.used; ++lane) {
-            if (!has_other_arms(context, context.contacts[block.contacts[lane]]))
-                continue;
-            if (block.ahead == ContactBlock::none) {
-                block.ahead = static_cast<std::uint32_t>(schedule.start_arms.size());
-                fill_start_arms(context, block, schedule.start_arms.emplace_back());
-            }
-            rearm_lane(context, block, lane);
-            any = true;
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        for (ContactBlock &block : blocks) {
+            unsigned lanes = 0;
+            for (std::size_t lane = 0; lane < block.used; ++lane)
+                if (has_other_arms(context, context.contacts[block.contacts[lane]]))
+                    lanes |= 1U << lane;
+            block.rearmed = static_cast<std::uint16_t>(lanes);
         }
-        if (any)
+    });
+    const auto known = static_cast<std::uint32_t>(schedule.start_arms.size());
+    std::uint32_t ahead = known;
+    for (ContactBlock &block : schedule.blocks)
+        if (block.rearmed != 0 && block.ahead == ContactBlock::none)
+            block.ahead = ahead++;
+    schedule.start_arms.resize(ahead);
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        for (ContactBlock &block : blocks) {
+            if (block.rearmed == 0)
+                continue;
+            if (block.ahead >= known)
+                fill_start_arms(context, block, schedule.start_arms[block.ahead]);
+            for (std::size_t lane = 0; lane < block.used; ++lane)
+                if ((block.rearmed >> lane & 1U) != 0)
+                    rearm_lane(context, block, lane);
             kernels::finish(std::span(&block, 1));
-    }
+        }
+    });
     // And of their impacts: what these do not see coming, the passes would stop for good.
     for (ContactConstraint &bouncing : context.scratch.contacts) {
         const Contact &contact = context.contacts[bouncing.contact];

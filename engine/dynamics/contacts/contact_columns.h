@@ -41,6 +41,7 @@ struct ContactBlock {
     IndexColumn body_b;
     std::uint16_t writes_a = 0; // bit k: lane k
     std::uint16_t writes_b = 0;
+    std::uint16_t rearmed = 0;            // likewise: whose bodies have other arms by now
     std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
     std::size_t used = 0;                 // lanes
     int points_used = 0;
