@@ -288,7 +288,7 @@ TEST(SceneFileValues, LoadReadsAFile) {
     std::ofstream(path) << ball;
     const SceneFileResult result = load_scene(path);
     EXPECT_TRUE(result.ok());
-    EXPECT_EQ(result.scene.name, "plumb_scene_file_values");
+    EXPECT_EQ(result.scene.name, path.stem().string());
     EXPECT_EQ(result.scene.bodies.size(), 1U);
     std::filesystem::remove(path);
 }
