@@ -92,7 +92,8 @@ void add_map(CommandLine &line) {
     const std::string axis_about =
         "a setting from `plumb list --settings`, or a number of the scene file by its path, such "
         "as body.ball.velocity.x, material.steel.friction or body.box.repeat.count, of which the "
-        "key alone will do where the file has it once: stiffness; N values (10) in equal steps, or "
+        "key alone will do where the file has it once (of velocity = [0, 5, 0] the one that is not "
+        "0): stiffness; N values (10) in equal steps, or "
         "in equal ratios with log, as in dt=1/480..1/30:9log; or a list, substeps=1,2,4";
     map_command->add_option("--x", arguments->x, "The x axis: " + axis_about)
         ->required()

@@ -9,8 +9,12 @@
 #include <functional>
 #include <iostream>
 #include <new>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace plumb {
 
@@ -36,6 +40,31 @@ std::string command_text(int argc, char **argv) {
         text += plain ? " " + argument : " \"" + argument + '"';
     }
     return text;
+}
+
+// Of an option that the command does not have, and whose value may have been taken for a scene;
+// empty when there is none.
+std::string why_unknown(const CLI::App &app, std::span<char *> arguments) {
+    if (app.get_subcommands().empty())
+        return {};
+    const CLI::App &command = *app.get_subcommands().front();
+    std::vector<std::string> names;
+    for (const CLI::Option *option : command.get_options())
+        for (const std::string &name : option->get_lnames())
+            names.push_back("--" + name);
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    for (const std::string_view argument : arguments) {
+        const std::string_view name = argument.substr(0, argument.find('='));
+        if (!name.starts_with("--") || name == "--" ||
+            std::ranges::find(candidates, name) != candidates.end())
+            continue;
+        const std::string_view near = nearest_word(name, candidates);
+        const std::string called = "plumb " + command.get_name();
+        return called + " has no option " + std::string(name) + "; " +
+               (near.empty() ? called + " --help tells which it has"
+                             : "did you mean " + std::string(near) + "?");
+    }
+    return {};
 }
 
 int main_with_errors(int argc, char **argv) {
@@ -68,9 +97,12 @@ int main_with_errors(int argc, char **argv) {
         command->footer(exit_codes);
     try {
         app.parse(argc, argv);
-    } catch (const CLI::ExtrasError &error) {
+    } catch (const CLI::ParseError &error) {
+        if (error.get_exit_code() == 0) // --help
+            return app.exit(error);
         // A misspelt command comes before anything that it could explain.
-        if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+        const bool any_extras = dynamic_cast<const CLI::ExtrasError *>(&error) != nullptr;
+        if (any_extras && app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
             std::vector<std::string> names;
             for (const CLI::App *command : app.get_subcommands({}))
                 names.push_back(command->get_name());
@@ -83,10 +115,12 @@ int main_with_errors(int argc, char **argv) {
                       << '\n';
             return code_of(ExitCode::bad_input);
         }
-        app.exit(error);
+        const std::span arguments(argv, static_cast<std::size_t>(argc));
+        if (const std::string why = why_unknown(app, arguments.subspan(1)); !why.empty())
+            std::cerr << "plumb: " << why << '\n';
+        else
+            app.exit(error);
         return code_of(ExitCode::bad_input);
-    } catch (const CLI::ParseError &error) {
-        return app.exit(error) == 0 ? 0 : code_of(ExitCode::bad_input);
     }
     if (app.get_subcommands().empty())
         result = open_sandbox();

@@ -213,7 +213,7 @@ void World::note_ends() {
             const Contact &contact = s.contacts[i];
             s.ends[i] = {contact.key.a, contact.key.b,
                          static_cast<std::uint8_t>(contact.manifold.count), contact.sensor,
-                         contact.is_turning};
+                         contact.turns()};
         }
     });
 }

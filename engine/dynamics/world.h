@@ -242,6 +242,8 @@ class World {
     Vec3 pull_on_particle(std::uint32_t particle) const;
 
     bool is_turned(const Candidate &candidate) const;
+    bool is_crowded(std::uint32_t body) const;
+    Rolling rolling_of(const Contact &contact) const;
     bool needs_contacts() const;
     bool is_asked(std::uint32_t body) const;
     bool meets_nothing(const Collider &collider) const;
@@ -283,6 +285,7 @@ class World {
     bool find_missed_points();
     bool find_missed_points(Contact &contact) const;
     bool find_passed_points(const Candidate &candidate);
+    bool is_round(const Contact &contact) const;
     bool add_missed(const Manifold &now, Real deep, Contact &contact) const;
     Real contact_reach(const Candidate &candidate) const;
     Real moving_width(const Candidate &candidate) const;

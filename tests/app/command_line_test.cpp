@@ -161,6 +161,25 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
     }
 }
 
+// Its value would else be taken for a second scene.
+TEST(CommandLine, AnOptionOfAnotherCommandIsAnsweredWithItsOwn) {
+    const ProgramResult result = run_program("measure pendulum --methods rk4");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, "plumb: plumb measure has no option --methods; did you mean --method?\n");
+    EXPECT_EQ(run_program("list --nonsense").err,
+              "plumb: plumb list has no option --nonsense; plumb list --help tells which it has\n");
+}
+
+TEST(CommandLine, AChartThatNoMethodCanRunLeavesTheEarlierOne) {
+    const TemporaryFolder folder;
+    folder.write("pendulum.csv", "earlier\n");
+    EXPECT_EQ(run_program("chart pendulum --methods naive_spin --out " + folder.path().string())
+                  .exit_code,
+              2);
+    EXPECT_EQ(names_in(folder.path()), std::set<std::string>{"pendulum.csv"});
+    EXPECT_EQ(text_of(folder.path() / "pendulum.csv"), "earlier\n");
+}
+
 TEST(CommandLine, AnUnknownMethodIsAnsweredWithThoseThereAre) {
     for (const char *command : {"hash --steps 1", "check", "measure", "snapshot"}) {
         const ProgramResult result =

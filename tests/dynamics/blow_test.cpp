@@ -199,58 +199,6 @@ TEST(SoftStepBlow, SmallDominoesFallAsLargeOnes) {
     }
 }
 
-// A capsule or cylinder on its side rolls on, as a ball does.
-TEST(SoftStepBlow, WhatIsRoundRollsOnAtAnySpeed) {
-    for (const double radius : {0.002, 0.02, 0.3})
-        for (const double turn : {0.1, 0.3, 0.5, 1.0, 2.0, 3.0}) // a step
-            for (const Shape &shape :
-                 {Shape{upright_capsule(2 * radius, radius)},
-                  Shape{Cylinder{narrow(V{0, -2 * radius, 0}), narrow(V{0, 2 * radius, 0}),
-                                 Real(radius)}}}) {
-                World world("soft_step", settings_for("soft_step"));
-                world.add_body(ground(0.5, 0));
-                const double speed = 60 * turn * radius;
-                BodyDef roller = dynamic_body(shape, 1, V{0, radius, 0}, V{speed, 0, 0});
-                roller.pose.rotation = narrow(glm::angleAxis(pi / 2, V{1, 0, 0}));
-                roller.angular_velocity = narrow(V{0, 0, -speed / radius});
-                const BodyId id = world.add_body(roller);
-                run(world, 120);
-                EXPECT_NEAR(velocity_of(world, id).x, speed, 1e-3 * speed)
-                    << radius << ", " << turn << ", " << shape.index();
-                EXPECT_NEAR(position_of(world, id).y, radius, 0.01 * radius)
-                    << radius << ", " << turn << ", " << shape.index();
-            }
-}
-
-// A coin on its rim, leaning over, rolls in a circle; friction may slow it down alone.
-TEST(SoftStepBlow, ALeaningCoinRollsWithoutGainingEnergy) {
-    const double friction = 0.9;
-    for (const double radius : {0.01, 0.1})
-        for (const double froude : {2.0, 4.0}) {
-            const double lean = 0.2;
-            const double half = 0.1 * radius;
-            const double speed = froude * std::sqrt(gravity * radius);
-            World world("soft_step", settings_for("soft_step"));
-            world.add_body(ground(friction, 0));
-            BodyDef coin = with_material(
-                dynamic_body(Cylinder{narrow(V{0, -half, 0}), narrow(V{0, half, 0}), Real(radius)},
-                             1, V{0, radius * std::cos(lean) + half * std::sin(lean), 0},
-                             V{speed, 0, 0}),
-                friction, 0);
-            coin.pose.rotation = narrow(glm::angleAxis(pi / 2 - lean, V{1, 0, 0}));
-            coin.angular_velocity = narrow(V{0, 0, -speed / radius});
-            world.add_body(coin);
-            const double before = world.energy();
-            const double moving = world.measure().kinetic_energy;
-            double most = before;
-            for (int step = 0; step < 600; ++step) {
-                world.step(nullptr);
-                most = std::max(most, world.energy());
-            }
-            EXPECT_LE(most - before, 0.002 * moving) << radius << ", " << froude;
-        }
-}
-
 // What is struck at one end turns, and its other end comes down where nothing touched when the step
 // began.
 TEST(SoftStepBlow, WhatSpinsIsStruckAtBothEnds) {

@@ -637,6 +637,21 @@ TEST(RoundTrip, TextReadsWell) {
         << text;
 }
 
+// A world in float lets rotations stray so far from unit length; normalised, they would go on
+// otherwise.
+TEST(RoundTrip, KeepsRotationsThatStrayedByRounding) {
+    for (const double length : {1 - 6e-7, 1 - 4.9e-7, 1 + 4.9e-7, 1 + 6e-7}) {
+        const std::string half = shortest(0.5 * length);
+        const SceneFileResult read = parse_scene(
+            "[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 1\norientation = [" + half +
+                ", " + half + ", " + half + ", " + half + "]\n",
+            "strayed");
+        ASSERT_TRUE(read.ok()) << format_message("strayed", read.messages.front());
+        EXPECT_EQ(read.scene.bodies[0].orientation, 0.5 * length * glm::dquat(1, 1, 1, 1))
+            << length;
+    }
+}
+
 TEST(Shortest, ReadsBackToTheSameBits) {
     Random random(3);
     for (int i = 0; i < 200'000; ++i) {

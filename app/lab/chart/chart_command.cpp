@@ -124,6 +124,10 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
         err << "going on from " << earlier.place().string() << '\n';
     const SceneChart chart = chart_scene(scene, options);
     line.clear();
+    if (chart.runs.empty() && chart.planned == 0) {
+        print(out, chart);
+        return code_of(chart, err); // an earlier chart stays
+    }
     std::ostringstream rows;
     write_chart_csv(rows, chart, fingerprint);
     const std::string others = earlier.rows_not_in(rows.str(), chart_key_columns(), "fingerprint");

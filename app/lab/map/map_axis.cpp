@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 namespace plumb {
@@ -118,6 +119,34 @@ void set_list(std::string_view whole, std::string_view list, MapAxis &axis) {
         refuse(whole, "an axis has 2 to " + std::to_string(most_values) + " values");
 }
 
+std::string with_digits(double value, int digits) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
+}
+
+// As few as tell its values apart, three at least; up to five where that says what they are.
+int digits_of(const MapAxis &axis) {
+    constexpr int least = 3, exact = 5, most = 9;
+    constexpr double rounding = 1e-9;
+    const auto is_said = [&](double value, int digits) {
+        return std::abs(std::stod(with_digits(value, digits)) - value) <=
+               rounding * std::abs(value);
+    };
+    for (int digits = least; digits <= exact; ++digits)
+        if (std::ranges::all_of(axis.values, [&](double v) { return is_said(v, digits); }))
+            return digits;
+    const auto look_alike = [&](int digits) {
+        return std::ranges::adjacent_find(axis.values, {}, [&](double value) {
+                   return with_digits(value, digits);
+               }) != axis.values.end();
+    };
+    int digits = least;
+    while (digits < most && look_alike(digits))
+        ++digits;
+    return digits;
+}
+
 } // namespace
 
 MapAxis parse_map_axis(std::string_view text) {
@@ -186,7 +215,7 @@ std::string value_label(const MapAxis &axis, double value) {
         if (label.starts_with("1/"))
             return label.substr(0, label.find(' '));
     }
-    return three_digits(value);
+    return with_digits(value, digits_of(axis));
 }
 
 std::string axis_title(const MapAxis &axis) {

@@ -144,7 +144,8 @@ void print_plainer(std::ostream &out, const Tuning &tuning) {
             ratio *= model.times_as_dear;
         }
     if (less.empty()) {
-        out << "  Nothing of its model can be left out.\n";
+        if (!tuning.interrupted)
+            out << "  Nothing of its model can be left out.\n";
         return;
     }
     out << "  It can do without ";
@@ -190,7 +191,7 @@ void print(std::ostream &out, const Tuning &tuning, bool explain) {
         out << "nothing that was tried meets " << held;
         const TunedRun *run = nearest(tuning);
         if (run != nullptr)
-            out << "; nearest is " << in_words(run->resolved) << ": worst error "
+            out << "; nearest is " << in_words(run->resolved) << ": worst error at least "
                 << error_text(*run);
         out << ".\n";
         if (run != nullptr && run->error <= 1)

@@ -118,14 +118,15 @@ Real World::acting_side(const ContactKey &key) const {
 namespace {
 
 // The part of a surface's distance along a normal that rolling on it does not change: the radius of
-// a ball or capsule. Of a cylinder on its side, or on a rim near that: from its axis, along the
-// normal. What is left of the way to the middle lies on the axis then, and rolling does not move
-// it; a coin that leans would else sink in as it rolls, be pushed out, and gain energy.
+// a ball or capsule. Of a cylinder on its side, or on a rim up to 53 degrees from that: from its
+// axis, along the normal. What is left of the way to the middle lies on the axis then, and rolling
+// does not move it; a coin that leans would else sink in as it rolls, be pushed out, and gain
+// energy.
 Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal) {
     const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
     if (cylinder == nullptr || collider.surface)
         return collider.rounding;
-    constexpr Real leaning = Real(0.2);
+    constexpr Real leaning = Real(0.8);
     const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
     return std::abs(sine) <= leaning ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
                                      : Real(0);
@@ -176,6 +177,58 @@ void World::set_anchor(Contact &contact, std::size_t k, const Motion &a, const M
     anchor.arm_b += side * half * normal;
 }
 
+// Whether its island takes the fewest substeps and asks for more: it is too large for its budget.
+bool World::is_crowded(std::uint32_t body) const {
+    const Pace &pace = state_.paces[body]; // no substeps: nothing is chosen
+    return pace.substeps == settings_.substeps && pace.wanted > pace.substeps;
+}
+
+// A coin that leans, a ball with a heavy side, a plank on a barrel: with arms and normal held for
+// the step they would be driven apart along the tangents, and swing ever wider. In a crowd that
+// costs more than it is worth.
+Rolling World::rolling_of(const Contact &contact) const {
+    constexpr Real far = Real(3e-4); // of an arm, in a step
+    constexpr Real much = Real(0.1);
+    const bool is_a = contact.rounding_a > Real(0);
+    const bool is_b = contact.rounding_b > Real(0);
+    const auto is_alone = [&](std::uint32_t body) {
+        return model_->bodies[body].kind == BodyKind::dynamic && !is_crowded(body);
+    };
+    if ((!is_a && !is_b) || !method_->info.looks_ahead ||
+        (!is_alone(contact.key.a) && !is_alone(contact.key.b)))
+        return Rolling::straight;
+    // Two that strike each other in space and slide past do not roll.
+    if (contact.friction == Real(0) && is_alone(contact.key.a) && is_alone(contact.key.b))
+        return Rolling::straight;
+    const auto goes_round = [&](bool rolls, std::uint32_t collider) {
+        return rolls && model_->colliders[collider].extent > Real(0);
+    };
+    const Rolling otherwise =
+        goes_round(is_a, contact.collider_a) || goes_round(is_b, contact.collider_b)
+            ? Rolling::round
+            : Rolling::straight;
+    if (is_a == is_b || contact.is_new)
+        return otherwise;
+    const std::uint32_t round = is_a ? contact.key.a : contact.key.b;
+    const std::uint32_t flat = is_a ? contact.key.b : contact.key.a;
+    const auto dt = static_cast<Real>(settings_.dt);
+    if (is_alone(flat) && glm::length(state_.motions[flat].angular_velocity) * dt > far)
+        return Rolling::on_face;
+    const Motion &motion = state_.motions[round];
+    if (!is_alone(round) || otherwise == Rolling::straight)
+        return otherwise;
+    const Vec3 turn = dt * (glm::conjugate(motion.rotation) * motion.angular_velocity);
+    const auto anchors =
+        std::span(contact.anchors).first(static_cast<std::size_t>(contact.manifold.count));
+    const bool is_on_face = std::ranges::any_of(anchors, [&](const ContactAnchor &anchor) {
+        const Vec3 &arm = is_a ? anchor.arm_a : anchor.arm_b;
+        const Vec3 way = glm::cross(turn, is_a ? anchor.core_a : anchor.core_b);
+        const Real squared = glm::dot(way, way) / glm::dot(arm, arm);
+        return squared > far * far && squared < much * much;
+    });
+    return is_on_face ? Rolling::on_face : otherwise;
+}
+
 Real World::separation_now(const Contact &contact, std::size_t k) const {
     const ContactAnchor &anchor = contact.anchors[k];
     return separation_along(contact.manifold.normal, anchor.core_a, anchor.core_b,
@@ -194,13 +247,18 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     contact.is_turning = found.is_turning;
     contact.origin = origin_of(contact.manifold.normal, found.a, found.b);
     set_rounding(contact, *model_);
+    contact.is_new = before == nullptr;
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         set_anchor(contact, index, found.a, found.b);
-        if (found.moment != Moment::start || found.is_turning)
+    }
+    if (!contact.is_turning)
+        contact.rolling = rolling_of(contact);
+    for (int k = 0; k < contact.manifold.count; ++k) {
+        const auto index = static_cast<std::size_t>(k);
+        if (found.moment != Moment::start || contact.turns())
             contact.manifold.points[index].separation = separation_now(contact, index);
     }
-    contact.is_new = before == nullptr;
     if (!contact.is_new)
         carry_over(std::span(state_.points).subspan(before->first_point, before->point_count),
                    contact);
@@ -279,7 +337,10 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
         to.position =
             motion_a.position + core_a + (contact.rounding_a + Real(0.5) * to.separation) * normal;
     }
-    return true;
+    if (rolling_of(contact) != Rolling::on_face)
+        return true;
+    out.pop_back();
+    return false;
 }
 
 bool World::keeps_contacts() const {

@@ -54,6 +54,11 @@ struct ContactOrigin {
 // start: of the step. touch: where the two will meet.
 enum class Moment { start, touch };
 
+// Where the place goes on which something round rolls: straight on, its arms and normal as they
+// were; with the face of a body that turns, or with a core that goes around its body's middle, on
+// what is not round; or so that only the arms change, once the step shows that they do.
+enum class Rolling : std::uint8_t { straight, on_face, round };
+
 // Two colliders that touch, or are about to, as found in this step or kept from an earlier one.
 // Separations are those of the present poses.
 struct Contact {
@@ -66,6 +71,7 @@ struct Contact {
     bool is_new = false;           // nothing is remembered of it
     Moment moment = Moment::start; // of the step, whose poses its normal and anchors are of
     bool is_turning = false;       // goes through the substeps with a body that the scene turns
+    Rolling rolling = Rolling::straight;
     Manifold manifold;
     ContactOrigin origin;
     // Radius of a surface that rolls: of a ball or capsule, of a cylinder on its side (m).
@@ -75,6 +81,8 @@ struct Contact {
     // For each manifold point what the solver remembers of the last substep (N s): along the
     // normal, and along the two vectors of tangent_basis(normal).
     std::array<Vec3, 4> impulses{};
+
+    bool turns() const { return is_turning || rolling == Rolling::on_face; }
 };
 
 // What most ask of a contact, in a small place: contacts are large, and there are many.
@@ -83,7 +91,7 @@ struct ContactEnds {
     std::uint32_t b = 0;
     std::uint8_t points = 0;
     bool is_sensor = false;
-    bool is_turning = false; // Contact::is_turning
+    bool turns = false; // Contact::turns
 };
 
 // What is remembered of a loaded contact from step to step: its points, known by feature, with

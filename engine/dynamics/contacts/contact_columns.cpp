@@ -54,7 +54,7 @@ void colour(StepContext &context) {
             of_others = used;
         if (is_last != (turn >= count))
             continue;
-        schedule.any_turning = schedule.any_turning || contact.is_turning;
+        schedule.any_turning = schedule.any_turning || contact.turns;
         std::uint64_t &of_a = schedule.colours_of_body[contact.a];
         std::uint64_t &of_b = schedule.colours_of_body[contact.b];
         const std::uint64_t taken = of_others | (moves_a ? of_a : 0) | (moves_b ? of_b : 0);
@@ -87,6 +87,10 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
         block.writes_a = static_cast<std::uint16_t>(block.writes_a | bit);
     if (is_dynamic(context, contact.key.b))
         block.writes_b = static_cast<std::uint16_t>(block.writes_b | bit);
+    if (contact.turns())
+        block.turning = static_cast<std::uint16_t>(block.turning | bit);
+    if (contact.rolling == Rolling::round)
+        block.round = static_cast<std::uint16_t>(block.round | bit);
     set(block.normal, lane, contact.manifold.normal);
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
@@ -112,7 +116,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
 bool is_ahead(const StepContext &context, const ContactBlock &block) {
     return std::any_of(block.contacts, block.contacts + block.used, [&](std::uint32_t contact) {
         return context.contacts[contact].moment != Moment::start ||
-               context.contacts[contact].is_turning;
+               context.contacts[contact].turns();
     });
 }
 
@@ -149,8 +153,9 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
     const Motion b = ahead(context.bodies[contact.key.b], t);
     const bool a_moves = is_dynamic(context, contact.key.a);
     const bool b_moves = is_dynamic(context, contact.key.b);
-    const Quat turn = a_moves ? b.rotation * glm::conjugate(contact.origin.rotation_b)
-                              : a.rotation * glm::conjugate(contact.origin.rotation_a);
+    const bool with_b = contact.is_turning ? a_moves : contact.rounding_a > Real(0);
+    const Quat turn = with_b ? b.rotation * glm::conjugate(contact.origin.rotation_b)
+                             : a.rotation * glm::conjugate(contact.origin.rotation_a);
     const Vec3 n = turn * contact.manifold.normal;
     set(block.normal, lane, n);
     set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
@@ -160,8 +165,14 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
         const Vec3 on_a = a.rotation * anchor.core_a + block.rounding_a.lanes[lane] * n;
         const Vec3 on_b = b.rotation * anchor.core_b - block.rounding_b.lanes[lane] * n;
         const Vec3 half = Real(0.5) * glm::dot((b.position - a.position) + (on_b - on_a), n) * n;
-        set(block.points[k].r_a, lane, on_a + (Real(1) + side) * half);
-        set(block.points[k].r_b, lane, on_b - (Real(1) - side) * half);
+        Vec3 arm_a = on_a + (Real(1) + side) * half;
+        Vec3 arm_b = on_b - (Real(1) - side) * half;
+        if (contact.rolling == Rolling::on_face && with_b) // what rolls takes the point along
+            arm_b = arm_a + (a.position - b.position);
+        else if (contact.rolling == Rolling::on_face)
+            arm_a = arm_b + (b.position - a.position);
+        set(block.points[k].r_a, lane, arm_a);
+        set(block.points[k].r_b, lane, arm_b);
         const Vec3 cores = get(arms.points[k].core_b, lane) - get(arms.points[k].core_a, lane);
         block.points[k].separation.lanes[lane] = glm::dot(offset + cores, n) - rounding;
     }
@@ -227,15 +238,38 @@ bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces
         return false;
     return squared > std::min(far * far, share * least / most);
 }
-bool has_other_arms(const StepContext &context, const Contact &contact, std::uint32_t body,
-                    std::uint32_t collider) {
-    return context.model.colliders[collider].extent > Real(0) &&
-           has_other_arms(context, body, contact.restitution > Real(0));
+
+// Of an arm's length: how far the core of what rolls may go around the middle within the step.
+constexpr Real rolling = Real(5e-4);
+
+// What rolls, and whose core is not its middle: a coin that leans, a ball with a heavy side. That
+// goes around the middle, and the arms with it. Held for the step, they would drive it along the
+// tangent, outward, and it would gain energy.
+bool goes_round(const StepContext &context, const Contact &contact, bool of_a) {
+    const std::uint32_t body = of_a ? contact.key.a : contact.key.b;
+    const Real rounding = of_a ? contact.rounding_a : contact.rounding_b;
+    const SolverBody &moves = context.bodies[body];
+    if (contact.rolling != Rolling::round || !(rounding > Real(0)) || !is_dynamic(context, body))
+        return false;
+    const auto anchors =
+        std::span(contact.anchors).first(static_cast<std::size_t>(contact.manifold.count));
+    return std::ranges::any_of(anchors, [&](const ContactAnchor &anchor) {
+        const Vec3 &arm = of_a ? anchor.arm_a : anchor.arm_b;
+        const Vec3 way = glm::cross(glm::conjugate(moves.rotation) * moves.turned,
+                                    of_a ? anchor.core_a : anchor.core_b);
+        return glm::dot(way, way) > rolling * rolling * glm::dot(arm, arm);
+    });
+}
+bool has_other_arms(const StepContext &context, const Contact &contact, bool of_a) {
+    return (context.model.colliders[of_a ? contact.collider_a : contact.collider_b].extent >
+                Real(0) &&
+            has_other_arms(context, of_a ? contact.key.a : contact.key.b,
+                           contact.restitution > Real(0))) ||
+           goes_round(context, contact, of_a);
 }
 bool has_other_arms(const StepContext &context, const Contact &contact) {
-    return !contact.is_turning &&
-           (has_other_arms(context, contact, contact.key.a, contact.collider_a) ||
-            has_other_arms(context, contact, contact.key.b, contact.collider_b));
+    return !contact.turns() &&
+           (has_other_arms(context, contact, true) || has_other_arms(context, contact, false));
 }
 
 // Where a point is on two bodies as they are now: on the surface of the one that has turned.
@@ -249,7 +283,7 @@ Arms present_arms(const StepContext &context, const Contact &contact, std::size_
     const Vec3 &n = contact.manifold.normal;
     const Vec3 between = b.position - a.position;
     const ContactAnchor &anchor = contact.anchors[k];
-    if (has_other_arms(context, contact, contact.key.a, contact.collider_a)) {
+    if (has_other_arms(context, contact, true)) {
         const Vec3 arm = a.rotation * anchor.core_a + contact.rounding_a * n;
         return {arm, arm - between};
     }
@@ -278,9 +312,8 @@ void turn_contact_columns(StepContext &context, Real t) {
         return;
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (ContactBlock &block : blocks)
-            for (std::size_t lane = 0; block.ahead != ContactBlock::none && lane < block.used;
-                 ++lane)
-                if (context.contacts[block.contacts[lane]].is_turning)
+            for (std::size_t lane = 0; block.turning != 0 && lane < block.used; ++lane)
+                if ((block.turning >> lane & 1U) != 0)
                     turn_lane(context, block, lane, t);
     });
 }
@@ -288,16 +321,19 @@ void turn_contact_columns(StepContext &context, Real t) {
 void rearm_contact_columns(StepContext &context) {
     if (context.scratch.schedule.blocks.empty())
         return;
-    if (!std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
-            return has_other_arms(context, body, false);
-        }))
-        return;
     ContactSchedule &schedule = context.scratch.schedule;
+    const bool any_far = std::ranges::any_of(
+        context.moving(), [&](std::uint32_t body) { return has_other_arms(context, body, false); });
+    const bool any_round = std::ranges::any_of(
+        schedule.blocks, [](const ContactBlock &block) { return block.round != 0; });
+    if (!any_far && !any_round)
+        return;
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (ContactBlock &block : blocks) {
             unsigned lanes = 0;
-            for (std::size_t lane = 0; lane < block.used; ++lane)
-                if (has_other_arms(context, context.contacts[block.contacts[lane]]))
+            for (std::size_t lane = 0; (any_far || block.round != 0) && lane < block.used; ++lane)
+                if ((any_far || (block.round >> lane & 1U) != 0) &&
+                    has_other_arms(context, context.contacts[block.contacts[lane]]))
                     lanes |= 1U << lane;
             block.rearmed = static_cast<std::uint16_t>(lanes);
         }
@@ -431,7 +467,7 @@ void store_contact_columns(StepContext &context) {
                 const Real kept = remembered_share(block, lane);
                 for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
                     contact.impulses[k] = next_impulse(block.points[k], lane, kept);
-                if (contact.is_turning)
+                if (contact.turns())
                     express_anew(contact, get(block.normal, lane), get(block.t1, lane));
             }
     });

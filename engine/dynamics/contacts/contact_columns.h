@@ -41,7 +41,9 @@ struct ContactBlock {
     IndexColumn body_b;
     std::uint16_t writes_a = 0; // bit k: lane k
     std::uint16_t writes_b = 0;
-    std::uint16_t rearmed = 0;            // likewise: whose bodies have other arms by now
+    std::uint16_t turning = 0; // likewise: Contact::turns
+    std::uint16_t round = 0;   // of the others: one body is round, and not about its middle
+    std::uint16_t rearmed = 0; // whose bodies have other arms by now
     std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
     std::size_t used = 0;                 // lanes
     int points_used = 0;
@@ -86,7 +88,7 @@ struct ContactSchedule {
     std::vector<ContactBlock> blocks;
     std::vector<StartArms> start_arms;
     std::vector<std::uint32_t> colour_ends; // of blocks; those after the last stand for themselves
-    bool any_turning = false;               // Contact::is_turning
+    bool any_turning = false;               // Contact::turns
     std::vector<Lane> lanes;
     std::vector<std::uint32_t> contacts;        // of each lane of each block, in the context
     std::vector<std::uint64_t> colours_of_body; // bit c: colour c has a contact of it

@@ -134,6 +134,19 @@ void put(toml::table &table, std::string_view key, double value) {
     put(value, [&](auto number) { table.insert_or_assign(key, number); });
 }
 
+// Of three numbers in brackets those that are not zero; where all are, all.
+void add_components(const toml::array &array, const std::string &path,
+                    std::vector<std::string> &paths) {
+    constexpr std::string_view names = "xyz";
+    if (array.size() != names.size() || !std::ranges::all_of(array, is_number))
+        return;
+    const auto is_zero = [](const toml::node &node) { return node.value<double>() == 0; };
+    const bool any = !std::ranges::all_of(array, is_zero);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (!any || !is_zero(array[i]))
+            paths.push_back(path + "." + names[i]);
+}
+
 // Names go before indices, as `element` reads them.
 void add_paths(const toml::table &table, const std::string &before, std::string_view wanted,
                std::vector<std::string> &paths) {
@@ -144,6 +157,8 @@ void add_paths(const toml::table &table, const std::string &before, std::string_
         if (const toml::table *inner = value.as_table())
             add_paths(*inner, path + ".", wanted, paths);
         const toml::array *array = value.as_array();
+        if (array != nullptr && key.str() == wanted)
+            add_components(*array, path, paths);
         for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
             if (const toml::table *inner = array->get(i)->as_table()) {
                 const auto *name = inner->get_as<std::string>("name");
@@ -214,8 +229,10 @@ SceneFileResult parse_scene(std::string_view text, const std::string &path,
 std::vector<std::string> number_paths(std::string_view text, std::string_view key) {
     std::vector<std::string> paths;
     std::vector<SceneMessage> messages;
-    if (const std::optional<toml::table> root = parse_toml(text, "", messages))
+    if (std::optional<toml::table> root = parse_toml(text, "", messages)) {
+        root->erase("camera");
         add_paths(*root, "", key, paths);
+    }
     return paths;
 }
 

@@ -30,8 +30,9 @@ SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             std::span<const ChangedNumber> changed);
 
 // The paths of all numbers that the text gives under this key: "stiffness" may stand for
-// "spring.left.stiffness" and "spring.right.stiffness". Of three numbers in brackets none. Empty
-// when the text is not TOML.
+// "spring.left.stiffness" and "spring.right.stiffness", "velocity" for "body.ball.velocity.x": of
+// three numbers in brackets those that are not zero, or all three. None of the camera's. Empty when
+// the text is not TOML.
 std::vector<std::string> number_paths(std::string_view text, std::string_view key);
 
 // A scene file's text; empty, with the message of load_scene, when it cannot be read.

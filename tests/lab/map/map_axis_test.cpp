@@ -61,6 +61,12 @@ TEST(MapAxis, LabelsAFractionOfASecondAsSuch) {
     EXPECT_EQ(value_label(axis, 1.0 / 60), "1/60");
     EXPECT_EQ(value_label(axis, 0.3), "0.3");
     EXPECT_EQ(value_label(axis, 1), "1");
+    const MapAxis close = parse_map_axis("spring.coil.stiffness=20000..20010:11");
+    EXPECT_EQ(value_label(close, 20001), "20001");
+    const MapAxis even = parse_map_axis("particle.bob.mass=1.9..2.1:9");
+    EXPECT_EQ(value_label(even, 2.025), "2.025");
+    const MapAxis uneven = parse_map_axis("spring.coil.stiffness=1..1000:8log");
+    EXPECT_EQ(value_label(uneven, uneven.values[1]), "2.68");
 }
 
 TEST(MapAxis, SaysWhatIsWrong) {
@@ -87,7 +93,10 @@ TEST(MapAxis, TakesAKeyForTheOneNumberThatHasIt) {
         name = "a.b"
         mass = 1
         position = [0, 1, 0]
+        velocity = [0, 0, 0]
         repeat = { count = 4 }
+        [camera]
+        distance = 4
     )";
     const auto path = [&](const std::string &key) {
         return with_whole_path(parse_map_axis(key + "=1..2"), scene).name;
@@ -95,6 +104,7 @@ TEST(MapAxis, TakesAKeyForTheOneNumberThatHasIt) {
     EXPECT_EQ(path("stiffness"), "spring.left.stiffness");
     EXPECT_EQ(path("count"), "body.a.b.repeat.count");
     EXPECT_EQ(path("seed"), "world.seed");
+    EXPECT_EQ(path("position"), "body.a.b.position.y");
     EXPECT_EQ(path("substeps"), "substeps");
     EXPECT_EQ(path("body.a.b.position.y"), "body.a.b.position.y");
     const auto complaint_of = [&](const std::string &key) -> std::string {
@@ -109,7 +119,12 @@ TEST(MapAxis, TakesAKeyForTheOneNumberThatHasIt) {
         << complaint_of("mass");
     EXPECT_NE(complaint_of("substep").find("did you mean \"substeps\"?"), std::string::npos);
     EXPECT_NE(complaint_of("friction").find(". A number of the scene file"), std::string::npos);
-    EXPECT_NE(complaint_of("position").find("material.NAME.friction"), std::string::npos);
+    EXPECT_NE(
+        complaint_of("velocity")
+            .find("3; give one of body.a.b.velocity.x, body.a.b.velocity.y, body.a.b.velocity.z"),
+        std::string::npos)
+        << complaint_of("velocity");
+    EXPECT_NE(complaint_of("distance").find("material.NAME.friction"), std::string::npos);
 }
 
 } // namespace

@@ -1,0 +1,221 @@
+// What rolls or rocks gains no energy: the place where it touches goes along within the step, and
+// so do the arms to it and the face's normal.
+#include "tests/dynamics/worlds.h"
+#include "tests/trials.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+// How far the energy of a world comes above that of its start within a time (J).
+double gain_of(World &world, double seconds) {
+    const double before = world.energy();
+    double most = before;
+    for (int step = 0; step < seconds / world.settings().dt; ++step) {
+        world.step(nullptr);
+        most = std::max(most, world.energy());
+    }
+    return most - before;
+}
+
+// A capsule or cylinder on its side rolls on, as a ball does.
+TEST(Rolling, WhatIsRoundRollsOnAtAnySpeed) {
+    for (const double radius : {0.002, 0.02, 0.3})
+        for (const double turn : {0.1, 0.3, 0.5, 1.0, 2.0, 3.0}) // a step
+            for (const Shape &shape :
+                 {Shape{upright_capsule(2 * radius, radius)},
+                  Shape{Cylinder{narrow(V{0, -2 * radius, 0}), narrow(V{0, 2 * radius, 0}),
+                                 Real(radius)}}}) {
+                World world("soft_step", settings_for("soft_step"));
+                world.add_body(ground(0.5, 0));
+                const double speed = 60 * turn * radius;
+                BodyDef roller = dynamic_body(shape, 1, V{0, radius, 0}, V{speed, 0, 0});
+                roller.pose.rotation = narrow(glm::angleAxis(pi / 2, V{1, 0, 0}));
+                roller.angular_velocity = narrow(V{0, 0, -speed / radius});
+                const BodyId id = world.add_body(roller);
+                run(world, 120);
+                EXPECT_NEAR(velocity_of(world, id).x, speed, 1e-3 * speed)
+                    << radius << ", " << turn << ", " << shape.index();
+                EXPECT_NEAR(position_of(world, id).y, radius, 0.01 * radius)
+                    << radius << ", " << turn << ", " << shape.index();
+            }
+}
+
+// A cylinder on its rim that leans over and rolls, at so many times the speed at which it turns as
+// fast as gravity tips it. Thin ones are coins.
+BodyDef leaning_roller(double radius, double thickness, double lean, double froude) {
+    const double half = 0.5 * thickness * radius;
+    const double speed = froude * std::sqrt(gravity * radius);
+    BodyDef roller = dynamic_body(
+        Cylinder{narrow(V{0, -half, 0}), narrow(V{0, half, 0}), Real(radius)}, 1,
+        V{0, radius * std::cos(lean) + half * std::abs(std::sin(lean)), 0}, V{speed, 0, 0});
+    roller.pose.rotation = narrow(glm::angleAxis(pi / 2 - lean, V{1, 0, 0}));
+    roller.angular_velocity = narrow(V{0, 0, -speed / radius});
+    return roller;
+}
+
+// How far its energy comes above that of the start, in kinetic energies of then.
+double gain_of_roller(const BodyDef &roller, const StepSettings &settings, double friction,
+                      double restitution, double seconds) {
+    World world("soft_step", settings);
+    world.add_body(ground(friction, restitution));
+    world.add_body(with_material(roller, friction, restitution));
+    const double moving = world.measure().kinetic_energy;
+    return gain_of(world, seconds) / moving;
+}
+
+// It rolls in a circle; friction may slow it down alone. Slow ones turn fastest, and what holds
+// arms for a step gained twice the energy there.
+TEST(Rolling, ALeaningCoinRollsWithoutGainingEnergy) {
+    for (const double radius : {0.01, 0.1})
+        for (const double froude : {0.4, 0.7, 1.0, 2.0})
+            for (const double lean : {0.15, 0.3, 0.5})
+                EXPECT_LE(gain_of_roller(leaning_roller(radius, 0.2, lean, froude),
+                                         settings_for("soft_step"), 0.5, 0, 6),
+                          0.01)
+                    << radius << ", " << froude << ", " << lean;
+}
+TEST(Rolling, LeaningRollersOfAnySortGainNoEnergy) {
+    Random random(5);
+    for (int trial = 0; trial < trials(100); ++trial) {
+        const double radius = std::pow(10, random.next_in(-2, 0));
+        const double thickness = random.next_in(0.05, 1);
+        const double lean = random.next_in(-0.8, 0.8);
+        const double froude = random.next_in(0.7, 5);
+        const double friction = random.next_in(0.3, 1.2);
+        const double restitution = trial % 3 == 0 ? 0.4 : 0;
+        EXPECT_LE(gain_of_roller(leaning_roller(radius, thickness, lean, froude),
+                                 settings_for("soft_step"), friction, restitution, 6),
+                  0.01)
+            << trial;
+    }
+}
+TEST(Rolling, ALeaningCoinGainsNoEnergyAtOtherStepsEither) {
+    for (const auto &[dt, substeps] :
+         {std::pair{1.0 / 60, 4}, std::pair{1.0 / 60, 16}, std::pair{1.0 / 240, 1},
+          std::pair{1.0 / 240, 4}, std::pair{1.0 / 960, 1}})
+        for (const double lean : {0.3, 0.5}) {
+            StepSettings settings = settings_for("soft_step");
+            settings.dt = dt;
+            settings.substeps = substeps;
+            settings.max_substeps = 1;
+            EXPECT_LE(gain_of_roller(leaning_roller(0.1, 0.2, lean, 0.6), settings, 0.5, 0, 10),
+                      0.04)
+                << dt << ", " << substeps << ", " << lean;
+        }
+}
+
+// Thrown ones that spin by up to a radian a step come down on rims where no point of a contact is.
+TEST(Rolling, ThrownCoinsHardlyGainEnergy) {
+    Random random(5);
+    int gained = 0;
+    for (int trial = 0; trial < trials(200); ++trial) {
+        const double radius = std::pow(10, random.next_in(-2, 0));
+        const double half = random.next_in(0.025, 0.75) * radius;
+        const double friction = random.next_in(0.2, 1);
+        World world("soft_step", settings_for("soft_step"));
+        world.add_body(ground(friction, 0));
+        BodyDef coin =
+            dynamic_body(Cylinder{narrow(V{0, -half, 0}), narrow(V{0, half, 0}), Real(radius)}, 1,
+                         V{0, 2.5 * radius, 0}, any_vector(random, 2 * std::sqrt(radius)));
+        coin.pose.rotation = narrow(any_rotation(random));
+        coin.angular_velocity = narrow(any_vector(random, 15 / std::sqrt(radius)));
+        world.add_body(with_material(coin, friction, 0));
+        const double scale = gravity * radius + 0.5 * world.measure().kinetic_energy;
+        double least = world.energy(), gain = 0;
+        for (int step = 0; step < 240; ++step) {
+            world.step(nullptr);
+            least = std::min(least, world.energy());
+            gain = std::max(gain, world.energy() - least);
+        }
+        EXPECT_LE(gain, 0.5 * scale) << trial;
+        gained += gain > 0.05 * scale ? 1 : 0;
+    }
+    EXPECT_LE(gained, 6); // one in fifteen, by up to 1.2, with four points of a rim alone
+}
+
+// A tumbler: its weight hangs below the middle of what it rolls on. Let go at an angle, it swings;
+// with arms held for the step it swung ever wider, and turned over.
+TEST(Rolling, WhatIsHeavyOnOneSideSwingsNoWider) {
+    for (const double radius : {0.01, 0.1, 0.5})
+        for (const double low : {0.2, 0.6}) // of the radius
+            for (const double angle : {0.1, 1.0})
+                for (const bool is_ball : {true, false}) {
+                    const double friction = radius < 0.2 ? 0.8 : 0;
+                    World world("soft_step", settings_for("soft_step"));
+                    world.add_body(ground(friction, 0));
+                    const Shape shape =
+                        is_ball ? Shape{ball(radius)}
+                                : Shape{Cylinder{narrow(V{0, 0, -radius}), narrow(V{0, 0, radius}),
+                                                 Real(radius)}};
+                    BodyDef tumbler = dynamic_body(shape, 1, V{0, radius, 0});
+                    tumbler.center_of_mass = narrow(V{0, -low * radius, 0});
+                    tumbler.inertia = narrow(V{0.4 * radius * radius});
+                    tumbler.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
+                    world.add_body(with_material(tumbler, friction, 0));
+                    const double swing = gravity * low * radius * (1 - std::cos(angle));
+                    // The smallest swing by half a radian a step.
+                    EXPECT_LE(gain_of(world, 10), (radius < 0.05 ? 0.1 : 0.03) * swing)
+                        << radius << ", " << low << ", " << angle << ", " << is_ball;
+                }
+}
+
+// A plank that rocks on a barrel: stable as long as it is thinner than the barrel's diameter.
+TEST(Rolling, APlankOnABarrelSwingsNoWider) {
+    for (const double radius : {0.3, 1.0, 5.0})
+        for (const double angle : {0.01, 0.05})
+            for (const double friction : {0.3, 1.0}) {
+                const double half = 0.05;
+                World world("soft_step", settings_for("soft_step"));
+                world.add_body(with_material(
+                    static_body(Cylinder{narrow(V{0, 0, -1}), narrow(V{0, 0, 1}), Real(radius)}),
+                    friction, 0));
+                // Rolled to the angle from level on top.
+                const V out{-std::sin(angle), std::cos(angle), 0};
+                const V along{std::cos(angle), std::sin(angle), 0};
+                BodyDef plank = dynamic_body(block(V{1.5, half, 0.3}), 1,
+                                             (radius + half) * out + radius * angle * along);
+                plank.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
+                world.add_body(with_material(plank, friction, 0));
+                const double swing = gravity * (radius - half) * 0.5 * angle * angle;
+                EXPECT_LE(gain_of(world, 10), 0.1 * swing)
+                    << radius << ", " << angle << ", " << friction;
+            }
+}
+
+// A ring hangs in a ring, and swings with a weight.
+TEST(Rolling, ALinkThatHangsInALinkSwingsNoWider) {
+    const auto add_ring = [](World &world, BodyKind kind, const V &at, bool across) {
+        BodyDef ring;
+        ring.kind = kind;
+        ring.pose.position = narrow(at);
+        constexpr int sides = 12;
+        for (int i = 0; i < sides; ++i) {
+            const auto corner = [&](int k) {
+                const double turn = 2 * pi * k / sides;
+                const double x = 0.3 * std::cos(turn);
+                return narrow(across ? V{0, 0.3 * std::sin(turn), x}
+                                     : V{x, 0.3 * std::sin(turn), 0});
+            };
+            ring.colliders.emplace_back().shape = Capsule{corner(i), corner(i + 1), Real(0.04)};
+        }
+        if (kind == BodyKind::dynamic)
+            ring.mass = Real(5);
+        world.add_body(with_material(ring, 0.5, 0));
+    };
+    for (const double turn : {0.2, 0.6}) {
+        World world("soft_step", settings_for("soft_step"));
+        add_ring(world, BodyKind::static_body, V{0}, false);
+        add_ring(world, BodyKind::dynamic, V{0, -0.52, 0}, true);
+        run(world, 120);
+        const BodyId ring = world.body_id(1);
+        world.set_motion(ring, world.pose_of(ring.index), Vec3{0},
+                         narrow(V{8 * turn, 0, 4 * turn}));
+        const double swing = world.measure().kinetic_energy;
+        EXPECT_LE(gain_of(world, 20), 0.1 * swing) << turn;
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
