@@ -197,8 +197,9 @@ Rolling World::rolling_of(const Contact &contact) const {
     if ((!is_a && !is_b) || !method_->info.looks_ahead ||
         (!is_alone(contact.key.a) && !is_alone(contact.key.b)))
         return Rolling::straight;
-    // Two that strike each other in space and slide past do not roll.
-    if (contact.friction == Real(0) && is_alone(contact.key.a) && is_alone(contact.key.b))
+    // What strikes another in space and slides past does not roll, nor what bounces off a wall.
+    if (contact.friction == Real(0) &&
+        (contact.restitution > Real(0) || (is_alone(contact.key.a) && is_alone(contact.key.b))))
         return Rolling::straight;
     const auto goes_round = [&](bool rolls, std::uint32_t collider) {
         return rolls && model_->colliders[collider].extent > Real(0);
