@@ -101,8 +101,7 @@ int main_with_errors(int argc, char **argv) {
         if (error.get_exit_code() == 0) // --help
             return app.exit(error);
         // A misspelt command comes before anything that it could explain.
-        const bool any_extras = dynamic_cast<const CLI::ExtrasError *>(&error) != nullptr;
-        if (any_extras && app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+        if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
             std::vector<std::string> names;
             for (const CLI::App *command : app.get_subcommands({}))
                 names.push_back(command->get_name());

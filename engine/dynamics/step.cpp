@@ -1,5 +1,6 @@
 // The step, phase by phase.
 #include "engine/dynamics/world.h"
+#include "engine/math/basis.h"
 
 #include <algorithm>
 #include <chrono>
@@ -121,21 +122,24 @@ void World::step_together(StepTimes *times) {
             scratch_.impacts.resize(impacts);
             report_.impacts = before.impacts;
             report_.unresolved_impacts = before.unresolved_impacts;
+            report_.finite = before.finite;
             load_bodies();
             advance();
         };
         try_step();
         constexpr int most_refinements = 2;
         for (int i = 0; i < most_refinements && went_too_coarsely(); ++i)
-            try_step();
+            try_step(); // with the loads that the first try found
         constexpr int most_tries = 8;
         int missed = 0;
         constexpr int most_missed = 2; // more do not make it better
         const auto must_try_again = [&] {
             return find_surprises() || (missed++ < most_missed && find_missed_points());
         };
-        for (int tries = 1; tries < most_tries && must_try_again(); ++tries)
+        for (int tries = 1; tries < most_tries && must_try_again(); ++tries) {
+            recall_impulses();
             try_step();
+        }
         scratch_.surprised.clear();
     }
     const PhaseTimer timer(times ? &times->finish : nullptr);
@@ -299,6 +303,27 @@ void World::remember(const Contact &contact, ContactMemory &memory) {
     }
 }
 
+namespace {
+
+// A normal that turned, and impulses along tangents that turned with it, as those of the manifold
+// that the next step will find there. When no try of the step is still to come: they all begin with
+// the normal of its start.
+void express_anew(Contact &contact, const Quat &turn) {
+    const TangentBasis before = tangent_basis(contact.manifold.normal);
+    contact.manifold.normal = turn * contact.manifold.normal;
+    const Vec3 t1 = turn * before.t1;
+    const Vec3 t2 = glm::cross(contact.manifold.normal, t1);
+    const TangentBasis now = tangent_basis(contact.manifold.normal);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        Vec3 &impulse = contact.impulses[k];
+        const Vec3 friction = impulse.y * t1 + impulse.z * t2;
+        impulse.y = glm::dot(friction, now.t1);
+        impulse.z = glm::dot(friction, now.t2);
+    }
+}
+
+} // namespace
+
 // What is remembered of contacts between those that were still stays as it is.
 void World::gather_memory() {
     Scratch &s = scratch_;
@@ -311,8 +336,13 @@ void World::gather_memory() {
     }
     s.remembered.resize(count);
     for_parts(s.tasks, count, contacts_a_part, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            s.remembered[i] = remembered_points(s.contacts[i]);
+        for (std::size_t i = begin; i < end; ++i) {
+            Contact &contact = s.contacts[i];
+            if (contact.turns() && !contact.sensor)
+                express_anew(contact, contact.turn(s.bodies[contact.key.a].rotation,
+                                                   s.bodies[contact.key.b].rotation));
+            s.remembered[i] = remembered_points(contact);
+        }
     });
 
     // Their places, ascending by key.

@@ -171,6 +171,7 @@ class World {
     void advance_groups();
     std::uint32_t remembered_points(const Contact &contact) const;
     void remember(const Contact &contact, ContactMemory &memory);
+    void recall_impulses();
     void gather_memory();
     void load_penalties();
     void gather_penalties();
@@ -285,7 +286,7 @@ class World {
     bool find_missed_points();
     bool find_missed_points(Contact &contact) const;
     bool find_passed_points(const Candidate &candidate);
-    bool is_round(const Contact &contact) const;
+    bool has_rim(const Contact &contact) const;
     bool add_missed(const Manifold &now, Real deep, Contact &contact) const;
     Real contact_reach(const Candidate &candidate) const;
     Real moving_width(const Candidate &candidate) const;

@@ -116,7 +116,7 @@ const double *known_failing(const MethodInfo &method, const std::string &scene) 
           {"dice", 9000},
           {"terrain", 2.9},
           {"mesh_terrain", std::numeric_limits<double>::infinity()}, // it does not swing at all
-          {"tumbling", 2.4},
+          {"tumbling", 4.8},
           {"pyramid", 130},
           {"ten_box_stack", 250},
           {"twenty_box_stack", 500},

@@ -71,23 +71,4 @@ ProgramResult RunningProgram::wait() {
             text_of(folder_ / "out"), text_of(folder_ / "err")};
 }
 
-TemporaryFolder::TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "plumb-test-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-        throw std::runtime_error(name + ": " + std::strerror(errno));
-    path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-}
-
-std::filesystem::path TemporaryFolder::write(const std::string &name,
-                                             const std::string &text) const {
-    const std::filesystem::path path = path_ / name;
-    std::ofstream(path) << text;
-    return path;
-}
-
 } // namespace plumb

@@ -1,6 +1,8 @@
 // The program itself, as the shell sees it.
 #pragma once
 
+#include "tests/temporary_folder.h"
+
 #include <filesystem>
 #include <string>
 
@@ -37,21 +39,5 @@ class RunningProgram {
 bool has(const std::string &text, const std::string &part);
 // The whole of a file.
 std::string text_of(const std::filesystem::path &path);
-
-// A new empty folder, removed at the end.
-class TemporaryFolder {
-  public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder &) = delete;
-    TemporaryFolder &operator=(const TemporaryFolder &) = delete;
-
-    [[nodiscard]] const std::filesystem::path &path() const { return path_; }
-    // Writes a file into it.
-    std::filesystem::path write(const std::string &name, const std::string &text) const;
-
-  private:
-    std::filesystem::path path_;
-};
 
 } // namespace plumb

@@ -68,13 +68,19 @@ double gain_of_roller(const BodyDef &roller, const StepSettings &settings, doubl
 // It rolls in a circle; friction may slow it down alone. Slow ones turn fastest, and what holds
 // arms for a step gained twice the energy there.
 TEST(Rolling, ALeaningCoinRollsWithoutGainingEnergy) {
+    const StepSettings settings = settings_for("soft_step");
     for (const double radius : {0.01, 0.1})
-        for (const double froude : {0.4, 0.7, 1.0, 2.0})
+        for (const double froude : {0.4, 0.7, 1.0, 2.0, 4.0}) {
             for (const double lean : {0.15, 0.3, 0.5})
-                EXPECT_LE(gain_of_roller(leaning_roller(radius, 0.2, lean, froude),
-                                         settings_for("soft_step"), 0.5, 0, 6),
-                          0.01)
+                EXPECT_LE(
+                    gain_of_roller(leaning_roller(radius, 0.2, lean, froude), settings, 0.5, 0, 6),
+                    1e-4)
                     << radius << ", " << froude << ", " << lean;
+            EXPECT_LE(
+                gain_of_roller(leaning_roller(radius, 0.2, 0.2, froude), settings, 0.9, 0, 10),
+                1e-4)
+                << radius << ", " << froude;
+        }
 }
 TEST(Rolling, LeaningRollersOfAnySortGainNoEnergy) {
     Random random(5);
@@ -87,7 +93,7 @@ TEST(Rolling, LeaningRollersOfAnySortGainNoEnergy) {
         const double restitution = trial % 3 == 0 ? 0.4 : 0;
         EXPECT_LE(gain_of_roller(leaning_roller(radius, thickness, lean, froude),
                                  settings_for("soft_step"), friction, restitution, 6),
-                  0.01)
+                  1e-4)
             << trial;
     }
 }
@@ -101,16 +107,18 @@ TEST(Rolling, ALeaningCoinGainsNoEnergyAtOtherStepsEither) {
             settings.substeps = substeps;
             settings.max_substeps = 1;
             EXPECT_LE(gain_of_roller(leaning_roller(0.1, 0.2, lean, 0.6), settings, 0.5, 0, 10),
-                      0.04)
+                      1e-4)
                 << dt << ", " << substeps << ", " << lean;
         }
 }
 
-// Thrown ones that spin by up to a radian a step come down on rims where no point of a contact is.
+// Known failing: thrown ones that spin by up to a radian a step come down on rims where no point of
+// a contact is. As measured: 2 of 200 gain more than a twentieth, at worst 0.42.
 TEST(Rolling, ThrownCoinsHardlyGainEnergy) {
     Random random(5);
+    const int tried = trials(200);
     int gained = 0;
-    for (int trial = 0; trial < trials(200); ++trial) {
+    for (int trial = 0; trial < tried; ++trial) {
         const double radius = std::pow(10, random.next_in(-2, 0));
         const double half = random.next_in(0.025, 0.75) * radius;
         const double friction = random.next_in(0.2, 1);
@@ -129,10 +137,11 @@ TEST(Rolling, ThrownCoinsHardlyGainEnergy) {
             least = std::min(least, world.energy());
             gain = std::max(gain, world.energy() - least);
         }
-        EXPECT_LE(gain, 0.5 * scale) << trial;
+        EXPECT_LE(gain, 0.45 * scale) << trial;
         gained += gain > 0.05 * scale ? 1 : 0;
     }
-    EXPECT_LE(gained, 6); // one in fifteen, by up to 1.2, with four points of a rim alone
+    // One in fifteen, by up to 1.2, with four points of a rim alone.
+    EXPECT_LE(gained, 1 + tried / 66);
 }
 
 // A tumbler: its weight hangs below the middle of what it rolls on. Let go at an angle, it swings;
@@ -156,7 +165,7 @@ TEST(Rolling, WhatIsHeavyOnOneSideSwingsNoWider) {
                     world.add_body(with_material(tumbler, friction, 0));
                     const double swing = gravity * low * radius * (1 - std::cos(angle));
                     // The smallest swing by half a radian a step.
-                    EXPECT_LE(gain_of(world, 10), (radius < 0.05 ? 0.1 : 0.03) * swing)
+                    EXPECT_LE(gain_of(world, 10), (radius < 0.05 ? 0.1 : 1e-4) * swing)
                         << radius << ", " << low << ", " << angle << ", " << is_ball;
                 }
 }
@@ -179,7 +188,7 @@ TEST(Rolling, APlankOnABarrelSwingsNoWider) {
                 plank.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
                 world.add_body(with_material(plank, friction, 0));
                 const double swing = gravity * (radius - half) * 0.5 * angle * angle;
-                EXPECT_LE(gain_of(world, 10), 0.1 * swing)
+                EXPECT_LE(gain_of(world, 10), 1e-4 * swing)
                     << radius << ", " << angle << ", " << friction;
             }
 }
@@ -213,7 +222,7 @@ TEST(Rolling, ALinkThatHangsInALinkSwingsNoWider) {
         world.set_motion(ring, world.pose_of(ring.index), Vec3{0},
                          narrow(V{8 * turn, 0, 4 * turn}));
         const double swing = world.measure().kinetic_energy;
-        EXPECT_LE(gain_of(world, 20), 0.1 * swing) << turn;
+        EXPECT_LE(gain_of(world, 20), 1e-4 * swing) << turn;
     }
 }
 

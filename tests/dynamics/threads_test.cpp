@@ -85,7 +85,7 @@ class ThreadsOfAllSorts : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, ThreadsOfAllSorts, testing::ValuesIn(all_methods()), name_of);
 
 TEST_P(ThreadsOfAllSorts, GiveTheSameBits) {
-    World alone = world_of_all_sorts(GetParam(), 96);
+    World alone = world_of_all_sorts(GetParam(), 112);
     std::vector<World> shared(5, alone);
     TaskPool one(1), two(2), seven(7);
     TaskPool two_fine(2, TaskPool::Parts::single), seven_fine(7, TaskPool::Parts::single);
@@ -116,7 +116,7 @@ TEST_P(ThreadsOfAllSorts, GiveTheSameBits) {
         shared.pop_back();
     }
     if (info.contacts) {
-        EXPECT_GT(alone.report().contacts, 50U);
+        EXPECT_GT(alone.report().contacts, 60U);
     }
     if (info.contacts && info.springs) {
         EXPECT_GT(alone.report().particle_contacts, 5U);

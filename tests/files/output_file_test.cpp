@@ -1,4 +1,5 @@
 #include "app/files/output_file.h"
+#include "tests/temporary_folder.h"
 
 #include <cerrno>
 #include <csignal>
@@ -22,12 +23,6 @@ namespace fs = std::filesystem;
 
 class OutputFileTest : public testing::Test {
   protected:
-    OutputFileTest() {
-        std::string name = (fs::temp_directory_path() / "plumb-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~OutputFileTest() override { fs::remove_all(folder_); }
-
     static std::string text_of(const fs::path &path) {
         std::ostringstream text;
         text << std::ifstream(path).rdbuf();
@@ -53,7 +48,8 @@ class OutputFileTest : public testing::Test {
         return {};
     }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
 };
 
 TEST_F(OutputFileTest, AppearsWhole) {

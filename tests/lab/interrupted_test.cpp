@@ -5,6 +5,7 @@
 #include "app/lab/map/stability_map.h"
 #include "app/lab/partial_table.h"
 #include "tests/lab/chart/falling.h"
+#include "tests/temporary_folder.h"
 
 #include <algorithm>
 #include <csignal>
@@ -15,7 +16,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -57,14 +57,12 @@ using Rows = std::map<std::string, int>;
 class Interrupted : public testing::Test {
   protected:
     Interrupted() {
-        std::string name = (fs::temp_directory_path() / "plumb-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
         for (const char *scene : {"a", "b"})
             std::ofstream(folder_ / (std::string(scene) + ".toml")) << fall;
     }
-    ~Interrupted() override { fs::remove_all(folder_); }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
     std::ostringstream out_, err_;
 };
 
@@ -214,7 +212,8 @@ TEST_F(InterruptedMap, KeepsTheRowsOfOtherMethods) {
 }
 
 TEST(PartialTable, KeepsItsOwnProgramsRowsAlone) {
-    const fs::path place = fs::path(testing::TempDir()) / ("partial-" + std::to_string(getpid()));
+    const TemporaryFolder folder;
+    const fs::path place = folder.path() / "partial";
     const std::string own = Fingerprint::of_program() + "-1", head = "key,\"a,b\",made_by\n";
     std::ofstream(place) << head << "1,\"x\"\"y\"," << own << "\n2,z," << own << "\n3,z,other-1\n";
     const PartialTable table(place);

@@ -4,27 +4,20 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
-#include <string>
-#include <unistd.h>
 
 #include <gtest/gtest.h>
 
 #include "engine/core/check.h"
 #include "engine/core/random.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
 
 class PngFile : public testing::Test {
   protected:
-    std::filesystem::path dir = std::filesystem::temp_directory_path() /
-                                ("plumb_png_" + std::to_string(::getpid()) + "_" +
-                                 testing::UnitTest::GetInstance()->current_test_info()->name());
-    void SetUp() override {
-        std::filesystem::remove_all(dir);
-        std::filesystem::create_directory(dir);
-    }
-    void TearDown() override { std::filesystem::remove_all(dir); }
+    TemporaryFolder folder;
+    std::filesystem::path dir = folder.path();
 };
 
 Image noise(int width, int height) {

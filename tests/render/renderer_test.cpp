@@ -9,7 +9,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <unistd.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -17,6 +16,7 @@
 #include "app/render/palette.h"
 #include "engine/core/check.h"
 #include "tests/render/off_screen.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
@@ -557,9 +557,8 @@ TEST_F(OffScreen, AnImpossibleCameraOrLightIsRefused) {
 }
 
 TEST_F(OffScreen, ShaderErrorsNameFileAndLine) {
-    const std::filesystem::path dir = std::filesystem::temp_directory_path() /
-                                      ("plumb_broken_shaders_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(dir);
+    const TemporaryFolder folder;
+    const std::filesystem::path dir = folder.path() / "broken_shaders";
     const auto message = [&] {
         try {
             Renderer broken(dir);
@@ -568,7 +567,7 @@ TEST_F(OffScreen, ShaderErrorsNameFileAndLine) {
         }
         return std::string("nothing thrown");
     };
-    EXPECT_NE(message().find("plumb_broken_shaders"), std::string::npos);
+    EXPECT_NE(message().find("broken_shaders"), std::string::npos);
     std::filesystem::copy(shader_dir(), dir);
     int lines = 0;
     {
@@ -581,7 +580,6 @@ TEST_F(OffScreen, ShaderErrorsNameFileAndLine) {
         << message();
     std::filesystem::remove(dir / "dither.glsl");
     EXPECT_NE(message().find("dither.glsl: cannot read"), std::string::npos) << message();
-    std::filesystem::remove_all(dir);
 }
 
 } // namespace

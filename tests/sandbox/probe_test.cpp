@@ -2,12 +2,11 @@
 #include "app/sandbox/draw/probe_draw.h"
 #include "app/sandbox/sandbox.h"
 #include "engine/scene/scene_file.h"
+#include "tests/temporary_folder.h"
 
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <unistd.h>
 
 #include <sys/resource.h>
 
@@ -94,21 +93,19 @@ TEST_F(ProbeTest, BesideTheDiscsTheCameraTurns) {
 
 // What is expected holds where the scene has the probe, and nowhere else.
 TEST_F(ProbeTest, ASavedSceneHasTheMovedProbeAndExpectsNothingOfIt) {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) /
-                                       ("moved_" + std::to_string(::getpid()) + ".toml");
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "moved.toml";
     sandbox.session().move_probe(0, 0, {0.25, 0, 0});
     ASSERT_TRUE(sandbox.session().save_scene(file));
     const SceneFileResult again = load_scene(file);
     ASSERT_TRUE(again.ok());
     EXPECT_EQ(again.scene.probes.front().shapes.front().position, glm::dvec3(0.25, 0, 0));
     EXPECT_TRUE(again.scene.probes.front().expects.empty());
-    std::filesystem::remove(file);
 }
 
 TEST_F(ProbeTest, ASavedSceneTakesTheFilesOfItsMeshesAlong) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
-                                         ("plumb_saved_mesh_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder);
+    const TemporaryFolder temporary;
+    const std::filesystem::path folder = temporary.path() / "new";
     const std::filesystem::path gears = PLUMB_SOURCE_DIR "/scenes/geometry/mesh_file.toml";
     ASSERT_TRUE(sandbox.session().open(gears));
     ASSERT_TRUE(sandbox.session().save_scene(folder / "saved.toml"));
@@ -118,7 +115,6 @@ TEST_F(ProbeTest, ASavedSceneTakesTheFilesOfItsMeshesAlong) {
     std::ofstream(folder / "gear.obj") << "v 0 0 0\nf 1 1 1\n";
     EXPECT_FALSE(sandbox.session().save_scene(folder / "third.toml"));
     EXPECT_FALSE(std::filesystem::exists(folder / "third.toml"));
-    std::filesystem::remove_all(folder);
 }
 
 // A disk that is full after so many bytes, or as good as one.
@@ -142,9 +138,8 @@ class FullDisk {
 };
 
 TEST_F(ProbeTest, OnAFullDiskNoPartOfASavedSceneIsLeft) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
-                                         ("plumb_full_disk_" + std::to_string(::getpid()));
-    std::filesystem::remove_all(folder);
+    const TemporaryFolder temporary;
+    const std::filesystem::path folder = temporary.path() / "new";
     const auto fails = [&] {
         const FullDisk full(100);
         EXPECT_FALSE(sandbox.session().save_scene(folder / "saved.toml"));
@@ -157,7 +152,6 @@ TEST_F(ProbeTest, OnAFullDiskNoPartOfASavedSceneIsLeft) {
     fails(); // its mesh
     EXPECT_TRUE(sandbox.session().save_scene(folder / "saved.toml"));
     EXPECT_TRUE(load_scene(folder / "saved.toml").ok());
-    std::filesystem::remove_all(folder);
 }
 
 TEST_F(ProbeTest, ProbesAreDrawnOverALevelFloorUnlessTheyAreFlat) {

@@ -5,6 +5,7 @@
 
 #include "engine/scene/scene_file.h"
 #include "engine/scene/simulation.h"
+#include "tests/temporary_folder.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +14,6 @@
 #include <fstream>
 #include <set>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -333,9 +333,8 @@ shapes = [{ shape = "plane", position = [0, 0, 0] }, { shape = "sphere", radius 
 }
 
 TEST(ProbeFile, AMeshFileThatCannotBeUsedIsAnErrorInTheSceneAndInTheFile) {
-    const fs::path folder =
-        fs::path(testing::TempDir()) / ("plumb_probe_mesh_" + std::to_string(::getpid()));
-    fs::create_directories(folder);
+    const TemporaryFolder temporary;
+    const fs::path &folder = temporary.path();
     std::ofstream(folder / "bad.obj") << "v 0 0 0\nv 1 0 0\nf 1 2 9\n";
     const auto said_of = [&](const std::string &mesh) {
         const std::string text = "[[probe]]\nname = \"a\"\nask = \"closest\"\npoint = [0, 0, 0]\n"

@@ -5,14 +5,13 @@
 #include "engine/scene/scene_limits.h"
 #include "engine/scene/soft_parts.h"
 #include "tests/scene/scene_file_errors.h"
+#include "tests/temporary_folder.h"
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <sstream>
-#include <string>
-#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -298,18 +297,16 @@ TEST(ParticleFile, TooManyParticles) {
 class ClothMesh : public testing::Test {
   protected:
     ClothMesh() {
-        std::filesystem::create_directories(folder);
         write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n");
         write("loose.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\n");
         write("flat.obj", "v 0 0 0\nv 0 0 0\nv 1 0 1\nf 1 2 3\n");
     }
-    ~ClothMesh() override { std::filesystem::remove_all(folder); }
     void write(const char *name, const char *text) const { std::ofstream(folder / name) << text; }
     SceneFileResult read(const std::string &more) const {
         return parse_scene("[[cloth]]\nname = \"c\"\n" + more, (folder / "s.toml").string());
     }
-    std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
-                                   ("plumb_cloth_mesh_test_" + std::to_string(::getpid()));
+    TemporaryFolder temporary;
+    std::filesystem::path folder = temporary.path();
 };
 
 TEST_F(ClothMesh, IsMadeOfVerticesAndEdges) {

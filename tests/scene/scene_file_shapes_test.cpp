@@ -3,13 +3,13 @@
 #include "engine/scene/scene_file.h"
 
 #include "engine/scene/shape_kinds.h"
+#include "tests/temporary_folder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -201,10 +201,8 @@ TEST(SceneFileShapes, MistakesAreToldWhereTheyAre) {
 }
 
 TEST(SceneFileShapes, APointsFileIsScaledAndNamedAgain) {
-    namespace fs = std::filesystem;
-    const fs::path folder =
-        fs::path(testing::TempDir()) / ("plumb_shape_files_" + std::to_string(::getpid()));
-    fs::create_directories(folder);
+    const TemporaryFolder temporary;
+    const std::filesystem::path &folder = temporary.path();
     std::ofstream(folder / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\n"
                                        "f 1 4 3\nf 2 3 4\n";
     const std::string text = body("shape = \"hull\"\nfile = \"t.obj\"\nscale = 2") +
@@ -219,7 +217,6 @@ TEST(SceneFileShapes, APointsFileIsScaledAndNamedAgain) {
     const std::string written = write_scene(read.scene);
     EXPECT_TRUE(has(written, "shape = \"hull\"\nfile = \"t.obj\"\nscale = 2\n")) << written;
     EXPECT_FALSE(has(written, "points")) << written;
-    fs::remove_all(folder);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // What the keys of a scene file come out as.
 #include "engine/scene/scene_file.h"
+#include "tests/temporary_folder.h"
 
 #include <cmath>
 #include <cstdio>
@@ -7,7 +8,6 @@
 #include <fstream>
 #include <numbers>
 #include <string>
-#include <unistd.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -282,25 +282,18 @@ TEST(SceneFileValues, LoadSaysWhenItCannotRead) {
 }
 
 TEST(SceneFileValues, LoadReadsAFile) {
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        ("plumb_scene_file_values_" + std::to_string(::getpid()) + ".toml");
-    std::ofstream(path) << ball;
-    const SceneFileResult result = load_scene(path);
+    const TemporaryFolder folder;
+    const SceneFileResult result = load_scene(folder.write("plumb_scene_file_values.toml", ball));
     EXPECT_TRUE(result.ok());
-    EXPECT_EQ(result.scene.name, path.stem().string());
+    EXPECT_EQ(result.scene.name, "plumb_scene_file_values");
     EXPECT_EQ(result.scene.bodies.size(), 1U);
-    std::filesystem::remove(path);
 }
 
 TEST(SceneFileValues, LoadRefusesAFileWithNothingToRun) {
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        ("plumb_scene_file_nothing_" + std::to_string(::getpid()) + ".toml");
+    const TemporaryFolder folder;
     for (const std::string text : {"", "# nothing\n", "title = \"T\"\n[world]\ndt = 0.01\n",
                                    "[[material]]\nname = \"wood\"\n"}) {
-        std::ofstream(path) << text;
-        const SceneFileResult result = load_scene(path);
+        const SceneFileResult result = load_scene(folder.write("nothing.toml", text));
         EXPECT_FALSE(result.ok());
         ASSERT_EQ(result.messages.size(), 1U) << text;
         EXPECT_EQ(
@@ -309,7 +302,6 @@ TEST(SceneFileValues, LoadRefusesAFileWithNothingToRun) {
             "probe; add a [[body]], a [[particle]], a [[cloth]] or a [[probe]]");
         EXPECT_TRUE(parse_scene(text, "s.toml").ok()); // as a text it is a scene
     }
-    std::filesystem::remove(path);
 }
 
 } // namespace

@@ -1,10 +1,9 @@
 // What a scene may ask for, and what is said of one that asks for more.
 #include "tests/scene/scene_file_errors.h"
+#include "tests/temporary_folder.h"
 
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -183,16 +182,14 @@ TEST(SceneLimits, OfManyMistakesTheFirstInTheFileAreListed) {
 }
 
 TEST(SceneLimits, AFileHasALargestSize) {
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        ("plumb_large_scene_" + std::to_string(::getpid()) + ".toml");
-    std::ofstream(path)
-        << "title = \"large\"\n[[body]]\nname = \"a\"\nshape = \"sphere\"\nradius = 1\n#";
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder.write(
+        "large.toml",
+        "title = \"large\"\n[[body]]\nname = \"a\"\nshape = \"sphere\"\nradius = 1\n#");
     std::filesystem::resize_file(path, max_scene_file_bytes); // zeros are no TOML, but are read
     EXPECT_NE(load_scene(path).messages.at(0).line, 0U);
     std::filesystem::resize_file(path, max_scene_file_bytes + 1);
     const SceneFileResult result = load_scene(path);
-    std::filesystem::remove(path);
     ASSERT_EQ(result.messages.size(), 1U);
     EXPECT_EQ(
         format_message("s.toml", result.messages[0]),

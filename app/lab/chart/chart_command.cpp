@@ -124,17 +124,15 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
         err << "going on from " << earlier.place().string() << '\n';
     const SceneChart chart = chart_scene(scene, options);
     line.clear();
-    if (chart.runs.empty() && chart.planned == 0) {
-        print(out, chart);
-        return code_of(chart, err); // an earlier chart stays
-    }
+    ExitCode code = code_of(chart, err);
+    if (code == ExitCode::bad_input)
+        return code; // an earlier chart stays
     std::ostringstream rows;
     write_chart_csv(rows, chart, fingerprint);
     const std::string others = earlier.rows_not_in(rows.str(), chart_key_columns(), "fingerprint");
     csv.stream() << rows.str();
     print(out, chart);
     out << std::flush;
-    ExitCode code = code_of(chart, err);
     if (chart.interrupted) {
         csv.stream() << others;
         err << "interrupted; rows so far: " << csv.keep_partial().string() << '\n';

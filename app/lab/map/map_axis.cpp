@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace plumb {
@@ -119,18 +119,12 @@ void set_list(std::string_view whole, std::string_view list, MapAxis &axis) {
         refuse(whole, "an axis has 2 to " + std::to_string(most_values) + " values");
 }
 
-std::string with_digits(double value, int digits) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    return text;
-}
-
 // As few as tell its values apart, three at least; up to five where that says what they are.
 int digits_of(const MapAxis &axis) {
     constexpr int least = 3, exact = 5, most = 9;
     constexpr double rounding = 1e-9;
     const auto is_said = [&](double value, int digits) {
-        return std::abs(std::stod(with_digits(value, digits)) - value) <=
+        return std::abs(std::strtod(with_digits(value, digits).c_str(), nullptr) - value) <=
                rounding * std::abs(value);
     };
     for (int digits = least; digits <= exact; ++digits)

@@ -28,10 +28,14 @@ std::string substeps_text(const ResolvedRun &run) {
     return std::to_string(s.substeps) + (chosen ? ".." + std::to_string(s.max_substeps) : "");
 }
 
-std::string three_digits(double value) {
+std::string with_digits(double value, int digits) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
     return text;
+}
+
+std::string three_digits(double value) {
+    return with_digits(value, 3);
 }
 
 std::string with_unit(double value, std::string_view unit) {

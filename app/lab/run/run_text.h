@@ -15,7 +15,8 @@ namespace plumb {
 // "4", or "4..64" where islands may take more of their own.
 [[nodiscard]] std::string substeps_text(const ResolvedRun &run);
 
-[[nodiscard]] std::string three_digits(double value); // "0.123", "1.5e+06"
+[[nodiscard]] std::string with_digits(double value, int digits); // significant ones, at most 17
+[[nodiscard]] std::string three_digits(double value);            // "0.123", "1.5e+06"
 
 // Six significant digits and the unit; "1" as a unit is left out.
 [[nodiscard]] std::string with_unit(double value, std::string_view unit);

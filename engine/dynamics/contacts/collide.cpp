@@ -183,12 +183,23 @@ bool World::is_crowded(std::uint32_t body) const {
     return pace.substeps == settings_.substeps && pace.wanted > pace.substeps;
 }
 
+Real Contact::way_round(bool of_a, const Vec3 &turn) const {
+    Real most = Real(0);
+    for (int k = 0; k < manifold.count; ++k) {
+        const ContactAnchor &anchor = anchors[static_cast<std::size_t>(k)];
+        const Vec3 &arm = of_a ? anchor.arm_a : anchor.arm_b;
+        const Vec3 way = glm::cross(turn, of_a ? anchor.core_a : anchor.core_b);
+        if (way != Vec3{Real(0)})
+            most = std::max(most, glm::dot(way, way) / glm::dot(arm, arm));
+    }
+    return std::sqrt(most);
+}
+
 // A coin that leans, a ball with a heavy side, a plank on a barrel: with arms and normal held for
 // the step they would be driven apart along the tangents, and swing ever wider. In a crowd that
 // costs more than it is worth.
 Rolling World::rolling_of(const Contact &contact) const {
-    constexpr Real far = Real(3e-4); // of an arm, in a step
-    constexpr Real much = Real(0.1);
+    constexpr Real much = Real(0.1); // of an arm, in a step: too far to say beforehand
     const bool is_a = contact.rounding_a > Real(0);
     const bool is_b = contact.rounding_b > Real(0);
     const auto is_alone = [&](std::uint32_t body) {
@@ -213,21 +224,14 @@ Rolling World::rolling_of(const Contact &contact) const {
     const std::uint32_t round = is_a ? contact.key.a : contact.key.b;
     const std::uint32_t flat = is_a ? contact.key.b : contact.key.a;
     const auto dt = static_cast<Real>(settings_.dt);
-    if (is_alone(flat) && glm::length(state_.motions[flat].angular_velocity) * dt > far)
+    if (is_alone(flat) && glm::length(state_.motions[flat].angular_velocity) * dt > rolling_far)
         return Rolling::on_face;
     const Motion &motion = state_.motions[round];
     if (!is_alone(round) || otherwise == Rolling::straight)
         return otherwise;
     const Vec3 turn = dt * (glm::conjugate(motion.rotation) * motion.angular_velocity);
-    const auto anchors =
-        std::span(contact.anchors).first(static_cast<std::size_t>(contact.manifold.count));
-    const bool is_on_face = std::ranges::any_of(anchors, [&](const ContactAnchor &anchor) {
-        const Vec3 &arm = is_a ? anchor.arm_a : anchor.arm_b;
-        const Vec3 way = glm::cross(turn, is_a ? anchor.core_a : anchor.core_b);
-        const Real squared = glm::dot(way, way) / glm::dot(arm, arm);
-        return squared > far * far && squared < much * much;
-    });
-    return is_on_face ? Rolling::on_face : otherwise;
+    const Real way = contact.way_round(is_a, turn);
+    return way > rolling_far && way < much ? Rolling::on_face : otherwise;
 }
 
 Real World::separation_now(const Contact &contact, std::size_t k) const {
@@ -255,6 +259,9 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     }
     if (!contact.is_turning)
         contact.rolling = rolling_of(contact);
+    contact.turns_with_b = contact.is_turning
+                               ? model_->bodies[contact.key.a].kind == BodyKind::dynamic
+                               : contact.rounding_a > Real(0);
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         if (found.moment != Moment::start || contact.turns())
@@ -263,6 +270,22 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     if (!contact.is_new)
         carry_over(std::span(state_.points).subspan(before->first_point, before->point_count),
                    contact);
+}
+
+// A step that is tried again begins as it began before: with what the last step left.
+void World::recall_impulses() {
+    Scratch &s = scratch_;
+    constexpr std::size_t contacts_a_part = 256;
+    for_parts(s.tasks, s.contacts.size(), contacts_a_part, [&](std::size_t begin, std::size_t end) {
+        for (Contact &contact : std::span(s.contacts).subspan(begin, end - begin)) {
+            contact.impulses = {};
+            if (contact.is_new)
+                continue;
+            const ContactMemory &memory = *find_memory(state_, contact.key);
+            carry_over(std::span(state_.points).subspan(memory.first_point, memory.point_count),
+                       contact);
+        }
+    });
 }
 
 // Whether a body's loads ask for more substeps than its island has: its contacts are softer then
@@ -338,7 +361,8 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
         to.position =
             motion_a.position + core_a + (contact.rounding_a + Real(0.5) * to.separation) * normal;
     }
-    if (rolling_of(contact) != Rolling::on_face)
+    contact.rolling = rolling_of(contact);
+    if (contact.rolling != Rolling::on_face)
         return true;
     out.pop_back();
     return false;

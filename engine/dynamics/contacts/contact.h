@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -59,6 +60,10 @@ enum class Moment { start, touch };
 // what is not round; or so that only the arms change, once the step shows that they do.
 enum class Rolling : std::uint8_t { straight, on_face, round };
 
+// Of an arm's length: how far the core of what rolls, or the face it rolls on, goes around in a
+// step before that counts.
+inline constexpr Real rolling_far = Real(3e-4);
+
 // Two colliders that touch, or are about to, as found in this step or kept from an earlier one.
 // Separations are those of the present poses.
 struct Contact {
@@ -72,6 +77,7 @@ struct Contact {
     Moment moment = Moment::start; // of the step, whose poses its normal and anchors are of
     bool is_turning = false;       // goes through the substeps with a body that the scene turns
     Rolling rolling = Rolling::straight;
+    bool turns_with_b = false; // if it turns; else with a
     Manifold manifold;
     ContactOrigin origin;
     // Radius of a surface that rolls: of a ball or capsule, of a cylinder on its side (m).
@@ -83,6 +89,15 @@ struct Contact {
     std::array<Vec3, 4> impulses{};
 
     bool turns() const { return is_turning || rolling == Rolling::on_face; }
+    // How far its normal has turned since it was found, where the bodies are so.
+    Quat turn(const Quat &rotation_a, const Quat &rotation_b) const {
+        return turns_with_b ? rotation_b * glm::conjugate(origin.rotation_b)
+                            : rotation_a * glm::conjugate(origin.rotation_a);
+    }
+
+    // How far a turn of one body (in its frame) moves a point's core around its middle, at most, in
+    // lengths of its arm.
+    Real way_round(bool of_a, const Vec3 &turn) const;
 };
 
 // What most ask of a contact, in a small place: contacts are large, and there are many.

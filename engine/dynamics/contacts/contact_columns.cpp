@@ -153,9 +153,7 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
     const Motion b = ahead(context.bodies[contact.key.b], t);
     const bool a_moves = is_dynamic(context, contact.key.a);
     const bool b_moves = is_dynamic(context, contact.key.b);
-    const bool with_b = contact.is_turning ? a_moves : contact.rounding_a > Real(0);
-    const Quat turn = with_b ? b.rotation * glm::conjugate(contact.origin.rotation_b)
-                             : a.rotation * glm::conjugate(contact.origin.rotation_a);
+    const Quat turn = contact.turn(a.rotation, b.rotation);
     const Vec3 n = turn * contact.manifold.normal;
     set(block.normal, lane, n);
     set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
@@ -167,7 +165,8 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
         const Vec3 half = Real(0.5) * glm::dot((b.position - a.position) + (on_b - on_a), n) * n;
         Vec3 arm_a = on_a + (Real(1) + side) * half;
         Vec3 arm_b = on_b - (Real(1) - side) * half;
-        if (contact.rolling == Rolling::on_face && with_b) // what rolls takes the point along
+        if (contact.rolling == Rolling::on_face &&
+            contact.turns_with_b) // what rolls takes the point along
             arm_b = arm_a + (a.position - b.position);
         else if (contact.rolling == Rolling::on_face)
             arm_a = arm_b + (b.position - a.position);
@@ -199,20 +198,6 @@ Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane, Real kept)
     return impulse;
 }
 
-// Impulses along a normal and tangents that turned with the contact, as those of the manifold that
-// the next step will find there.
-void express_anew(Contact &contact, const Vec3 &normal, const Vec3 &t1) {
-    const Vec3 t2 = glm::cross(normal, t1);
-    const TangentBasis next = tangent_basis(normal);
-    contact.manifold.normal = normal;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
-        Vec3 &impulse = contact.impulses[k];
-        const Vec3 friction = impulse.y * t1 + impulse.z * t2;
-        impulse.y = glm::dot(friction, next.t1);
-        impulse.z = glm::dot(friction, next.t2);
-    }
-}
-
 bool any_has_turned_far(const StepContext &context) {
     return std::ranges::any_of(context.moving(), [&](std::uint32_t body) {
         return has_turned_far(context.bodies[body].turned);
@@ -239,9 +224,6 @@ bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces
     return squared > std::min(far * far, share * least / most);
 }
 
-// Of an arm's length: how far the core of what rolls may go around the middle within the step.
-constexpr Real rolling = Real(5e-4);
-
 // What rolls, and whose core is not its middle: a coin that leans, a ball with a heavy side. That
 // goes around the middle, and the arms with it. Held for the step, they would drive it along the
 // tangent, outward, and it would gain energy.
@@ -251,14 +233,7 @@ bool goes_round(const StepContext &context, const Contact &contact, bool of_a) {
     const SolverBody &moves = context.bodies[body];
     if (contact.rolling != Rolling::round || !(rounding > Real(0)) || !is_dynamic(context, body))
         return false;
-    const auto anchors =
-        std::span(contact.anchors).first(static_cast<std::size_t>(contact.manifold.count));
-    return std::ranges::any_of(anchors, [&](const ContactAnchor &anchor) {
-        const Vec3 &arm = of_a ? anchor.arm_a : anchor.arm_b;
-        const Vec3 way = glm::cross(glm::conjugate(moves.rotation) * moves.turned,
-                                    of_a ? anchor.core_a : anchor.core_b);
-        return glm::dot(way, way) > rolling * rolling * glm::dot(arm, arm);
-    });
+    return contact.way_round(of_a, glm::conjugate(moves.rotation) * moves.turned) > rolling_far;
 }
 bool has_other_arms(const StepContext &context, const Contact &contact, bool of_a) {
     return (context.model.colliders[of_a ? contact.collider_a : contact.collider_b].extent >
@@ -467,8 +442,6 @@ void store_contact_columns(StepContext &context) {
                 const Real kept = remembered_share(block, lane);
                 for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
                     contact.impulses[k] = next_impulse(block.points[k], lane, kept);
-                if (contact.turns())
-                    express_anew(contact, get(block.normal, lane), get(block.t1, lane));
             }
     });
 }

@@ -41,9 +41,9 @@ struct ContactBlock {
     IndexColumn body_b;
     std::uint16_t writes_a = 0; // bit k: lane k
     std::uint16_t writes_b = 0;
-    std::uint16_t turning = 0; // likewise: Contact::turns
-    std::uint16_t round = 0;   // of the others: one body is round, and not about its middle
-    std::uint16_t rearmed = 0; // whose bodies have other arms by now
+    std::uint16_t turning = 0;            // likewise: Contact::turns
+    std::uint16_t round = 0;              // Rolling::round
+    std::uint16_t rearmed = 0;            // whose bodies have other arms by now
     std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
     std::size_t used = 0;                 // lanes
     int points_used = 0;

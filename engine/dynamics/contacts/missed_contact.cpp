@@ -96,11 +96,11 @@ Manifold passed_points(const Passage &passage, const Triangle &triangle, Sides s
 } // namespace
 
 // Whether one of the two has a rim, on which four points leave arcs between them.
-bool World::is_round(const Contact &contact) const {
-    const auto has_rim = [&](std::uint32_t collider) {
-        return std::holds_alternative<Cylinder>(model_->colliders[collider].shape);
-    };
-    return has_rim(contact.collider_a) || has_rim(contact.collider_b);
+bool World::has_rim(const Contact &contact) const {
+    return std::ranges::any_of(
+        std::array{contact.collider_a, contact.collider_b}, [&](std::uint32_t collider) {
+            return std::holds_alternative<Cylinder>(model_->colliders[collider].shape);
+        });
 }
 
 // Adds those points, found with the bodies as they are after the try, that the contact has no other
@@ -109,7 +109,7 @@ bool World::is_round(const Contact &contact) const {
 bool World::add_missed(const Manifold &now, Real deep, Contact &contact) const {
     const SolverBody &at_a = scratch_.bodies[contact.key.a];
     const SolverBody &at_b = scratch_.bodies[contact.key.b];
-    const bool may_replace = contact.key.triangle != ContactKey::no_triangle || is_round(contact);
+    const bool may_replace = contact.key.triangle != ContactKey::no_triangle || has_rim(contact);
     const auto separation_then = [&](const ContactAnchor &anchor) {
         return separation_along(contact.manifold.normal, anchor.core_a, anchor.core_b,
                                 contact.rounding_a + contact.rounding_b, at_a, at_b);
@@ -154,7 +154,7 @@ bool World::find_missed_points(Contact &contact) const {
     const SolverBody &at_a = scratch_.bodies[contact.key.a];
     const SolverBody &at_b = scratch_.bodies[contact.key.b];
     const Real turning = glm::length(at_a.turned) * a.extent + glm::length(at_b.turned) * b.extent;
-    if (!(turning > deep) || (contact.manifold.count == 4 && !is_round(contact)))
+    if (!(turning > deep) || (contact.manifold.count == 4 && !has_rim(contact)))
         return false;
     Manifold now =
         plumb::collide(placed(a.shape, mass_pose(at_a)), placed(b.shape, mass_pose(at_b)), Real(0),

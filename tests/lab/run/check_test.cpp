@@ -4,6 +4,7 @@
 #include "app/lab/chart/chart.h"
 #include "app/lab/run/measure.h"
 #include "tests/lab/csv_reader.h"
+#include "tests/temporary_folder.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,7 +12,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -38,20 +38,13 @@ tolerance = )";
 
 class LabCommands : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("plumb_lab_" + std::to_string(getpid()) + "_" +
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     fs::path file(const std::string &name, const std::string &text) {
         std::ofstream(folder_ / name) << text;
         return folder_ / name;
     }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
     std::ostringstream out_, err_;
 };
 

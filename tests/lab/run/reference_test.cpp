@@ -3,6 +3,7 @@
 
 #include "engine/scene/expect.h"
 #include "engine/scene/scene_file.h"
+#include "tests/temporary_folder.h"
 
 #include <array>
 #include <cmath>
@@ -12,7 +13,6 @@
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -60,12 +60,6 @@ equals = )" +
 
 class Reference : public testing::Test {
   protected:
-    Reference() {
-        std::string name = (fs::temp_directory_path() / "plumb-test-XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~Reference() override { fs::remove_all(folder_); }
-
     ExitCode command(bool write) {
         out_.str("");
         ReferenceCommand command;
@@ -80,7 +74,8 @@ class Reference : public testing::Test {
         return text.str();
     }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
     std::ostringstream out_, err_;
 };
 
