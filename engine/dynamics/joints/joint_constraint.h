@@ -29,6 +29,10 @@ struct JointConstraint {
     Mat3 mass{Real(0)};       // inverse of K; one row: [0][0] alone
     Vec3 impulse{Real(0)};    // accumulated in this substep, on b (N s, N m s)
     Vec3 remembered{Real(0)}; // of the substep before
+    // Of push_groups: the part of `impulse` that takes drift back, and no more; and the speed at
+    // which rows are to close (m/s, rad/s).
+    Vec3 push{Real(0)};
+    Vec3 closing{Real(0)};
     // How much faster its errors grow in the mean of the substep than at its start, because the
     // bodies turn (m/s, rad/s): of foresee_turns alone.
     Vec3 turning{Real(0)};
@@ -48,6 +52,7 @@ enum class Springs { skip, at_the_end, midpoint };
 struct JointPass {
     Softness softness; // of rigid rows: how their drift is taken back; bias_rate 0 leaves it alone
     Real held_share = Real(0); // of their drift, that rows solved together take back in a substep
+    Real push_share = Real(0); // of the part of that which loads do not account for (push_groups)
     Real push_velocity = std::numeric_limits<Real>::infinity(); // m/s, the fastest it is taken back
     Real h = Real(0);                                           // s, the substep
     // Whether rows are to hold at the poses that the velocities lead to after h, as in SHAKE

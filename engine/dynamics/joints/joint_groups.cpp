@@ -11,6 +11,9 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
+// Of the arms' lengths: how far ends may be from each other.
+constexpr Real solved_to = Real(1e-6);
+
 // The right-hand sides of a group's equations, its own among those of all.
 std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
     return std::span(context.scratch.sides).subspan(group.first, group.last - group.first);
@@ -22,6 +25,7 @@ void set_bearing(JointConstraint &joint, BearingLimit bearing) {
     joint.rows.count = 2;
     joint.rows.axes[2] = Vec3{Real(0)};
     joint.rows.error.z = joint.impulse.z = joint.remembered.z = Real(0);
+    joint.push.z = joint.closing.z = Real(0);
     if (bearing != BearingLimit::none)
         add_limit_row(joint);
     for (JointConstraint &limit : limits_of(joint)) {
@@ -97,7 +101,6 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
     const std::span<Vec3> sides = sides_of(context, group);
     // Far more than it takes when a body turns a radian within the substep.
     constexpr int most_steps = 8;
-    constexpr Real tolerance = Real(1e-6); // of the arms' lengths
     for (int step = 0; step < (pass.at_the_end ? most_steps : 1); ++step) {
         bool holds = step > 0;
         for (std::uint32_t place = group.first; place < group.last; ++place) {
@@ -105,10 +108,10 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
             Vec3 side =
                 row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), pass);
             if (pass.held_share > Real(0))
-                side += held_bias(joint, pass) + system.softening(place) * joint.impulse;
+                side += joint.closing + system.softening(place) * joint.impulse;
             sides[place - group.first] = -side;
             if (holds) {
-                const Real most = tolerance * size_of(joint.rows) / pass.h;
+                const Real most = solved_to * size_of(joint.rows) / pass.h;
                 holds = glm::dot(side, side) <= most * most;
             }
         }
@@ -256,6 +259,76 @@ bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass)
     return true;
 }
 
+namespace {
+
+// Where bodies turn far in a substep, their loads point elsewhere than those that they have given
+// way to: that is no drift. 1 where they do not.
+Real unturned_share(StepContext &context, const JointConstraint &joint, Real h) {
+    constexpr Real little = Real(0.01); // rad
+    const Real turn = h * std::max(glm::length(context.body(joint.a).angular_velocity),
+                                   glm::length(context.body(joint.b).angular_velocity));
+    return std::clamp(Real(2) - turn / little, Real(0), Real(1));
+}
+
+void push(StepContext &context, const JointGroup &group, const JointPass &pass) {
+    const JointSystem &system = *context.scratch.joint_system;
+    const std::span<Vec3> sides = sides_of(context, group);
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        const Vec3 given_way = system.softening(place) * joint.impulse;
+        const Vec3 bias = held_bias(joint, pass);
+        const Real share = unturned_share(context, joint, pass.h);
+        Vec3 side = share * pass.push_share * (bias + given_way);
+        joint.closing = side - share * given_way + (Real(1) - share) * bias;
+        if (joint.bearing != BearingLimit::none) { // may be on the way to it
+            joint.closing.z = bias.z;
+            side.z = Real(0);
+        }
+        sides[place - group.first] = -side;
+        const Real most = solved_to * size_of(joint.rows) / pass.h;
+        any = any || glm::dot(side, side) > most * most;
+    }
+    if (!any)
+        return;
+    system.solve(group, sides);
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
+        joint.push = sides[place - group.first];
+        if (joint.bearing != BearingLimit::none)
+            joint.push.z = Real(0);
+        joint.impulse += joint.push;
+        apply(context, joint, joint.push);
+    }
+}
+
+} // namespace
+
+void push_groups(StepContext &context, const JointPass &pass) {
+    const std::span<JointGroup> groups = context.scratch.joint_system->groups();
+    for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
+        for (const JointGroup &group : groups.subspan(begin, end - begin))
+            if (group.is_held)
+                push(context, group, pass);
+    });
+}
+
+void take_back_pushes(StepContext &context) {
+    const JointSystem &system = *context.scratch.joint_system;
+    const std::span<JointGroup> groups = context.scratch.joint_system->groups();
+    for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
+        for (const JointGroup &group : groups.subspan(begin, end - begin))
+            for (std::uint32_t place = group.first; place < group.last; ++place) {
+                JointConstraint &joint = context.scratch.joints[system.block(place)];
+                if (joint.push == Vec3{Real(0)})
+                    continue;
+                joint.impulse -= joint.push;
+                apply(context, joint, -joint.push);
+                joint.push = Vec3{Real(0)};
+            }
+    });
+}
+
 void hold_touched_groups(StepContext &context, const JointPass &pass) {
     const std::span<JointGroup> groups = context.scratch.joint_system->groups();
     for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
@@ -282,7 +355,7 @@ void let_go(StepContext &context, JointGroup &group) {
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
         apply(context, joint, -joint.impulse);
-        joint.impulse = joint.remembered = Vec3{Real(0)};
+        joint.impulse = joint.remembered = joint.push = Vec3{Real(0)};
         joint.is_held = false;
         if (joint.bearing != BearingLimit::none)
             release_limit(context, joint);

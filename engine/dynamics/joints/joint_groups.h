@@ -30,6 +30,13 @@ void factor_again(StepContext &context, JointGroup &group);
 
 // All rows of a group at once, without limits that would pull. Returns whether their ends meet.
 bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass);
+// Joints that are solved together give way a little (held_compliance), as springs that are the
+// stiffer the finer the substep is: what they hold would come back as speed, many times as much
+// where an island takes more substeps than before, and a bridge that is pulled straight would throw
+// up what falls on it. So drift that the loads do not account for moves bodies in the holding
+// pass, and is taken out of their velocities when they have moved.
+void push_groups(StepContext &context, const JointPass &pass);
+void take_back_pushes(StepContext &context);
 // The groups that are held once more, where contacts were solved after them.
 void hold_touched_groups(StepContext &context, const JointPass &pass);
 // After limits were released: what the others bore with them would not be borne again in the rest

@@ -81,10 +81,15 @@ void advance_soft_step(StepContext &context) {
     contact_bias.struck_speed = relax_bias.struck_speed =
         glm::length(gravity) * static_cast<Real>(settings.dt);
 
+    // Finer substeps than four push no faster than those: what lies on the joints is pushed, too,
+    // and does not give all of it back.
+    const Real push_share = std::min(Real(1), Real(4) * h / static_cast<Real>(settings.dt));
+
     // First for the poses at the substep's end, with half of the forces and springs by the first
     // half of the midpoint rule; then for the velocities there.
     const JointPass holding{.softness = joint_softness,
                             .held_share = Real(0.5),
+                            .push_share = push_share,
                             .push_velocity = static_cast<Real>(settings.push_velocity),
                             .h = h,
                             .at_the_end = true,
@@ -121,6 +126,7 @@ void advance_soft_step(StepContext &context) {
             kick_particles(context, gravity, Real(0.5) * h);
             refresh_particles(context, h, SpringRule::midpoint);
         }
+        push_groups(context, holding);
         for (int i = 0; i < holding_passes(context); ++i) {
             solve_joints(context, holding);
             for (int k = 0; has_particles && k < spring_passes(context); ++k) {
@@ -135,6 +141,7 @@ void advance_soft_step(StepContext &context) {
         end_flights(context, h, Kick::around);
         if (has_particles)
             drift_particles(context, h);
+        take_back_pushes(context);
         refresh_joints(context);
         warm_start_joints(context, Real(0.5), Springs::skip);
         turn_contact_columns(context, Real(0));
