@@ -154,8 +154,8 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "How often an impact may be propagated from contact to contact within one substep; 0: nothing "
      "bounces."},
     {"impact_passes", &StepSettings::impact_passes, "", 1, 10000, SettingGroup::impacts,
-     "Gauss-Seidel passes by which the points of one manifold share an impact; four corners of a "
-     "box agree to float precision after about 16."},
+     "Gauss-Seidel passes by which points that are struck together share an impact; four corners "
+     "of a box agree to float precision after about 16."},
     {"gyroscopic_iterations", &StepSettings::gyroscopic_iterations, "", 0, 100,
      SettingGroup::gyroscopic,
      "Newton steps for the implicit gyroscopic term; three reach rounding up to a third of a "

@@ -396,6 +396,104 @@ TEST_P(Impacts, ABoxBouncesFlat) {
     EXPECT_LE(glm::length(spin_of(world, id)), 1e-3);
 }
 
+// What comes down on several supports at once, level, leaves level: legs of one body on the ground,
+// and a board on posts that are bodies of their own. One leg after the other it would be turned by
+// the first, come down on the next the faster, and lose most of its way up.
+TEST_P(Impacts, WhatFallsOnSeveralSupportsLeavesAsItCame) {
+    for (const double restitution : {0.5, 1.0})
+        for (const bool has_legs : {true, false})
+            for (const double yaw : {0.0, 0.7, pi / 2}) {
+                World world(GetParam(), settings_for(GetParam()));
+                const auto turn = glm::angleAxis(yaw, V{0, 1, 0});
+                BodyDef board =
+                    dynamic_body(block(V{0.6, 0.05, 0.4}), 5, V{0, 1.05 + (has_legs ? 0.5 : 0), 0});
+                board.pose.rotation = narrow(turn);
+                if (has_legs)
+                    world.add_body(ground(0.5, restitution));
+                for (const double x : {-0.5, 0.5})
+                    for (const double z : {-0.3, 0.3}) {
+                        Box leg = block(V{0.05, 0.25, 0.05});
+                        leg.center = narrow(V{x, -0.3, z});
+                        if (has_legs)
+                            board.colliders.emplace_back().shape = leg;
+                        else
+                            world.add_body(with_material(
+                                static_body(block(V{0.05, 0.25, 0.05}), turn * V{x, -0.25, z}), 0.5,
+                                restitution));
+                    }
+                const BodyId id = world.add_body(with_material(board, 0.5, restitution));
+                const double start = position_of(world, id).y;
+                run(world, 30); // it falls for 27
+                const double fastest = restitution * std::sqrt(2 * gravity);
+                const V v = velocity_of(world, id);
+                const double height = position_of(world, id).y - (start - 1);
+                EXPECT_NEAR(std::sqrt(v.y * v.y + 2 * gravity * height), fastest, 1e-3 * fastest)
+                    << restitution << ' ' << has_legs << ' ' << yaw;
+                EXPECT_LE(glm::length(spin_of(world, id)), 1e-3);
+                EXPECT_LE(std::hypot(v.x, v.z), 1e-3);
+            }
+}
+
+// A ball that strikes k others at once, alike around its way: an impulse p for each, along lines of
+// centres at an angle to it of cosine c, so p (1 + k c^2) = (1 + e) m v c.
+TEST_P(Impacts, ABallStrikesSeveralAtOnce) {
+    for (const int others : {2, 3})
+        for (const double restitution : {0.5, 1.0}) {
+            StepSettings settings = weightless(settings_for(GetParam()));
+            settings.substeps = 1;
+            World world(GetParam(), settings);
+            const double sine = others == 2 ? 0.5 : 1 / std::sqrt(3.0); // they touch each other
+            const double cosine = std::sqrt(1 - sine * sine);
+            const double speed = 2;
+            const BodyId first = world.add_body(
+                with_material(dynamic_body(ball(0.25), 1, V{0}, V{speed, 0, 0}), 0, restitution));
+            std::vector<BodyId> struck;
+            for (int k = 0; k < others; ++k) {
+                const double around = 2 * pi * k / others;
+                const V way{cosine, sine * std::cos(around), sine * std::sin(around)};
+                struck.push_back(world.add_body(
+                    with_material(dynamic_body(ball(0.25), 1, 0.50001 * way), 0, restitution)));
+            }
+            world.step(nullptr);
+            const double p = (1 + restitution) * speed * cosine / (1 + others * cosine * cosine);
+            EXPECT_LE(
+                glm::distance(velocity_of(world, first), V{speed - others * p * cosine, 0, 0}),
+                200 * epsilon);
+            for (const BodyId id : struck) {
+                const V way = glm::normalize(position_of(world, id));
+                EXPECT_NEAR(glm::length(velocity_of(world, id)), p, 200 * epsilon);
+                EXPECT_NEAR(velocity_of(world, id).x, p * cosine, 200 * epsilon) << way.x;
+            }
+        }
+}
+
+// A dozen that meet in one place, all but at once: whatever they do, none of it is from nothing.
+TEST_P(Impacts, AHuddleGainsNothing) {
+    Random random(11);
+    for (int trial = 0; trial < 60; ++trial) {
+        const double friction = 0.25 * random.next_index(3);
+        World world(GetParam(), weightless(settings_for(GetParam())));
+        for (int i = 0; i < 12; ++i) {
+            const V from = any_rotation(random) * V{random.next_in(0.8, 1.6), 0, 0};
+            const double radius = random.next_in(0.1, 0.2);
+            BodyDef def = dynamic_body(ball(radius), random.next_in(0.5, 5), from,
+                                       -2.0 * from + any_vector(random, 0.2));
+            world.add_body(with_material(def, friction, 0.25 * random.next_index(5)));
+        }
+        const Measures before = world.measure();
+        std::size_t impacts = 0;
+        for (int i = 0; i < 60; ++i) {
+            const double energy = world.energy();
+            world.step(nullptr);
+            impacts += world.impacts().size();
+            EXPECT_LE(world.energy() - energy, 100 * epsilon * before.energy()) << trial;
+        }
+        EXPECT_GT(impacts, 6u);
+        EXPECT_LE(glm::distance(world.measure().linear_momentum, before.linear_momentum),
+                  2000 * epsilon * 100);
+    }
+}
+
 // Slower than the threshold: no bounce, so that things come to rest.
 TEST_P(Impacts, SlowImpactsDoNotBounce) {
     World world(GetParam(), weightless(settings_for(GetParam())));

@@ -106,11 +106,13 @@ void restitute(StepContext &context, Real threshold);
 void record_impact(StepContext &context, const ContactConstraint &contact,
                    const std::array<Real, 4> &normal_impulse);
 
-// Bounces: every contact with restitution that would be struck within the next h gets Newton's
-// impact law, one pair of bodies after another, until none approaches: so an impact runs through a
-// row of touching bodies as it does in a cradle. Where gravity acts along the way, the rebound
-// speed is the one that the body would have at its present height had it bounced at the surface:
-// energy is kept whatever h is. Comes at the start of a substep, before gravity is applied.
+// Bounces: contacts with restitution that would be struck within the next h get Newton's impact
+// law, those of one body together, until none approaches: so an impact runs through a row of
+// touching bodies as it does in a cradle, and a table comes up from its legs as level as it came
+// down (Smith et al. 2012, "Reflections on Simultaneous Impact", whose reflections these are where
+// restitution is 1). Where gravity acts along the way, the rebound speed is the one that the body
+// would have at its present height had it bounced at the surface: energy is kept whatever h is.
+// Comes at the start of a substep, before gravity is applied.
 void resolve_impacts(StepContext &context, Real h);
 
 } // namespace plumb::inline PLUMB_PRECISION

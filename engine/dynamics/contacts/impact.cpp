@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,31 +39,126 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
     return {true, std::sqrt(back_squared), height / -speed};
 }
 
-// The joints of the two bodies, as far as they are solved together, answer each impulse: what is
-// struck is then as heavy as they make it.
+// One contact that is struck, point by point.
+struct Blow {
+    const ContactConstraint *contact = nullptr;
+    std::size_t first = 0; // of those that come together with it: which
+    Real pull = Real(0);   // see rebound
+    std::array<Rebound, 4> rebounds;
+    std::array<Real, 4> approaches{}; // normal speeds before
+    // At the present poses: a stale one would gain or lose energy.
+    std::array<Real, 4> normal_mass{};
+    std::array<Real, 4> impulses{};
+};
+
+Real normal_speed(const StepContext &context, const ContactConstraint &contact, std::size_t k) {
+    const ContactPointConstraint &point = contact.points[k];
+    return glm::dot(context.bodies[contact.b].velocity_at(point.r_b) -
+                        context.bodies[contact.a].velocity_at(point.r_a),
+                    contact.normal);
+}
+
+void apply_along_normal(StepContext &context, const ContactConstraint &contact, std::size_t k,
+                        Real impulse) {
+    const ContactPointConstraint &point = contact.points[k];
+    context.bodies[contact.a].apply_impulse(-impulse * contact.normal, point.r_a);
+    context.bodies[contact.b].apply_impulse(impulse * contact.normal, point.r_b);
+}
+
+bool is_struck(const Blow &blow) {
+    return std::ranges::any_of(blow.rebounds, &Rebound::struck);
+}
+
+Blow blow_on(const StepContext &context, const ContactConstraint &contact, Real h) {
+    const SolverBody &a = context.bodies[contact.a];
+    const SolverBody &b = context.bodies[contact.b];
+    const auto pull_on = [&](std::uint32_t body) {
+        return gravity_on(context.model.bodies[body],
+                          Vec3{context.settings.gravity} +
+                              attraction(context.model.attractors, context.bodies[body].position));
+    };
+    Blow blow;
+    blow.contact = &contact;
+    blow.pull = glm::dot(pull_on(contact.b) - pull_on(contact.a), contact.normal);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        const ContactPointConstraint &point = contact.points[k];
+        blow.approaches[k] = normal_speed(context, contact, k);
+        blow.rebounds[k] = rebound(present_separation(contact, point, a, b), blow.approaches[k],
+                                   blow.pull, contact.restitution, context.settings, h);
+    }
+    if (is_struck(blow))
+        for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+            const ContactPointConstraint &point = contact.points[k];
+            const Real inverse = inverse_effective_mass(a, b, point.r_a, point.r_b, contact.normal);
+            blow.normal_mass[k] = inverse > Real(0) ? Real(1) / inverse : Real(0);
+        }
+    return blow;
+}
+
+// Orders blows so that those which come together are beside each other: those of a body that moves,
+// or of bodies whose joints are solved together.
+void gather_together(const StepContext &context, std::vector<Blow> &blows) {
+    using Taken = std::pair<std::size_t, std::size_t>; // what moves, and the blow that it takes
+    std::vector<Taken> taken;
+    for (std::size_t i = 0; i < blows.size(); ++i)
+        for (const std::uint32_t body : {blows[i].contact->a, blows[i].contact->b}) {
+            if (context.model.bodies[body].kind != BodyKind::dynamic)
+                continue;
+            const std::uint32_t group = context.scratch.joint_system->group_of(body);
+            taken.emplace_back(group == JointSystem::none ? body : context.bodies.size() + group,
+                               i);
+        }
+    std::ranges::sort(taken);
+    for (std::size_t i = 0; i < blows.size(); ++i)
+        blows[i].first = i;
+    const auto first_of = [&](std::size_t i) {
+        while (blows[i].first != i)
+            i = blows[i].first = blows[blows[i].first].first;
+        return i;
+    };
+    for (std::size_t i = 1; i < taken.size(); ++i)
+        if (taken[i].first == taken[i - 1].first) {
+            const auto [low, high] =
+                std::minmax({first_of(taken[i].second), first_of(taken[i - 1].second)});
+            blows[high].first = low;
+        }
+    for (std::size_t i = 0; i < blows.size(); ++i)
+        blows[i].first = first_of(i);
+    std::ranges::stable_sort(blows, {}, &Blow::first);
+}
+
+// The joints of what is struck, as far as they are solved together, answer each impulse: it is
+// then as heavy as they make it.
 class Answers {
   public:
-    Answers(StepContext &context, const ContactConstraint &contact) : context_(context) {
+    Answers(StepContext &context, std::span<const Blow> blows) : context_(context) {
+        std::vector<std::uint32_t> groups;
+        for (const Blow &blow : blows)
+            for (const std::uint32_t body : {blow.contact->a, blow.contact->b})
+                if (group_of(body) != JointSystem::none)
+                    groups.push_back(group_of(body));
+        std::ranges::sort(groups);
+        const auto same = std::ranges::unique(groups);
+        groups.erase(same.begin(), same.end());
         JointSystem &system = *context.scratch.joint_system;
-        first_ = system.group_of(contact.a);
-        second_ = system.group_of(contact.b);
-        if (second_ == first_)
-            second_ = JointSystem::none;
-        for (const std::uint32_t group : {first_, second_})
-            if (group != JointSystem::none)
-                for (std::uint32_t i = system.groups()[group].first;
-                     i < system.groups()[group].last; ++i) {
-                    const JointConstraint &joint = context.scratch.joints[system.block(i)];
-                    for (const std::uint32_t body : {joint.a, joint.b})
-                        if (body != Joint::world)
-                            before_.push_back({body, context.bodies[body].velocity,
-                                               context.bodies[body].angular_velocity});
-                }
+        for (const std::uint32_t group : groups)
+            for (std::uint32_t i = system.groups()[group].first; i < system.groups()[group].last;
+                 ++i) {
+                const JointConstraint &joint = context.scratch.joints[system.block(i)];
+                for (const std::uint32_t body : {joint.a, joint.b})
+                    if (body != Joint::world)
+                        before_.push_back({body, context.bodies[body].velocity,
+                                           context.bodies[body].angular_velocity});
+            }
     }
     bool are_any() const { return !before_.empty(); }
-    void give() {
-        answer_impact(context_, first_);
-        answer_impact(context_, second_);
+    bool are_any(const ContactConstraint &contact) const {
+        return group_of(contact.a) != JointSystem::none || group_of(contact.b) != JointSystem::none;
+    }
+    void give(const ContactConstraint &contact) {
+        answer_impact(context_, group_of(contact.a));
+        if (group_of(contact.b) != group_of(contact.a))
+            answer_impact(context_, group_of(contact.b));
     }
     // Undoes what happened to the joined bodies since this was made.
     void take_back() {
@@ -73,139 +169,139 @@ class Answers {
     }
 
   private:
+    std::uint32_t group_of(std::uint32_t body) const {
+        return context_.scratch.joint_system->group_of(body);
+    }
     struct Before {
         std::uint32_t body;
         Vec3 velocity;
         Vec3 angular_velocity;
     };
     StepContext &context_;
-    std::uint32_t first_;
-    std::uint32_t second_;
     std::vector<Before> before_;
 };
 
-// Newton's law for all points of one pair of bodies together. Returns whether anything was struck.
-bool strike(StepContext &context, const ContactConstraint &contact, Real h) {
-    SolverBody &a = context.bodies[contact.a];
-    SolverBody &b = context.bodies[contact.b];
-    const Vec3 gravity{context.settings.gravity};
-    const auto pull_on = [&](std::uint32_t body) {
-        return gravity_on(context.model.bodies[body],
-                          gravity +
-                              attraction(context.model.attractors, context.bodies[body].position));
-    };
-    const Vec3 pull_a = pull_on(contact.a);
-    const Vec3 pull_b = pull_on(contact.b);
-    const Real pull = glm::dot(pull_b - pull_a, contact.normal);
-
-    const auto normal_speed = [&](const ContactPointConstraint &point) {
-        return glm::dot(b.velocity_at(point.r_b) - a.velocity_at(point.r_a), contact.normal);
-    };
-    std::array<Rebound, 4> rebounds;
-    std::array<Real, 4> approaches{}; // normal speeds before
-    std::array<Real, 4>
-        normal_mass{}; // at the present poses: a stale one would gain or lose energy
-    bool any = false;
-    for (int k = 0; k < contact.count; ++k) {
-        const auto index = static_cast<std::size_t>(k);
-        const ContactPointConstraint &point = contact.points[index];
-        approaches[index] = normal_speed(point);
-        rebounds[index] = rebound(present_separation(contact, point, a, b), approaches[index], pull,
-                                  contact.restitution, context.settings, h);
-        const Real inverse = inverse_effective_mass(a, b, point.r_a, point.r_b, contact.normal);
-        normal_mass[index] = inverse > Real(0) ? Real(1) / inverse : Real(0);
-        any = any || rebounds[index].struck;
-    }
-    if (!any)
-        return false;
-    Answers joints(context, contact);
-    for (int k = 0; joints.are_any() && k < contact.count; ++k) {
-        const auto index = static_cast<std::size_t>(k);
-        const ContactPointConstraint &point = contact.points[index];
-        // A unit impulse, to see what comes of it.
-        const SolverBody a_before = a;
-        const SolverBody b_before = b;
-        joints.give();
-        const Real speed = normal_speed(point);
-        a.apply_impulse(-contact.normal, point.r_a);
-        b.apply_impulse(contact.normal, point.r_b);
-        joints.give();
-        const Real inverse = normal_speed(point) - speed;
-        normal_mass[index] = inverse > Real(0) ? Real(1) / inverse : Real(0);
+// By a unit impulse, to see what comes of it.
+void weigh_with_joints(StepContext &context, Blow &blow, Answers &joints) {
+    const ContactConstraint &contact = *blow.contact;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        const SolverBody a_before = context.bodies[contact.a];
+        const SolverBody b_before = context.bodies[contact.b];
+        joints.give(contact);
+        const Real speed = normal_speed(context, contact, k);
+        apply_along_normal(context, contact, k, Real(1));
+        joints.give(contact);
+        const Real inverse = normal_speed(context, contact, k) - speed;
+        blow.normal_mass[k] = inverse > Real(0) ? Real(1) / inverse : Real(0);
         joints.take_back();
-        a = a_before;
-        b = b_before;
+        context.bodies[contact.a] = a_before;
+        context.bodies[contact.b] = b_before;
     }
+}
 
-    const Vec3 before_a = a.velocity;
-    const Vec3 before_b = b.velocity;
-
-    // The points of one manifold share the impulse by Gauss-Seidel.
-    const int passes = contact.count == 1 ? 1 : context.settings.impact_passes;
-    std::array<Real, 4> normal_impulse{};
-    for (int pass = 0; pass < passes; ++pass)
-        for (int k = 0; k < contact.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            if (!rebounds[index].struck)
-                continue;
-            const ContactPointConstraint &point = contact.points[index];
-            const Real change = normal_mass[index] * (rebounds[index].speed - normal_speed(point));
-            const Real total = std::max(normal_impulse[index] + change, Real(0));
-            const Vec3 impulse = (total - normal_impulse[index]) * contact.normal;
-            normal_impulse[index] = total;
-            a.apply_impulse(-impulse, point.r_a);
-            b.apply_impulse(impulse, point.r_b);
-            joints.give();
-        }
+// Shares the impulses by Gauss-Seidel, so that no point that was struck closes faster than it is to
+// leave, and none that leaves faster bears any.
+void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
+    constexpr Real enough = Real(8) * std::numeric_limits<Real>::epsilon();
+    const bool is_one = blows.size() == 1 && blows.front().contact->count == 1;
+    const int passes = is_one ? 1 : context.settings.impact_passes;
+    bool agree = false;
+    for (int pass = 0; pass < passes && !agree; ++pass) {
+        agree = true;
+        for (Blow &blow : blows)
+            for (std::size_t k = 0; k < static_cast<std::size_t>(blow.contact->count); ++k) {
+                if (!blow.rebounds[k].struck)
+                    continue;
+                const Real missing =
+                    blow.rebounds[k].speed - normal_speed(context, *blow.contact, k);
+                const Real total =
+                    std::max(blow.impulses[k] + blow.normal_mass[k] * missing, Real(0));
+                const Real change = total - blow.impulses[k];
+                agree = agree && std::abs(change) <= enough * total;
+                blow.impulses[k] = total;
+                apply_along_normal(context, *blow.contact, k, change);
+                joints.give(*blow.contact);
+            }
+    }
+    if (is_one)
+        return;
     // What the passes have not shared out yet is made good as a whole, so that they leave the
     // energy that the law leaves: half the impulses times the sums of the speeds before and after.
-    if (contact.count > 1) {
-        Real wanted = Real(0);
-        Real reached = Real(0);
-        for (int k = 0; k < contact.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            const Real after = normal_speed(contact.points[index]);
-            wanted += normal_impulse[index] * (rebounds[index].speed - approaches[index]);
-            reached += normal_impulse[index] * (after - approaches[index]);
+    Real wanted = Real(0);
+    Real reached = Real(0);
+    for (const Blow &blow : blows)
+        for (std::size_t k = 0; k < static_cast<std::size_t>(blow.contact->count); ++k) {
+            const Real after = normal_speed(context, *blow.contact, k);
+            wanted += blow.impulses[k] * (blow.rebounds[k].speed - blow.approaches[k]);
+            reached += blow.impulses[k] * (after - blow.approaches[k]);
         }
-        const Real missing = reached > Real(0) ? wanted / reached - Real(1) : Real(0);
-        for (int k = 0; k < contact.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            const Vec3 impulse = (missing * normal_impulse[index]) * contact.normal;
-            normal_impulse[index] *= Real(1) + missing;
-            a.apply_impulse(-impulse, contact.points[index].r_a);
-            b.apply_impulse(impulse, contact.points[index].r_b);
-            joints.give();
+    const Real missing = reached > Real(0) ? wanted / reached - Real(1) : Real(0);
+    for (Blow &blow : blows)
+        for (std::size_t k = 0; k < static_cast<std::size_t>(blow.contact->count); ++k) {
+            apply_along_normal(context, *blow.contact, k, missing * blow.impulses[k]);
+            blow.impulses[k] *= Real(1) + missing;
+            joints.give(*blow.contact);
         }
+}
+
+void rub(StepContext &context, const Blow &blow, Answers &joints) {
+    const ContactConstraint &contact = *blow.contact;
+    SolverBody &a = context.bodies[contact.a];
+    SolverBody &b = context.bodies[contact.b];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        ContactPointConstraint point = contact.points[k];
+        point.impulse = Vec3{blow.impulses[k], Real(0), Real(0)};
+        point.tangent_mass = tangent_mass_of(point, contact.tangents, a, b);
+        solve_friction(contact, point, a, b, contact.friction * blow.impulses[k]);
+        joints.give(contact);
     }
-    if (contact.friction > Real(0))
-        for (int k = 0; k < contact.count; ++k) {
-            const auto index = static_cast<std::size_t>(k);
-            ContactPointConstraint point = contact.points[index];
-            point.impulse = Vec3{normal_impulse[index], Real(0), Real(0)};
-            point.tangent_mass = tangent_mass_of(point, contact.tangents, a, b);
-            solve_friction(contact, point, a, b, contact.friction * normal_impulse[index]);
-            joints.give();
-        }
-    record_impact(context, contact, normal_impulse);
-    // Until they touch they go on as before: the new velocities act from there on, with the arms of
-    // then. Without that the two would lose angular momentum. What joints hold stays with them.
-    if (context.contacts[contact.contact].moment == Moment::touch && pull == Real(0) &&
-        !joints.are_any()) {
-        Real time = std::numeric_limits<Real>::infinity();
-        for (std::size_t k = 0; k < rebounds.size(); ++k)
-            if (rebounds[k].struck && normal_impulse[k] > Real(0))
-                time = std::min(time, rebounds[k].time);
-        if (time > Real(0) && std::isfinite(time)) {
-            time = std::min(time, h);
-            for (const auto &[body, before] : {std::pair{&a, before_a}, std::pair{&b, before_b}}) {
-                const Vec3 way = time * (before - body->velocity);
-                body->position += way;
-                body->moved += way;
-            }
-        }
+}
+
+// How long these bodies go on as before (s): the new velocities act from where they touch, with the
+// arms of then. Without that they would lose angular momentum. What joints hold stays with them.
+Real time_to_touch(const StepContext &context, std::span<const Blow> blows, Real h) {
+    Real time = h;
+    for (const Blow &blow : blows) {
+        if (context.contacts[blow.contact->contact].moment != Moment::touch || blow.pull != Real(0))
+            return Real(0);
+        for (std::size_t k = 0; k < blow.rebounds.size(); ++k)
+            if (blow.rebounds[k].struck && blow.impulses[k] > Real(0))
+                time = std::min(time, blow.rebounds[k].time);
     }
-    return true;
+    return std::max(time, Real(0));
+}
+
+// Newton's law for all points that are struck together.
+void strike(StepContext &context, std::span<Blow> blows, Real h) {
+    Answers joints(context, blows);
+    for (Blow &blow : blows)
+        if (joints.are_any(*blow.contact))
+            weigh_with_joints(context, blow, joints);
+    std::vector<std::pair<std::uint32_t, Vec3>> before; // bodies and their velocities
+    for (const Blow &blow : blows)
+        for (const std::uint32_t body : {blow.contact->a, blow.contact->b})
+            before.emplace_back(body, context.bodies[body].velocity);
+    share_out(context, blows, joints);
+    for (const Blow &blow : blows)
+        if (blow.contact->friction > Real(0))
+            rub(context, blow, joints);
+    const std::size_t recorded = context.impacts.size();
+    for (const Blow &blow : blows)
+        record_impact(context, *blow.contact, blow.impulses);
+    context.report.impacts += static_cast<std::uint32_t>(context.impacts.size() - recorded);
+    const Real time = joints.are_any() ? Real(0) : time_to_touch(context, blows, h);
+    if (!(time > Real(0)))
+        return;
+    const auto index_of = [](const auto &one) { return one.first; };
+    std::ranges::sort(before, {}, index_of);
+    const auto same = std::ranges::unique(before, {}, index_of);
+    before.erase(same.begin(), same.end());
+    for (const auto &[index, velocity] : before) {
+        SolverBody &body = context.bodies[index];
+        const Vec3 way = time * (velocity - body.velocity);
+        body.position += way;
+        body.moved += way;
+    }
 }
 
 } // namespace
@@ -228,14 +324,23 @@ void record_impact(StepContext &context, const ContactConstraint &contact,
 }
 
 void resolve_impacts(StepContext &context, Real h) {
+    std::vector<Blow> blows;
     bool any = context.settings.impact_sweeps > 0;
     for (int sweep = 0; any && sweep < context.settings.impact_sweeps; ++sweep) {
-        any = false;
-        for (const ContactConstraint &contact : context.scratch.contacts)
-            if (contact.restitution > Real(0) && strike(context, contact, h)) {
-                any = true;
-                ++context.report.impacts;
-            }
+        blows.clear();
+        for (const ContactConstraint &contact : context.scratch.contacts) {
+            if (!(contact.restitution > Real(0)))
+                continue;
+            const Blow blow = blow_on(context, contact, h);
+            if (is_struck(blow))
+                blows.push_back(blow);
+        }
+        any = !blows.empty();
+        gather_together(context, blows);
+        for (auto begin = blows.begin(), end = begin; begin != blows.end(); begin = end) {
+            end = std::ranges::upper_bound(begin, blows.end(), begin->first, {}, &Blow::first);
+            strike(context, std::span(begin, end), h);
+        }
     }
     if (any)
         ++context.report.unresolved_impacts;

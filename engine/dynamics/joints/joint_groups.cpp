@@ -270,6 +270,9 @@ Real unturned_share(StepContext &context, const JointConstraint &joint, Real h) 
     return std::clamp(Real(2) - turn / little, Real(0), Real(1));
 }
 
+// Rows that are solved together reach J v + closing + softening * impulse = 0, closing = bias for
+// drift taken back in full. The load so far has given way by softening * impulse: of the rest of
+// the bias, push_share is taken back, and by the push, not by the load.
 void push(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = *context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
