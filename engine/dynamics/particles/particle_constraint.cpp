@@ -1,5 +1,6 @@
 #include "engine/dynamics/particles/particle_constraint.h"
 
+#include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
@@ -32,7 +33,26 @@ Real separation_of(const StepContext &context, const ParticleContact &contact) {
     return glm::dot(gap, contact.normal) - context.model.particles[contact.particle].radius;
 }
 
-void refresh(StepContext &context, ParticleContactConstraint &row) {
+// The speed at which they meet, from the one that they have when gravity has acted for `kicked`
+// seconds, and from where they are: by energy, v^2 - 2 a s, so that a bounce neither gains nor
+// loses by where in the substep it comes.
+Real approach_of(const StepContext &context, const ParticleContact &contact,
+                 const ParticleContactConstraint &row, Real kicked) {
+    const Vec3 gravity{context.settings.gravity};
+    const auto pull_at = [&](const Vec3 &position) {
+        return gravity + attraction(context.model.attractors, position);
+    };
+    const Real pull = glm::dot(pull_at(context.particles[contact.particle].position) -
+                                   gravity_on(context.model.bodies[contact.body],
+                                              pull_at(context.bodies[contact.body].position)),
+                               contact.normal);
+    const Real speed =
+        glm::dot(relative_velocity(context, contact, row), contact.normal) - kicked * pull;
+    const Real squared = speed * speed - Real(2) * pull * std::max(row.separation, Real(0));
+    return speed < Real(0) ? -std::sqrt(std::max(squared, Real(0))) : speed;
+}
+
+void refresh(StepContext &context, ParticleContactConstraint &row, Real kicked) {
     const ParticleContact &contact = context.particle_contacts[row.contact];
     const SolverBody &body = context.bodies[contact.body];
     const Real inv_mass = context.model.particles[contact.particle].inv_mass;
@@ -51,7 +71,7 @@ void refresh(StepContext &context, ParticleContactConstraint &row) {
     const Real half = Real(0.5) * (k11 - k22);
     const Real largest = Real(0.5) * (k11 + k22) + std::sqrt(half * half + k12 * k12);
     row.tangent_mass = largest > Real(0) ? Real(1) / largest : Real(0);
-    row.approach = glm::dot(relative_velocity(context, contact, row), contact.normal);
+    row.approach = approach_of(context, contact, row, kicked);
 }
 
 void solve_friction(StepContext &context, const ParticleContact &contact,
@@ -121,7 +141,7 @@ void refresh_particles(StepContext &context, Real h, SpringRule rule) {
         return;
     pull_particle(context, h);
     for (ParticleContactConstraint &row : context.scratch.particle_contacts)
-        refresh(context, row);
+        refresh(context, row, Real(0.5) * h);
     begin_springs(context, h, rule);
 }
 

@@ -26,7 +26,7 @@ struct ParticleContactConstraint {
     Real tangent_mass = Real(0); // as ContactPointConstraint::tangent_mass
     Vec3 impulse{Real(0)};       // accumulated in this substep: normal, t1, t2 (N s)
     Vec3 remembered{Real(0)};    // for warm_start_particles
-    Real approach = Real(0);     // relative normal velocity as the substep began (m/s)
+    Real approach = Real(0);     // relative normal velocity when they meet (m/s)
 };
 
 // What a pass does about penetration.
