@@ -137,7 +137,7 @@ template <typename Work> int reported(const Work &work) {
         code = ExitCode::no_gl_context;
     } catch (const std::system_error &error) {
         what = error.what();
-        code = exit_code(error);
+        code = ExitCode::no_room;
     } catch (const std::bad_alloc &) {
         what = "out of memory; scenes/README.md says what a scene may ask for";
         code = ExitCode::no_room;

@@ -1,8 +1,6 @@
 // What commands tell the shell.
 #pragma once
 
-#include <system_error>
-
 namespace plumb {
 
 enum class ExitCode {
@@ -13,16 +11,6 @@ enum class ExitCode {
     no_gl_context = 4,
     no_room = 5, // output could not be written, or memory ran out
 };
-
-// A place that nothing can be written to is a bad argument; a full disk is not.
-[[nodiscard]] inline ExitCode exit_code(const std::system_error &failure) {
-    for (const std::errc at_fault :
-         {std::errc::no_space_on_device, std::errc::file_too_large, std::errc::io_error,
-          std::errc::broken_pipe, std::errc::not_enough_memory})
-        if (failure.code() == at_fault)
-            return ExitCode::no_room;
-    return ExitCode::bad_input;
-}
 
 // Of several outcomes, the one to report. What keeps a result from being worth anything comes
 // first: bad input, then no room, then no picture, then divergence, then a missed tolerance.

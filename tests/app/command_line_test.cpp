@@ -170,6 +170,40 @@ TEST(CommandLine, AnOptionOfAnotherCommandIsAnsweredWithItsOwn) {
               "plumb: plumb list has no option --nonsense; plumb list --help tells which it has\n");
 }
 
+// No number comes of it, and nothing diverged.
+TEST(CommandLine, APeriodThatNothingHasIsMissed) {
+    const TemporaryFolder folder;
+    folder.write("still.toml", R"(
+[world]
+gravity = [0, 0, 0]
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 1
+[[expect]]
+name = "swings"
+source = "it hangs on nothing"
+quantity = "position.x"
+body = "ball"
+reduce = "period"
+level = 1
+to = 1
+equals = 1
+tolerance = 0.1
+)");
+    const ProgramResult check = run_program("check still.toml", folder.path());
+    EXPECT_EQ(check.exit_code, 1);
+    EXPECT_TRUE(has(check.out, "still/swings: there was none, is 1 s within 0.1 s  ["))
+        << check.out;
+    const ProgramResult chart = run_program(
+        "chart still.toml --methods rk4 --sweep substeps=1 --repeats 1 --out .", folder.path());
+    EXPECT_EQ(chart.exit_code, 1) << chart.err;
+    EXPECT_TRUE(has(chart.out, "no result: swings")) << chart.out;
+    const ProgramResult tune = run_program("tune still.toml --methods rk4", folder.path());
+    EXPECT_EQ(tune.exit_code, 1);
+    EXPECT_TRUE(has(tune.out, "there was nothing to judge swings by")) << tune.out;
+}
+
 TEST(CommandLine, AChartThatNoMethodCanRunLeavesTheEarlierOne) {
     const TemporaryFolder folder;
     folder.write("pendulum.csv", "earlier\n");
@@ -194,6 +228,11 @@ TEST(CommandLine, AWrongValueIsAnsweredWithWhatWouldBeRight) {
     for (const auto &[arguments, right] :
          {std::pair{"tune pendulum --budget 1", "as in 1ms"},
           std::pair{"chart pendulum --shard 3/2", "I from 1 to N"},
+          std::pair{"chart pendulum --substeps 4", "substeps is given as 4 and swept, too"},
+          std::pair{"chart pendulum --sweep precision=float,double --precision double",
+                    "precision is given and swept, too"},
+          std::pair{"map pendulum --x substeps=1,2 --y gravity.y=-9,-1 --set gravity=0,-3,0",
+                    "gravity.y is given as -3 and swept, too"},
           std::pair{"chart bvh", "bvh: only probes, and no motion to chart"}}) {
         const ProgramResult result = run_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments;
@@ -454,14 +493,14 @@ TEST(CommandLine, ScenesAreFoundFromAnyFolder) {
         }
 }
 
-TEST(CommandLine, WhatCannotBeWrittenIsOneMessageAndExitCode2) {
+TEST(CommandLine, WhatCannotBeWrittenIsOneMessageAndExitCode5) {
     const TemporaryFolder folder;
     folder.write("file", "");
     for (const char *command : {"snapshot pendulum --size 64x64 --out file/below",
                                 "run pendulum --size 64x64 --out file/below",
                                 "measure pendulum --steps 2 --csv file/x"}) {
         const ProgramResult result = run_program(command, folder.path());
-        EXPECT_EQ(result.exit_code, 2) << command << '\n' << result.out << result.err;
+        EXPECT_EQ(result.exit_code, 5) << command << '\n' << result.out << result.err;
         EXPECT_TRUE(has(result.err, "file/")) << command << '\n' << result.err;
     }
     EXPECT_EQ(names_in(folder.path()), (std::set<std::string>{"file"}));

@@ -121,7 +121,7 @@ TEST(Record, WhatCannotBeRecordedIsSaid) {
     folder.write("stack.toml", stack);
     const ProgramResult nowhere = run_program(
         "run stack.toml --gl osmesa --size 16x16 --frames 2 --record no/run.toml", folder.path());
-    EXPECT_EQ(nowhere.exit_code, 2) << nowhere.err;
+    EXPECT_EQ(nowhere.exit_code, 5) << nowhere.err;
     EXPECT_TRUE(has(nowhere.err, "no/run.toml")) << nowhere.err;
     const ProgramResult no_window = run_program("run stack.toml --record run.toml", folder.path());
     EXPECT_EQ(no_window.exit_code, 4) << no_window.err;

@@ -2,6 +2,7 @@
 
 #include "app/lab/chart/chart_plan.h"
 #include "app/lab/chart/pareto.h"
+#include "app/lab/clocks.h"
 #include "app/lab/csv.h"
 #include "app/lab/engines/engine_simulation.h"
 #include "app/lab/run/run_text.h"
@@ -254,15 +255,14 @@ class Charting {
         run.threads = next.threads;
         run.point = next.point;
         std::unique_ptr<Simulation> simulated = simulation(next, scene_);
-        const TimedParts parts = timed_parts(end_, chart_.timed);
-        RunTimer::Saves saved;
+        RunRecord record(end_, chart_.timed);
         JudgeOptions judging;
         judging.follow_errors = true;
         judging.wall_clock = chart_.wall_clock;
         judging.duration = options_.duration;
         judging.stop = options_.stop;
-        judging.times_called = parts.starts;
-        judging.at_time = [&] { saved.push_back(simulated->save()); };
+        judging.times_called = record.times();
+        judging.at_time = [&](double used) { record.note(*simulated, used); };
         judging.progress = [&](double fraction) { progress(begin + share * fraction, run); };
         run.run = judge_run(*simulated, scene_, judging);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
@@ -282,9 +282,11 @@ class Charting {
         }
         set_cost(run);
         timers_.emplace_back();
-        if (!run.run.divergence && !run.run.stopped && chart_.repeats > 0)
-            timers_.back().emplace(std::move(simulated), std::move(saved), parts.each, run.cost,
+        if (!run.run.divergence && !run.run.stopped && chart_.repeats > 0) {
+            std::vector<TimedPart> parts = record.take_parts(*simulated, run.run.step_time);
+            timers_.back().emplace(std::move(simulated), std::move(parts), run.cost,
                                    chart_.wall_clock);
+        }
         const double seconds = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
         if (seconds > 0) {
             run.body_passes = static_cast<double>(run.run.body_passes) / seconds;
@@ -293,8 +295,7 @@ class Charting {
         chart_.runs.push_back(std::move(run));
     }
 
-    // With what is known of it; where timings are missing it is stepped, unjudged, to what they are
-    // of.
+    // With what is known of it; where timings are missing it is stepped once more, unjudged.
     void go_on(std::size_t index, ChartRun known, double begin) {
         known.index = index;
         known.resolved = planned_[index].resolved;
@@ -304,22 +305,35 @@ class Charting {
             known.timings.size() < static_cast<std::size_t>(chart_.repeats))
             try {
                 std::unique_ptr<Simulation> simulated = simulation(planned_[index], scene_);
-                const TimedParts parts = timed_parts(end_, chart_.timed);
-                RunTimer::Saves saved;
-                const double slack = 1e-6 * simulated->settings().dt;
-                for (const double start : parts.starts) {
-                    while (simulated->time() < start - slack && !stopped()) {
-                        simulated->step();
-                        progress(begin, known);
-                    }
-                    saved.push_back(simulated->save());
-                }
-                timers_.back().emplace(std::move(simulated), std::move(saved), parts.each,
-                                       known.cost, chart_.wall_clock);
+                if (std::optional<std::vector<TimedPart>> parts =
+                        find_parts(*simulated, [&] { progress(begin, known); }))
+                    timers_.back().emplace(std::move(simulated), std::move(*parts), known.cost,
+                                           chart_.wall_clock);
             } catch (const CheckFailure &) {
                 timers_.back().reset();
             }
         chart_.runs.push_back(std::move(known));
+    }
+
+    // Nothing where it was stopped.
+    std::optional<std::vector<TimedPart>> find_parts(Simulation &simulated,
+                                                     const std::function<void()> &stepped) const {
+        RunRecord record(end_, chart_.timed);
+        const auto now = [&] { return chart_.wall_clock ? wall_time() : thread_cpu_time(); };
+        const double slack = 1e-6 * simulated.settings().dt;
+        double used = 0;
+        auto next = record.times().begin();
+        while (simulated.time() < end_ - slack) {
+            if (stopped())
+                return std::nullopt;
+            for (; next != record.times().end() && simulated.time() >= *next - slack; ++next)
+                record.note(simulated, used);
+            const double before = now();
+            simulated.step();
+            used += now() - before;
+            stepped();
+        }
+        return record.take_parts(simulated, used);
     }
 
     // One timing of each run, in an order drawn anew: a machine that slows down does so for all.

@@ -84,7 +84,7 @@ struct ChartOptions {
     double budget = 1;          // s of CPU time per simulated second: at 60 Hz all of a frame
     double duration = 5;        // s, of scenes that expect nothing
     int repeats = 5;            // timings of each run; their median counts
-    double timed = 2;           // s, simulated: as much of the run is timed, in TimedParts
+    double timed = 2;           // s, simulated: of a run that goes on alike, as RunRecord chooses
     std::uint64_t seed = 1;     // of the order in which each round of timings goes
     Shard shard;                // only these
     KnownRuns known;            // not run again; timed where timings are missing

@@ -82,7 +82,11 @@ ExitCode code_of(const SceneChart &chart, std::ostream &err) {
     }
     const bool any = std::ranges::any_of(
         chart.runs, [](const ChartRun &run) { return std::isfinite(run.error); });
-    return any || chart.runs.empty() || chart.interrupted ? ExitCode::fine : ExitCode::diverged;
+    if (any || chart.runs.empty() || chart.interrupted)
+        return ExitCode::fine;
+    const bool all_diverged = std::ranges::all_of(
+        chart.runs, [](const ChartRun &run) { return run.run.divergence.has_value(); });
+    return all_diverged ? ExitCode::diverged : ExitCode::outside_tolerance;
 }
 
 // Of a scene that is done, while others are still to come.

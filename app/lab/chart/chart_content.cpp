@@ -271,8 +271,8 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         const std::string on = chart.wall_clock ? "wall time" : "one thread";
         if (timed) {
             char text[160];
-            std::snprintf(text, sizeof text, "%s, %s of %.4g s, all over the run", on.c_str(),
-                          timings_text(chart.repeats).c_str(), chart.timed);
+            std::snprintf(text, sizeof text, "%s, %s of parts all over the run", on.c_str(),
+                          timings_text(chart.repeats).c_str());
             std::string all = text;
             if (chart.repeats > 1) {
                 std::snprintf(text, sizeof text, " (spread %.0f %%)", 100 * chart.median_spread());

@@ -200,6 +200,10 @@ SceneChart merged_chart(const SceneDesc &scene, const std::vector<NamedTable> &t
             throw std::invalid_argument(each.name + " does not fit the scene " + scene.name +
                                         " as it is now: its expectations differ");
         while (table.next()) {
+            if (table.cell("scene") != scene.name)
+                throw std::invalid_argument(each.name + " is of the scene " +
+                                            std::string(table.cell("scene")) + ", not of " +
+                                            scene.name);
             if (!chart) {
                 chart = read_head(table, scene);
                 head = head_text(table);

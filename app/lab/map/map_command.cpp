@@ -62,8 +62,10 @@ void write_picture(const MapCommand &command, const StabilityMap &map, std::ostr
         picture.footer.push_back(command.command);
     std::filesystem::path place = command.image;
     const std::string kind = place.extension().string();
+    std::filesystem::path partial = place;
+    partial.replace_extension(".partial" + kind);
     if (map.interrupted)
-        place.replace_extension(".partial" + kind);
+        place = partial;
     if (kind == ".svg") {
         OutputFile svg(place);
         write_chart_svg(svg.stream(), picture);
@@ -72,6 +74,8 @@ void write_picture(const MapCommand &command, const StabilityMap &map, std::ostr
         write_png(place, ChartPainter(command.shader_dir).paint(picture));
     }
     err << "wrote " << place.string() << '\n';
+    if (!map.interrupted)
+        std::filesystem::remove(partial);
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "engine/scene/probe.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <stdexcept>
 
@@ -118,13 +119,15 @@ void print(std::ostream &out, const CheckOutcome &outcome) {
     for (const ExpectOutcome &expect : outcome.run.outcomes) {
         out << sign(expect.verdict) << outcome.scene << "/" << expect.desc.name << ": ";
         if (expect.judged())
-            out << with_unit(expect.measured, expect.unit) << ", " << demand(expect);
+            out << (std::isfinite(expect.measured) ? with_unit(expect.measured, expect.unit)
+                                                   : "there was none")
+                << ", " << demand(expect);
         else if (expect.verdict == Verdict::unseen)
             out << "not judged, since this run goes on from a later state; " << demand(expect);
         else
             out << "not measured, should be: " << demand(expect);
-        if (expect.judged() && expect.desc.relation == ExpectDesc::Relation::equals &&
-            expect.desc.curve.empty())
+        if (expect.judged() && std::isfinite(expect.error) &&
+            expect.desc.relation == ExpectDesc::Relation::equals && expect.desc.curve.empty())
             out << ", off by " << with_unit(expect.error, expect.unit);
         out << how;
     }

@@ -164,7 +164,7 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
         for (; called < options.times_called.size() &&
                simulation.time() >= options.times_called[called] - slack;
              ++called)
-            options.at_time();
+            options.at_time(run.step_time);
         last_positions.note(simulation);
         const std::uint64_t step = simulation.step_count();
         try {

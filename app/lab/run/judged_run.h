@@ -45,9 +45,9 @@ struct JudgeOptions {
     std::function<bool()> stop;
     // Called after each step, with the fraction done. May be empty.
     std::function<void(double)> progress;
-    // Called before the step that begins at or after each of these times (s), ascending. May be
-    // empty.
-    std::function<void()> at_time;
+    // Called before the step that begins at or after each of these times (s), ascending, with the
+    // step_time so far. May be empty.
+    std::function<void(double)> at_time;
     std::vector<double> times_called;
 };
 

@@ -16,35 +16,73 @@ namespace {
 constexpr double shortest_timing = 0.01; // s
 constexpr int most_rounds = 1000;        // in one timing
 
-constexpr int most_parts = 8;
+constexpr int noted = 32;            // in a run
+constexpr double whole_parts = 8;    // of which each takes as long as all others, if all is alike
+constexpr double unlike = 1.0 / 100; // of what a run takes: what two stretches of it may differ by
 
 } // namespace
 
-TimedParts timed_parts(double end, double timed) {
-    if (!(timed < end))
-        return {.starts = {0}, .each = end};
-    TimedParts parts{.starts = {}, .each = timed / most_parts};
-    for (int i = 0; i < most_parts; ++i)
-        parts.starts.push_back((i + 0.5) * end / most_parts - 0.5 * parts.each);
+RunRecord::RunRecord(double end, double timed) : each_(timed / whole_parts) {
+    const int count = timed < end ? noted : 1;
+    for (int i = 0; i < count; ++i)
+        times_.push_back(end * i / count);
+}
+
+void RunRecord::note(const Simulation &simulation, double used) {
+    const Simulation::Saved *before = notes_.empty() ? nullptr : notes_.back().state.get();
+    if (before == nullptr || notes_.back().step < simulation.step_count())
+        notes_.push_back({simulation.save(nullptr, before), simulation.step_count(), used});
+}
+
+std::vector<TimedPart> RunRecord::take_parts(const Simulation &simulation, double used) {
+    notes_.push_back({nullptr, simulation.step_count(), used}); // where the last stretch ends
+    const auto steps_of = [&](std::size_t from, std::size_t to) {
+        return static_cast<double>(notes_[to].step - notes_[from].step);
+    };
+    const auto took = [&](std::size_t from, std::size_t to) {
+        return notes_[to].used - notes_[from].used;
+    };
+    const std::size_t last = notes_.size() - 1;
+    const double all = std::max(took(0, last), 1e-300);
+    const auto usual =
+        static_cast<std::uint64_t>(std::max(1L, std::lround(each_ / simulation.settings().dt)));
+    std::vector<TimedPart> parts;
+    for (std::size_t from = 0, to = 0; from < last; from = to) {
+        // As many stretches as take alike, up to a part's share of the time.
+        for (to = from + 1; to < last && took(from, to + 1) <= 1.2 * all / whole_parts; ++to)
+            if (std::abs(took(to, to + 1) - took(from, to) / static_cast<double>(to - from)) >
+                unlike * all)
+                break;
+        const std::size_t middle = to - from > 1 ? from + (to - from) / 2 : from;
+        const std::uint64_t steps = notes_[to].step - notes_[middle].step;
+        if (steps > 0)
+            parts.push_back({std::move(notes_[middle].state),
+                             to - from > 1 ? std::min(steps, usual) : steps,
+                             steps_of(from, to) / steps_of(0, last)});
+    }
+    notes_.clear();
     return parts;
 }
 
-RunTimer::RunTimer(std::unique_ptr<Simulation> simulation, Saves starts, double each, double cost,
-                   bool wall_clock)
-    : simulation_(std::move(simulation)), starts_(std::move(starts)), wall_clock_(wall_clock) {
+RunTimer::RunTimer(std::unique_ptr<Simulation> simulation, std::vector<TimedPart> parts,
+                   double cost, bool wall_clock)
+    : simulation_(std::move(simulation)), parts_(std::move(parts)), wall_clock_(wall_clock) {
     const double dt = simulation_->settings().dt;
-    steps_ = std::max(1, static_cast<int>(std::lround(each / dt)));
-    const double segment = cost * steps_ * dt * static_cast<double>(starts_.size());
+    std::uint64_t steps = 0;
+    for (const TimedPart &part : parts_)
+        steps += part.steps;
+    const double segment = cost * dt * static_cast<double>(steps);
     constexpr double patience = 0.05; // s
-    asking_ = static_cast<int>(std::clamp(patience / std::max(cost * dt, 1e-9), 1.0, 1e6));
+    asking_ =
+        static_cast<std::uint64_t>(std::clamp(patience / std::max(cost * dt, 1e-9), 1.0, 1e6));
     rounds_ = segment > 0 ? static_cast<int>(std::clamp(std::ceil(shortest_timing / segment), 1.0,
                                                         static_cast<double>(most_rounds)))
                           : most_rounds;
 }
 
 std::optional<double> RunTimer::time(const std::function<bool()> &stop) const {
-    const auto go = [&](int steps) {
-        for (int i = 0; i < steps; ++i) {
+    const auto go = [&](std::uint64_t steps) {
+        for (std::uint64_t i = 0; i < steps; ++i) {
             if (i % asking_ == 0 && stop && stop())
                 return false;
             simulation_->step();
@@ -52,25 +90,24 @@ std::optional<double> RunTimer::time(const std::function<bool()> &stop) const {
         return true;
     };
     const auto now = [&] { return wall_clock_ ? wall_time() : thread_cpu_time(); };
-    double used = 0;
+    double a_step = 0; // s, in the mean of the run
     try {
-        simulation_->restore(*starts_.front());
+        simulation_->restore(*parts_.front().start);
         // Brings code and data back into the caches after the other simulations' turn.
-        if (!go(std::max(1, steps_ / 10)))
+        if (!go(std::max<std::uint64_t>(1, parts_.front().steps / 10)))
             return std::nullopt;
         for (int round = 0; round < rounds_; ++round)
-            for (const std::unique_ptr<Simulation::Saved> &start : starts_) {
-                simulation_->restore(*start);
+            for (const TimedPart &part : parts_) {
+                simulation_->restore(*part.start);
                 const double before = now();
-                if (!go(steps_))
+                if (!go(part.steps))
                     return std::nullopt;
-                used += now() - before;
+                a_step += part.share * (now() - before) / static_cast<double>(part.steps);
             }
     } catch (const CheckFailure &) {
         return std::nullopt;
     }
-    return used /
-           (rounds_ * steps_ * static_cast<double>(starts_.size()) * simulation_->settings().dt);
+    return a_step / (rounds_ * simulation_->settings().dt);
 }
 
 } // namespace plumb

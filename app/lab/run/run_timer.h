@@ -3,6 +3,7 @@
 
 #include "engine/scene/simulation.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,21 +11,43 @@
 
 namespace plumb {
 
-// Stretches of a run that take as long as each other, and as much of it before them as after: what
-// falls, lands and sleeps counts as much as it lasts.
-struct TimedParts {
-    std::vector<double> starts; // s
-    double each = 0;            // s
+// A stretch of a run that is timed, and how much of the run it stands for.
+struct TimedPart {
+    std::unique_ptr<Simulation::Saved> start;
+    std::uint64_t steps = 1;
+    double share = 1;
 };
-// Of a run of `end` seconds, `timed` in all; the whole run where that is not less.
-[[nodiscard]] TimedParts timed_parts(double end, double timed);
+
+// How a run was at even times, and what its steps had taken by then: enough to choose the parts
+// that are timed. What falls, lands and sleeps takes most of its time in little of the run.
+class RunRecord {
+  public:
+    // Of a run of `end` seconds, of which some `timed` are to be timed; the whole run where that is
+    // not less.
+    RunRecord(double end, double timed);
+
+    // When to note (s), ascending; first 0.
+    [[nodiscard]] const std::vector<double> &times() const { return times_; }
+    // Before the first step from there; `used`: what the steps so far have taken (s).
+    void note(const Simulation &simulation, double used);
+    // At the end, or as far as the run got; nothing of what was noted is left.
+    [[nodiscard]] std::vector<TimedPart> take_parts(const Simulation &simulation, double used);
+
+  private:
+    struct Note {
+        std::unique_ptr<Simulation::Saved> state;
+        std::uint64_t step = 0;
+        double used = 0;
+    };
+    double each_; // s, of the run: a part of those that go on alike
+    std::vector<double> times_;
+    std::vector<Note> notes_;
+};
 
 class RunTimer {
   public:
-    using Saves = std::vector<std::unique_ptr<Simulation::Saved>>;
-    // `simulation`, and how it was at the start of each part, which are `each` seconds of simulated
-    // time long. `cost` is about what they take: CPU seconds for a simulated second.
-    RunTimer(std::unique_ptr<Simulation> simulation, Saves starts, double each, double cost,
+    // `cost` is about what the parts take: CPU seconds for a simulated second.
+    RunTimer(std::unique_ptr<Simulation> simulation, std::vector<TimedPart> parts, double cost,
              bool wall_clock = false);
 
     // CPU seconds of this thread, or of the clock on the wall, per simulated second; nothing when a
@@ -33,10 +56,9 @@ class RunTimer {
 
   private:
     std::unique_ptr<Simulation> simulation_;
-    Saves starts_;
-    int steps_ = 1;  // in each part
-    int rounds_ = 1; // in one timing
-    int asking_ = 1; // after how many steps
+    std::vector<TimedPart> parts_;
+    int rounds_ = 1;           // in one timing
+    std::uint64_t asking_ = 1; // after how many steps
     bool wall_clock_;
 };
 

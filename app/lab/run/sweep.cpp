@@ -141,6 +141,13 @@ GivenSettings given_by(const std::vector<SweepAxis> &axes, const SweepPoint &poi
     return given;
 }
 
+void refuse_given(SettingNumber swept, const GivenSettings &given) {
+    if (const std::optional<double> value = given.find(swept))
+        throw std::invalid_argument(setting_name(swept) + " is given as " +
+                                    number_or_fraction(*value) +
+                                    " and swept, too: leave one of them out");
+}
+
 bool same_work(const MethodInfo &method, const StepSettings &a, const StepSettings &b) {
     return std::ranges::all_of(setting_numbers(), [&](SettingNumber number) {
         return !reads(method, number.setting()) ||

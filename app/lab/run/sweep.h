@@ -36,6 +36,9 @@ using SweepPoint = std::vector<double>;
 // The swept settings.
 [[nodiscard]] GivenSettings given_by(const std::vector<SweepAxis> &axes, const SweepPoint &point);
 
+// A value that is given for what is swept would be overruled: throws std::invalid_argument.
+void refuse_given(SettingNumber swept, const GivenSettings &given);
+
 // Whether two combinations make the method do the same: they agree in all settings that it reads.
 [[nodiscard]] bool same_work(const MethodInfo &method, const StepSettings &a,
                              const StepSettings &b);

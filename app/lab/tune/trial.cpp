@@ -88,9 +88,12 @@ TunedRun Trial::run(const RunOptions &options, const Progress &progress) const {
 
 RunTimer Trial::timer(const TunedRun &run) const {
     auto simulation = make(scene(), run.options);
-    RunTimer::Saves start;
-    start.push_back(simulation->save());
-    return {std::move(simulation), std::move(start), run_end(scene(), 0), run.cost};
+    const double dt = simulation->settings().dt;
+    std::vector<TimedPart> whole(1);
+    whole.front().start = simulation->save();
+    whole.front().steps =
+        static_cast<std::uint64_t>(std::max(1L, std::lround(run_end(scene(), 0) / dt)));
+    return {std::move(simulation), std::move(whole), run.cost};
 }
 
 void time_in_turns(const std::vector<TimedRun> &runs, const TuneOptions &options,

@@ -6,6 +6,7 @@
 #include "app/lab/tune/tune.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace plumb {
@@ -191,8 +192,9 @@ void print(std::ostream &out, const Tuning &tuning, bool explain) {
         out << "nothing that was tried meets " << held;
         const TunedRun *run = nearest(tuning);
         if (run != nullptr)
-            out << "; nearest is " << in_words(run->resolved) << ": worst error at least "
-                << error_text(*run);
+            out << "; nearest is " << in_words(run->resolved) << ": "
+                << (std::isfinite(run->error) ? "worst error at least " + error_text(*run)
+                                              : "there was nothing to judge " + run->worst + " by");
         out << ".\n";
         if (run != nullptr && run->error <= 1)
             out << "  --tolerance 1 asks for no margin: a bound may be one that the truth itself "

@@ -105,6 +105,9 @@ TEST(ChartRows, ShardsMakeTheWholeChart) {
         EXPECT_EQ(a.point, b.point);
         EXPECT_EQ(b.timings.size(), a.timings.size());
     }
+    SceneDesc other = scene; // which expects the same
+    other.name = "another";
+    EXPECT_THROW((void)merged_chart(other, tables), std::invalid_argument);
     tables.pop_back();
     EXPECT_TRUE(merged_chart(scene, tables).interrupted);
     options.timed = 0.5;

@@ -307,7 +307,7 @@ TEST(Expectation, FollowedErrorsAreTheWorstOfTheRun) {
     options.duration = 1;
     bool at_time = false;
     options.times_called = {0.5};
-    options.at_time = [&] {
+    options.at_time = [&](double) {
         at_time = true;
         EXPECT_DOUBLE_EQ(fake.time(), 0.5);
     };

@@ -1,26 +1,85 @@
 // The parts of a run that are timed.
 #include "app/lab/run/run_timer.h"
 
+#include "tests/lab/run/fake_simulation.h"
+
+#include <functional>
 #include <gtest/gtest.h>
 
 namespace plumb {
 namespace {
 
-TEST(RunTimer, PartsAreSpreadEvenlyOverTheRun) {
-    const TimedParts parts = timed_parts(60, 2);
-    ASSERT_EQ(parts.starts.size(), 8U);
-    EXPECT_DOUBLE_EQ(parts.each, 0.25);
-    for (std::size_t i = 0; i < parts.starts.size(); ++i)
-        EXPECT_DOUBLE_EQ(parts.starts[i] + parts.each / 2, 60 * (static_cast<double>(i) + 0.5) / 8);
+// Of a run of which a step takes so long, by its share of the run.
+std::vector<TimedPart> parts_of(double end, double timed,
+                                const std::function<double(double)> &cost) {
+    FakeSimulation fake(1.0 / 64);
+    RunRecord record(end, timed);
+    double used = 0;
+    auto next = record.times().begin();
+    for (; fake.time() < end; fake.step()) {
+        for (; next != record.times().end() && fake.time() >= *next; ++next)
+            record.note(fake, used);
+        used += cost(fake.time() / end);
+    }
+    return record.take_parts(fake, used);
+}
+
+std::uint64_t first_step(const TimedPart &part) {
+    return dynamic_cast<const FakeSimulation::State &>(*part.start).steps;
+}
+
+TEST(RunTimer, PartsAreSpreadEvenlyOverARunThatGoesOnAlike) {
+    const std::vector<TimedPart> parts = parts_of(64, 2, [](double) { return 1e-3; });
+    ASSERT_EQ(parts.size(), 8U);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        EXPECT_DOUBLE_EQ(parts[i].share, 0.125);
+        EXPECT_EQ(parts[i].steps, 16U); // 1/4 s
+        EXPECT_EQ(first_step(parts[i]), 64 * 8 * i + 64 * 4);
+    }
 }
 
 TEST(RunTimer, AShortRunIsTimedAsAWhole) {
     for (const double timed : {1.0, 2.0}) {
-        const TimedParts parts = timed_parts(1, timed);
-        ASSERT_EQ(parts.starts.size(), 1U);
-        EXPECT_EQ(parts.starts[0], 0);
-        EXPECT_EQ(parts.each, 1);
+        const std::vector<TimedPart> parts = parts_of(1, timed, [](double) { return 1e-3; });
+        ASSERT_EQ(parts.size(), 1U);
+        EXPECT_EQ(first_step(parts[0]), 0U);
+        EXPECT_EQ(parts[0].steps, 64U);
+        EXPECT_EQ(parts[0].share, 1);
     }
+}
+
+// What falls asleep takes a thousandth from there on; a blow takes a hundred times as much for a
+// moment; what falls apart takes less and less; and what comes in bursts may fall in with the
+// parts.
+TEST(RunTimer, PartsStandForARunThatDoesNot) {
+    const std::function<double(double)> courses[] = {
+        [](double t) { return t < 0.04 ? 1 : 1e-3; },
+        [](double t) { return t < 0.3 ? 1 : 1e-3; },
+        [](double t) { return t > 0.703 && t < 0.713 ? 100 : 1; },
+        [](double t) { return t > 0.999 ? 100 : 0.1; },
+        [](double t) { return 1.05 - t; },
+        [](double t) { return 1 + std::floor(std::fmod(23 * t, 4)); },
+    };
+    for (const auto &course : courses)
+        for (const double end : {6.0, 20.0, 61.0}) {
+            const std::vector<TimedPart> parts = parts_of(end, 2, course);
+            double share = 0, found = 0, steps = 0;
+            for (const TimedPart &part : parts) {
+                double taken = 0;
+                for (std::uint64_t i = 0; i < part.steps; ++i)
+                    taken += course(static_cast<double>(first_step(part) + i) / 64 / end);
+                found += part.share * taken / static_cast<double>(part.steps);
+                share += part.share;
+                steps += static_cast<double>(part.steps);
+            }
+            double all = 0;
+            for (int i = 0; i < 64 * static_cast<int>(end); ++i)
+                all += course(i / 64.0 / end) / (64 * end);
+            const auto which = &course - courses;
+            EXPECT_NEAR(share, 1, 1e-12) << which;
+            EXPECT_NEAR(found / all, 1, which < 5 ? 0.025 : 0.1) << which << ' ' << end;
+            EXPECT_LE(steps / 64, std::max(4.0, end)) << which;
+        }
 }
 
 } // namespace

@@ -40,9 +40,8 @@ const std::map<std::string, std::string> &not_tuned() {
 // the same for all would be less work.
 const std::set<std::string> &keep_own_substeps() {
     static const std::set<std::string> names{
-        "bounce_half", "slide_to_roll",    "slope_slides", "rope",
-        "long_chain",  "compounds",        "elastic_666",  "terrain",
-        "pyramid",     "twenty_box_stack", "welded"};
+        "bounce_half", "slide_to_roll", "slope_slides",     "rope",  "long_chain", "compounds",
+        "terrain",     "pyramid",       "twenty_box_stack", "welded"};
     return names;
 }
 
