@@ -128,6 +128,20 @@ void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &l
                  content.marks[label.mark].label, Face::label, ink);
 }
 
+// A name that is too long for one row goes on in a second, behind a comma.
+std::vector<std::string> rows_of(const ChartPen &pen, const std::string &name, float width) {
+    const auto fits = [&](std::size_t length) {
+        return pen.text_size(name.substr(0, length), Face::axis).x <= width;
+    };
+    std::size_t split = std::string::npos;
+    for (std::size_t comma = name.find(", "); comma != std::string::npos && fits(comma + 1);
+         comma = name.find(", ", comma + 1))
+        split = comma;
+    if (fits(name.size()) || split == std::string::npos)
+        return {pen.fitted(name, Face::axis, width)};
+    return {name.substr(0, split + 1), pen.fitted(name.substr(split + 2), Face::axis, width)};
+}
+
 void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
     using chart_style::mark_radius;
     const float left = layout.plot.max.x + 28;
@@ -142,9 +156,11 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         pen.line({left, y}, {left + 24, y}, series_colour(series), 1.8f);
         pen.mark({left + 12, y}, series.style, mark_radius + 1.3f, paper);
         pen.mark({left + 12, y}, series.style, mark_radius, series_colour(series));
-        pen.text({text_left, y}, pen.fitted(series.name, Face::axis, width), Face::axis, ink,
-                 {0, 0.5f});
-        y += row;
+        const std::vector<std::string> rows = rows_of(pen, series.name, width);
+        for (const std::string &text : rows) {
+            pen.text({text_left, y}, text, Face::axis, ink, {0, 0.5f});
+            y += &text == &rows.back() ? row : 16;
+        }
     }
     y += 12;
     const auto any = [&](auto is_such) {

@@ -31,9 +31,12 @@ class PixelCanvas final : public ChartCanvas {
         list_.PathFillConvex(c);
     }
     void stroke(std::span<const glm::vec2> points, ImU32 c, float width) override {
-        for (const glm::vec2 &p : points)
-            list_.PathLineTo(at(p));
-        list_.PathStroke(c, 0, width * supersampling);
+        // One by one with round joints: ImGui's mitres break where a curve turns back sharply.
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            list_.AddLine(at(points[i - 1]), at(points[i]), c, width * supersampling);
+            if (i + 1 < points.size())
+                list_.AddCircleFilled(at(points[i]), 0.5f * width * supersampling, c);
+        }
     }
     void text(glm::vec2 p, std::string_view text, Face face, float scale, ImU32 c) override {
         list_.AddText(fonts_[static_cast<std::size_t>(face)],
@@ -118,10 +121,10 @@ ChartPainter::ChartPainter(const std::filesystem::path &shader_dir) {
 
 ChartPainter::~ChartPainter() = default;
 
-Image ChartPainter::paint(const std::function<void(ChartPen &)> &draw) {
+Image ChartPainter::paint(const std::function<void(ChartPen &)> &draw, glm::vec2 extent) {
     parts_->gl->make_current();
     const CurrentImGui current(parts_->imgui.context);
-    const glm::ivec2 size = glm::ivec2(chart_style::size) * supersampling;
+    const glm::ivec2 size = glm::ivec2(extent) * supersampling;
     const Image large = paint_image(*parts_->renderer, size, glm::vec3(0.984f, 0.988f, 0.992f),
                                     [&](ImDrawList &list) {
                                         PixelCanvas canvas(list, parts_->fonts);
@@ -132,15 +135,15 @@ Image ChartPainter::paint(const std::function<void(ChartPen &)> &draw) {
 }
 
 Image ChartPainter::paint(const ChartContent &content) {
-    return paint([&](ChartPen &pen) { draw_chart(pen, content); });
+    return paint([&](ChartPen &pen) { draw_chart(pen, content); }, chart_size(content));
 }
 
 Image ChartPainter::paint(const PanelChart &chart) {
-    return paint([&](ChartPen &pen) { draw_panels(pen, chart); });
+    return paint([&](ChartPen &pen) { draw_panels(pen, chart); }, chart_style::size);
 }
 
 Image ChartPainter::paint(const MapPicture &picture) {
-    return paint([&](ChartPen &pen) { draw_map(pen, picture); });
+    return paint([&](ChartPen &pen) { draw_map(pen, picture); }, chart_style::size);
 }
 
 } // namespace plumb

@@ -24,13 +24,13 @@ class ChartPainter {
     ChartPainter(const ChartPainter &) = delete;
     ChartPainter &operator=(const ChartPainter &) = delete;
 
-    // 1200 x 800 pixels.
+    // 1200 x 800 pixels; a chart of many series is higher.
     [[nodiscard]] Image paint(const ChartContent &content);
     [[nodiscard]] Image paint(const PanelChart &chart);
     [[nodiscard]] Image paint(const MapPicture &picture);
 
   private:
-    [[nodiscard]] Image paint(const std::function<void(ChartPen &)> &draw);
+    [[nodiscard]] Image paint(const std::function<void(ChartPen &)> &draw, glm::vec2 extent);
 
     struct Parts;
     std::unique_ptr<Parts> parts_;

@@ -105,10 +105,21 @@ std::vector<std::string> fitting_lines(const std::vector<std::vector<std::string
     return lines;
 }
 
+glm::vec2 chart_size(const ChartContent &content) {
+    constexpr float row = 20, second_row = 16;
+    constexpr std::size_t long_name = 30; // characters, that may take two rows
+    constexpr float fits = 17 * row;
+    float names = 0;
+    for (const ChartSeries &series : content.series)
+        names += series.name.size() > long_name ? row + second_row : row;
+    return chart_style::size + glm::vec2(0, std::max(names - fits, 0.0f));
+}
+
 ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     using namespace chart_style;
     ChartLayout layout;
-    layout.size = size;
+    layout.size = chart_size(content);
+    const PixelBox plot{chart_style::plot.min, chart_style::plot.max + (layout.size - size)};
     layout.plot = plot;
     layout.field = plot;
 

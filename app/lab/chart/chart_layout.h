@@ -121,6 +121,9 @@ inline constexpr float label_margin = 2; // on both sides of a label, within its
 inline constexpr PixelBox plot{{96, 132}, {932, 668}};
 } // namespace chart_style
 
+// As high as the names of many series need.
+[[nodiscard]] glm::vec2 chart_size(const ChartContent &content);
+
 [[nodiscard]] ChartLayout lay_out(const ChartContent &content, const TextSize &text_size);
 
 // Places a box of each size beside its point, off all points (squares of their radii around

@@ -83,11 +83,10 @@ class SvgCanvas final : public ChartCanvas {
     const ChartFonts &fonts_;
 };
 
-void write(std::ostream &out, const std::function<void(ChartPen &)> &draw) {
+void write(std::ostream &out, glm::vec2 size, const std::function<void(ChartPen &)> &draw) {
     ImFontAtlas atlas;
     const ChartFonts fonts = load_chart_fonts(atlas);
     atlas.Build();
-    const glm::vec2 size = chart_style::size;
     out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << number(size.x) << "\" height=\""
         << number(size.y) << "\" viewBox=\"0 0 " << number(size.x) << " " << number(size.y)
         << "\" font-family=\"Roboto, sans-serif\">\n";
@@ -101,15 +100,15 @@ void write(std::ostream &out, const std::function<void(ChartPen &)> &draw) {
 } // namespace
 
 void write_chart_svg(std::ostream &out, const ChartContent &content) {
-    write(out, [&](ChartPen &pen) { draw_chart(pen, content); });
+    write(out, chart_size(content), [&](ChartPen &pen) { draw_chart(pen, content); });
 }
 
 void write_chart_svg(std::ostream &out, const MapPicture &picture) {
-    write(out, [&](ChartPen &pen) { draw_map(pen, picture); });
+    write(out, chart_style::size, [&](ChartPen &pen) { draw_map(pen, picture); });
 }
 
 void write_chart_svg(std::ostream &out, const PanelChart &chart) {
-    write(out, [&](ChartPen &pen) { draw_panels(pen, chart); });
+    write(out, chart_style::size, [&](ChartPen &pen) { draw_panels(pen, chart); });
 }
 
 } // namespace plumb
