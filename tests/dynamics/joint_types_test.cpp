@@ -237,6 +237,51 @@ TEST(Springs, AreStableAtAnyStiffness) {
     }
 }
 
+// Two bodies that tumble on one another's spring for a minute: what turns one turns the other back,
+// and together they have no more than they began with. Where its force acted at two anchors, and
+// its stiffness turned with both, they changed their angular momentum by as much as there was, and
+// some doubled their energy.
+TEST(Springs, BetweenFreeBodiesKeepWhatThereIs) {
+    Random random(8);
+    for (const JointType type :
+         {JointType::ball, JointType::hinge, JointType::slider, JointType::fixed})
+        for (const double damping : {0.0, 0.2})
+            for (int trial = 0; trial < 8; ++trial) {
+                World world("soft_step", weightless(settings_for("soft_step")));
+                JointDef def;
+                def.type = type;
+                def.frequency = Real(random.next_in(0.5, 3));
+                def.damping_ratio = Real(damping);
+                for (const double side : {-1.0, 1.0}) {
+                    const V half{random.next_in(0.1, 0.5), random.next_in(0.1, 0.5),
+                                 random.next_in(0.1, 0.5)};
+                    const V at = side * V{half.x + 0.1, 0, 0};
+                    BodyDef body = dynamic_body(block(half), random.next_in(1, 20), at,
+                                                any_vector(random, 0.3));
+                    body.angular_velocity = narrow(any_vector(random, 1));
+                    body.colliders[0].filter = {0, 1};
+                    (side < 0 ? def.a : def.b) = world.add_body(body);
+                    (side < 0 ? def.anchor_a_local : def.anchor_b_local) = narrow(-at);
+                }
+                def.frame_a_local = def.frame_b_local = narrow(any_rotation(random));
+                world.add_joint(def);
+                const Measures before = world.measure();
+                double most = 0, lost = 0;
+                for (int i = 0; i < 3600; ++i) {
+                    world.step(nullptr);
+                    const Measures now = world.measure();
+                    most = std::max(most, now.kinetic_energy);
+                    lost = std::max(lost,
+                                    glm::distance(now.angular_momentum, before.angular_momentum));
+                }
+                // Its rows are linear in a step, which undamped ones do not quite make up for.
+                EXPECT_LT(most, (damping > 0 ? 1 : 1.3) * before.kinetic_energy)
+                    << int(type) << ' ' << damping << ' ' << trial;
+                EXPECT_LT(lost, 5e-3 * glm::length(before.angular_momentum))
+                    << int(type) << ' ' << damping << ' ' << trial;
+            }
+}
+
 // A rope is not there until it is taut.
 TEST_P(JointTypes, ARopeIsSlackUntilItIsTaut) {
     World world(GetParam(), settings_for(GetParam()));

@@ -253,7 +253,7 @@ void repeat_springs(StepContext &context) {
 }
 
 void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &pass) {
-    const Vec3 change = impulse_change(joint, context.body(joint.a), context.body(joint.b), pass);
+    const Vec3 change = impulse_change(context, joint, pass);
     joint.impulse += change;
     apply(context, joint, change);
     if (joint.is_weighed && change != Vec3{Real(0)})

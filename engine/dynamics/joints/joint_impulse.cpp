@@ -94,6 +94,22 @@ Mat3 locked_compliance(const Mat3 &k) {
     return (Real(1e3) * size) * (locked * locked);
 }
 
+namespace {
+
+// K of the rows.
+Mat3 matrix_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
+    if (rows.kind == RowKind::point)
+        return point_matrix(a, b, rows.r_a, rows.r_b);
+    Mat3 k{Real(0)};
+    for (int i = 0; i < rows.count; ++i)
+        for (int j = 0; j <= i; ++j)
+            k[i][j] = k[j][i] = row_coupling(rows, a, b, rows.axes[static_cast<std::size_t>(i)],
+                                             rows.axes[static_cast<std::size_t>(j)]);
+    return k;
+}
+
+} // namespace
+
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
     if (rows.kind == RowKind::point)
         return inverse_of(point_matrix(a, b, rows.r_a, rows.r_b));
@@ -105,11 +121,7 @@ Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
         mass[0][0] = k > Real(0) ? Real(1) / k : Real(0);
         return mass;
     }
-    Mat3 k{Real(0)};
-    for (int i = 0; i < rows.count; ++i)
-        for (int j = 0; j <= i; ++j)
-            k[i][j] = k[j][i] = row_coupling(rows, a, b, rows.axes[static_cast<std::size_t>(i)],
-                                             rows.axes[static_cast<std::size_t>(j)]);
+    const Mat3 k = matrix_of(rows, a, b);
     Mat3 mass{Real(0)};
     if (rows.count == 2) {
         const Real determinant = k[0][0] * k[1][1] - k[1][0] * k[0][1];
@@ -210,8 +222,52 @@ Vec3 pushed(const Vec3 &bias, Real most) {
     return speed > most ? (most / speed) * bias : bias;
 }
 
-Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
-                    const JointPass &pass) {
+namespace {
+
+// K of the rows as it was when the bodies were joined, their frames together, turned with a. As K
+// of now, a spring's stiffness would turn with both bodies, and feed what swings on it.
+Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
+    const Joint &of = context.model.joints[joint.joint];
+    const RowBlock &rows = joint.rows;
+    const Quat &rotation_a = context.body(joint.a).rotation;
+    SolverBody ends[2];
+    const auto put = [&](SolverBody &end, std::uint32_t index, const Quat &rotation) {
+        if (index == Joint::world || !(context.model.bodies[index].mass > Real(0)))
+            return;
+        const Body &body = context.model.bodies[index];
+        end.inv_mass = Vec3{Real(1) / body.mass};
+        end.inv_inertia = world_inverse_inertia(rotation, body.inv_inertia);
+    };
+    const Quat rotation_b = rotation_a * of.frame_a_local * glm::conjugate(of.frame_b_local);
+    put(ends[0], joint.a, rotation_a);
+    put(ends[1], joint.b, rotation_b);
+    RowBlock then = rows;
+    then.r_a = rotation_a * of.anchor_a_local;
+    then.r_b = rotation_b * of.anchor_b_local;
+    Mat3 k = matrix_of(then, ends[0], ends[1]);
+    if (rows.kind == RowKind::angular && rows.count == 2) { // about which b spins
+        k[0][0] = k[1][1] = Real(0.5) * (k[0][0] + k[1][1]);
+        k[0][1] = k[1][0] = Real(0);
+    }
+    return k;
+}
+
+// Of a spring of several rows.
+Vec3 spring_change(StepContext &context, const JointConstraint &joint, const Vec3 &wanted,
+                   const Softness &softness) {
+    const Real share = softness.impulse_scale / softness.mass_scale;
+    const Mat3 gives = share * matrix_as_joined(context, joint);
+    Mat3 k = matrix_of(joint.rows, context.body(joint.a), context.body(joint.b)) + gives;
+    if (joint.rows.count == 2)
+        k[2][2] = k[1][1]; // of no row
+    return -inverse_of(k) * (wanted + gives * joint.impulse);
+}
+
+} // namespace
+
+Vec3 impulse_change(StepContext &context, const JointConstraint &joint, const JointPass &pass) {
+    const SolverBody &a = context.body(joint.a);
+    const SolverBody &b = context.body(joint.b);
     const RowBlock &rows = joint.rows;
     const Softness softness = joint.is_spring() ? spring_softness(rows, pass) : pass.softness;
     const Vec3 v = row_velocity(rows, a, b, pass) + joint.turning;
@@ -223,6 +279,8 @@ Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const Sol
                                 (v.x + std::clamp(softness.bias_rate * error.x, -most, most)) -
                             softness.impulse_scale * joint.impulse.x,
                         Real(0), Real(0)};
+        if (joint.is_spring() && joint.joint != JointConstraint::grab)
+            return spring_change(context, joint, v + softness.bias_rate * error, softness);
         return -softness.mass_scale *
                    (joint.mass * (v + pushed(softness.bias_rate * error, most))) -
                softness.impulse_scale * joint.impulse;

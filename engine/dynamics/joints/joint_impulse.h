@@ -58,7 +58,6 @@ void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impul
 // No faster than `most`.
 Vec3 pushed(const Vec3 &bias, Real most);
 // What a pass adds to the rows' impulse.
-Vec3 impulse_change(const JointConstraint &joint, const SolverBody &a, const SolverBody &b,
-                    const JointPass &pass);
+Vec3 impulse_change(StepContext &context, const JointConstraint &joint, const JointPass &pass);
 
 } // namespace plumb::inline PLUMB_PRECISION

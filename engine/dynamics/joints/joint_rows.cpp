@@ -55,6 +55,11 @@ void emit_point(const Joint &joint, const Motion &a, const Motion &b, std::size_
     block.r_a = a.rotation * joint.anchor_a_local;
     block.r_b = b.rotation * joint.anchor_b_local;
     block.error = (b.position - a.position) + (block.r_b - block.r_a);
+    // What gives way acts in one place, that of b's anchor, as if its spring were mounted on a: at
+    // two, forces that are not along the stretch, and the damper's are not, would change the
+    // angular momentum.
+    if (joint.frequency > Real(0))
+        block.r_a += block.error;
     block.frequency = joint.frequency;
     block.damping_ratio = joint.damping_ratio;
 }
