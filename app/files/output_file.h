@@ -57,7 +57,7 @@ class OutputFile {
     [[nodiscard]] const std::filesystem::path &path() const { return path_; }
 
     void finish();
-    // Where what was written of one that shall not be completed is kept: beside the file itself,
+    // Where what was written of one that will not be completed is kept: beside the file itself,
     // under its name with ".partial" appended; links are followed here, too. Empty where everything
     // goes straight through.
     [[nodiscard]] std::filesystem::path partial_place() const;

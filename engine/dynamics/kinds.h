@@ -11,7 +11,7 @@ enum class BodyKind { static_body, kinematic, dynamic };
 // least and a greatest distance, like a massless rod or rope. hinge: the bodies share a point and
 // an axis, about which they turn. slider: they only move along an axis. fixed: they are one.
 //
-// The only list of them: each has a file in engine/dynamics/joints/ and a row in
+// The only list of them: each has a file in engine/dynamics/joints/kinds/ and a row in
 // engine/scene/joint_type.cpp.
 #define PLUMB_JOINT_TYPES(JOINT) JOINT(ball) JOINT(distance) JOINT(hinge) JOINT(slider) JOINT(fixed)
 

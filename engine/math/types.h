@@ -29,11 +29,6 @@ struct Transform {
     Quat rotation = identity_rotation;
 };
 
-// [a]x, so that cross_matrix(a) * b == cross(a, b).
-inline Mat3 cross_matrix(const Vec3 &a) {
-    return Mat3{Vec3{Real(0), a.z, -a.y}, Vec3{-a.z, Real(0), a.x}, Vec3{a.y, -a.x, Real(0)}};
-}
-
 // q v q^-1. Exact in length for a quaternion that is a rounding off unit length, where GLM's
 // product scales the vector: what turns a vector back and forth in every step then loses or gains
 // it.

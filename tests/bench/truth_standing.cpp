@@ -1,4 +1,4 @@
-// What shall stand, and how deep it sinks.
+// What should stand, and how deep it sinks.
 #include "tests/bench/scene_parts.h"
 #include "tests/bench/truth.h"
 

@@ -3,7 +3,7 @@
 
 usage: window_test.py PROGRAM [--keep DIR]
 
-Every step waits for what it shall bring about, as the window's title tells it ("scene - paused -
+Every step waits for what it brings about, as the window's title tells it ("scene - paused -
 step 12 - Plumb"), so a slow machine is only slow. With --keep the pictures are left in DIR.
 """
 

@@ -94,7 +94,7 @@ const ImDrawData &Ui::draw(PanelContext &context) {
         if (wished[row.id] > 0)
             panel(context, row, rects[row.id]);
 
-    // What comes and goes over the scene shall not move it.
+    // What comes and goes over the scene must not move it.
     std::vector<Rect> taken;
     for (const Panel &panel : panels_)
         if (panel.id != PanelId::messages && panel.id != PanelId::help)

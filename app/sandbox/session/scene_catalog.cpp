@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The title's line alone: a list of scenes shall not parse them all.
+// The title's line alone: a list of scenes need not parse them all.
 std::string read_title(const fs::path &path) {
     constexpr std::size_t head_bytes = 1U << 16U; // where a title stands
     std::string head(head_bytes, '\0');

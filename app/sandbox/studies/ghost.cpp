@@ -14,7 +14,7 @@ namespace plumb {
 
 namespace {
 
-// A ghost with a shorter step takes so many for one of the other's, and no more: it shall not
+// A ghost with a shorter step takes so many for one of the other's, and no more: it must not
 // stall the play.
 constexpr int most_steps = 64;
 constexpr double reference_allowance = 8e-3; // s, half of a picture at 60 Hz

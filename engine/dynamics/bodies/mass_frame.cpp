@@ -14,7 +14,6 @@ namespace {
 
 struct Sum {
     double mass = 0;
-    double volume = 0;
     glm::dvec3 center{0}; // times the mass, until it is divided
     glm::dmat3 inertia{0.0};
 };
@@ -36,7 +35,6 @@ Sum sum_of(const std::vector<ColliderDef> &colliders) {
         parts.push_back(collider.sensor ? MassProperties{} : mass_properties(collider.shape));
         const double mass = density_of(collider) * static_cast<double>(parts.back().volume);
         sum.mass += mass;
-        sum.volume += static_cast<double>(parts.back().volume);
         sum.center += mass * glm::dvec3(parts.back().center);
     }
     if (!(sum.mass > 0))

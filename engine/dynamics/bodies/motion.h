@@ -81,7 +81,7 @@ bool has_gyroscopic_spin(const Body &body);
 
 // One body's substep, with a constraint solver's velocity changes in the middle:
 //
-//   FreeFlight flight = begin_flight(...)   velocities as the solver shall find them
+//   FreeFlight flight = begin_flight(...)   velocities for the solver to start from
 //   ... the solver changes motion.velocity and motion.angular_velocity, or not ...
 //   move(...)                               the pose after h
 //   end_flight(...)                         velocities at the end of h

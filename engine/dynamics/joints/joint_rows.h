@@ -82,7 +82,7 @@ struct JointPlace {
 };
 JointPlace place_of(const Joint &joint, const Motion &a, const Motion &b);
 
-// Those of one type: one file each in joints/.
+// Those of one type: one file each in joints/kinds/.
 #define PLUMB_JOINT_FUNCTIONS(name)                                                                \
     void emit_##name(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);       \
     JointPlace place_of_##name(const Joint &joint, const Motion &a, const Motion &b);
