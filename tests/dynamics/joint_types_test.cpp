@@ -243,8 +243,8 @@ TEST(Springs, AreStableAtAnyStiffness) {
 // some doubled their energy.
 TEST(Springs, BetweenFreeBodiesKeepWhatThereIs) {
     Random random(8);
-    for (const JointType type :
-         {JointType::ball, JointType::hinge, JointType::slider, JointType::fixed})
+    for (const JointType type : {JointType::ball, JointType::hinge, JointType::slider,
+                                 JointType::fixed, JointType::distance})
         for (const double damping : {0.0, 0.2})
             for (int trial = 0; trial < 8; ++trial) {
                 World world("soft_step", weightless(settings_for("soft_step")));
@@ -252,6 +252,7 @@ TEST(Springs, BetweenFreeBodiesKeepWhatThereIs) {
                 def.type = type;
                 def.frequency = Real(random.next_in(0.5, 3));
                 def.damping_ratio = Real(damping);
+                set_length(def, Real(0.3));
                 for (const double side : {-1.0, 1.0}) {
                     const V half{random.next_in(0.1, 0.5), random.next_in(0.1, 0.5),
                                  random.next_in(0.1, 0.5)};
@@ -261,7 +262,8 @@ TEST(Springs, BetweenFreeBodiesKeepWhatThereIs) {
                     body.angular_velocity = narrow(any_vector(random, 1));
                     body.colliders[0].filter = {0, 1};
                     (side < 0 ? def.a : def.b) = world.add_body(body);
-                    (side < 0 ? def.anchor_a_local : def.anchor_b_local) = narrow(-at);
+                    const V off = type == JointType::distance ? side * V{0.15, 0, 0} : V{0};
+                    (side < 0 ? def.anchor_a_local : def.anchor_b_local) = narrow(off - at);
                 }
                 def.frame_a_local = def.frame_b_local = narrow(any_rotation(random));
                 world.add_joint(def);

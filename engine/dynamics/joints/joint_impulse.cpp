@@ -244,12 +244,29 @@ Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     RowBlock then = rows;
     then.r_a = rotation_a * of.anchor_a_local;
     then.r_b = rotation_b * of.anchor_b_local;
+    if (rows.count == 1) { // along a line between anchors: the mean of all ways that may turn
+        Mat3 mean{Real(0)};
+        const Mat3 k = point_matrix(ends[0], ends[1], then.r_a, then.r_b);
+        mean[0][0] = (k[0][0] + k[1][1] + k[2][2]) / Real(3);
+        return mean;
+    }
     Mat3 k = matrix_of(then, ends[0], ends[1]);
     if (rows.kind == RowKind::angular && rows.count == 2) { // about which b spins
         k[0][0] = k[1][1] = Real(0.5) * (k[0][0] + k[1][1]);
         k[0][1] = k[1][0] = Real(0);
     }
     return k;
+}
+
+// Of a spring of one row, which may be a limit.
+Softness spring_softness(StepContext &context, const JointConstraint &joint,
+                         const JointPass &pass) {
+    Softness softness = spring_softness(joint.rows, pass);
+    const Real gives = softness.impulse_scale / softness.mass_scale *
+                       matrix_as_joined(context, joint)[0][0] * joint.mass[0][0];
+    softness.mass_scale = Real(1) / (Real(1) + gives);
+    softness.impulse_scale = gives * softness.mass_scale;
+    return softness;
 }
 
 // Of a spring of several rows.
@@ -269,7 +286,9 @@ Vec3 impulse_change(StepContext &context, const JointConstraint &joint, const Jo
     const SolverBody &a = context.body(joint.a);
     const SolverBody &b = context.body(joint.b);
     const RowBlock &rows = joint.rows;
-    const Softness softness = joint.is_spring() ? spring_softness(rows, pass) : pass.softness;
+    const Softness softness = !joint.is_spring() ? pass.softness
+                              : rows.count == 1  ? spring_softness(context, joint, pass)
+                                                 : spring_softness(rows, pass);
     const Vec3 v = row_velocity(rows, a, b, pass) + joint.turning;
     const Real most =
         joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
