@@ -262,22 +262,25 @@ Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
 Softness spring_softness(StepContext &context, const JointConstraint &joint,
                          const JointPass &pass) {
     Softness softness = spring_softness(joint.rows, pass);
-    const Real gives = softness.impulse_scale / softness.mass_scale *
-                       matrix_as_joined(context, joint)[0][0] * joint.mass[0][0];
-    softness.mass_scale = Real(1) / (Real(1) + gives);
-    softness.impulse_scale = gives * softness.mass_scale;
+    const Real stiffness = softness.mass_scale / softness.impulse_scale; // a2 of make_soft
+    const Real joined = matrix_as_joined(context, joint)[0][0] * joint.mass[0][0];
+    if (joined > Real(0)) {
+        softness.mass_scale = stiffness / (stiffness + joined);
+        softness.impulse_scale = joined / (stiffness + joined);
+    }
     return softness;
 }
 
 // Of a spring of several rows.
 Vec3 spring_change(StepContext &context, const JointConstraint &joint, const Vec3 &wanted,
                    const Softness &softness) {
-    const Real share = softness.impulse_scale / softness.mass_scale;
-    const Mat3 gives = share * matrix_as_joined(context, joint);
-    Mat3 k = matrix_of(joint.rows, context.body(joint.a), context.body(joint.b)) + gives;
+    const Real stiffness = softness.mass_scale / softness.impulse_scale; // a2 of make_soft
+    const Mat3 joined = matrix_as_joined(context, joint);
+    Mat3 k =
+        stiffness * matrix_of(joint.rows, context.body(joint.a), context.body(joint.b)) + joined;
     if (joint.rows.count == 2)
         k[2][2] = k[1][1]; // of no row
-    return -inverse_of(k) * (wanted + gives * joint.impulse);
+    return -inverse_of(k) * (stiffness * wanted + joined * joint.impulse);
 }
 
 } // namespace
