@@ -165,9 +165,7 @@ class Charting {
             options_.precisions = {Precision::f64};
         chart_.scene = scene;
         chart_.convergence = options_.convergence;
-        chart_.sweep = !options_.sweep.empty() ? options_.sweep
-                       : options_.convergence  ? std::vector{default_convergence_sweep()}
-                                               : std::vector{default_sweep()};
+        chart_.sweep = sweep_of(options_);
         if (options_.convergence &&
             (chart_.sweep.size() != 1 || chart_.sweep.front().setting.setting().name != "dt"))
             throw std::invalid_argument(
@@ -382,6 +380,12 @@ class Charting {
 };
 
 } // namespace
+
+std::vector<SweepAxis> sweep_of(const ChartOptions &options) {
+    if (!options.sweep.empty())
+        return options.sweep;
+    return {options.convergence ? default_convergence_sweep() : default_sweep()};
+}
 
 SceneChart chart_scene(const SceneDesc &scene, const ChartOptions &options,
                        const std::function<void(const SceneChart &)> &changed) {

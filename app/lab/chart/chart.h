@@ -96,6 +96,9 @@ struct ChartOptions {
 // "precision=float,double", "threads=1,2,4", or what parse_sweep takes; throws as that does.
 void add_sweep(ChartOptions &options, std::string_view text);
 
+// What it goes through: the options' sweep, or else the default.
+[[nodiscard]] std::vector<SweepAxis> sweep_of(const ChartOptions &options);
+
 // Of all that makes it another run of the chart: method, threads, precision, settings.
 [[nodiscard]] std::string run_key(const ResolvedRun &run, int threads);
 

@@ -155,6 +155,11 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
 } // namespace
 
 ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostream &err) {
+    const RunOptions &given = command.options.base;
+    for (const SweepAxis &axis : sweep_of(command.options))
+        refuse_given(axis.setting, given.settings);
+    if (given.precision && !command.options.precisions.empty())
+        throw std::invalid_argument("precision is given and swept, too: leave one of them out");
     const LoadedScenes loaded = load_scenes(command.scenes, err);
     ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
     std::set<std::string> names;

@@ -103,10 +103,6 @@ void add_sweep(ChartOptions &options, std::string_view text) {
 std::vector<PlannedRun> plan_chart(const SceneDesc &scene, const ChartOptions &options,
                                    const std::vector<SweepAxis> &sweep,
                                    std::vector<std::string> &left_out) {
-    for (const SweepAxis &axis : sweep)
-        refuse_given(axis.setting, options.base.settings);
-    if (options.base.precision && !options.precisions.empty())
-        throw std::invalid_argument("precision is given and swept, too: leave one of them out");
     const std::vector<SweepPoint> points = sweep_points(sweep);
     std::vector<std::optional<Precision>> precisions{options.base.precision};
     if (!options.precisions.empty())

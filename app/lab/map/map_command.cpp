@@ -85,6 +85,9 @@ ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &e
     if (!scene)
         return ExitCode::bad_input;
 
+    for (const MapAxis *axis : {&command.x, &command.y})
+        if (axis->setting)
+            refuse_given(*axis->setting, command.options.base.settings);
     const InterruptGuard interrupt;
     ProgressLine line(err);
     line.show(0, command.scene.string());

@@ -2,7 +2,6 @@
 
 #include "app/lab/map/passage.h"
 #include "app/lab/run/method_choice.h"
-#include "app/lab/run/sweep.h"
 #include "engine/scene/file/change.h"
 
 #include <algorithm>
@@ -282,9 +281,6 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     map.y = settled(scene, y, options.base);
     if (map.x.name == map.y.name)
         throw std::invalid_argument(map.x.name + " is on both axes");
-    for (const MapAxis *axis : {&map.x, &map.y})
-        if (axis->setting)
-            refuse_given(*axis->setting, options.base.settings);
     for (const MethodInfo *method : methods_for(map.scene, options.methods, map.left_out))
         map.methods.push_back({method, {}, {}});
     for (MethodMap &of_method : map.methods) {

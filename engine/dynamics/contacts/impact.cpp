@@ -138,8 +138,7 @@ class Answers {
                 if (group_of(body) != JointSystem::none)
                     groups.push_back(group_of(body));
         std::ranges::sort(groups);
-        const auto same = std::ranges::unique(groups);
-        groups.erase(same.begin(), same.end());
+        groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
         JointSystem &system = *context.scratch.joint_system;
         for (const std::uint32_t group : groups)
             for (std::uint32_t i = system.groups()[group].first; i < system.groups()[group].last;
@@ -292,10 +291,11 @@ void strike(StepContext &context, std::span<Blow> blows, Real h) {
     const Real time = joints.are_any() ? Real(0) : time_to_touch(context, blows, h);
     if (!(time > Real(0)))
         return;
-    const auto index_of = [](const auto &one) { return one.first; };
-    std::ranges::sort(before, {}, index_of);
-    const auto same = std::ranges::unique(before, {}, index_of);
-    before.erase(same.begin(), same.end());
+    std::ranges::sort(before, {}, [](const auto &one) { return one.first; });
+    const auto is_same = [](const auto &one, const auto &other) {
+        return one.first == other.first;
+    };
+    before.erase(std::unique(before.begin(), before.end(), is_same), before.end());
     for (const auto &[index, velocity] : before) {
         SolverBody &body = context.bodies[index];
         const Vec3 way = time * (velocity - body.velocity);

@@ -4,6 +4,7 @@
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -230,7 +231,7 @@ Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     const Joint &of = context.model.joints[joint.joint];
     const RowBlock &rows = joint.rows;
     const Quat &rotation_a = context.body(joint.a).rotation;
-    SolverBody ends[2];
+    std::array<SolverBody, 2> ends;
     const auto put = [&](SolverBody &end, std::uint32_t index, const Quat &rotation) {
         if (index == Joint::world || !(context.model.bodies[index].mass > Real(0)))
             return;
