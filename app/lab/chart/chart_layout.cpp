@@ -119,9 +119,8 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     using namespace chart_style;
     ChartLayout layout;
     layout.size = chart_size(content);
-    const PixelBox plot{chart_style::plot.min, chart_style::plot.max + (layout.size - size)};
-    layout.plot = plot;
-    layout.field = plot;
+    layout.plot = {plot.min, plot.max + (layout.size - size)};
+    layout.field = layout.plot;
 
     std::vector<double> costs, errors;
     bool any_failed = false, any_zero = false;
@@ -154,15 +153,16 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     layout.cost_range = log_range(costs);
     layout.error_range = log_range(errors);
     if (any_failed) {
-        layout.failed_line = plot.min.y + strip / 2;
+        layout.failed_line = layout.plot.min.y + strip / 2;
         layout.field.min.y += strip;
     }
     const bool zero_is_the_limit = content.limit && *content.limit == 0;
     const bool any_above =
         std::any_of(errors.begin(), errors.end(), [](double e) { return e > 0; });
     if (any_zero || zero_is_the_limit) {
-        layout.field.max.y = any_above || any_failed ? plot.max.y - strip : layout.field.min.y;
-        layout.zero_line = 0.5f * (layout.field.max.y + plot.max.y);
+        layout.field.max.y =
+            any_above || any_failed ? layout.plot.max.y - strip : layout.field.min.y;
+        layout.zero_line = 0.5f * (layout.field.max.y + layout.plot.max.y);
     }
 
     const PixelBox &field = layout.field;
@@ -253,8 +253,8 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         }
     }
     if (layout.limit_line && (layout.budget_line || !has_budget || budget_is_above))
-        layout.corner = {{plot.min.x, *layout.limit_line},
-                         {layout.budget_line.value_or(plot.max.x), plot.max.y}};
+        layout.corner = {{layout.plot.min.x, *layout.limit_line},
+                         {layout.budget_line.value_or(layout.plot.max.x), layout.plot.max.y}};
 
     // The front, from cheap to dear.
     std::vector<std::size_t> front;
@@ -294,7 +294,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
                            glm::vec2(field.max.x, *layout.floor_line));
     if (layout.budget_line)
         lines.emplace_back(glm::vec2(*layout.budget_line, field.min.y),
-                           glm::vec2(*layout.budget_line, plot.max.y));
+                           glm::vec2(*layout.budget_line, layout.plot.max.y));
     std::vector<std::size_t> order(content.marks.size());
     std::vector<glm::vec2> sizes;
     std::vector<float> radii;
@@ -317,7 +317,8 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
          {layout.failed_line ? std::optional(field.min.y) : std::nullopt,
           layout.zero_line ? std::optional(field.max.y) : std::nullopt})
         if (border)
-            obstacles.push_back({{plot.min.x, *border - 1}, {plot.max.x, *border + 1}});
+            obstacles.push_back(
+                {{layout.plot.min.x, *border - 1}, {layout.plot.max.x, *border + 1}});
     layout.labels = place_labels(layout.marks, sizes, radii, order, layout.plot, obstacles, lines);
     return layout;
 }

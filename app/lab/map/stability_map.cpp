@@ -71,7 +71,7 @@ class Point {
 // A number of the file takes whole numbers alone when the scene refuses what lies between two, and
 // nothing else.
 MapAxis settled(const SceneText &text, const MapAxis &given, const RunOptions &base) {
-    const MapAxis axis = with_whole_path(given, text.text);
+    MapAxis axis = with_whole_path(given, text.text);
     if (axis.setting)
         return axis;
     const std::string world = "world.";
