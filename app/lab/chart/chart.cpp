@@ -2,13 +2,11 @@
 
 #include "app/lab/chart/chart_plan.h"
 #include "app/lab/chart/pareto.h"
-#include "app/lab/clocks.h"
 #include "app/lab/csv.h"
 #include "app/lab/engines/engine_simulation.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/run_timer.h"
 #include "app/lab/timing.h"
-#include "engine/core/check.h"
 #include "engine/core/random.h"
 #include "engine/core/task_pool.h"
 
@@ -254,13 +252,8 @@ class Charting {
         run.point = next.point;
         std::unique_ptr<Simulation> simulated = simulation(next, scene_);
         RunRecord record(end_, chart_.timed);
-        JudgeOptions judging;
+        JudgeOptions judging = noting(record, *simulated);
         judging.follow_errors = true;
-        judging.wall_clock = chart_.wall_clock;
-        judging.duration = options_.duration;
-        judging.stop = options_.stop;
-        judging.times_called = record.times();
-        judging.at_time = [&](double used) { record.note(*simulated, used); };
         judging.progress = [&](double fraction) { progress(begin + share * fraction, run); };
         run.run = judge_run(*simulated, scene_, judging);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
@@ -280,11 +273,8 @@ class Charting {
         }
         set_cost(run);
         timers_.emplace_back();
-        if (!run.run.divergence && !run.run.stopped && chart_.repeats > 0) {
-            std::vector<TimedPart> parts = record.take_parts(*simulated, run.run.step_time);
-            timers_.back().emplace(std::move(simulated), std::move(parts), run.cost,
-                                   chart_.wall_clock);
-        }
+        if (!run.run.divergence && !run.run.stopped && chart_.repeats > 0)
+            set_timer(std::move(simulated), record, run.run.step_time, run.cost);
         const double seconds = static_cast<double>(run.run.steps) * run.resolved.settings.dt;
         if (seconds > 0) {
             run.body_passes = static_cast<double>(run.run.body_passes) / seconds;
@@ -293,45 +283,40 @@ class Charting {
         chart_.runs.push_back(std::move(run));
     }
 
-    // With what is known of it; where timings are missing it is stepped once more, unjudged.
+    // With what is known of it; where timings are missing it is run once more, for its parts.
     void go_on(std::size_t index, ChartRun known, double begin) {
         known.index = index;
         known.resolved = planned_[index].resolved;
         known.point = planned_[index].point;
         timers_.emplace_back();
         if (!stopped() && !known.run.divergence &&
-            known.timings.size() < static_cast<std::size_t>(chart_.repeats))
-            try {
-                std::unique_ptr<Simulation> simulated = simulation(planned_[index], scene_);
-                if (std::optional<std::vector<TimedPart>> parts =
-                        find_parts(*simulated, [&] { progress(begin, known); }))
-                    timers_.back().emplace(std::move(simulated), std::move(*parts), known.cost,
-                                           chart_.wall_clock);
-            } catch (const CheckFailure &) {
-                timers_.back().reset();
-            }
+            known.timings.size() < static_cast<std::size_t>(chart_.repeats)) {
+            std::unique_ptr<Simulation> simulated = simulation(planned_[index], scene_);
+            RunRecord record(end_, chart_.timed);
+            JudgeOptions judging = noting(record, *simulated);
+            judging.progress = [&](double) { progress(begin, known); };
+            const JudgedRun again = judge_run(*simulated, scene_, judging);
+            if (!again.divergence && !again.stopped)
+                set_timer(std::move(simulated), record, again.step_time, known.cost);
+        }
         chart_.runs.push_back(std::move(known));
     }
 
-    // Nothing where it was stopped.
-    std::optional<std::vector<TimedPart>> find_parts(Simulation &simulated,
-                                                     const std::function<void()> &stepped) const {
-        RunRecord record(end_, chart_.timed);
-        const auto now = [&] { return chart_.wall_clock ? wall_time() : thread_cpu_time(); };
-        const double slack = 1e-6 * simulated.settings().dt;
-        double used = 0;
-        auto next = record.times().begin();
-        while (simulated.time() < end_ - slack) {
-            if (stopped())
-                return std::nullopt;
-            for (; next != record.times().end() && simulated.time() >= *next - slack; ++next)
-                record.note(simulated, used);
-            const double before = now();
-            simulated.step();
-            used += now() - before;
-            stepped();
-        }
-        return record.take_parts(simulated, used);
+    JudgeOptions noting(RunRecord &record, Simulation &simulated) const {
+        JudgeOptions judging;
+        judging.wall_clock = chart_.wall_clock;
+        judging.duration = options_.duration;
+        judging.stop = options_.stop;
+        judging.times_called = record.times();
+        judging.at_time = [&](double used) { record.note(simulated, used); };
+        return judging;
+    }
+
+    // Of the last run.
+    void set_timer(std::unique_ptr<Simulation> simulated, RunRecord &record, double used,
+                   double cost) {
+        std::vector<TimedPart> parts = record.take_parts(*simulated, used);
+        timers_.back().emplace(std::move(simulated), std::move(parts), cost, chart_.wall_clock);
     }
 
     // One timing of each run, in an order drawn anew: a machine that slows down does so for all.

@@ -151,7 +151,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     // Down to the small print; many series stand closer, so that what follows finds room.
     const float bottom = layout.plot.max.y + 54;
     const bool many = content.series.size() > 9;
-    const float row = many ? 20 : 26, entry_row = many ? 19 : 23;
+    const float row = many ? chart_style::close_row : 26, entry_row = many ? 19 : 23;
     for (const ChartSeries &series : content.series) {
         pen.line({left, y}, {left + 24, y}, series_colour(series), 1.8f);
         pen.mark({left + 12, y}, series.style, mark_radius + 1.3f, paper);
@@ -159,7 +159,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         const std::vector<std::string> rows = rows_of(pen, series.name, width);
         for (const std::string &text : rows) {
             pen.text({text_left, y}, text, Face::axis, ink, {0, 0.5f});
-            y += &text == &rows.back() ? row : 16;
+            y += &text == &rows.back() ? row : chart_style::second_row;
         }
     }
     y += 12;

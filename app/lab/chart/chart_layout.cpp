@@ -106,12 +106,12 @@ std::vector<std::string> fitting_lines(const std::vector<std::vector<std::string
 }
 
 glm::vec2 chart_size(const ChartContent &content) {
-    constexpr float row = 20, second_row = 16;
+    using chart_style::close_row;
     constexpr std::size_t long_name = 30; // characters, that may take two rows
-    constexpr float fits = 17 * row;
+    constexpr float fits = 17 * close_row;
     float names = 0;
     for (const ChartSeries &series : content.series)
-        names += series.name.size() > long_name ? row + second_row : row;
+        names += close_row + (series.name.size() > long_name ? chart_style::second_row : 0);
     return chart_style::size + glm::vec2(0, std::max(names - fits, 0.0f));
 }
 

@@ -118,6 +118,8 @@ inline constexpr float axis_text = 14;
 inline constexpr float label_text = 13;
 inline constexpr float footer_text = 12;
 inline constexpr float label_margin = 2; // on both sides of a label, within its box
+inline constexpr float close_row = 20;   // of many names
+inline constexpr float second_row = 16;  // of one name that takes two
 inline constexpr PixelBox plot{{96, 132}, {932, 668}};
 } // namespace chart_style
 

@@ -53,11 +53,21 @@ std::vector<TimedPart> RunRecord::take_parts(const Simulation &simulation, doubl
             if (std::abs(took(to, to + 1) - took(from, to) / static_cast<double>(to - from)) >
                 unlike * all)
                 break;
-        const std::size_t middle = to - from > 1 ? from + (to - from) / 2 : from;
-        const std::uint64_t steps = notes_[to].step - notes_[middle].step;
-        if (steps > 0)
-            parts.push_back({std::move(notes_[middle].state),
-                             to - from > 1 ? std::min(steps, usual) : steps,
+        const bool is_one = to - from == 1;
+        const auto steps_from = [&](std::size_t note) {
+            const std::uint64_t left = notes_[to].step - notes_[note].step;
+            return is_one ? left : std::min(left, usual);
+        };
+        // In the middle of them, as near as one of the notes lets it.
+        std::size_t start = from;
+        const auto off_middle = [&](std::size_t note) {
+            return std::abs(2 * steps_of(from, note) + static_cast<double>(steps_from(note)) -
+                            steps_of(from, to));
+        };
+        for (std::size_t note = from; note < to; ++note)
+            start = off_middle(note) < off_middle(start) ? note : start;
+        if (steps_from(start) > 0)
+            parts.push_back({std::move(notes_[start].state), steps_from(start),
                              steps_of(from, to) / steps_of(0, last)});
     }
     notes_.clear();

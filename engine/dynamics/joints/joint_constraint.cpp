@@ -72,7 +72,7 @@ void emit(StepContext &context, std::size_t k, RowWriter &rows) {
 }
 
 void weigh_alone(StepContext &context, JointConstraint &joint) {
-    if (!joint.is_held && !joint.in_columns)
+    if (!joint.is_held && !joint.in_columns && !joint.is_stiff_as_joined())
         joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
 }
 

@@ -42,6 +42,8 @@ struct JointConstraint {
     bool in_columns = false; // in this step (JointSchedule)
     bool is_weighed = false; // by what groups make of its bodies: they answer each of its impulses
     bool is_spring() const { return rows.frequency > Real(0); }
+    // A spring of several rows: `mass` is not of it.
+    bool is_stiff_as_joined() const { return is_spring() && rows.count > 1 && joint != grab; }
 };
 
 // What a pass does about the joints that are springs: leaves them out, or solves them for the force

@@ -225,8 +225,8 @@ Vec3 pushed(const Vec3 &bias, Real most) {
 
 namespace {
 
-// K of the rows as it was when the bodies were joined, their frames together, turned with a. As K
-// of now, a spring's stiffness would turn with both bodies, and feed what swings on it.
+// K of several rows as it was when the bodies were joined, their frames together, turned with a. As
+// K of now, a spring's stiffness would turn with both bodies, and feed what swings on it.
 Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     const Joint &of = context.model.joints[joint.joint];
     const RowBlock &rows = joint.rows;
@@ -245,12 +245,6 @@ Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     RowBlock then = rows;
     then.r_a = rotation_a * of.anchor_a_local;
     then.r_b = rotation_b * of.anchor_b_local;
-    if (rows.count == 1) { // along a line between anchors: the mean of all ways that may turn
-        Mat3 mean{Real(0)};
-        const Mat3 k = point_matrix(ends[0], ends[1], then.r_a, then.r_b);
-        mean[0][0] = (k[0][0] + k[1][1] + k[2][2]) / Real(3);
-        return mean;
-    }
     Mat3 k = matrix_of(then, ends[0], ends[1]);
     if (rows.kind == RowKind::angular && rows.count == 2) { // about which b spins
         k[0][0] = k[1][1] = Real(0.5) * (k[0][0] + k[1][1]);
@@ -259,12 +253,25 @@ Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     return k;
 }
 
+// The mean over all directions of K at a point of a body: 1/m + tr([r]^T I^-1 [r]) / 3. The
+// direction of a line between anchors may turn any way.
+Real mean_inverse_mass(const StepContext &context, std::uint32_t index, const Vec3 &r_local) {
+    if (index == Joint::world || !(context.model.bodies[index].mass > Real(0)))
+        return Real(0);
+    const Body &body = context.model.bodies[index];
+    const Vec3 squared = r_local * r_local;
+    const Real all = squared.x + squared.y + squared.z;
+    return Real(1) / body.mass + glm::dot(body.inv_inertia, Vec3{all} - squared) / Real(3);
+}
+
 // Of a spring of one row, which may be a limit.
-Softness spring_softness(StepContext &context, const JointConstraint &joint,
+Softness spring_softness(const StepContext &context, const JointConstraint &joint,
                          const JointPass &pass) {
     Softness softness = spring_softness(joint.rows, pass);
     const Real stiffness = softness.mass_scale / softness.impulse_scale; // a2 of make_soft
-    const Real joined = matrix_as_joined(context, joint)[0][0] * joint.mass[0][0];
+    const Joint &of = context.model.joints[joint.joint];
+    const Real joined = joint.mass[0][0] * (mean_inverse_mass(context, of.a, of.anchor_a_local) +
+                                            mean_inverse_mass(context, of.b, of.anchor_b_local));
     if (joined > Real(0)) {
         softness.mass_scale = stiffness / (stiffness + joined);
         softness.impulse_scale = joined / (stiffness + joined);
@@ -302,7 +309,7 @@ Vec3 impulse_change(StepContext &context, const JointConstraint &joint, const Jo
                                 (v.x + std::clamp(softness.bias_rate * error.x, -most, most)) -
                             softness.impulse_scale * joint.impulse.x,
                         Real(0), Real(0)};
-        if (joint.is_spring() && joint.joint != JointConstraint::grab)
+        if (joint.is_stiff_as_joined())
             return spring_change(context, joint, v + softness.bias_rate * error, softness);
         return -softness.mass_scale *
                    (joint.mass * (v + pushed(softness.bias_rate * error, most))) -

@@ -49,8 +49,8 @@ TEST(RunTimer, AShortRunIsTimedAsAWhole) {
 }
 
 // What falls asleep takes a thousandth from there on; a blow takes a hundred times as much for a
-// moment; what falls apart takes less and less; and what comes in bursts may fall in with the
-// parts.
+// moment; what falls apart takes less and less. Of bursts as short as a part, of which one to four
+// times as much takes its turn, eight parts are a sample: its mean is off by a sixth, as a rule.
 TEST(RunTimer, PartsStandForARunThatDoesNot) {
     const std::function<double(double)> courses[] = {
         [](double t) { return t < 0.04 ? 1 : 1e-3; },
@@ -77,7 +77,7 @@ TEST(RunTimer, PartsStandForARunThatDoesNot) {
                 all += course(i / 64.0 / end) / (64 * end);
             const auto which = &course - courses;
             EXPECT_NEAR(share, 1, 1e-12) << which;
-            EXPECT_NEAR(found / all, 1, which < 5 ? 0.025 : 0.1) << which << ' ' << end;
+            EXPECT_NEAR(found / all, 1, which < 5 ? 0.02 : 0.1) << which << ' ' << end;
             EXPECT_LE(steps / 64, std::max(4.0, end)) << which;
         }
 }
