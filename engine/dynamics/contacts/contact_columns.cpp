@@ -71,6 +71,23 @@ void colour(StepContext &context) {
     }
 }
 
+// Whether both are free to move, and go along each other so far in the step that what is one point
+// when they touch is not one before and after: such arms make angular momentum. What bounces has
+// been answered where it struck; balls, of whose blows the parts before and after the touch
+// balance, are turned by friction alone.
+bool pass_each_other(const StepContext &context, const Contact &contact) {
+    constexpr Real far = Real(1e-2); // of the arms
+    if (contact.turns() || contact.restitution > Real(0) || !are_both_dynamic(context, contact) ||
+        are_balls(context, contact))
+        return false;
+    const Vec3 speed =
+        context.bodies[contact.key.b].velocity - context.bodies[contact.key.a].velocity;
+    const Vec3 &n = contact.manifold.normal;
+    const Vec3 way = static_cast<Real>(context.settings.dt) * (speed - glm::dot(speed, n) * n);
+    const Vec3 &arm_a = contact.anchors[0].arm_a, &arm_b = contact.anchors[0].arm_b;
+    return glm::dot(way, way) > far * far * (glm::dot(arm_a, arm_a) + glm::dot(arm_b, arm_b));
+}
+
 void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,
                std::uint32_t index) {
     const Contact &contact = context.contacts[index];
@@ -91,6 +108,8 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
         block.turning = static_cast<std::uint16_t>(block.turning | bit);
     if (contact.rolling == Rolling::round)
         block.round = static_cast<std::uint16_t>(block.round | bit);
+    if (pass_each_other(context, contact))
+        block.passing = static_cast<std::uint16_t>(block.passing | bit);
     set(block.normal, lane, contact.manifold.normal);
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
@@ -141,14 +160,24 @@ template <class Use> void for_colours(StepContext &context, Use &&use) {
     for_colours(context.tasks, std::span(schedule.blocks), schedule.colour_ends, use);
 }
 
+// The separation of a point along the present normal when the step began, on top of which comes
+// what the bodies moved since.
+void set_start_separation(const StepContext &context, ContactBlock &block, std::size_t lane,
+                          std::size_t k) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    const StartArms::Point &arms = context.scratch.schedule.start_arms[block.ahead].points[k];
+    const Vec3 between =
+        (context.starts[contact.key.b].position - context.starts[contact.key.a].position) +
+        (get(arms.core_b, lane) - get(arms.core_a, lane));
+    block.points[k].separation.lanes[lane] =
+        glm::dot(between, get(block.normal, lane)) -
+        (block.rounding_a.lanes[lane] + block.rounding_b.lanes[lane]);
+}
+
 // Normal, tangents and arms of one contact as they are t seconds from now; and its separation along
 // that normal when the step began, on top of which comes what the bodies moved since.
 void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
     const Contact &contact = context.contacts[block.contacts[lane]];
-    const StartArms &arms = context.scratch.schedule.start_arms[block.ahead];
-    const Vec3 offset =
-        context.starts[contact.key.b].position - context.starts[contact.key.a].position;
-    const Real rounding = block.rounding_a.lanes[lane] + block.rounding_b.lanes[lane];
     const Motion a = ahead(context.bodies[contact.key.a], t);
     const Motion b = ahead(context.bodies[contact.key.b], t);
     const bool a_moves = is_dynamic(context, contact.key.a);
@@ -172,8 +201,7 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
             arm_a = arm_b + (b.position - a.position);
         set(block.points[k].r_a, lane, arm_a);
         set(block.points[k].r_b, lane, arm_b);
-        const Vec3 cores = get(arms.points[k].core_b, lane) - get(arms.points[k].core_a, lane);
-        block.points[k].separation.lanes[lane] = glm::dot(offset + cores, n) - rounding;
+        set_start_separation(context, block, lane, k);
     }
 }
 
@@ -247,7 +275,8 @@ bool has_other_arms(const StepContext &context, const Contact &contact) {
            (has_other_arms(context, contact, true) || has_other_arms(context, contact, false));
 }
 
-// Where a point is on two bodies as they are now: on the surface of the one that has turned.
+// Where a point is on two bodies as they are now: on the surface of the one that has turned, or is
+// round and takes it along; else midway.
 struct Arms {
     Vec3 a;
     Vec3 b;
@@ -258,12 +287,45 @@ Arms present_arms(const StepContext &context, const Contact &contact, std::size_
     const Vec3 &n = contact.manifold.normal;
     const Vec3 between = b.position - a.position;
     const ContactAnchor &anchor = contact.anchors[k];
-    if (has_other_arms(context, contact, true)) {
-        const Vec3 arm = a.rotation * anchor.core_a + contact.rounding_a * n;
-        return {arm, arm - between};
-    }
-    const Vec3 arm = b.rotation * anchor.core_b - contact.rounding_b * n;
-    return {arm + between, arm};
+    const Vec3 on_a = a.rotation * anchor.core_a + contact.rounding_a * n;
+    if (has_other_arms(context, contact, true))
+        return {on_a, on_a - between};
+    const Vec3 on_b = b.rotation * anchor.core_b - contact.rounding_b * n;
+    if (has_other_arms(context, contact, false))
+        return {on_b + between, on_b};
+    if (contact.rounding_a > Real(0))
+        return {on_a, on_a - between};
+    if (contact.rounding_b > Real(0))
+        return {on_b + between, on_b};
+    const Vec3 half = Real(0.5) * (between + on_b - on_a);
+    return {on_a + half, on_b - half};
+}
+
+// Two round surfaces bear each other on the line between their cores.
+bool are_round(const Contact &contact) {
+    return contact.rounding_a > Real(0) && contact.rounding_b > Real(0) &&
+           contact.manifold.count == 1;
+}
+void turn_round_lane(const StepContext &context, ContactBlock &block, std::size_t lane) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    const SolverBody &a = context.bodies[contact.key.a];
+    const SolverBody &b = context.bodies[contact.key.b];
+    ContactBlock::Point &point = block.points[0];
+    const Vec3 core_a = a.rotation * contact.anchors[0].core_a;
+    const Vec3 core_b = b.rotation * contact.anchors[0].core_b;
+    const Vec3 between = (b.position - a.position) + (core_b - core_a);
+    const Vec3 before = get(block.normal, lane);
+    if (point.impulse.x.lanes[lane] == Real(0) ||
+        !(glm::dot(between, before) > Real(0.5) * glm::length(between)))
+        return;
+    const Vec3 n = glm::normalize(between);
+    const Vec3 t1 = get(block.t1, lane);
+    const Real half = Real(0.5) * (glm::length(between) - contact.rounding_a - contact.rounding_b);
+    set(block.normal, lane, n);
+    set(block.t1, lane, glm::normalize(t1 - glm::dot(t1, n) * n));
+    set(point.r_a, lane, core_a + (contact.rounding_a + half) * n);
+    set(point.r_b, lane, core_b - (contact.rounding_b + half) * n);
+    set_start_separation(context, block, lane, 0);
 }
 
 // Arms and inertias of a lane as the bodies are now.
@@ -271,6 +333,10 @@ void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lan
     const Contact &contact = context.contacts[block.contacts[lane]];
     set(block.inv_inertia_a, lane, context.bodies[contact.key.a].inv_inertia);
     set(block.inv_inertia_b, lane, context.bodies[contact.key.b].inv_inertia);
+    if ((block.passing >> lane & 1U) != 0 && are_round(contact)) {
+        turn_round_lane(context, block, lane);
+        return;
+    }
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
         const Arms arms = present_arms(context, contact, k);
         set(block.points[k].r_a, lane, arms.a);
@@ -301,13 +367,15 @@ void rearm_contact_columns(StepContext &context) {
         context.moving(), [&](std::uint32_t body) { return has_other_arms(context, body, false); });
     const bool any_round = std::ranges::any_of(
         schedule.blocks, [](const ContactBlock &block) { return block.round != 0; });
-    if (!any_far && !any_round)
+    const bool any_pass = std::ranges::any_of(
+        schedule.blocks, [](const ContactBlock &block) { return block.passing != 0; });
+    if (!any_far && !any_round && !any_pass)
         return;
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (ContactBlock &block : blocks) {
-            unsigned lanes = 0;
+            unsigned lanes = block.passing;
             for (std::size_t lane = 0; (any_far || block.round != 0) && lane < block.used; ++lane)
-                if ((any_far || (block.round >> lane & 1U) != 0) &&
+                if ((lanes >> lane & 1U) == 0 && (any_far || (block.round >> lane & 1U) != 0) &&
                     has_other_arms(context, context.contacts[block.contacts[lane]]))
                     lanes |= 1U << lane;
             block.rearmed = static_cast<std::uint16_t>(lanes);
@@ -344,6 +412,32 @@ void rearm_contact_columns(StepContext &context) {
     }
 }
 
+void meet_contact_columns(StepContext &context) {
+    ContactSchedule &schedule = context.scratch.schedule;
+    for (ContactConstraint &bouncing : context.scratch.contacts) {
+        if (!bouncing.has_met)
+            continue;
+        bouncing.has_met = false;
+        const std::uint32_t place = schedule.place_of[bouncing.contact];
+        ContactBlock &block = schedule.blocks[place / column_lanes];
+        const std::size_t lane = place % column_lanes;
+        if (block.ahead == ContactBlock::none) {
+            block.ahead = static_cast<std::uint32_t>(schedule.start_arms.size());
+            fill_start_arms(context, block, schedule.start_arms.emplace_back());
+        }
+        const Vec3 before = get(block.normal, lane);
+        set(block.normal, lane, bouncing.normal);
+        set(block.t1, lane, bouncing.tangents.t1);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(bouncing.count); ++k) {
+            set(block.points[k].r_a, lane, bouncing.points[k].r_a);
+            set(block.points[k].r_b, lane, bouncing.points[k].r_b);
+            if (before != bouncing.normal)
+                set_start_separation(context, block, lane, k);
+        }
+        kernels::finish(std::span(&block, 1));
+    }
+}
+
 void prepare_contact_columns(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
     schedule.blocks.clear();
@@ -368,8 +462,10 @@ void prepare_contact_columns(StepContext &context) {
     }
     constexpr std::uint32_t none = UINT32_MAX;
     schedule.contacts.assign(std::size_t{block_count} * width, none);
+    schedule.place_of.resize(context.contacts.size());
     for (const ContactSchedule::Lane &lane : schedule.lanes) {
         schedule.contacts[next[lane.bucket]] = lane.contact;
+        schedule.place_of[lane.contact] = next[lane.bucket];
         next[lane.bucket] += lane.bucket == alone ? width : 1;
     }
     schedule.blocks.resize(block_count);

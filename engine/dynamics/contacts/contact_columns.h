@@ -43,6 +43,7 @@ struct ContactBlock {
     std::uint16_t writes_b = 0;
     std::uint16_t turning = 0;            // likewise: Contact::turns
     std::uint16_t round = 0;              // Rolling::round
+    std::uint16_t passing = 0;            // whose bodies go far along each other in this step
     std::uint16_t rearmed = 0;            // whose bodies have other arms by now
     std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
     std::size_t used = 0;                 // lanes
@@ -91,6 +92,7 @@ struct ContactSchedule {
     bool any_turning = false;               // Contact::turns
     std::vector<Lane> lanes;
     std::vector<std::uint32_t> contacts;        // of each lane of each block, in the context
+    std::vector<std::uint32_t> place_of;        // of each contact in those
     std::vector<std::uint64_t> colours_of_body; // bit c: colour c has a contact of it
     std::vector<std::uint32_t> bucket_sizes;
 };
@@ -101,6 +103,9 @@ void turn_contact_columns(StepContext &context, Real t);
 // Arms and masses of contacts whose bodies have turned far since the step began: with those of
 // another pose impulses do work, and what is thin is flung off.
 void rearm_contact_columns(StepContext &context);
+// Takes over where impacts have met (ContactConstraint): the passes would stop for good what leaves
+// there, but comes elsewhere.
+void meet_contact_columns(StepContext &context);
 // As remember_contacts, warm_start_contacts, solve_contacts and store_contacts.
 void warm_start_contact_columns(StepContext &context, Real share, bool remember_first);
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);

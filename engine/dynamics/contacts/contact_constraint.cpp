@@ -36,6 +36,19 @@ Real coupling(const SolverBody &a, const SolverBody &b, const ContactPointConstr
 
 } // namespace
 
+bool are_both_dynamic(const StepContext &context, const Contact &contact) {
+    return context.model.bodies[contact.key.a].kind == BodyKind::dynamic &&
+           context.model.bodies[contact.key.b].kind == BodyKind::dynamic;
+}
+
+bool are_balls(const StepContext &context, const Contact &contact) {
+    const auto is_ball = [&](std::uint32_t collider) {
+        return std::holds_alternative<Sphere>(context.model.colliders[collider].shape);
+    };
+    return contact.rounding_a > Real(0) && contact.rounding_b > Real(0) &&
+           is_ball(contact.collider_a) && is_ball(contact.collider_b);
+}
+
 Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
                             const Vec3 &r_b, const Vec3 &direction) {
     const Vec3 ra = glm::cross(r_a, direction);

@@ -44,6 +44,7 @@ struct ContactConstraint {
     Real friction = Real(0);
     Real restitution = Real(0);
     int count = 0;
+    bool has_met = false; // in an impact, elsewhere than it was found (resolve_impacts)
     std::array<ContactPointConstraint, 4> points{};
 };
 
@@ -64,6 +65,10 @@ struct ContactBias {
     // Of penetrating points against what has no inverse mass.
     Softness on_static{};
 };
+
+// Whether nothing holds either body; and whether both are balls there.
+bool are_both_dynamic(const StepContext &context, const Contact &contact);
+bool are_balls(const StepContext &context, const Contact &contact);
 
 // 1 / (K along n): the effective mass of two points against each other along a unit vector.
 Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,

@@ -41,7 +41,7 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
 
 // One contact that is struck, point by point.
 struct Blow {
-    const ContactConstraint *contact = nullptr;
+    ContactConstraint *contact = nullptr;
     std::size_t first = 0; // of those that come together with it: which
     Real pull = Real(0);   // see rebound
     std::array<Rebound, 4> rebounds;
@@ -69,9 +69,19 @@ bool is_struck(const Blow &blow) {
     return std::ranges::any_of(blow.rebounds, &Rebound::struck);
 }
 
-Blow blow_on(const StepContext &context, const ContactConstraint &contact, Real h) {
-    const SolverBody &a = context.bodies[contact.a];
-    const SolverBody &b = context.bodies[contact.b];
+// How each point of the contact comes, and is to leave.
+void look_at(const StepContext &context, Blow &blow, Real h) {
+    const ContactConstraint &contact = *blow.contact;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        blow.approaches[k] = normal_speed(context, contact, k);
+        const Real gap = present_separation(contact, contact.points[k], context.bodies[contact.a],
+                                            context.bodies[contact.b]);
+        blow.rebounds[k] =
+            rebound(gap, blow.approaches[k], blow.pull, contact.restitution, context.settings, h);
+    }
+}
+
+Blow blow_on(const StepContext &context, ContactConstraint &contact, Real h) {
     const auto pull_on = [&](std::uint32_t body) {
         return gravity_on(context.model.bodies[body],
                           Vec3{context.settings.gravity} +
@@ -80,19 +90,19 @@ Blow blow_on(const StepContext &context, const ContactConstraint &contact, Real 
     Blow blow;
     blow.contact = &contact;
     blow.pull = glm::dot(pull_on(contact.b) - pull_on(contact.a), contact.normal);
+    look_at(context, blow, h);
+    return blow;
+}
+
+void weigh(const StepContext &context, Blow &blow) {
+    const ContactConstraint &contact = *blow.contact;
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
         const ContactPointConstraint &point = contact.points[k];
-        blow.approaches[k] = normal_speed(context, contact, k);
-        blow.rebounds[k] = rebound(present_separation(contact, point, a, b), blow.approaches[k],
-                                   blow.pull, contact.restitution, context.settings, h);
+        const Real inverse =
+            inverse_effective_mass(context.bodies[contact.a], context.bodies[contact.b], point.r_a,
+                                   point.r_b, contact.normal);
+        blow.normal_mass[k] = inverse > Real(0) ? Real(1) / inverse : Real(0);
     }
-    if (is_struck(blow))
-        for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
-            const ContactPointConstraint &point = contact.points[k];
-            const Real inverse = inverse_effective_mass(a, b, point.r_a, point.r_b, contact.normal);
-            blow.normal_mass[k] = inverse > Real(0) ? Real(1) / inverse : Real(0);
-        }
-    return blow;
 }
 
 // Orders blows so that those which come together are beside each other: those of a body that moves,
@@ -263,19 +273,75 @@ Real time_to_touch(const StepContext &context, std::span<const Blow> blows, Real
     for (const Blow &blow : blows) {
         if (context.contacts[blow.contact->contact].moment != Moment::touch || blow.pull != Real(0))
             return Real(0);
-        for (std::size_t k = 0; k < blow.rebounds.size(); ++k)
-            if (blow.rebounds[k].struck && blow.impulses[k] > Real(0))
-                time = std::min(time, blow.rebounds[k].time);
+        for (const Rebound &point : blow.rebounds)
+            if (point.struck)
+                time = std::min(time, point.time);
     }
     return std::max(time, Real(0));
+}
+
+// How far the points of a contact are from each other on the two bodies.
+Vec3 between_points(const ContactPointConstraint &point, const Vec3 &between) {
+    return between + point.r_b - point.r_a;
+}
+
+// Whether the points lie beside each other by more than rounding.
+bool are_apart(const ContactConstraint &contact, const Vec3 &between) {
+    constexpr Real enough = Real(1e-4); // of the arms
+    const auto is_apart = [&](const ContactPointConstraint &point) {
+        const Vec3 off = between_points(point, between);
+        const Vec3 aside = off - glm::dot(off, contact.normal) * contact.normal;
+        return glm::dot(aside, aside) >
+               enough * enough * (glm::dot(point.r_a, point.r_a) + glm::dot(point.r_b, point.r_b));
+    };
+    return std::any_of(contact.points.begin(), contact.points.begin() + contact.count, is_apart);
+}
+
+// Where the points of two bodies that are free to move will be one when they touch, so that what
+// the one loses of angular momentum the other gains. Round surfaces meet on the line between their
+// cores, others where the round one is, or midway. Balls are left as they were found, where the
+// blow does not turn them.
+void meet(StepContext &context, Blow &blow, Real time, Real h) {
+    ContactConstraint &contact = *blow.contact;
+    const Contact &found = context.contacts[contact.contact];
+    const SolverBody &a = context.bodies[contact.a];
+    const SolverBody &b = context.bodies[contact.b];
+    const Vec3 between = (b.position - a.position) + time * (b.velocity - a.velocity);
+    if (!are_both_dynamic(context, found) || are_balls(context, found) ||
+        !are_apart(contact, between))
+        return;
+    const bool round_a = found.rounding_a > Real(0);
+    const bool round_b = found.rounding_b > Real(0);
+    if (round_a && round_b && contact.count == 1) {
+        ContactPointConstraint &point = contact.points[0];
+        const Vec3 core_a = a.rotation * point.core_a;
+        const Vec3 core_b = b.rotation * point.core_b;
+        contact.normal = glm::normalize(between + core_b - core_a);
+        contact.tangents = tangent_basis(contact.normal);
+        point.r_a = core_a + found.rounding_a * contact.normal;
+        point.r_b = core_b - found.rounding_b * contact.normal;
+    }
+    const Real share_a = round_a == round_b ? Real(0.5) : round_b ? Real(1) : Real(0);
+    for (ContactPointConstraint &point :
+         std::span(contact.points).first(std::size_t(contact.count))) {
+        const Vec3 off = between_points(point, between);
+        point.r_a += share_a * off;
+        point.r_b -= (Real(1) - share_a) * off;
+    }
+    contact.has_met = true;
+    look_at(context, blow, h);
 }
 
 // Newton's law for all points that are struck together.
 void strike(StepContext &context, std::span<Blow> blows, Real h) {
     Answers joints(context, blows);
-    for (Blow &blow : blows)
+    const Real time = joints.are_any() ? Real(0) : time_to_touch(context, blows, h);
+    for (Blow &blow : blows) {
+        meet(context, blow, time, h);
+        weigh(context, blow);
         if (joints.are_any(*blow.contact))
             weigh_with_joints(context, blow, joints);
+    }
     std::vector<std::pair<std::uint32_t, Vec3>> before; // bodies and their velocities
     for (const Blow &blow : blows)
         for (const std::uint32_t body : {blow.contact->a, blow.contact->b})
@@ -288,7 +354,6 @@ void strike(StepContext &context, std::span<Blow> blows, Real h) {
     for (const Blow &blow : blows)
         record_impact(context, *blow.contact, blow.impulses);
     context.report.impacts += static_cast<std::uint32_t>(context.impacts.size() - recorded);
-    const Real time = joints.are_any() ? Real(0) : time_to_touch(context, blows, h);
     if (!(time > Real(0)))
         return;
     std::ranges::sort(before, {}, [](const auto &one) { return one.first; });
@@ -328,7 +393,7 @@ void resolve_impacts(StepContext &context, Real h) {
     bool any = context.settings.impact_sweeps > 0;
     for (int sweep = 0; any && sweep < context.settings.impact_sweeps; ++sweep) {
         blows.clear();
-        for (const ContactConstraint &contact : context.scratch.contacts) {
+        for (ContactConstraint &contact : context.scratch.contacts) {
             if (!(contact.restitution > Real(0)))
                 continue;
             const Blow blow = blow_on(context, contact, h);

@@ -103,6 +103,7 @@ void advance_soft_step(StepContext &context) {
     prepare_particles(context, SpringRule::midpoint);
     context.scratch.joint_system->arrange(context);
     prepare_joint_columns(context);
+    rearm_contact_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         // There and back, then back and there: one pass leaves most to the points that come last,
@@ -116,12 +117,12 @@ void advance_soft_step(StepContext &context) {
         else // the poses are those of the substep before
             weigh_changed_joints(context);
         resolve_impacts(context, h);
+        meet_contact_columns(context);
         begin_flights(context, gravity, h, Kick::around);
         remember_joints(context);
         warm_start_joints(context, Real(0.5), Springs::midpoint);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
         warm_start_contact_columns(context, Real(0.5), true);
-        note_lasting_loads(context);
         if (has_particles) {
             kick_particles(context, gravity, Real(0.5) * h);
             refresh_particles(context, h, SpringRule::midpoint);
