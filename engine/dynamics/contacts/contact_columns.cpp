@@ -275,30 +275,38 @@ bool has_other_arms(const StepContext &context, const Contact &contact) {
            (has_other_arms(context, contact, true) || has_other_arms(context, contact, false));
 }
 
-// Where a point is on two bodies as they are now: on the surface of the one that has turned, or is
-// round and takes it along; else midway.
+// Where between the two surfaces the points are once the bodies are elsewhere: 0 on a's, 1 on b's.
+// On the one that has turned, or is round and takes it along; else midway.
+Real present_side(const StepContext &context, const Contact &contact) {
+    if (has_other_arms(context, contact, true))
+        return Real(0);
+    if (has_other_arms(context, contact, false))
+        return Real(1);
+    if (contact.rounding_a > Real(0))
+        return Real(0);
+    return contact.rounding_b > Real(0) ? Real(1) : Real(0.5);
+}
+
 struct Arms {
     Vec3 a;
     Vec3 b;
 };
-Arms present_arms(const StepContext &context, const Contact &contact, std::size_t k) {
+Arms present_arms(const StepContext &context, const Contact &contact, std::size_t k, Real side) {
     const SolverBody &a = context.bodies[contact.key.a];
     const SolverBody &b = context.bodies[contact.key.b];
     const Vec3 &n = contact.manifold.normal;
     const Vec3 between = b.position - a.position;
     const ContactAnchor &anchor = contact.anchors[k];
+    if (side == Real(0)) {
+        const Vec3 arm = a.rotation * anchor.core_a + contact.rounding_a * n;
+        return {arm, arm - between};
+    }
+    const Vec3 arm = b.rotation * anchor.core_b - contact.rounding_b * n;
+    if (side == Real(1))
+        return {arm + between, arm};
     const Vec3 on_a = a.rotation * anchor.core_a + contact.rounding_a * n;
-    if (has_other_arms(context, contact, true))
-        return {on_a, on_a - between};
-    const Vec3 on_b = b.rotation * anchor.core_b - contact.rounding_b * n;
-    if (has_other_arms(context, contact, false))
-        return {on_b + between, on_b};
-    if (contact.rounding_a > Real(0))
-        return {on_a, on_a - between};
-    if (contact.rounding_b > Real(0))
-        return {on_b + between, on_b};
-    const Vec3 half = Real(0.5) * (between + on_b - on_a);
-    return {on_a + half, on_b - half};
+    const Vec3 half = Real(0.5) * (between + arm - on_a);
+    return {on_a + half, arm - half};
 }
 
 // Two round surfaces bear each other on the line between their cores.
@@ -337,8 +345,9 @@ void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lan
         turn_round_lane(context, block, lane);
         return;
     }
+    const Real side = present_side(context, contact);
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
-        const Arms arms = present_arms(context, contact, k);
+        const Arms arms = present_arms(context, contact, k, side);
         set(block.points[k].r_a, lane, arms.a);
         set(block.points[k].r_b, lane, arms.b);
     }
@@ -404,8 +413,9 @@ void rearm_contact_columns(StepContext &context) {
         const Contact &contact = context.contacts[bouncing.contact];
         if (!has_other_arms(context, contact))
             continue;
+        const Real side = present_side(context, contact);
         for (std::size_t k = 0; k < static_cast<std::size_t>(bouncing.count); ++k) {
-            const Arms arms = present_arms(context, contact, k);
+            const Arms arms = present_arms(context, contact, k, side);
             bouncing.points[k].r_a = arms.a;
             bouncing.points[k].r_b = arms.b;
         }
