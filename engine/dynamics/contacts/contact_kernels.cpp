@@ -229,6 +229,14 @@ HWY_INLINE Lanes way_along(const Vector &n, const Turned &by, const Vector &r, L
     return hn::Add(hn::Mul(by.first, dot(n, cross(by.turn, r))), hn::Mul(by.second, second));
 }
 
+// Whether what it takes to stop a point is much beside what it bears: a blow. What bears far more
+// is squeezed between bodies that nothing stops. Its loads would grow in each pass without bound,
+// and shoot it away at thousands of m/s, were they not those of springs, which give way.
+HWY_INLINE Mask is_new_load(Lanes borne, Lanes needed) {
+    constexpr Real much = Real(0.25);
+    return hn::Lt(hn::Mul(all(much), borne), needed);
+}
+
 // One impulse for all points of a contact together, so much that the one that needs least has what
 // it needs: of a body that lands flat the first corner would otherwise take most of the blow, and
 // tilt it. Returns which of `fast` land flat: they are stopped at once, since of corners a hair
@@ -286,7 +294,9 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
     auto evenly = hn::And(chosen, hn::Gt(count, one));
     if (loaded_only)
         evenly = hn::And(evenly, hn::Gt(least_load, zero));
-    const auto stops = hn::And(hn::And(evenly, fast), hn::Gt(least_rigid, zero));
+    const auto is_blow =
+        is_new_load(hn::Mul(count, least_load), hn::Mul(least_rigid, inverse(k_n)));
+    const auto stops = hn::And(hn::And(evenly, fast), hn::And(is_blow, hn::Gt(least_rigid, zero)));
     // Nothing where the points do not agree.
     const Lanes soft_need = max(least_need, min(most_need, zero));
     const Lanes need = hn::IfThenElse(stops, least_rigid, soft_need);
@@ -433,7 +443,10 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                     struck = hn::Or(struck, hn::Lt(speed, struck_speed));
                 // What comes in faster than anything is pushed out is stopped at once: as a spring
                 // it would be through a thin wall before it turned round.
-                const auto rigid = hn::Or(apart, hn::Or(stops, hn::Lt(speed, least)));
+                const auto breaks_in = hn::And(
+                    hn::Lt(speed, least),
+                    is_new_load(before, hn::Neg(hn::Mul(load(point.normal_mass, lane), speed))));
+                const auto rigid = hn::Or(apart, hn::Or(stops, breaks_in));
                 const Lanes mass_scale = hn::IfThenElse(rigid, one, soft_mass);
                 const Lanes impulse_scale = hn::IfThenElse(rigid, zero, soft_impulse);
                 const Lanes change =
