@@ -255,7 +255,7 @@ TEST(SoftStepBlow, WhatIsSqueezedIsNotShotAway) {
                 for (const BodyId cube : cubes)
                     fastest = std::max(fastest, glm::length(velocity_of(world, cube)));
             }
-            EXPECT_LT(fastest, 1.5 * speed + 3) << speed << ", " << count;
+            EXPECT_LT(fastest, 2 * speed + 5) << speed << ", " << count;
         }
 }
 

@@ -229,12 +229,27 @@ HWY_INLINE Lanes way_along(const Vector &n, const Turned &by, const Vector &r, L
     return hn::Add(hn::Mul(by.first, dot(n, cross(by.turn, r))), hn::Mul(by.second, second));
 }
 
-// Whether what it takes to stop a point is much beside what it bears: a blow. What bears far more
-// is squeezed between bodies that nothing stops. Its loads would grow in each pass without bound,
-// and shoot it away at thousands of m/s, were they not those of springs, which give way.
-HWY_INLINE Mask is_new_load(Lanes borne, Lanes needed) {
+// Static and kinematic bodies, and those with all translations locked.
+HWY_INLINE Mask does_not_move(const Vector &inv_mass) {
+    return hn::Eq(hn::Add(inv_mass.x, hn::Add(inv_mass.y, inv_mass.z)), hn::Zero(tag));
+}
+
+// Whether one of the two goes on whatever the other does: a kinematic body.
+HWY_INLINE Mask is_driven(const Pair &pair) {
+    const auto drives = [](const Velocity &v, const Vector &inv_mass) HWY_ATTR {
+        const Lanes squared = hn::Add(dot(v.linear, v.linear), dot(v.angular, v.angular));
+        return hn::And(does_not_move(inv_mass), hn::Gt(squared, hn::Zero(tag)));
+    };
+    return hn::Or(drives(pair.a, pair.inv_mass_a), drives(pair.b, pair.inv_mass_b));
+}
+
+// Whether what it takes to stop a point is a blow, beside what it bears. What a kinematic body
+// drives and that bears far more is squeezed against what does not move either. Its loads would
+// grow in each pass without bound, and shoot it away at thousands of m/s, were they not those of
+// springs, which give way.
+HWY_INLINE Mask is_blow(Mask driven, Lanes borne, Lanes needed) {
     constexpr Real much = Real(0.25);
-    return hn::Lt(hn::Mul(all(much), borne), needed);
+    return hn::Or(hn::Not(driven), hn::Lt(hn::Mul(all(much), borne), needed));
 }
 
 // One impulse for all points of a contact together, so much that the one that needs least has what
@@ -243,7 +258,7 @@ HWY_INLINE Mask is_new_load(Lanes borne, Lanes needed) {
 // deep and a hair apart some would be springs and some not.
 template <typename SeparationAt, typename TargetOf>
 HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, const Vector &n,
-                             Mask chosen, Mask fast, bool loaded_only, Lanes soft_mass,
+                             Mask chosen, Mask fast, Mask driven, bool loaded_only, Lanes soft_mass,
                              Lanes soft_impulse, const SeparationAt &separation_at,
                              const TargetOf &target_of, Lanes &corrected) {
     const Lanes zero = hn::Zero(tag);
@@ -294,9 +309,10 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
     auto evenly = hn::And(chosen, hn::Gt(count, one));
     if (loaded_only)
         evenly = hn::And(evenly, hn::Gt(least_load, zero));
-    const auto is_blow =
-        is_new_load(hn::Mul(count, least_load), hn::Mul(least_rigid, inverse(k_n)));
-    const auto stops = hn::And(hn::And(evenly, fast), hn::And(is_blow, hn::Gt(least_rigid, zero)));
+    const auto stops =
+        hn::And(hn::And(evenly, fast),
+                hn::And(hn::Gt(least_rigid, zero), is_blow(driven, hn::Mul(count, least_load),
+                                                           hn::Mul(least_rigid, inverse(k_n)))));
     // Nothing where the points do not agree.
     const Lanes soft_need = max(least_need, min(most_need, zero));
     const Lanes need = hn::IfThenElse(stops, least_rigid, soft_need);
@@ -312,11 +328,6 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
               point.impulse.x, lane);
     }
     return stops;
-}
-
-// Static and kinematic bodies, and those with all translations locked.
-HWY_INLINE Mask does_not_move(const Vector &inv_mass) {
-    return hn::Eq(hn::Add(inv_mass.x, hn::Add(inv_mass.y, inv_mass.z)), hn::Zero(tag));
 }
 
 // Friction at each point. Returns where some points slide while others hold: those have more to
@@ -368,6 +379,7 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     const Lanes even_speed = all(even_share * bias.struck_speed);
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         Pair pair = load_pair(block, bodies, lane);
+        const auto driven = is_driven(pair);
         const auto on_static =
             hn::Or(does_not_move(pair.inv_mass_a), does_not_move(pair.inv_mass_b));
         const auto softness = [&](Real Softness::*member) HWY_ATTR {
@@ -418,8 +430,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         auto stops = hn::FirstN(tag, 0);
         Lanes corrected = zero;
         if (!hn::AllFalse(tag, even))
-            stops = solve_evenly(block, lane, pair, n, even, struck, bias.loaded_only, soft_mass,
-                                 soft_impulse, separation_at, target_of, corrected);
+            stops = solve_evenly(block, lane, pair, n, even, struck, driven, bias.loaded_only,
+                                 soft_mass, soft_impulse, separation_at, target_of, corrected);
         // What is struck is swept again, too: of its corners, the first would take most of the
         // blow, and tilt it. (Zeros are lanes without a point.)
         auto again = hn::FirstN(tag, sweeps_all ? column_lanes : 0);
@@ -443,9 +455,10 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                     struck = hn::Or(struck, hn::Lt(speed, struck_speed));
                 // What comes in faster than anything is pushed out is stopped at once: as a spring
                 // it would be through a thin wall before it turned round.
-                const auto breaks_in = hn::And(
-                    hn::Lt(speed, least),
-                    is_new_load(before, hn::Neg(hn::Mul(load(point.normal_mass, lane), speed))));
+                const auto breaks_in =
+                    hn::And(hn::Lt(speed, least),
+                            is_blow(driven, before,
+                                    hn::Neg(hn::Mul(load(point.normal_mass, lane), speed))));
                 const auto rigid = hn::Or(apart, hn::Or(stops, breaks_in));
                 const Lanes mass_scale = hn::IfThenElse(rigid, one, soft_mass);
                 const Lanes impulse_scale = hn::IfThenElse(rigid, zero, soft_impulse);

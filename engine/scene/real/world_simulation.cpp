@@ -3,6 +3,7 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/world.h"
+#include "engine/math/basis.h"
 #include "engine/scene/expect.h"
 #include "engine/scene/real/body_def.h"
 #include "engine/scene/real/read_world.h"
@@ -33,6 +34,15 @@ StateClock clock_of(const SceneDesc &scene, const ResolvedRun &run) {
         return own;
     const auto steps = static_cast<double>(own.step_count - own.steps_before);
     return {own.step_count, own.time_before + steps * dt, own.step_count};
+}
+
+// Of a vector along the tangents of a contact's normal what it is for the other body: the opposite
+// one, along the tangents of the opposite normal.
+Vec2 along_opposite_tangents(const Vec3 &normal, Real along_1, Real along_2) {
+    const TangentBasis tangents = tangent_basis(normal);
+    const TangentBasis opposite = tangent_basis(-normal);
+    const Vec3 there = -(along_1 * tangents.t1 + along_2 * tangents.t2);
+    return {glm::dot(there, opposite.t1), glm::dot(there, opposite.t2)};
 }
 
 class WorldSimulation final : public Simulation {
@@ -371,8 +381,16 @@ void WorldSimulation::remember(const ContactStateDesc &desc) {
         std::swap(key.a, key.b);
         std::swap(key.child_a, key.child_b);
         origin = {-origin.normal, -origin.offset, origin.rotation_b, origin.rotation_a};
-        for (PointMemory &point : points)
+        const auto turned = [&](Real along_1, Real along_2) {
+            return along_opposite_tangents(Vec3{desc.normal}, along_1, along_2);
+        };
+        for (PointMemory &point : points) {
             std::swap(point.core_a, point.core_b);
+            const Vec2 friction = turned(point.impulse.y, point.impulse.z);
+            point.impulse = {point.impulse.x, friction.x, friction.y};
+        }
+        for (PointPenalty &penalty : penalties)
+            penalty.slip = turned(penalty.slip.x, penalty.slip.y);
     }
     world_.remember_contact(key, origin, points, penalties);
 }
