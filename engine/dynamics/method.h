@@ -31,6 +31,7 @@ namespace plumb::inline PLUMB_PRECISION {
 // Memory that a method uses within a step, kept from step to step so that nothing is allocated.
 struct SolverScratch {
     std::vector<ContactConstraint> contacts;
+    std::vector<std::uint32_t> partners; // of each body: see find_partners
     ContactSchedule schedule;
     std::vector<JointConstraint> joints;
     std::vector<std::uint32_t> first_blocks; // of each active joint and the grab, in `joints`

@@ -203,7 +203,8 @@ TEST_P(Impacts, BallsKeepAngularMomentumInOneSubstep) {
 // substeps the arms are those of the start of the step; and in a substep in which a solver touched
 // it, a body with unequal inertias turns under the gyroscopic torque of the spin that it had
 // before. The mean loss of the same 200 plastic collisions falls in proportion to the substep,
-// whichever way that is made smaller. Soft step's is that of bodies too slow for other arms.
+// whichever way that is made smaller. Soft step's is small at any, for it lets such blows come
+// where they touch.
 TEST_P(Impacts, AngularMomentumConvergesWithTheSubstep) {
     std::vector<double> losses;
     for (const int refinement : {1, 4, 16}) {
@@ -217,8 +218,9 @@ TEST_P(Impacts, AngularMomentumConvergesWithTheSubstep) {
         losses.push_back(sum / 200);
     }
     if (GetParam() == "soft_step") {
-        for (const double loss : losses)
-            EXPECT_LT(loss, 3e-4);
+        EXPECT_LT(losses[0], 1e-4);
+        EXPECT_LT(losses[1], 5e-5);
+        EXPECT_LT(losses[2], 3e-5);
         return;
     }
     EXPECT_LT(losses[0], 0.01);
@@ -253,12 +255,9 @@ TEST_P(Impacts, BallsNeverGainEnergy) {
 
 // Known failings with bricks and capsules that tumble: a body that a solver touched keeps its world
 // spin while it turns, which changes its energy by the order of w h; and the points of one manifold
-// share an impact by a limited number of passes, which shows where it is elastic and smooth. By
-// soft_step, what does not bounce sinks in a little where the one slides round an edge of the
-// other, and is pushed out again: after a blow that took a third of the energy, one in thirteen
-// gains more than 2e-4 of it. The worst of 300 collisions each, as measured: 0.9 % of the energy in
-// an elastic one without friction, 0.6 % in a plastic one and 0.03 % otherwise by soft_step; 1.3 %
-// and 0.3 % by sequential impulses, with its longer substep.
+// share an impact by a limited number of passes, which shows where it is elastic and smooth. The
+// worst of 300 collisions each, as measured: 0.9 % of the energy in one such collision and 0.015 %
+// otherwise by soft_step; 1.3 % and 0.3 % by sequential impulses, with its longer substep.
 TEST_P(Impacts, TumblingBodiesGainLittleEnergy) {
     const bool soft = GetParam() == "soft_step";
     for (const double friction : {0.0, 0.5})
@@ -274,11 +273,9 @@ TEST_P(Impacts, TumblingBodiesGainLittleEnergy) {
                 gains += c.worst_gain > 2e-4 ? 1 : 0;
             }
             const bool elastic = restitution == 1 && friction == 0;
-            const bool plastic = restitution == 0;
-            const double bound =
-                soft ? (elastic || plastic ? 0.01 : 5e-4) : (elastic ? 0.02 : 5e-3);
+            const double bound = soft ? (elastic ? 0.01 : 2e-4) : (elastic ? 0.02 : 5e-3);
             EXPECT_LE(worst, bound) << friction << ' ' << restitution;
-            EXPECT_LE(gains, soft ? (plastic ? 30 : 2) : 80) << friction << ' ' << restitution;
+            EXPECT_LE(gains, soft ? 2 : 80) << friction << ' ' << restitution;
         }
 }
 

@@ -311,11 +311,11 @@ void go(SolverBody &motion, RoundedOff &rounded_off, const Vec3 &way) {
 
 // The pose after h, at the velocities that the body has now.
 inline void move_along(SolverBody &motion, RoundedOff &rounded_off, const Body &body,
-                       const FreeFlight &flight, Real h, bool is_torque_free) {
+                       const FreeFlight &flight, Real h, bool is_gyroscopic) {
     const Vec3 way = h * (flight.free ? flight.mean_velocity : motion.velocity);
     go(motion, rounded_off, way);
     motion.turned += h * motion.angular_velocity;
-    if (is_torque_free)
+    if (is_gyroscopic && flight.free)
         motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
     else
         turn(motion, rounded_off, h);
@@ -332,26 +332,22 @@ bool turns_far(const Vec3 &spin, Real h) {
 
 // Between two halves of a kick the gyroscopic torque is that of the spin that the solver left
 // (`kick`): the first half of its impulses comes before the torque-free turn, as in RATTLE, and the
-// turn keeps their energy and, by Cayley's map, their angular momentum. Added to the mean spin of a
-// turn without them they do work, and are other moments at its end: a top whose foot a joint holds
-// (`is_held`) sinks, a capsule that spins on a floor gains energy without end, and a blow between
-// sticks loses some per cent of its angular momentum. Joints are solved for poses after the
-// exponential map.
+// turn keeps their energy. Added to the mean spin of a turn without them they do work: a top whose
+// foot a joint holds (`is_held`) sinks, and a capsule that spins on a floor gains energy without
+// end. Not of a blow: that comes at once, and half of it there would be as wrong.
 void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
                Real h, Kick kick, int gyroscopic_iterations, bool is_held) {
     flight.free =
         motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
     const bool is_gyroscopic = body.kind == BodyKind::dynamic && has_gyroscopic_spin(body);
-    bool is_torque_free = is_gyroscopic && flight.free;
     if (is_gyroscopic && !flight.free && kick == Kick::around &&
-        (is_held || turns_far(flight.start_spin, h) || turns_far(motion.angular_velocity, h))) {
+        (is_held || (flight.loaded && turns_far(flight.start_spin, h)))) {
         flight.start_spin += rotated(glm::conjugate(motion.rotation),
                                      motion.angular_velocity - flight.angular_velocity);
         turn_freely(flight, body, damped(body.angular_damping, h), h, gyroscopic_iterations);
         motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
-        is_torque_free = !is_held;
     }
-    move_along(motion, rounded_off, body, flight, h, is_torque_free);
+    move_along(motion, rounded_off, body, flight, h, is_gyroscopic);
 }
 
 } // namespace
@@ -401,6 +397,13 @@ void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick)
     };
     for_parts(context.tasks, flights.size(), bodies_a_part, begin_part);
     context.report.body_passes += flights.size();
+}
+
+void note_lasting_loads(StepContext &context) {
+    std::vector<FreeFlight> &flights = context.scratch.flights;
+    for (std::size_t i = 0; i < flights.size(); ++i)
+        flights[i].loaded =
+            context.bodies[context.moving()[i]].angular_velocity != flights[i].angular_velocity;
 }
 
 void end_flights(StepContext &context, Real h, Kick kick) {

@@ -103,6 +103,7 @@ struct FreeFlight {
     Vec3 end_spin{Real(0)};
     Vec3 late_spin{Real(0)}; // the part of damping that comes after the move, world
     bool free = false;       // set by move
+    bool loaded = false;     // something turns it that did so before (note_lasting_loads)
 };
 
 FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
@@ -114,6 +115,8 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
 // The same for all moving bodies, with the flights kept in the context.
 struct StepContext;
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick);
+// Once what is remembered has been applied: which bodies that turns.
+void note_lasting_loads(StepContext &context);
 void end_flights(StepContext &context, Real h, Kick kick); // moves them, then ends the flights
 // All substeps of bodies that nothing holds or touches: at once where closed forms say how they
 // fly.

@@ -71,21 +71,12 @@ void colour(StepContext &context) {
     }
 }
 
-// Whether both are free to move, and go along each other so far in the step that what is one point
-// when they touch is not one before and after: such arms make angular momentum. What bounces has
-// been answered where it struck; balls, of whose blows the parts before and after the touch
-// balance, are turned by friction alone.
-bool pass_each_other(const StepContext &context, const Contact &contact) {
-    constexpr Real far = Real(1e-2); // of the arms
-    if (contact.turns() || contact.restitution > Real(0) || !are_both_dynamic(context, contact) ||
-        are_balls(context, contact))
-        return false;
-    const Vec3 speed =
-        context.bodies[contact.key.b].velocity - context.bodies[contact.key.a].velocity;
-    const Vec3 &n = contact.manifold.normal;
-    const Vec3 way = static_cast<Real>(context.settings.dt) * (speed - glm::dot(speed, n) * n);
-    const Vec3 &arm_a = contact.anchors[0].arm_a, &arm_b = contact.anchors[0].arm_b;
-    return glm::dot(way, way) > far * far * (glm::dot(arm_a, arm_a) + glm::dot(arm_b, arm_b));
+// Whether it is one point of a pair that touches nothing else and does not bounce: it is found anew
+// in each substep (find_again). What bounces has been answered where it struck; balls, of whose
+// blows the parts before and after the touch balance, are turned by friction alone.
+bool is_found_again(const StepContext &context, const Contact &contact) {
+    return contact.manifold.count == 1 && contact.restitution == Real(0) &&
+           are_lone(context, contact) && !are_balls(context, contact);
 }
 
 void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,
@@ -104,12 +95,12 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
         block.writes_a = static_cast<std::uint16_t>(block.writes_a | bit);
     if (is_dynamic(context, contact.key.b))
         block.writes_b = static_cast<std::uint16_t>(block.writes_b | bit);
-    if (contact.turns())
+    if (is_found_again(context, contact))
+        block.found_again = static_cast<std::uint16_t>(block.found_again | bit);
+    else if (contact.turns())
         block.turning = static_cast<std::uint16_t>(block.turning | bit);
-    if (contact.rolling == Rolling::round)
+    else if (contact.rolling == Rolling::round)
         block.round = static_cast<std::uint16_t>(block.round | bit);
-    if (pass_each_other(context, contact))
-        block.passing = static_cast<std::uint16_t>(block.passing | bit);
     set(block.normal, lane, contact.manifold.normal);
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
@@ -275,79 +266,106 @@ bool has_other_arms(const StepContext &context, const Contact &contact) {
            (has_other_arms(context, contact, true) || has_other_arms(context, contact, false));
 }
 
-// Where between the two surfaces the points are once the bodies are elsewhere: 0 on a's, 1 on b's.
-// On the one that has turned, or is round and takes it along; else midway.
-Real present_side(const StepContext &context, const Contact &contact) {
-    if (has_other_arms(context, contact, true))
-        return Real(0);
-    if (has_other_arms(context, contact, false))
-        return Real(1);
-    if (contact.rounding_a > Real(0))
-        return Real(0);
-    return contact.rounding_b > Real(0) ? Real(1) : Real(0.5);
-}
-
+// Where a point is on two bodies as they are now: on the surface of the one that has turned.
 struct Arms {
     Vec3 a;
     Vec3 b;
 };
-Arms present_arms(const StepContext &context, const Contact &contact, std::size_t k, Real side) {
+Arms present_arms(const StepContext &context, const Contact &contact, std::size_t k) {
     const SolverBody &a = context.bodies[contact.key.a];
     const SolverBody &b = context.bodies[contact.key.b];
     const Vec3 &n = contact.manifold.normal;
     const Vec3 between = b.position - a.position;
     const ContactAnchor &anchor = contact.anchors[k];
-    if (side == Real(0)) {
+    if (has_other_arms(context, contact, true)) {
         const Vec3 arm = a.rotation * anchor.core_a + contact.rounding_a * n;
         return {arm, arm - between};
     }
     const Vec3 arm = b.rotation * anchor.core_b - contact.rounding_b * n;
-    if (side == Real(1))
-        return {arm + between, arm};
-    const Vec3 on_a = a.rotation * anchor.core_a + contact.rounding_a * n;
-    const Vec3 half = Real(0.5) * (between + arm - on_a);
-    return {on_a + half, arm - half};
+    return {arm + between, arm};
 }
 
-// Two round surfaces bear each other on the line between their cores.
-bool are_round(const Contact &contact) {
-    return contact.rounding_a > Real(0) && contact.rounding_b > Real(0) &&
-           contact.manifold.count == 1;
-}
-void turn_round_lane(const StepContext &context, ContactBlock &block, std::size_t lane) {
+// The one point of a contact as it is now: what slides round an edge, or rolls on one, is borne
+// along another normal and elsewhere on both bodies, and with those of the step's start it would
+// sink in and take angular momentum from nowhere.
+void find_again(StepContext &context, ContactBlock &block, std::size_t lane) {
     const Contact &contact = context.contacts[block.contacts[lane]];
     const SolverBody &a = context.bodies[contact.key.a];
     const SolverBody &b = context.bodies[contact.key.b];
-    ContactBlock::Point &point = block.points[0];
-    const Vec3 core_a = a.rotation * contact.anchors[0].core_a;
-    const Vec3 core_b = b.rotation * contact.anchors[0].core_b;
-    const Vec3 between = (b.position - a.position) + (core_b - core_a);
+    const Collider &on_a = context.model.colliders[contact.collider_a];
+    const Collider &on_b = context.model.colliders[contact.collider_b];
     const Vec3 before = get(block.normal, lane);
-    if (point.impulse.x.lanes[lane] == Real(0) ||
-        !(glm::dot(between, before) > Real(0.5) * glm::length(between)))
+    const Manifold found =
+        collide(placed(on_a.shape, mass_pose(a)), placed(on_b.shape, mass_pose(b)),
+                std::min(on_a.half_width, on_b.half_width), before);
+    const Vec3 &n = found.normal;
+    if (found.count != 1 || !(glm::dot(n, before) > Real(0.5)))
         return;
-    const Vec3 n = glm::normalize(between);
     const Vec3 t1 = get(block.t1, lane);
-    const Real half = Real(0.5) * (glm::length(between) - contact.rounding_a - contact.rounding_b);
     set(block.normal, lane, n);
     set(block.t1, lane, glm::normalize(t1 - glm::dot(t1, n) * n));
-    set(point.r_a, lane, core_a + (contact.rounding_a + half) * n);
-    set(point.r_b, lane, core_b - (contact.rounding_b + half) * n);
+    const Vec3 arm_a = found.points[0].position - a.position;
+    const Vec3 arm_b = found.points[0].position - b.position;
+    set(block.points[0].r_a, lane, arm_a);
+    set(block.points[0].r_b, lane, arm_b);
+    const Real half = Real(0.5) * found.points[0].separation;
+    const auto at_start = [&](std::uint32_t body, const Vec3 &core) {
+        return context.starts[body].rotation *
+               (glm::conjugate(context.bodies[body].rotation) * core);
+    };
+    StartArms::Point &cores = context.scratch.schedule.start_arms[block.ahead].points[0];
+    set(cores.core_a, lane, at_start(contact.key.a, arm_a - (half + contact.rounding_a) * n));
+    set(cores.core_b, lane, at_start(contact.key.b, arm_b + (half + contact.rounding_b) * n));
     set_start_separation(context, block, lane, 0);
 }
 
+// Takes back what pushed the two apart, with the arms and the normal by which it was given, and
+// sets the rest aside (recall_borne): by others it would do work.
+void take_back_push(StepContext &context, ContactBlock &block, std::size_t lane) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    ContactBlock::Point &point = block.points[0];
+    SolverBody &a = context.bodies[contact.key.a];
+    SolverBody &b = context.bodies[contact.key.b];
+    const Vec3 n = get(block.normal, lane);
+    const Vec3 r_a = get(point.r_a, lane);
+    const Vec3 r_b = get(point.r_b, lane);
+    const Real parting = glm::dot(b.velocity_at(r_b) - a.velocity_at(r_a), n);
+    const Real push =
+        std::clamp(point.normal_mass.lanes[lane] * parting, Real(0), point.impulse.x.lanes[lane]);
+    a.apply_impulse(push * n, r_a);
+    b.apply_impulse(-push * n, r_b);
+    context.scratch.schedule.borne.push_back(
+        {&block, lane, get(point.impulse, lane) - Vec3{push, Real(0), Real(0)}});
+    set(point.impulse, lane, Vec3{Real(0)});
+}
+
+// Lanes whose point is found again. Where the two have not met yet, what was found is where they
+// will.
+unsigned take_back_pushes(StepContext &context, ContactBlock &block) {
+    unsigned lanes = 0;
+    for (std::size_t lane = 0; block.found_again != 0 && lane < block.used; ++lane) {
+        if ((block.found_again >> lane & 1U) == 0)
+            continue;
+        const bool bears = block.points[0].impulse.x.lanes[lane] > Real(0);
+        if (bears || context.contacts[block.contacts[lane]].moment == Moment::start)
+            lanes |= 1U << lane;
+        if (bears)
+            take_back_push(context, block, lane);
+    }
+    return lanes;
+}
+
 // Arms and inertias of a lane as the bodies are now.
-void rearm_lane(const StepContext &context, ContactBlock &block, std::size_t lane) {
+void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
     const Contact &contact = context.contacts[block.contacts[lane]];
     set(block.inv_inertia_a, lane, context.bodies[contact.key.a].inv_inertia);
     set(block.inv_inertia_b, lane, context.bodies[contact.key.b].inv_inertia);
-    if ((block.passing >> lane & 1U) != 0 && are_round(contact)) {
-        turn_round_lane(context, block, lane);
+    if ((block.found_again >> lane & 1U) != 0) {
+        find_again(context, block, lane);
         return;
     }
-    const Real side = present_side(context, contact);
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
-        const Arms arms = present_arms(context, contact, k, side);
+        const Arms arms = present_arms(context, contact, k);
         set(block.points[k].r_a, lane, arms.a);
         set(block.points[k].r_b, lane, arms.b);
     }
@@ -376,15 +394,18 @@ void rearm_contact_columns(StepContext &context) {
         context.moving(), [&](std::uint32_t body) { return has_other_arms(context, body, false); });
     const bool any_round = std::ranges::any_of(
         schedule.blocks, [](const ContactBlock &block) { return block.round != 0; });
-    const bool any_pass = std::ranges::any_of(
-        schedule.blocks, [](const ContactBlock &block) { return block.passing != 0; });
-    if (!any_far && !any_round && !any_pass)
+    const bool any_again = std::ranges::any_of(
+        schedule.blocks, [](const ContactBlock &block) { return block.found_again != 0; });
+    if (!any_far && !any_round && !any_again)
         return;
+    for (ContactBlock &block : schedule.blocks)
+        block.rearmed = static_cast<std::uint16_t>(take_back_pushes(context, block));
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (ContactBlock &block : blocks) {
-            unsigned lanes = block.passing;
+            unsigned lanes = block.rearmed;
             for (std::size_t lane = 0; (any_far || block.round != 0) && lane < block.used; ++lane)
-                if ((lanes >> lane & 1U) == 0 && (any_far || (block.round >> lane & 1U) != 0) &&
+                if ((block.found_again >> lane & 1U) == 0 &&
+                    (any_far || (block.round >> lane & 1U) != 0) &&
                     has_other_arms(context, context.contacts[block.contacts[lane]]))
                     lanes |= 1U << lane;
             block.rearmed = static_cast<std::uint16_t>(lanes);
@@ -409,26 +430,35 @@ void rearm_contact_columns(StepContext &context) {
         }
     });
     // And of their impacts: what these do not see coming, the passes would stop for good.
-    for (ContactConstraint &bouncing : context.scratch.contacts) {
-        const Contact &contact = context.contacts[bouncing.contact];
+    for (ContactConstraint &struck : context.scratch.contacts) {
+        const Contact &contact = context.contacts[struck.contact];
         if (!has_other_arms(context, contact))
             continue;
-        const Real side = present_side(context, contact);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(bouncing.count); ++k) {
-            const Arms arms = present_arms(context, contact, k, side);
-            bouncing.points[k].r_a = arms.a;
-            bouncing.points[k].r_b = arms.b;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(struck.count); ++k) {
+            const Arms arms = present_arms(context, contact, k);
+            struck.points[k].r_a = arms.a;
+            struck.points[k].r_b = arms.b;
         }
     }
 }
 
+// What was borne by other arms and normals is remembered with the rest.
+void recall_borne(StepContext &context) {
+    for (const ContactSchedule::Borne &one : context.scratch.schedule.borne) {
+        ContactBlock::Point &point = one.block->points[0];
+        set(point.impulse, one.lane, get(point.impulse, one.lane) + one.impulse);
+        set(point.remembered, one.lane, get(point.remembered, one.lane) + one.impulse);
+    }
+    context.scratch.schedule.borne.clear();
+}
+
 void meet_contact_columns(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
-    for (ContactConstraint &bouncing : context.scratch.contacts) {
-        if (!bouncing.has_met)
+    for (ContactConstraint &met : context.scratch.contacts) {
+        if (!met.has_met)
             continue;
-        bouncing.has_met = false;
-        const std::uint32_t place = schedule.place_of[bouncing.contact];
+        met.has_met = false;
+        const std::uint32_t place = schedule.place_of[met.contact];
         ContactBlock &block = schedule.blocks[place / column_lanes];
         const std::size_t lane = place % column_lanes;
         if (block.ahead == ContactBlock::none) {
@@ -436,12 +466,12 @@ void meet_contact_columns(StepContext &context) {
             fill_start_arms(context, block, schedule.start_arms.emplace_back());
         }
         const Vec3 before = get(block.normal, lane);
-        set(block.normal, lane, bouncing.normal);
-        set(block.t1, lane, bouncing.tangents.t1);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(bouncing.count); ++k) {
-            set(block.points[k].r_a, lane, bouncing.points[k].r_a);
-            set(block.points[k].r_b, lane, bouncing.points[k].r_b);
-            if (before != bouncing.normal)
+        set(block.normal, lane, met.normal);
+        set(block.t1, lane, met.tangents.t1);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(met.count); ++k) {
+            set(block.points[k].r_a, lane, met.points[k].r_a);
+            set(block.points[k].r_b, lane, met.points[k].r_b);
+            if (before != met.normal)
                 set_start_separation(context, block, lane, k);
         }
         kernels::finish(std::span(&block, 1));

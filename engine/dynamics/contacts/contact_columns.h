@@ -43,7 +43,7 @@ struct ContactBlock {
     std::uint16_t writes_b = 0;
     std::uint16_t turning = 0;            // likewise: Contact::turns
     std::uint16_t round = 0;              // Rolling::round
-    std::uint16_t passing = 0;            // whose bodies go far along each other in this step
+    std::uint16_t found_again = 0;        // in each substep
     std::uint16_t rearmed = 0;            // whose bodies have other arms by now
     std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
     std::size_t used = 0;                 // lanes
@@ -86,6 +86,14 @@ struct ContactSchedule {
         std::uint32_t contact = 0;
         std::uint32_t bucket = 0; // colour and number of points
     };
+    // What a contact that is found again bore in the first half of the substep (N s): normal, t1,
+    // t2.
+    struct Borne {
+        ContactBlock *block = nullptr;
+        std::size_t lane = 0;
+        Vec3 impulse{Real(0)};
+    };
+    std::vector<Borne> borne;
     std::vector<ContactBlock> blocks;
     std::vector<StartArms> start_arms;
     std::vector<std::uint32_t> colour_ends; // of blocks; those after the last stand for themselves
@@ -101,8 +109,11 @@ void prepare_contact_columns(StepContext &context);
 // Normals and arms of contacts of what turns together, as they are t seconds from now.
 void turn_contact_columns(StepContext &context, Real t);
 // Arms and masses of contacts whose bodies have turned far since the step began: with those of
-// another pose impulses do work, and what is thin is flung off.
+// another pose impulses do work, and what is thin is flung off. Where a lone pair that slides or
+// rolls touches in one point, that is found again, normal and all; what pushed the two apart is
+// taken back first, and what they bore is set aside until the substep is over (recall_borne).
 void rearm_contact_columns(StepContext &context);
+void recall_borne(StepContext &context);
 // Takes over where impacts have met (ContactConstraint): the passes would stop for good what leaves
 // there, but comes elsewhere.
 void meet_contact_columns(StepContext &context);

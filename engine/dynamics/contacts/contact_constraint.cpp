@@ -49,6 +49,38 @@ bool are_balls(const StepContext &context, const Contact &contact) {
            is_ball(contact.collider_a) && is_ball(contact.collider_b);
 }
 
+void find_partners(StepContext &context) {
+    constexpr std::uint32_t none = UINT32_MAX;
+    constexpr std::uint32_t several = none - 1;
+    std::vector<std::uint32_t> &partners = context.scratch.partners;
+    partners.resize(context.bodies.size());
+    for (const std::uint32_t i : context.active.contacts)
+        partners[context.ends[i].a] = partners[context.ends[i].b] = none;
+    const auto meet = [&](std::uint32_t body, std::uint32_t other) {
+        partners[body] = partners[body] == none || partners[body] == other ? other : several;
+    };
+    for (const std::uint32_t i : context.active.contacts) {
+        meet(context.ends[i].a, context.ends[i].b);
+        meet(context.ends[i].b, context.ends[i].a);
+    }
+    const auto is_held = [&](std::uint32_t body) {
+        if (body != Joint::world)
+            partners[body] = several;
+    };
+    for (const std::uint32_t i : context.active.joints) {
+        is_held(context.model.joints[i].a);
+        is_held(context.model.joints[i].b);
+    }
+    if (context.active.holds_grab)
+        is_held(context.grab.body);
+}
+
+bool are_lone(const StepContext &context, const Contact &contact) {
+    const std::vector<std::uint32_t> &partners = context.scratch.partners;
+    return partners[contact.key.a] == contact.key.b && partners[contact.key.b] == contact.key.a &&
+           are_both_dynamic(context, contact);
+}
+
 Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
                             const Vec3 &r_b, const Vec3 &direction) {
     const Vec3 ra = glm::cross(r_a, direction);
@@ -91,7 +123,9 @@ void prepare_contacts(StepContext &context, Prepare which) {
     constraints.clear();
     for (const std::uint32_t i : context.active.contacts) {
         const Contact &contact = context.contacts[i];
-        if (which == Prepare::bouncing && contact.restitution == Real(0))
+        const bool strikes = contact.restitution > Real(0) ||
+                             (contact.moment == Moment::touch && are_lone(context, contact));
+        if (which == Prepare::striking && !strikes)
             continue;
         ContactConstraint &out = constraints.emplace_back();
         const SolverBody &a = context.bodies[contact.key.a];
@@ -104,6 +138,7 @@ void prepare_contacts(StepContext &context, Prepare which) {
         out.tangents = tangent_basis(out.normal);
         out.friction = contact.friction;
         out.restitution = contact.restitution;
+        out.strikes = strikes;
         out.count = contact.manifold.count;
         for (int k = 0; k < out.count; ++k) {
             const auto index = static_cast<std::size_t>(k);

@@ -44,6 +44,7 @@ struct ContactConstraint {
     Real friction = Real(0);
     Real restitution = Real(0);
     int count = 0;
+    bool strikes = false; // bounces, or is a collision of a lone pair (resolve_impacts)
     bool has_met = false; // in an impact, elsewhere than it was found (resolve_impacts)
     std::array<ContactPointConstraint, 4> points{};
 };
@@ -69,6 +70,10 @@ struct ContactBias {
 // Whether nothing holds either body; and whether both are balls there.
 bool are_both_dynamic(const StepContext &context, const Contact &contact);
 bool are_balls(const StepContext &context, const Contact &contact);
+// Whether two dynamic bodies touch each other and nothing else, and no joint or grab holds either,
+// once that has been found out for all.
+void find_partners(StepContext &context);
+bool are_lone(const StepContext &context, const Contact &contact);
 
 // 1 / (K along n): the effective mass of two points against each other along a unit vector.
 Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
@@ -82,8 +87,8 @@ Real tangent_mass_of(const ContactPointConstraint &point, const TangentBasis &ta
 void solve_friction(const ContactConstraint &contact, ContactPointConstraint &point, SolverBody &a,
                     SolverBody &b, Real limit);
 
-// One constraint for each contact that is no sensor's, in order; or for those that bounce alone.
-enum class Prepare { all, bouncing };
+// One constraint for each contact that is no sensor's, in order; or for those that strike alone.
+enum class Prepare { all, striking };
 void prepare_contacts(StepContext &context, Prepare which = Prepare::all);
 // The separation of a point at the present poses (m).
 Real present_separation(const ContactConstraint &contact, const ContactPointConstraint &point,
@@ -111,13 +116,14 @@ void restitute(StepContext &context, Real threshold);
 void record_impact(StepContext &context, const ContactConstraint &contact,
                    const std::array<Real, 4> &normal_impulse);
 
-// Bounces: contacts with restitution that would be struck within the next h get Newton's impact
+// Blows: contacts with restitution that would be struck within the next h get Newton's impact
 // law, those of one body together, until none approaches: so an impact runs through a row of
 // touching bodies as it does in a cradle, and a table comes up from its legs as level as it came
 // down (Smith et al. 2012, "Reflections on Simultaneous Impact", whose reflections these are where
 // restitution is 1). Where gravity acts along the way, the rebound speed is the one that the body
 // would have at its present height had it bounced at the surface: energy is kept whatever h is.
-// Comes at the start of a substep, before gravity is applied.
+// What a lone pair does not give back of a collision within the step is taken from it where the two
+// touch. Comes at the start of a substep, before gravity is applied.
 void resolve_impacts(StepContext &context, Real h);
 
 } // namespace plumb::inline PLUMB_PRECISION

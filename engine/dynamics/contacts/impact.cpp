@@ -1,3 +1,4 @@
+#include "engine/dynamics/contacts/approach.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/method.h"
 
@@ -31,6 +32,8 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
     if (speed >= -threshold || gap + lookahead * h * (speed + h * pull) > Real(0))
         return {};
     const Real height = std::max(gap, Real(0));
+    if (!(restitution > Real(0)))
+        return {true, Real(0), height / -speed};
     // Energy from here to the surface and back: v^2 - 2 a s.
     const Real surface_squared = std::max(speed * speed - Real(2) * pull * height, Real(0));
     const Real back_squared = restitution * restitution * surface_squared + Real(2) * pull * height;
@@ -46,9 +49,12 @@ struct Blow {
     Real pull = Real(0);   // see rebound
     std::array<Rebound, 4> rebounds;
     std::array<Real, 4> approaches{}; // normal speeds before
+    // Whether a point comes through the plane of the other body beside that.
+    std::array<bool, 4> passes_by{};
     // At the present poses: a stale one would gain or lose energy.
     std::array<Real, 4> normal_mass{};
-    std::array<Real, 4> impulses{};
+    std::array<Vec3, 4> impulses{}; // along the normal and the tangents
+    bool is_plastic() const { return contact->restitution == Real(0); }
 };
 
 Real normal_speed(const StepContext &context, const ContactConstraint &contact, std::size_t k) {
@@ -73,6 +79,8 @@ bool is_struck(const Blow &blow) {
 void look_at(const StepContext &context, Blow &blow, Real h) {
     const ContactConstraint &contact = *blow.contact;
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        if (blow.passes_by[k])
+            continue;
         blow.approaches[k] = normal_speed(context, contact, k);
         const Real gap = present_separation(contact, contact.points[k], context.bodies[contact.a],
                                             context.bodies[contact.b]);
@@ -208,31 +216,55 @@ void weigh_with_joints(StepContext &context, Blow &blow, Answers &joints) {
     }
 }
 
+// Friction with what the points bear so far.
+void rub(StepContext &context, Blow &blow, Answers &joints) {
+    const ContactConstraint &contact = *blow.contact;
+    SolverBody &a = context.bodies[contact.a];
+    SolverBody &b = context.bodies[contact.b];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
+        ContactPointConstraint point = contact.points[k];
+        point.impulse = blow.impulses[k];
+        point.tangent_mass = tangent_mass_of(point, contact.tangents, a, b);
+        solve_friction(contact, point, a, b, contact.friction * point.impulse.x);
+        blow.impulses[k] = point.impulse;
+        joints.give(contact);
+    }
+}
+
 // Shares the impulses by Gauss-Seidel, so that no point that was struck closes faster than it is to
 // leave, and none that leaves faster bears any.
 void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
     constexpr Real enough = Real(8) * std::numeric_limits<Real>::epsilon();
+    // Plastic blows are solved with their friction, for they leave no speed along the normal to
+    // spare: rubbed after that, some would gain energy.
+    const auto is_rubbed = [](const Blow &blow) {
+        return blow.is_plastic() && blow.contact->friction > Real(0);
+    };
+    const bool rubs = std::ranges::any_of(blows, is_rubbed);
     const bool is_one = blows.size() == 1 && blows.front().contact->count == 1;
-    const int passes = is_one ? 1 : context.settings.impact_passes;
+    const int passes = is_one && !rubs ? 1 : context.settings.impact_passes;
     bool agree = false;
     for (int pass = 0; pass < passes && !agree; ++pass) {
-        agree = true;
-        for (Blow &blow : blows)
+        agree = !rubs;
+        for (Blow &blow : blows) {
             for (std::size_t k = 0; k < static_cast<std::size_t>(blow.contact->count); ++k) {
                 if (!blow.rebounds[k].struck)
                     continue;
                 const Real missing =
                     blow.rebounds[k].speed - normal_speed(context, *blow.contact, k);
-                const Real total =
-                    std::max(blow.impulses[k] + blow.normal_mass[k] * missing, Real(0));
-                const Real change = total - blow.impulses[k];
+                Real &impulse = blow.impulses[k].x;
+                const Real total = std::max(impulse + blow.normal_mass[k] * missing, Real(0));
+                const Real change = total - impulse;
                 agree = agree && std::abs(change) <= enough * total;
-                blow.impulses[k] = total;
+                impulse = total;
                 apply_along_normal(context, *blow.contact, k, change);
                 joints.give(*blow.contact);
             }
+            if (is_rubbed(blow))
+                rub(context, blow, joints);
+        }
     }
-    if (is_one)
+    if (is_one || std::ranges::all_of(blows, &Blow::is_plastic))
         return;
     // What the passes have not shared out yet is made good as a whole, so that they leave the
     // energy that the law leaves: half the impulses times the sums of the speeds before and after.
@@ -241,29 +273,16 @@ void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
     for (const Blow &blow : blows)
         for (std::size_t k = 0; k < static_cast<std::size_t>(blow.contact->count); ++k) {
             const Real after = normal_speed(context, *blow.contact, k);
-            wanted += blow.impulses[k] * (blow.rebounds[k].speed - blow.approaches[k]);
-            reached += blow.impulses[k] * (after - blow.approaches[k]);
+            wanted += blow.impulses[k].x * (blow.rebounds[k].speed - blow.approaches[k]);
+            reached += blow.impulses[k].x * (after - blow.approaches[k]);
         }
     const Real missing = reached > Real(0) ? wanted / reached - Real(1) : Real(0);
     for (Blow &blow : blows)
         for (std::size_t k = 0; k < static_cast<std::size_t>(blow.contact->count); ++k) {
-            apply_along_normal(context, *blow.contact, k, missing * blow.impulses[k]);
-            blow.impulses[k] *= Real(1) + missing;
+            apply_along_normal(context, *blow.contact, k, missing * blow.impulses[k].x);
+            blow.impulses[k].x *= Real(1) + missing;
             joints.give(*blow.contact);
         }
-}
-
-void rub(StepContext &context, const Blow &blow, Answers &joints) {
-    const ContactConstraint &contact = *blow.contact;
-    SolverBody &a = context.bodies[contact.a];
-    SolverBody &b = context.bodies[contact.b];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
-        ContactPointConstraint point = contact.points[k];
-        point.impulse = Vec3{blow.impulses[k], Real(0), Real(0)};
-        point.tangent_mass = tangent_mass_of(point, contact.tangents, a, b);
-        solve_friction(contact, point, a, b, contact.friction * blow.impulses[k]);
-        joints.give(contact);
-    }
 }
 
 // How long these bodies go on as before (s): the new velocities act from where they touch, with the
@@ -297,10 +316,26 @@ bool are_apart(const ContactConstraint &contact, const Vec3 &between) {
     return std::any_of(contact.points.begin(), contact.points.begin() + contact.count, is_apart);
 }
 
+// Round surfaces meet on the line between their cores, unless those are at one place or the line is
+// far off the normal so far.
+void meet_between_cores(ContactConstraint &contact, const Contact &found, const SolverBody &a,
+                        const SolverBody &b, const Vec3 &between) {
+    ContactPointConstraint &point = contact.points[0];
+    const Vec3 core_a = a.rotation * point.core_a;
+    const Vec3 core_b = b.rotation * point.core_b;
+    const Vec3 line = between + core_b - core_a;
+    if (glm::dot(line, contact.normal) > Real(0.5) * glm::length(line))
+        contact.normal = glm::normalize(line);
+    contact.tangents = tangent_basis(contact.normal);
+    const Real half =
+        Real(0.5) * (glm::dot(line, contact.normal) - found.rounding_a - found.rounding_b);
+    point.r_a = core_a + (found.rounding_a + half) * contact.normal;
+    point.r_b = core_b - (found.rounding_b + half) * contact.normal;
+}
+
 // Where the points of two bodies that are free to move will be one when they touch, so that what
-// the one loses of angular momentum the other gains. Round surfaces meet on the line between their
-// cores, others where the round one is, or midway. Balls are left as they were found, where the
-// blow does not turn them.
+// the one loses of angular momentum the other gains: between round cores, else where the round one
+// is, or midway. Balls are left as they were found, where the blow does not turn them.
 void meet(StepContext &context, Blow &blow, Real time, Real h) {
     ContactConstraint &contact = *blow.contact;
     const Contact &found = context.contacts[contact.contact];
@@ -313,23 +348,65 @@ void meet(StepContext &context, Blow &blow, Real time, Real h) {
     const bool round_a = found.rounding_a > Real(0);
     const bool round_b = found.rounding_b > Real(0);
     if (round_a && round_b && contact.count == 1) {
-        ContactPointConstraint &point = contact.points[0];
-        const Vec3 core_a = a.rotation * point.core_a;
-        const Vec3 core_b = b.rotation * point.core_b;
-        contact.normal = glm::normalize(between + core_b - core_a);
-        contact.tangents = tangent_basis(contact.normal);
-        point.r_a = core_a + found.rounding_a * contact.normal;
-        point.r_b = core_b - found.rounding_b * contact.normal;
-    }
-    const Real share_a = round_a == round_b ? Real(0.5) : round_b ? Real(1) : Real(0);
-    for (ContactPointConstraint &point :
-         std::span(contact.points).first(std::size_t(contact.count))) {
-        const Vec3 off = between_points(point, between);
-        point.r_a += share_a * off;
-        point.r_b -= (Real(1) - share_a) * off;
+        meet_between_cores(contact, found, a, b, between);
+    } else {
+        const Real share_a = round_a == round_b ? Real(0.5) : round_b ? Real(1) : Real(0);
+        for (ContactPointConstraint &point :
+             std::span(contact.points).first(static_cast<std::size_t>(contact.count))) {
+            const Vec3 off = between_points(point, between);
+            point.r_a += share_a * off;
+            point.r_b -= (Real(1) - share_a) * off;
+        }
     }
     contact.has_met = true;
     look_at(context, blow, h);
+}
+
+// Whether the two touch `time` from now, as far as that is known: to the second order of their
+// turns.
+bool touch(const StepContext &context, const Contact &contact, Real time) {
+    constexpr Real enough = Real(1e-4); // of the smaller one's half width
+    const Collider &on_a = context.model.colliders[contact.collider_a];
+    const Collider &on_b = context.model.colliders[contact.collider_b];
+    const Motion a = ahead(context.bodies[contact.key.a], time);
+    const Motion b = ahead(context.bodies[contact.key.b], time);
+    const auto strays = [&](const Collider &collider, const Motion &motion) {
+        const Vec3 &spin = motion.angular_velocity;
+        return Real(0.5) * time * time * glm::dot(spin, spin) * collider.extent;
+    };
+    const Real near =
+        enough * std::min(on_a.half_width, on_b.half_width) + strays(on_a, a) + strays(on_b, b);
+    return collide(placed(on_a.shape, mass_pose(a)), placed(on_b.shape, mass_pose(b)), near,
+                   contact.manifold.normal)
+               .count > 0;
+}
+
+// Whether a lone pair does touch when a point comes through the plane of the other: what passes by
+// an edge or round a ball does not. What bounces and turns is let come: the passes give back no
+// speed.
+bool comes_to_touch(const StepContext &context, Blow &blow, Real h) {
+    const Contact &contact = context.contacts[blow.contact->contact];
+    if (contact.moment != Moment::touch || !are_lone(context, contact) ||
+        (!blow.is_plastic() && !are_balls(context, contact)))
+        return true;
+    if (blow.pull != Real(0))
+        return !blow.is_plastic();
+    while (is_struck(blow)) {
+        std::size_t first = 4;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (blow.rebounds[k].struck &&
+                (first == 4 || blow.rebounds[k].time < blow.rebounds[first].time))
+                first = k;
+        if (touch(context, contact, std::min(blow.rebounds[first].time, h)))
+            return true;
+        blow.rebounds[first] = {};
+        blow.passes_by[first] = true;
+    }
+    return false;
+}
+
+std::array<Real, 4> along_normal(const std::array<Vec3, 4> &impulses) {
+    return {impulses[0].x, impulses[1].x, impulses[2].x, impulses[3].x};
 }
 
 // Newton's law for all points that are struck together.
@@ -347,12 +424,12 @@ void strike(StepContext &context, std::span<Blow> blows, Real h) {
         for (const std::uint32_t body : {blow.contact->a, blow.contact->b})
             before.emplace_back(body, context.bodies[body].velocity);
     share_out(context, blows, joints);
-    for (const Blow &blow : blows)
-        if (blow.contact->friction > Real(0))
+    for (Blow &blow : blows)
+        if (!blow.is_plastic() && blow.contact->friction > Real(0))
             rub(context, blow, joints);
     const std::size_t recorded = context.impacts.size();
     for (const Blow &blow : blows)
-        record_impact(context, *blow.contact, blow.impulses);
+        record_impact(context, *blow.contact, along_normal(blow.impulses));
     context.report.impacts += static_cast<std::uint32_t>(context.impacts.size() - recorded);
     if (!(time > Real(0)))
         return;
@@ -394,10 +471,10 @@ void resolve_impacts(StepContext &context, Real h) {
     for (int sweep = 0; any && sweep < context.settings.impact_sweeps; ++sweep) {
         blows.clear();
         for (ContactConstraint &contact : context.scratch.contacts) {
-            if (!(contact.restitution > Real(0)))
+            if (!contact.strikes)
                 continue;
-            const Blow blow = blow_on(context, contact, h);
-            if (is_struck(blow))
+            Blow blow = blow_on(context, contact, h);
+            if (is_struck(blow) && comes_to_touch(context, blow, h))
                 blows.push_back(blow);
         }
         any = !blows.empty();

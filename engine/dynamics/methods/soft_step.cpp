@@ -97,13 +97,13 @@ void advance_soft_step(StepContext &context) {
                             .force_share = Real(0.5)};
     const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .loaded_only = true};
 
+    find_partners(context);
     prepare_contact_columns(context);
-    prepare_contacts(context, Prepare::bouncing); // for their impacts
+    prepare_contacts(context, Prepare::striking); // for their impacts
     prepare_joints(context);
     prepare_particles(context, SpringRule::midpoint);
     context.scratch.joint_system->arrange(context);
     prepare_joint_columns(context);
-    rearm_contact_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         // There and back, then back and there: one pass leaves most to the points that come last,
@@ -123,6 +123,7 @@ void advance_soft_step(StepContext &context) {
         warm_start_joints(context, Real(0.5), Springs::midpoint);
         turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
         warm_start_contact_columns(context, Real(0.5), true);
+        note_lasting_loads(context);
         if (has_particles) {
             kick_particles(context, gravity, Real(0.5) * h);
             refresh_particles(context, h, SpringRule::midpoint);
@@ -161,6 +162,7 @@ void advance_soft_step(StepContext &context) {
             solve_contact_columns(context, relax_bias, h);
         }
         hold_touched_groups(context, relaxing);
+        recall_borne(context);
         store_joint_columns(context); // for what the next substep makes of their loads
         if (has_particles)
             restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
