@@ -105,27 +105,33 @@ Lost angular_momentum_lost(double speed, double friction, double restitution) {
     return lost;
 }
 
-// Whatever their shapes, where they bounce: the points of both are one then (impact.cpp). With the
+// What does not bounce, and without friction slides round an edge of the other after the blow.
+bool slides_on(double speed, double friction, double restitution) {
+    return restitution == 0 && friction == 0 && speed > 1;
+}
+
+// Whatever their shapes: they are struck where the points of both are one (impact.cpp). With the
 // arms and normals of the step's start they lose some per cent, and half at worst.
 TEST(SoftStepFastImpact, BodiesOfAnyShapeKeepAngularMomentum) {
     for (const double speed : {1.0, 5.0, 20.0})
         for (const double friction : {0.0, 0.5})
-            for (const double restitution : {0.5, 1.0}) {
+            for (const double restitution : {0.0, 0.5, 1.0}) {
+                if (slides_on(speed, friction, restitution))
+                    continue;
                 const Lost lost = angular_momentum_lost(speed, friction, restitution);
                 EXPECT_LT(lost.mean, 2e-3) << speed << ' ' << friction << ' ' << restitution;
                 EXPECT_LT(lost.worst, 0.05) << speed << ' ' << friction << ' ' << restitution;
             }
 }
 
-// Known failing: what does not bounce, and slides round an edge of the other after the blow, still
-// loses some, at 20 m/s a quarter at worst.
+// Known failing: what slides on loses more, at 20 m/s a quarter at worst.
 TEST(SoftStepFastImpact, PlasticBlowsLoseSomeAngularMomentum) {
-    for (const double speed : {1.0, 5.0, 20.0})
-        for (const double friction : {0.0, 0.5}) {
-            const Lost lost = angular_momentum_lost(speed, friction, 0);
-            EXPECT_LT(lost.mean, 0.01) << speed << ' ' << friction;
-            EXPECT_LT(lost.worst, speed < 10 ? 0.05 : 0.3) << speed << ' ' << friction;
-        }
+    for (const double speed : {5.0, 20.0}) {
+        const Lost lost = angular_momentum_lost(speed, 0, 0);
+        EXPECT_GT(lost.mean, 2e-3) << speed;
+        EXPECT_LT(lost.mean, 0.01) << speed;
+        EXPECT_LT(lost.worst, speed < 10 ? 0.05 : 0.3) << speed;
+    }
 }
 
 // The share of its energy that a gas of 36 bodies between six walls gains in ten seconds.
