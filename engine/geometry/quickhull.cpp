@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <queue>
 #include <utility>
 
@@ -513,7 +514,9 @@ void add_planes(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &f
         const auto is_in_front = [&](const Vec3 &vertex) {
             return plane_sign(plane.normal, plane.offset, vertex) > 0;
         };
-        Real step = epsilon * std::max(std::abs(plane.offset), epsilon * reach);
+        // Of subnormal coordinates the product may be 0, and the loop would never end.
+        Real step = std::max(epsilon * std::max(std::abs(plane.offset), epsilon * reach),
+                             std::numeric_limits<Real>::denorm_min());
         while (std::any_of(mesh.vertices.begin(), mesh.vertices.end(), is_in_front)) {
             plane.offset += step;
             step *= Real(2);

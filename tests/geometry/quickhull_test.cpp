@@ -538,5 +538,34 @@ TEST(Quickhull, SaysWhyNot) {
     EXPECT_EQ(problem({o, tiny * x, tiny * y, tiny * z}), HullProblem::out_of_range);
 }
 
+// Subnormal numbers too, and each coordinate with an exponent of its own.
+TEST(Quickhull, EndsForPointsOfAnySize) {
+    using Limits = std::numeric_limits<Real>;
+    const Real tiny = Real(1e6) * Limits::denorm_min();
+    const std::vector<Vec3> corner = {Vec3{Real(0)},
+                                      {Real(0), tiny, Real(0)},
+                                      {tiny, Real(0), Real(0)},
+                                      {Real(0), Real(0), Real(0x1p19) * tiny}};
+    EXPECT_EQ(convex_hull(corner, 64).problem, sizeof(Real) == sizeof(float)
+                                                   ? HullProblem::out_of_range
+                                                   : HullProblem::all_in_one_point);
+    Random random(8);
+    for (int trial = 0; trial < trials(20000); ++trial) {
+        std::vector<Vec3> points;
+        for (int i = 0; i < 12; ++i) {
+            Vec3 p{Real(0)};
+            if (random.next_in(0.0, 1.0) > 0.3)
+                for (int k = 0; k < 3; ++k)
+                    p[k] = std::ldexp(Real(random.next_in(-1.0, 1.0)),
+                                      static_cast<int>(random.next_in(Limits::min_exponent - 40,
+                                                                      Limits::max_exponent)));
+            points.push_back(p);
+        }
+        const HullResult result = convex_hull(points, 64);
+        ASSERT_EQ(result.mesh.has_value(), result.problem == HullProblem::none)
+            << "trial " << trial;
+    }
+}
+
 } // namespace
 } // namespace plumb::inline PLUMB_PRECISION
