@@ -268,6 +268,8 @@ class World {
     // `before`: what is remembered of it, or null.
     bool keep_contact(const Candidate &candidate, const ContactMemory *before,
                       std::vector<Contact> &out) const;
+    Vec3 half_turn_of(const Candidate &candidate) const;
+    bool rolls_off(const Candidate &candidate, const ContactOrigin &origin) const;
     void add_contact(const Candidate &candidate, std::uint32_t triangle,
                      const ContactMemory *before, const FoundManifold &found,
                      std::vector<Contact> &out) const;
@@ -286,7 +288,6 @@ class World {
     bool find_missed_points();
     bool find_missed_points(Contact &contact) const;
     bool find_passed_points(const Candidate &candidate);
-    bool has_rim(const Contact &contact) const;
     bool add_missed(const Manifold &now, Real deep, Contact &contact) const;
     Real contact_reach(const Candidate &candidate) const;
     Real moving_width(const Candidate &candidate) const;

@@ -1,4 +1,5 @@
 // The narrow phase: where the candidates touch, and what is remembered of it.
+#include "engine/dynamics/contacts/rolling_rim.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
 
@@ -68,6 +69,17 @@ bool touches(const Manifold &manifold) {
     return false;
 }
 
+// What rolls on a rim stands on it where it will in the middle of the step; `half_turn`: of a
+// against b.
+void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn,
+               Manifold &manifold) {
+    const Vec3 normal = manifold.normal;
+    if (const Shape *solid = std::get_if<Shape>(&a))
+        lead_along_rim(manifold, *solid, b, normal, half_turn);
+    if (const Shape *solid = std::get_if<Shape>(&b))
+        lead_along_rim(manifold, *solid, a, -normal, -half_turn);
+}
+
 // How far two solids go against each other in a step before it matters that they turn around each
 // other on the way: their distance then changes by way^2 / (2 width).
 Real predicted_from(const Collider &a, const Collider &b) {
@@ -126,10 +138,9 @@ Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &
     const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
     if (cylinder == nullptr || collider.surface)
         return collider.rounding;
-    constexpr Real leaning = Real(0.8);
     const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
-    return std::abs(sine) <= leaning ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
-                                     : Real(0);
+    return std::abs(sine) <= least_rim_sine ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
+                                            : Real(0);
 }
 
 // Once its origin is known.
@@ -324,6 +335,8 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
     const bool stays_longer =
         before->point_count == 4 && way_of(candidate) <= usual &&
         (gets_too_few_substeps(candidate.key.a) || gets_too_few_substeps(candidate.key.b));
+    if (method_->info.looks_ahead && rolls_off(candidate, origin))
+        return false;
     const Real share = kept_share * moving_width(candidate);
     const Real most = stays_longer ? share : std::min(usual, share);
     if (!(travel <= most))
@@ -368,6 +381,26 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
     return false;
 }
 
+// How far one of two bodies turns against the other in half a step.
+Vec3 World::half_turn_of(const Candidate &candidate) const {
+    return (Real(0.5) * static_cast<Real>(settings_.dt)) *
+           (going(candidate.key.a).angular_velocity - going(candidate.key.b).angular_velocity);
+}
+
+// Whether one of the two rolls on a rim, on which it will be lower than where it stood.
+bool World::rolls_off(const Candidate &candidate, const ContactOrigin &origin) const {
+    constexpr Real much = Real(1e-6); // of its width
+    const Collider &a = model_->colliders[candidate.collider_a];
+    const Collider &b = model_->colliders[candidate.collider_b];
+    if (!has_rim(a, b))
+        return false;
+    const Vec3 half_turn = half_turn_of(candidate);
+    return rolled_depth(a.shape, origin.rotation_a, state_.motions[candidate.key.a].rotation,
+                        origin.normal, half_turn) > much * a.half_width ||
+           rolled_depth(b.shape, origin.rotation_b, state_.motions[candidate.key.b].rotation,
+                        -origin.normal, -half_turn) > much * b.half_width;
+}
+
 bool World::keeps_contacts() const {
     return settings_.kept_travel > 0 &&
            std::ranges::find(method_->info.reads, SettingGroup::kept) != method_->info.reads.end();
@@ -385,6 +418,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
     const bool is_predicted = method_->info.looks_ahead && !a.sensor && !b.sensor &&
                               way_of(candidate) > predicted_from(a, b);
     const bool is_turning = is_turned(candidate);
+    const bool leads = method_->info.looks_ahead && !is_turning;
     if (!a.surface && !b.surface) {
         const ContactMemory *before = find_memory(state_, candidate.key);
         if (!is_turning && keeps_contacts() && keep_contact(candidate, before, out))
@@ -392,10 +426,15 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         const Vec3 guess = before == nullptr ? Vec3{Real(0)} : before->origin.normal;
         FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin, guess),
                             motion_a, motion_b};
-        if (found.manifold.count > 0 && is_predicted && !touches(found.manifold))
+        if (touches(found.manifold)) {
+            if (leads && has_rim(a, b))
+                lead_rims(scratch_.placed[i], scratch_.placed[j], half_turn_of(candidate),
+                          found.manifold);
+            if (is_predicted)
+                guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
+        } else if (found.manifold.count > 0 && is_predicted) {
             found = predicted_manifold(candidate, found.manifold.normal);
-        else if (found.manifold.count > 0 && is_predicted)
-            guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
+        }
         found.is_turning = is_turning;
         drop_inner_edges(candidate, ContactKey::no_triangle, found);
         add_contact(candidate, ContactKey::no_triangle, before, found, out);
@@ -423,6 +462,14 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                 found.manifold.normal = -found.manifold.normal;
             if (is_predicted && !touches(found.manifold))
                 found = predicted_manifold(candidate, found.manifold.normal, triangle);
+            else if (leads && has_rim(a, b) && touches(found.manifold)) {
+                const Triangle there = placed(surface.surface->triangle(triangle), pose);
+                const Vec3 half_turn = half_turn_of(candidate);
+                if (solid_first)
+                    lead_rims(solid, there, half_turn, found.manifold);
+                else
+                    lead_rims(there, solid, half_turn, found.manifold);
+            }
             found.is_turning = is_turning;
             drop_inner_edges(candidate, triangle, found);
             ContactKey key = candidate.key;

@@ -1,5 +1,6 @@
 // What a try of the step shows to have gone deep where no contact stopped it: the impacts within it
 // had spun it as nobody could know before.
+#include "engine/dynamics/contacts/rolling_rim.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
 #include "engine/geometry/aabb.h"
@@ -95,21 +96,16 @@ Manifold passed_points(const Passage &passage, const Triangle &triangle, Sides s
 
 } // namespace
 
-// Whether one of the two has a rim, on which four points leave arcs between them.
-bool World::has_rim(const Contact &contact) const {
-    return std::ranges::any_of(
-        std::array{contact.collider_a, contact.collider_b}, [&](std::uint32_t collider) {
-            return std::holds_alternative<Cylinder>(model_->colliders[collider].shape);
-        });
-}
-
 // Adds those points, found with the bodies as they are after the try, that the contact has no other
 // within `deep` of. Whether there were any. Of four points with a triangle, or of a rim, the one
 // that is farthest apart then gives way; those of two other solids are a face's, and stay.
 bool World::add_missed(const Manifold &now, Real deep, Contact &contact) const {
     const SolverBody &at_a = scratch_.bodies[contact.key.a];
     const SolverBody &at_b = scratch_.bodies[contact.key.b];
-    const bool may_replace = contact.key.triangle != ContactKey::no_triangle || has_rim(contact);
+    // On a rim, four points leave arcs between them.
+    const bool may_replace =
+        contact.key.triangle != ContactKey::no_triangle ||
+        has_rim(model_->colliders[contact.collider_a], model_->colliders[contact.collider_b]);
     const auto separation_then = [&](const ContactAnchor &anchor) {
         return separation_along(contact.manifold.normal, anchor.core_a, anchor.core_b,
                                 contact.rounding_a + contact.rounding_b, at_a, at_b);
@@ -154,7 +150,7 @@ bool World::find_missed_points(Contact &contact) const {
     const SolverBody &at_a = scratch_.bodies[contact.key.a];
     const SolverBody &at_b = scratch_.bodies[contact.key.b];
     const Real turning = glm::length(at_a.turned) * a.extent + glm::length(at_b.turned) * b.extent;
-    if (!(turning > deep) || (contact.manifold.count == 4 && !has_rim(contact)))
+    if (!(turning > deep) || (contact.manifold.count == 4 && !has_rim(a, b)))
         return false;
     Manifold now =
         plumb::collide(placed(a.shape, mass_pose(at_a)), placed(b.shape, mass_pose(at_b)), Real(0),

@@ -1,0 +1,116 @@
+#include "engine/dynamics/contacts/rolling_rim.h"
+
+#include "engine/dynamics/bodies/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include <glm/geometric.hpp>
+
+namespace plumb::inline PLUMB_PRECISION {
+
+namespace {
+
+// How far points may be off a rim or a surface, as geometry finds them (m).
+constexpr Real off = Real(2e-4);
+// A point bears alone where all others are higher by so much (m).
+constexpr Real clear = Real(1e-5);
+
+struct Rim {
+    Vec3 middle;
+    Vec3 axis; // outward
+    Real radius;
+
+    bool has(const Vec3 &point) const {
+        const Vec3 from = point - middle;
+        const Real above = glm::dot(from, axis);
+        return std::abs(above) <= off && std::abs(glm::length(from - above * axis) - radius) <= off;
+    }
+};
+
+std::optional<Rim> rim_along(const Shape &solid, const Vec3 &along) {
+    const auto *cylinder = std::get_if<Cylinder>(&solid);
+    if (cylinder == nullptr)
+        return std::nullopt;
+    const Vec3 axis = glm::normalize(cylinder->b - cylinder->a);
+    const Real sine = glm::dot(axis, along);
+    if (!(std::abs(sine) > least_rim_sine))
+        return std::nullopt;
+    return sine > Real(0) ? Rim{cylinder->b, axis, cylinder->radius}
+                          : Rim{cylinder->a, -axis, cylinder->radius};
+}
+
+// Which way from the axis is lowest, and how steep the rim's plane is.
+struct Lean {
+    Vec3 way{Real(0)};
+    Real slope = Real(0); // sine
+};
+Lean lean_of(const Vec3 &axis, const Vec3 &along) {
+    const Vec3 outward = along - glm::dot(axis, along) * axis;
+    const Real slope = glm::length(outward);
+    if (!(slope > Real(8) * std::numeric_limits<Real>::epsilon()))
+        return {};
+    // Once more: of a small slope rounding leaves much along the axis.
+    const Vec3 way = outward / slope;
+    return {glm::normalize(way - glm::dot(axis, way) * axis), slope};
+}
+
+// The normal when the solid has turned, as seen from it now.
+Vec3 seen_after(const Vec3 &normal, const Vec3 &turn) {
+    return turned(identity_rotation, -turn, Real(1)) * normal;
+}
+
+} // namespace
+
+bool has_rim(const Collider &a, const Collider &b) {
+    return std::holds_alternative<Cylinder>(a.shape) || std::holds_alternative<Cylinder>(b.shape);
+}
+
+Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const Vec3 &out,
+                  const Vec3 &half_turn) {
+    const std::optional<Rim> rim = rim_along(local, glm::conjugate(now) * out);
+    if (!rim)
+        return Real(0);
+    const Lean then = lean_of(rim->axis, glm::conjugate(before) * out);
+    const Lean ahead = lean_of(rim->axis, glm::conjugate(now) * seen_after(out, half_turn));
+    // It stands flat, on all of the rim.
+    constexpr Real between = Real(0.29); // 1 - cos of 45 degrees, to the next point of a manifold
+    if (!(between * rim->radius * ahead.slope > clear))
+        return Real(0);
+    const Vec3 apart = ahead.way - then.way;
+    return Real(0.5) * rim->radius * ahead.slope * glm::dot(apart, apart);
+}
+
+void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &other,
+                    const Vec3 &out, const Vec3 &half_turn) {
+    const std::optional<Rim> rim = rim_along(solid, out);
+    if (!rim || manifold.count == 0)
+        return;
+    const std::span points =
+        std::span(manifold.points).first(static_cast<std::size_t>(manifold.count));
+    ManifoldPoint &deepest = *std::ranges::min_element(points, {}, &ManifoldPoint::separation);
+    const auto bears_too = [&](const ManifoldPoint &point) {
+        return &point != &deepest && point.separation < deepest.separation + clear;
+    };
+    const Vec3 at = deepest.position - (Real(0.5) * deepest.separation) * out;
+    const Lean lean = lean_of(rim->axis, out);
+    const Lean ahead = lean_of(rim->axis, seen_after(out, half_turn));
+    const Vec3 apart = ahead.way - lean.way;
+    // Of the eight points of a rim in a manifold the nearest is no farther away.
+    constexpr Real beside = Real(0.4);
+    if (!rim->has(at) || std::ranges::any_of(points, bears_too) ||
+        glm::distance(at, rim->middle + rim->radius * lean.way) > beside * rim->radius ||
+        glm::dot(apart, apart) > Real(1))
+        return;
+    const Vec3 leading = rim->middle + rim->radius * ahead.way;
+    const Real separation = deepest.separation + glm::dot(at - leading, out);
+    if (distance_to(other, leading + separation * out) > off)
+        return;
+    deepest.separation = separation;
+    deepest.position = leading + (Real(0.5) * separation) * out;
+}
+
+} // namespace plumb::inline PLUMB_PRECISION
