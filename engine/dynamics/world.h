@@ -269,6 +269,7 @@ class World {
     bool keep_contact(const Candidate &candidate, const ContactMemory *before,
                       std::vector<Contact> &out) const;
     Vec3 half_turn_of(const Candidate &candidate) const;
+    bool misses_corner(const Candidate &candidate, const Manifold &manifold) const;
     bool rolls_off(const Candidate &candidate, const ContactOrigin &origin) const;
     void add_contact(const Candidate &candidate, std::uint32_t triangle,
                      const ContactMemory *before, const FoundManifold &found,

@@ -40,10 +40,11 @@ struct HullMesh {
     // How much the height of a point in `box` above a plane, as computed in Real, can differ from
     // its height above the plane of the face's three corners. Metres.
     Real slack = Real(0);
-    bool has_flat_faces = true; // exactly: all vertices of each face are in one plane
-    Vec3 center{Real(0)};       // of mass, for uniform density
-    Real volume = Real(0);      // m^3
-    Mat3 inertia{Real(0)};      // about the centre, for a density of 1 kg/m^3
+    std::uint32_t most_corners = 0; // of a face
+    bool has_flat_faces = true;     // exactly: all vertices of each face are in one plane
+    Vec3 center{Real(0)};           // of mass, for uniform density
+    Real volume = Real(0);          // m^3
+    Mat3 inertia{Real(0)};          // about the centre, for a density of 1 kg/m^3
 };
 
 // A mesh that is missing or has no vertices, a position that is not finite, and a rotation that is

@@ -469,6 +469,7 @@ void add_topology(HullMesh &mesh, const std::vector<Facet> &facets, const Faces 
             ++loop.count;
         } while (point != first);
         mesh.faces.push_back(loop);
+        mesh.most_corners = std::max(mesh.most_corners, loop.count);
         const auto &[a, b, c] = facets[faces.seeds[face]].corners;
         mesh.face_corners.push_back({vertex_of[a], vertex_of[b], vertex_of[c]});
     }

@@ -117,6 +117,50 @@ TEST(Rolling, CylindersSpunOnARimGainLittleEnergy) {
     EXPECT_LT(more, count / 8);
 }
 
+// A prism of 8 to 27 sides rolls from corner to corner, of which its contact has four.
+TEST(Rolling, PrismsOnACornerGainLittleEnergy) {
+    for (const double spin : {0.0, 1.0}) { // roots of g / radius
+        Random random(11);
+        int more = 0;
+        constexpr int count = 300;
+        for (int trial = 0; trial < count; ++trial) {
+            const double friction = random.next_in(0.05, 1.2);
+            const double radius = std::pow(10, random.next_in(-1.5, 0));
+            const int sides = 8 + static_cast<int>(random.next_index(20));
+            const double half = 0.5 * radius * random.next_in(0.2, 3);
+            std::vector<Vec3> corners;
+            for (int i = 0; i < sides; ++i)
+                for (const double end : {-half, half})
+                    corners.push_back(narrow(V{radius * std::cos(2 * pi * i / sides), end,
+                                               radius * std::sin(2 * pi * i / sides)}));
+            const auto mesh = std::make_shared<const HullMesh>(*convex_hull(corners, 64).mesh);
+            World world("soft_step", settings_for("soft_step"));
+            world.add_body(ground(friction, 0));
+            BodyDef prism =
+                dynamic_body(ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation}, 10, V{0});
+            prism.colliders[0].hull = mesh;
+            const glm::dquat rotation = any_rotation(random);
+            double lowest = 0;
+            for (const Vec3 &corner : corners)
+                lowest = std::min(lowest, (rotation * wide(corner)).y);
+            prism.pose = {narrow(V{0, -lowest, 0}), narrow(rotation)};
+            prism.angular_velocity = narrow(any_vector(random, spin * std::sqrt(gravity / radius)));
+            world.add_body(with_material(prism, friction, 0));
+            const double begun = world.energy() + 10 * gravity * (radius + lowest);
+            double low = world.energy();
+            double gain = 0;
+            for (int step = 0; step < 900; ++step) {
+                world.step(nullptr);
+                low = std::min(low, world.energy());
+                gain = std::max(gain, world.energy() - low);
+            }
+            EXPECT_LT(gain, 0.15 * begun) << spin << ", " << trial;
+            more += gain > 0.01 * begun ? 1 : 0;
+        }
+        EXPECT_LT(more, count / 10) << spin;
+    }
+}
+
 // A cylinder on its rim that leans over and rolls, at so many times the speed at which it turns as
 // fast as gravity tips it. Thin ones are coins.
 BodyDef leaning_roller(double radius, double thickness, double lean, double froude) {

@@ -1,5 +1,5 @@
 // The narrow phase: where the candidates touch, and what is remembered of it.
-#include "engine/dynamics/contacts/rolling_rim.h"
+#include "engine/dynamics/contacts/rolling_contact.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
 
@@ -78,6 +78,16 @@ void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn
         lead_along_rim(manifold, *solid, b, normal, half_turn);
     if (const Shape *solid = std::get_if<Shape>(&b))
         lead_along_rim(manifold, *solid, a, -normal, -half_turn);
+}
+
+void add_next_corners(const Shape &a, const Shape &b, const Vec3 &half_turn, Manifold &manifold) {
+    const Vec3 normal = manifold.normal;
+    for (const Real share : {Real(1), Real(2)}) {
+        if (const auto *hull = std::get_if<ConvexHull>(&a))
+            add_next_corner(manifold, *hull, b, normal, share * half_turn);
+        if (const auto *hull = std::get_if<ConvexHull>(&b))
+            add_next_corner(manifold, *hull, a, -normal, -share * half_turn);
+    }
 }
 
 // How far two solids go against each other in a step before it matters that they turn around each
@@ -375,7 +385,7 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
             motion_a.position + core_a + (contact.rounding_a + Real(0.5) * to.separation) * normal;
     }
     contact.rolling = rolling_of(contact);
-    if (contact.rolling != Rolling::on_face)
+    if (contact.rolling != Rolling::on_face && !misses_corner(candidate, contact.manifold))
         return true;
     out.pop_back();
     return false;
@@ -399,6 +409,19 @@ bool World::rolls_off(const Candidate &candidate, const ContactOrigin &origin) c
                         origin.normal, half_turn) > much * a.half_width ||
            rolled_depth(b.shape, origin.rotation_b, state_.motions[candidate.key.b].rotation,
                         -origin.normal, -half_turn) > much * b.half_width;
+}
+
+// Whether a hull rolls off the points of its contact, onto corners that this does not have.
+bool World::misses_corner(const Candidate &candidate, const Manifold &manifold) const {
+    constexpr Real much = Real(1e-6); // of its width
+    const auto misses = [&](std::uint32_t collider, const Vec3 &out, const Vec3 &turn) {
+        const auto *hull = std::get_if<ConvexHull>(&scratch_.placed[collider]);
+        return hull != nullptr && missed_depth(manifold, *hull, out, turn) >
+                                      much * model_->colliders[collider].half_width;
+    };
+    const Vec3 turn = Real(2) * half_turn_of(candidate);
+    return method_->info.looks_ahead && (misses(candidate.collider_a, manifold.normal, turn) ||
+                                         misses(candidate.collider_b, -manifold.normal, -turn));
 }
 
 bool World::keeps_contacts() const {
@@ -430,6 +453,9 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
             if (leads && has_rim(a, b))
                 lead_rims(scratch_.placed[i], scratch_.placed[j], half_turn_of(candidate),
                           found.manifold);
+            if (leads)
+                add_next_corners(scratch_.placed[i], scratch_.placed[j], half_turn_of(candidate),
+                                 found.manifold);
             if (is_predicted)
                 guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
         } else if (found.manifold.count > 0 && is_predicted) {

@@ -1,6 +1,6 @@
 // What a try of the step shows to have gone deep where no contact stopped it: the impacts within it
 // had spun it as nobody could know before.
-#include "engine/dynamics/contacts/rolling_rim.h"
+#include "engine/dynamics/contacts/rolling_contact.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
 #include "engine/geometry/aabb.h"

@@ -1,5 +1,5 @@
-// Cylinders and coins that roll on a rim: the place they stand on runs round the rim much faster
-// than they turn, and within a step it is not where it was.
+// Cylinders, coins and hulls that roll on a rim or from corner to corner: the place they stand on
+// runs round the rim much faster than they turn, and within a step it is not where it was.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -29,5 +29,18 @@ Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const
 // alone, and the other is below the new place, too.
 void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &other,
                     const Vec3 &out, const Vec3 &half_turn);
+
+// How much lower a hull will be, when it has gone through `turn` against the other, than at any of
+// a manifold's points (m). 0 for hulls whose faces have six corners at most, and where it stands on
+// more than one point.
+Real missed_depth(const Manifold &manifold, const ConvexHull &hull, const Vec3 &out,
+                  const Vec3 &turn);
+
+// Adds the corner of a hull that will be lowest when it has gone through `turn` (rad) against the
+// other, where the manifold does not have it: of a face of many corners it has four, and what rolls
+// on its edge would go through the floor with the next ones. In place of the point that is farthest
+// from touching, if there are four. Only where the depth above may be more than 0.
+void add_next_corner(Manifold &manifold, const ConvexHull &hull, const StaticPiece &other,
+                     const Vec3 &out, const Vec3 &turn);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,6 +1,7 @@
-#include "engine/dynamics/contacts/rolling_rim.h"
+#include "engine/dynamics/contacts/rolling_contact.h"
 
 #include "engine/dynamics/bodies/motion.h"
+#include "engine/geometry/hull_queries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +59,24 @@ Lean lean_of(const Vec3 &axis, const Vec3 &along) {
     return {glm::normalize(way - glm::dot(axis, way) * axis), slope};
 }
 
+template <typename Which> auto points_of(Which &manifold) {
+    return std::span(manifold.points).first(static_cast<std::size_t>(manifold.count));
+}
+// Whether the deepest point bears alone.
+bool is_alone(const Manifold &manifold, const ManifoldPoint &deepest) {
+    return std::ranges::none_of(points_of(manifold), [&](const ManifoldPoint &point) {
+        return &point != &deepest && point.separation < deepest.separation + clear;
+    });
+}
+template <typename Which> auto &deepest_of(Which &manifold) {
+    return *std::ranges::min_element(points_of(manifold), {}, &ManifoldPoint::separation);
+}
+
+// Where a point is on the solid's surface.
+Vec3 on_solid(const ManifoldPoint &point, const Vec3 &out) {
+    return point.position - (Real(0.5) * point.separation) * out;
+}
+
 // The normal when the solid has turned, as seen from it now.
 Vec3 seen_after(const Vec3 &normal, const Vec3 &turn) {
     return turned(identity_rotation, -turn, Real(1)) * normal;
@@ -89,19 +108,14 @@ void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &o
     const std::optional<Rim> rim = rim_along(solid, out);
     if (!rim || manifold.count == 0)
         return;
-    const std::span points =
-        std::span(manifold.points).first(static_cast<std::size_t>(manifold.count));
-    ManifoldPoint &deepest = *std::ranges::min_element(points, {}, &ManifoldPoint::separation);
-    const auto bears_too = [&](const ManifoldPoint &point) {
-        return &point != &deepest && point.separation < deepest.separation + clear;
-    };
-    const Vec3 at = deepest.position - (Real(0.5) * deepest.separation) * out;
+    ManifoldPoint &deepest = deepest_of(manifold);
+    const Vec3 at = on_solid(deepest, out);
     const Lean lean = lean_of(rim->axis, out);
     const Lean ahead = lean_of(rim->axis, seen_after(out, half_turn));
     const Vec3 apart = ahead.way - lean.way;
     // Of the eight points of a rim in a manifold the nearest is no farther away.
     constexpr Real beside = Real(0.4);
-    if (!rim->has(at) || std::ranges::any_of(points, bears_too) ||
+    if (!rim->has(at) || !is_alone(manifold, deepest) ||
         glm::distance(at, rim->middle + rim->radius * lean.way) > beside * rim->radius ||
         glm::dot(apart, apart) > Real(1))
         return;
@@ -111,6 +125,64 @@ void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &o
         return;
     deepest.separation = separation;
     deepest.position = leading + (Real(0.5) * separation) * out;
+}
+
+namespace {
+
+constexpr std::uint32_t next_corner_feature = 0xFFFE0000U; // and its number
+
+// Whether there are faces of which the four points of a contact leave long arcs.
+bool has_wide_face(const ConvexHull &hull) {
+    return hull.mesh->most_corners > 6;
+}
+
+struct Corner {
+    std::uint32_t vertex;
+    Vec3 place;
+};
+Corner lowest_corner(const ConvexHull &hull, const Vec3 &along) {
+    const std::uint32_t vertex = support_vertex(*hull.mesh, glm::conjugate(hull.rotation) * along);
+    return {vertex, hull.position + hull.rotation * hull.mesh->vertices[vertex]};
+}
+
+} // namespace
+
+Real missed_depth(const Manifold &manifold, const ConvexHull &hull, const Vec3 &out,
+                  const Vec3 &turn) {
+    if (!has_wide_face(hull) || !is_alone(manifold, deepest_of(manifold)))
+        return Real(0);
+    const Vec3 then = seen_after(out, turn);
+    const Vec3 lowest = lowest_corner(hull, then).place;
+    Real depth = std::numeric_limits<Real>::infinity();
+    for (const ManifoldPoint &point : points_of(manifold))
+        depth = std::min(depth, glm::dot(lowest - on_solid(point, out), then));
+    return depth;
+}
+
+void add_next_corner(Manifold &manifold, const ConvexHull &hull, const StaticPiece &other,
+                     const Vec3 &out, const Vec3 &turn) {
+    const ManifoldPoint &deepest = deepest_of(manifold);
+    if (!has_wide_face(hull) || !is_alone(manifold, deepest))
+        return;
+    const auto [vertex, corner] = lowest_corner(hull, seen_after(out, turn));
+    const std::span points = points_of(manifold);
+    const Vec3 at = on_solid(deepest, out);
+    const Real separation = deepest.separation + glm::dot(at - corner, out);
+    const bool is_there = std::ranges::any_of(points, [&](const ManifoldPoint &point) {
+        return glm::distance(on_solid(point, out), corner) <= off;
+    });
+    if (is_there || separation > glm::length(turn) * glm::distance(at, corner) ||
+        distance_to(other, corner + separation * out) > off)
+        return;
+    const ManifoldPoint next{corner + (Real(0.5) * separation) * out, separation,
+                             next_corner_feature | vertex};
+    if (points.size() < manifold.points.size()) {
+        manifold.points[static_cast<std::size_t>(manifold.count++)] = next;
+        return;
+    }
+    ManifoldPoint &farthest = *std::ranges::max_element(points, {}, &ManifoldPoint::separation);
+    if (farthest.separation > separation)
+        farthest = next;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION
