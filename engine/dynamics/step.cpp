@@ -132,7 +132,7 @@ void World::step_together(StepTimes *times) {
             try_step(); // with the loads that the first try found
         constexpr int most_tries = 8;
         int missed = 0;
-        constexpr int most_missed = 2; // more do not make it better
+        constexpr int most_missed = 3; // more do not make it better
         const auto must_try_again = [&] {
             return find_surprises() || (missed++ < most_missed && find_missed_points());
         };

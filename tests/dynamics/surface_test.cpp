@@ -267,5 +267,44 @@ TEST(Surface, SlopesGripAndSlide) {
     }
 }
 
+// What comes down a hilly field rolls and tumbles over its ridges, and lands with a far end on the
+// next face: no more of it goes in than little pushes out.
+TEST(Surface, WhatTumblesDownHillsGainsLittleEnergy) {
+    const auto hills = [](double x, double z) { return 0.3 * std::sin(x) * std::cos(z); };
+    const auto surface =
+        std::make_shared<const TriangleSurface>(field(40, 0.5, hills), Sides::front);
+    for (const bool is_box : {true, false}) {
+        Random random(11);
+        int more = 0;
+        constexpr int count = 100;
+        for (int trial = 0; trial < count; ++trial) {
+            const double friction = random.next_in(0.05, 1.2);
+            const double size = std::pow(10, random.next_in(-1.5, 0));
+            const auto side = [&] { return size * random.next_in(0.2, 1); };
+            const double x = side(), y = side(), z = side();
+            const Shape shape =
+                is_box ? Shape{block(V{x, y, z})}
+                       : Shape{Cylinder{narrow(V{0, -y, 0}), narrow(V{0, y, 0}), Real(size)}};
+            World world("soft_step", settings_for("soft_step"));
+            world.add_body(surface_body(surface, friction));
+            BodyDef body = dynamic_body(shape, 10, V{0.13, 0.35 + 1.5 * size, 0});
+            body.pose.rotation = narrow(any_rotation(random));
+            body.angular_velocity = narrow(any_vector(random, std::sqrt(gravity / size)));
+            world.add_body(with_material(body, friction, 0));
+            const double begun = world.energy() - 10 * gravity * (0.35 + 0.5 * size);
+            double low = world.energy();
+            double gain = 0;
+            for (int step = 0; step < 600; ++step) {
+                world.step(nullptr);
+                low = std::min(low, world.energy());
+                gain = std::max(gain, world.energy() - low);
+            }
+            EXPECT_LT(gain, (is_box ? 0.05 : 0.25) * begun) << is_box << ", " << trial;
+            more += gain > 0.01 * begun ? 1 : 0;
+        }
+        EXPECT_LT(more, is_box ? 2 : 13) << is_box;
+    }
+}
+
 } // namespace
 } // namespace plumb::inline PLUMB_PRECISION

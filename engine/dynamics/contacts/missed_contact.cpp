@@ -18,8 +18,12 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // Of the half width of the thinner of two bodies: how deep they may be in each other after a step
-// where none of their contact's points is, so far from all of those.
+// where none of their contact's points is, so far from all of those. To find such points is to try
+// the step again.
 constexpr Real missed_share = Real(0.25);
+// The same of a solid and a surface: what rolls over a ridge has a point on the one face, and comes
+// down on the other with its far end.
+constexpr Real passed_share = Real(0.05);
 
 // About the same side of both, for unit normals.
 constexpr Real same_side = Real(0.4);
@@ -186,7 +190,7 @@ bool World::find_passed_points(const Candidate &candidate) {
     passage.before = compose(inverse(surface_pose(surface, state_.motions[surface.body])),
                              mass_pose(state_.motions[solid.body]));
     passage.after = compose(inverse(pose), mass_pose(s.bodies[solid.body]));
-    const Real deep = missed_share * solid.half_width;
+    const Real deep = passed_share * solid.half_width;
     if (!(passage.way(solid.extent) > deep))
         return false;
     passage.bounds_before = bounds(placed(solid.shape, passage.before));
