@@ -131,10 +131,15 @@ void World::step_together(StepTimes *times) {
         for (int i = 0; i < most_refinements && went_too_coarsely(); ++i)
             try_step(); // with the loads that the first try found
         constexpr int most_tries = 8;
+        // More do not make it better: a coin that falls flat would be thrown up.
+        constexpr int most_missed = 3;
+        constexpr int most_missed_of_solids = 2;
         int missed = 0;
-        constexpr int most_missed = 3; // more do not make it better
         const auto must_try_again = [&] {
-            return find_surprises() || (missed++ < most_missed && find_missed_points());
+            if (find_surprises())
+                return true;
+            ++missed;
+            return missed <= most_missed && find_missed_points(missed <= most_missed_of_solids);
         };
         for (int tries = 1; tries < most_tries && must_try_again(); ++tries) {
             recall_impulses();

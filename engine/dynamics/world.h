@@ -286,7 +286,7 @@ class World {
     Real least_half_width(const Body &body) const;
     bool find_surprises();
     // What no contact stopped (missed_contact.cpp).
-    bool find_missed_points();
+    bool find_missed_points(bool of_solids);
     bool find_missed_points(Contact &contact) const;
     bool find_passed_points(const Candidate &candidate);
     bool add_missed(const Manifold &now, Real deep, Contact &contact) const;

@@ -222,8 +222,9 @@ bool World::find_passed_points(const Candidate &candidate) {
 }
 
 // After a try of the step: whether contacts got points, or new contacts were found, which may stop
-// in the next try what went too deep in this one.
-bool World::find_missed_points() {
+// in the next try what went too deep in this one; `of_solids`: also of two solids, not of one and a
+// surface only.
+bool World::find_missed_points(bool of_solids) {
     if (!method_->info.looks_ahead)
         return false;
     Scratch &s = scratch_;
@@ -232,7 +233,7 @@ bool World::find_missed_points() {
     };
     bool any = false;
     for (Contact &contact : s.contacts)
-        if (contact.key.triangle == ContactKey::no_triangle && !contact.sensor &&
+        if (of_solids && contact.key.triangle == ContactKey::no_triangle && !contact.sensor &&
             !contact.is_turning && !have_diverged(contact.key))
             any = find_missed_points(contact) || any;
     s.more.clear();

@@ -164,25 +164,25 @@ void add_next_corner(Manifold &manifold, const ConvexHull &hull, const StaticPie
     const ManifoldPoint &deepest = deepest_of(manifold);
     if (!has_wide_face(hull) || !is_alone(manifold, deepest))
         return;
-    const auto [vertex, corner] = lowest_corner(hull, seen_after(out, turn));
+    const Corner next = lowest_corner(hull, seen_after(out, turn));
     const std::span points = points_of(manifold);
     const Vec3 at = on_solid(deepest, out);
-    const Real separation = deepest.separation + glm::dot(at - corner, out);
+    const Real separation = deepest.separation + glm::dot(at - next.place, out);
     const bool is_there = std::ranges::any_of(points, [&](const ManifoldPoint &point) {
-        return glm::distance(on_solid(point, out), corner) <= off;
+        return glm::distance(on_solid(point, out), next.place) <= off;
     });
-    if (is_there || separation > glm::length(turn) * glm::distance(at, corner) ||
-        distance_to(other, corner + separation * out) > off)
+    if (is_there || separation > glm::length(turn) * glm::distance(at, next.place) ||
+        distance_to(other, next.place + separation * out) > off)
         return;
-    const ManifoldPoint next{corner + (Real(0.5) * separation) * out, separation,
-                             next_corner_feature | vertex};
+    const ManifoldPoint added{next.place + (Real(0.5) * separation) * out, separation,
+                              next_corner_feature | next.vertex};
     if (points.size() < manifold.points.size()) {
-        manifold.points[static_cast<std::size_t>(manifold.count++)] = next;
+        manifold.points[static_cast<std::size_t>(manifold.count++)] = added;
         return;
     }
     ManifoldPoint &farthest = *std::ranges::max_element(points, {}, &ManifoldPoint::separation);
     if (farthest.separation > separation)
-        farthest = next;
+        farthest = added;
 }
 
 } // namespace plumb::inline PLUMB_PRECISION
