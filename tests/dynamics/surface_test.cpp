@@ -292,13 +292,7 @@ TEST(Surface, WhatTumblesDownHillsGainsLittleEnergy) {
             body.angular_velocity = narrow(any_vector(random, std::sqrt(gravity / size)));
             world.add_body(with_material(body, friction, 0));
             const double begun = world.energy() - 10 * gravity * (0.35 + 0.5 * size);
-            double low = world.energy();
-            double gain = 0;
-            for (int step = 0; step < 600; ++step) {
-                world.step(nullptr);
-                low = std::min(low, world.energy());
-                gain = std::max(gain, world.energy() - low);
-            }
+            const double gain = regained_energy(world, 600);
             EXPECT_LT(gain, (is_box ? 0.05 : 0.25) * begun) << is_box << ", " << trial;
             more += gain > 0.01 * begun ? 1 : 0;
         }

@@ -196,6 +196,17 @@ inline void run(World &world, int steps) {
     for (int i = 0; i < steps; ++i)
         world.step(nullptr);
 }
+// The most by which a world's energy comes above what it was down to before (J).
+inline double regained_energy(World &world, int steps) {
+    double low = world.energy();
+    double most = 0;
+    for (int i = 0; i < steps; ++i) {
+        world.step(nullptr);
+        low = std::min(low, world.energy());
+        most = std::max(most, world.energy() - low);
+    }
+    return most;
+}
 inline const Motion &motion_of(const World &world, BodyId id) {
     return world.motions()[id.index];
 }

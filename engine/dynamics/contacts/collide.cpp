@@ -80,6 +80,7 @@ void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn
         lead_along_rim(manifold, *solid, a, -normal, -half_turn);
 }
 
+// Those in the middle of the step and at its end.
 void add_next_corners(const Shape &a, const Shape &b, const Vec3 &half_turn, Manifold &manifold) {
     const Vec3 normal = manifold.normal;
     for (const Real share : {Real(1), Real(2)}) {
@@ -450,12 +451,12 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin, guess),
                             motion_a, motion_b};
         if (touches(found.manifold)) {
-            if (leads && has_rim(a, b))
-                lead_rims(scratch_.placed[i], scratch_.placed[j], half_turn_of(candidate),
-                          found.manifold);
-            if (leads)
-                add_next_corners(scratch_.placed[i], scratch_.placed[j], half_turn_of(candidate),
-                                 found.manifold);
+            if (leads) {
+                const Vec3 half_turn = half_turn_of(candidate);
+                if (has_rim(a, b))
+                    lead_rims(scratch_.placed[i], scratch_.placed[j], half_turn, found.manifold);
+                add_next_corners(scratch_.placed[i], scratch_.placed[j], half_turn, found.manifold);
+            }
             if (is_predicted)
                 guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
         } else if (found.manifold.count > 0 && is_predicted) {
