@@ -50,16 +50,20 @@ struct ContactBlock {
     int points_used = 0;
     // Whether any of its contacts is new and was not solved yet.
     bool is_new = false;
+    bool spins = false;         // whether any of its spreads is not 1
     std::uint32_t ahead = none; // its StartArms, if any contact is not of the start of the step
     // Whether any of its bodies has an inertia that turns with it.
     bool inertia_turns = false;
     Columns3 normal;
     Columns3 t1; // t2 = n x t1
     Column friction;
-    Column bounces;    // 1 where there is restitution
-    Column struck;     // 1 where the bodies closed faster than struck_speed in this substep
-    Column corrected;  // by how much the last pass changed a point's speed, at most (m/s)
-    Column began;      // all normal impulses that were remembered as it began (N s)
+    Column bounces;   // 1 where there is restitution
+    Column struck;    // 1 where the bodies closed faster than struck_speed in this substep
+    Column corrected; // by how much the last pass changed a point's speed, at most (m/s)
+    Column began;     // all normal impulses that were remembered as it began (N s)
+    // How far from the middle of the load friction acts, of how far the points are that bear it
+    // (spread_of).
+    Column spread;
     Column rounding_a; // radius by which a round surface lies beyond its core (m)
     Column rounding_b;
     Columns3 inv_mass_a; // along the world's axes

@@ -90,8 +90,48 @@ HWY_INLINE Turns turns(const Vector &r_a, const Vector &r_b, const Vector &u) {
     return {cross(r_a, u), cross(r_b, u)};
 }
 
+// Where friction acts (ContactBlock::spread): points drawn in toward the middle of the load, as it
+// is remembered.
+struct Patch {
+    bool is_spread;
+    Lanes spread;
+    Vector middle_a, middle_b; // times what spread lacks to 1
+
+    HWY_INLINE Vector arm_a(const Vector &r_a) const {
+        return is_spread ? plus(times(spread, r_a), middle_a) : r_a;
+    }
+    HWY_INLINE Vector arm_b(const Vector &r_b) const {
+        return is_spread ? plus(times(spread, r_b), middle_b) : r_b;
+    }
+};
+HWY_INLINE Patch patch_of(const ContactBlock &block, std::size_t lane) {
+    const Lanes zero = hn::Zero(tag);
+    const Lanes one = all(Real(1));
+    const Vector nowhere{zero, zero, zero};
+    Patch patch{block.spins, one, nowhere, nowhere};
+    if (!patch.is_spread)
+        return patch;
+    Lanes sum = zero;
+    Vector sum_a = nowhere;
+    Vector sum_b = nowhere;
+    for (int k = 0; k < block.points_used; ++k) {
+        const ContactBlock::Point &point = block.points[k];
+        const Lanes borne = load(point.remembered.x, lane);
+        sum = hn::Add(sum, borne);
+        sum_a = plus(sum_a, times(borne, load(point.r_a, lane)));
+        sum_b = plus(sum_b, times(borne, load(point.r_b, lane)));
+    }
+    // What bore nothing yet has no middle.
+    patch.spread = hn::IfThenElse(hn::Gt(sum, zero), load(block.spread, lane), one);
+    const Lanes rest = hn::Mul(hn::Sub(one, patch.spread), inverse(sum));
+    patch.middle_a = times(rest, sum_a);
+    patch.middle_b = times(rest, sum_b);
+    return patch;
+}
+
 void finish_block_impl(ContactBlock &block) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
+        const Patch patch = patch_of(block, lane);
         const Vector n = load(block.normal, lane);
         const Vector t1 = load(block.t1, lane);
         const Vector t2 = cross(n, t1);
@@ -103,8 +143,10 @@ void finish_block_impl(ContactBlock &block) {
             const Vector r_a = load(point.r_a, lane);
             const Vector r_b = load(point.r_b, lane);
             const Turns of_n = turns(r_a, r_b, n);
-            const Turns of_1 = turns(r_a, r_b, t1);
-            const Turns of_2 = turns(r_a, r_b, t2);
+            const Vector rubs_a = patch.arm_a(r_a);
+            const Vector rubs_b = patch.arm_b(r_b);
+            const Turns of_1 = turns(rubs_a, rubs_b, t1);
+            const Turns of_2 = turns(rubs_a, rubs_b, t2);
             const auto coupling = [&](const Vector &u, const Turns &of_u, const Vector &v,
                                       const Turns &of_v) HWY_ATTR {
                 const Lanes linear = dot(u, times(inv_mass, v));
@@ -167,27 +209,39 @@ void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
             kept = hn::IfThenElse(forgets, hn::Div(most, hn::IfThenElse(forgets, sum, kept)), kept);
             store(hn::Mul(kept, sum), block.began, lane);
         }
+        Vector starts[4]; // NOLINT(modernize-avoid-c-arrays): of a type without a size
         for (int k = 0; k < block.points_used; ++k) {
             ContactBlock::Point &point = block.points[k];
             Vector before = load(point.impulse, lane);
-            Vector start;
             if (remember_first) {
                 const Lanes relaxed = hn::Sub(before.x, load(point.remembered.x, lane));
                 before = times(kept, before);
                 const Lanes most = hn::Mul(all(relaxed_share), before.x);
                 before.x = hn::Add(before.x, max(min(relaxed, most), hn::Neg(most)));
                 store(before, point.remembered, lane);
-                start = times(all(share), before);
-                store(start, point.impulse, lane);
+                starts[k] = times(all(share), before);
+                store(starts[k], point.impulse, lane);
             } else {
-                start = times(all(share), load(point.remembered, lane));
-                const Vector sum = plus(before, start);
+                starts[k] = times(all(share), load(point.remembered, lane));
+                const Vector sum = plus(before, starts[k]);
                 store(sum, point.impulse, lane);
                 store(sum, point.remembered, lane);
             }
-            const Vector impulse =
-                plus(plus(times(start.x, n), times(start.y, t1)), times(start.z, t2));
-            pair.apply(impulse, load(point.r_a, lane), load(point.r_b, lane));
+        }
+        const Patch patch = patch_of(block, lane);
+        for (int k = 0; k < block.points_used; ++k) {
+            const ContactBlock::Point &point = block.points[k];
+            const Vector r_a = load(point.r_a, lane);
+            const Vector r_b = load(point.r_b, lane);
+            const Vector normal = times(starts[k].x, n);
+            const Vector along_1 = times(starts[k].y, t1);
+            const Vector along_2 = times(starts[k].z, t2);
+            if (patch.is_spread) {
+                pair.apply(normal, r_a, r_b);
+                pair.apply(plus(along_1, along_2), patch.arm_a(r_a), patch.arm_b(r_b));
+            } else {
+                pair.apply(plus(plus(normal, along_1), along_2), r_a, r_b);
+            }
         }
         store_pair(pair, block, bodies, lane);
     }
@@ -332,15 +386,16 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
 
 // Friction at each point. Returns where some points slide while others hold: those have more to
 // bear then, of which those before them knew nothing.
-HWY_INLINE Mask solve_friction(ContactBlock &block, std::size_t lane, Pair &pair, const Vector &t1,
-                               const Vector &t2, Lanes friction, Mask chosen, bool backwards) {
+HWY_INLINE Mask solve_friction(ContactBlock &block, std::size_t lane, Pair &pair,
+                               const Patch &patch, const Vector &t1, const Vector &t2,
+                               Lanes friction, Mask chosen, bool backwards) {
     const Lanes one = all(Real(1));
     auto any_slides = hn::FirstN(tag, 0);
     auto any_holds = hn::FirstN(tag, 0);
     for (int i = 0; i < block.points_used; ++i) {
         ContactBlock::Point &point = block.points[backwards ? block.points_used - 1 - i : i];
-        const Vector r_a = load(point.r_a, lane);
-        const Vector r_b = load(point.r_b, lane);
+        const Vector r_a = patch.arm_a(load(point.r_a, lane));
+        const Vector r_b = patch.arm_b(load(point.r_b, lane));
         const Vector v = pair.velocity_at(r_a, r_b);
         const Lanes before_1 = load(point.impulse.y, lane);
         const Lanes before_2 = load(point.impulse.z, lane);
@@ -379,6 +434,7 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     const Lanes even_speed = all(even_share * bias.struck_speed);
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         Pair pair = load_pair(block, bodies, lane);
+        const Patch patch = patch_of(block, lane);
         const auto driven = is_driven(pair);
         const auto on_static =
             hn::Or(does_not_move(pair.inv_mass_a), does_not_move(pair.inv_mass_b));
@@ -480,8 +536,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
             }
             auto rubs = is_first ? hn::FirstN(tag, column_lanes) : again;
             for (int rub = 0; rub < (pushes ? most_rubs : 1) && !hn::AllFalse(tag, rubs); ++rub)
-                rubs = hn::And(rubs, solve_friction(block, lane, pair, t1, t2, friction, rubs,
-                                                    bias.backwards));
+                rubs = hn::And(rubs, solve_friction(block, lane, pair, patch, t1, t2, friction,
+                                                    rubs, bias.backwards));
         }
         store_pair(pair, block, bodies, lane);
         const Lanes before = pushes ? zero : load(block.struck, lane);

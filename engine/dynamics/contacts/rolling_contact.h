@@ -5,10 +5,15 @@
 #include "engine/dynamics/bodies/body.h"
 #include "engine/dynamics/contacts/inner_edges.h"
 
+#include <span>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 // Whether one of two colliders is a cylinder.
 bool has_rim(const Collider &a, const Collider &b);
+// Whether points of a contact, in the frame of the collider's body, are on the rim of its cylinder,
+// or on a hull with faces of more corners than six: what they go round is as a disc.
+bool is_round_patch(const Collider &collider, std::span<const Vec3> points);
 
 // Sine of the least angle between a cylinder's side and a plane at which it stands on a rim; below
 // it the cylinder is round there (Contact::rounding_a).
