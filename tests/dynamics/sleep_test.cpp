@@ -87,6 +87,24 @@ TEST(Sleep, TallStacksAndPyramidsComeToRest) {
     }
 }
 
+// Of any size, under any gravity, at any dt: what rounding leaves of speeds grows with places and
+// rates.
+TEST(Sleep, StacksOfAnySizeComeToRestAtAnyDt) {
+    for (const double side : {0.05, 1.0, 20.0})
+        for (const double pull : {0.5, 9.81, 100.0})
+            for (const double rate : {30.0, 240.0, 1000.0}) {
+                StepSettings settings = settings_for("soft_step");
+                settings.gravity = V{0, -pull, 0};
+                settings.dt = 1 / rate;
+                World world = floor_world(settings);
+                for (int i = 0; i < 6; ++i)
+                    world.add_body(with_material(
+                        dynamic_body(block(V{0.5 * side}), 1, V{0, (i + 0.5) * side, 0}), 0.6, 0));
+                EXPECT_TRUE(run_until_all_sleep(world, 4 + 5 * std::sqrt(side / pull)))
+                    << side << ", " << pull << ", " << rate;
+            }
+}
+
 // Nobody loses a tenth of a millimetre by sleeping.
 TEST(Sleep, ChangesNothingThatCanBeSeen) {
     StepSettings settings = settings_for("soft_step");
@@ -239,19 +257,23 @@ TEST(Sleep, WhatMovesSlowlyStaysAwake) {
         const double a = gravity * (std::sin(angle) - 0.5 * std::cos(angle));
         const V normal{-std::sin(angle), std::cos(angle), 0};
         StepSettings settings = settings_for("soft_step");
-        std::vector<V> ends;
-        for (const double sleep_after : {0.5, 0.0}) {
-            settings.sleep_after = sleep_after;
-            World world("soft_step", settings);
-            world.add_body(ground(0.5, 0, normal));
-            BodyDef box = with_material(dynamic_body(block(V{0.5}), 1, 0.5 * normal), 0.5, 0);
-            box.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
-            const BodyId id = world.add_body(box);
-            run(world, 600);
-            ends.push_back(position_of(world, id));
+        for (const double rate : {60.0, 1000.0}) {
+            settings.dt = 1 / rate;
+            std::vector<V> ends;
+            for (const double sleep_after : {0.5, 0.0}) {
+                settings.sleep_after = sleep_after;
+                World world("soft_step", settings);
+                world.add_body(ground(0.5, 0, normal));
+                BodyDef box = with_material(dynamic_body(block(V{0.5}), 1, 0.5 * normal), 0.5, 0);
+                box.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
+                const BodyId id = world.add_body(box);
+                run(world, static_cast<int>(10 * rate));
+                ends.push_back(position_of(world, id));
+            }
+            EXPECT_EQ(ends[0], ends[1]) << rate;
+            EXPECT_NEAR(glm::length(ends[0] - 0.5 * normal), 0.5 * a * 100, 0.1 * 0.5 * a * 100)
+                << rate;
         }
-        EXPECT_EQ(ends[0], ends[1]);
-        EXPECT_NEAR(glm::length(ends[0] - 0.5 * normal), 0.5 * a * 100, 0.1 * 0.5 * a * 100);
     }
     { // A pendulum that swings by a hundredth of a degree.
         World world("soft_step", settings_for("soft_step"));

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -11,8 +13,11 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // At rest is what goes less far in sleep_after than substep_tolerance of its width, and no faster
-// than a share of what gravity adds in a step: nothing that drifts where there is no gravity.
+// than a share of what gravity adds in a 60th of a second or in a longer step, or than rounding of
+// places makes it: nothing that drifts where there is no gravity.
 constexpr double rest_share = 4e-3;
+constexpr double usual_dt = 1.0 / 60;
+constexpr double roundings = 2; // a substep
 
 double rest_time(const StepSettings &settings) {
     constexpr double where_nothing_sleeps = 0.5; // s
@@ -131,10 +136,15 @@ std::uint16_t World::steps_to_sleep() const {
 bool World::is_at_rest(std::uint32_t index) const {
     const Body &body = model_->bodies[index];
     const Motion &motion = scratch_.bodies[index];
-    const glm::dvec3 gravity{pull_on(index)};
-    const double share = rest_share * settings_.dt;
-    const glm::dvec3 velocity{motion.velocity};
-    if (glm::dot(velocity, velocity) > 2 * share * share * glm::dot(gravity, gravity))
+    const Vec3 place = glm::abs(motion.position);
+    const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon() *
+                                                std::max({place.x, place.y, place.z}));
+    const double substep = settings_.dt / std::max<int>(scratch_.paces[index].substeps, 1);
+    const double pull = glm::length(glm::dvec3{pull_on(index)});
+    const double slow = pull > 0 ? std::max(rest_share * pull * std::max(settings_.dt, usual_dt),
+                                            roundings * rounding / substep)
+                                 : 0;
+    if (static_cast<double>(glm::dot(motion.velocity, motion.velocity)) > 2 * slow * slow)
         return false;      // far from it, as most that moves
     Real extent = Real(0); // round ones too: a spin that no eye sees is still kept
     for (std::uint32_t c = 0; c < body.collider_count; ++c) {
@@ -142,9 +152,8 @@ bool World::is_at_rest(std::uint32_t index) const {
         extent = std::max(extent, collider.extent + collider.rounding);
     }
     const double width = 2 * static_cast<double>(least_half_width(body));
-    const auto limit =
-        static_cast<Real>(std::min(settings_.substep_tolerance * width / rest_time(settings_),
-                                   rest_share * glm::length(gravity) * settings_.dt));
+    const auto limit = static_cast<Real>(
+        std::min(settings_.substep_tolerance * width / rest_time(settings_), slow));
     return glm::length(motion.velocity) + extent * glm::length(motion.angular_velocity) <= limit;
 }
 

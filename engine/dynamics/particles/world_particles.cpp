@@ -15,7 +15,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// What moves slower is at rest: a share of what gravity adds in a step.
+// What moves slower is at rest: a share of what gravity adds in a 60th of a second, or in a longer
+// step.
 constexpr double particle_rest_share = 4e-3;
 
 // Rate of the fastest springs times the substep that is asked for, some short of what they can be
@@ -123,8 +124,9 @@ bool World::needs_particle_contacts() const {
 }
 
 bool World::is_particle_at_rest(const ParticleMotion &motion) const {
+    const double pull = glm::length(settings_.gravity);
     const auto limit =
-        static_cast<Real>(particle_rest_share * glm::length(settings_.gravity) * settings_.dt);
+        static_cast<Real>(particle_rest_share * pull * std::max(settings_.dt, 1.0 / 60));
     return glm::dot(motion.velocity, motion.velocity) <= limit * limit;
 }
 
