@@ -81,8 +81,9 @@ bool is_found_again(const StepContext &context, const Contact &contact) {
            are_lone(context, contact) && !are_balls(context, contact);
 }
 
-// Whether two bodies spin on each other flat: about the contact's normal, and faster than friction
-// stops within a step or so. What tips meanwhile is borne by other points in the next substep.
+// Whether two bodies spin flat on each other: about the contact normal, and too fast for friction
+// to stop within a step or so. While a body tips, the load moves to other points from one substep
+// to the next.
 bool spin_flat(const StepContext &context, const Contact &contact) {
     constexpr Real slow = Real(0.25), flat = Real(0.125);
     const Vec3 &n = contact.manifold.normal;
@@ -103,13 +104,12 @@ bool spin_flat(const StepContext &context, const Contact &contact) {
     return along * along * squared > speed * speed;
 }
 
-// How far from the middle of the load friction acts, of how far the points are that bear it. Those
-// lie on the outline of where two bodies touch; of an even pressure over all of it friction acts
-// nearer to the middle, and what spins goes on for longer. So its arms are the mean distance of
-// the patch from its middle over that of the outline's corners: 1/2 of a line, 2/3 of a disc, and
-// (sqrt(2) + ln(1 + sqrt(2))) / (3 sqrt(2)) = 0.541 of a square. In between those of rectangles,
-// whose sides have the ratio x, go about as x (2 - x). 1 where nothing spins: there friction does
-// not slide.
+// By how much the lever arms of friction are shortened where bodies spin on each other. Contact
+// points lie on the outline of the contact patch; under an even pressure friction acts closer to
+// the centre and slows a spin less. The ratio is the mean distance of the patch from its centre
+// over that of the outline's corners: 1/2 for a line, 2/3 for a disc, and (sqrt(2) + ln(1 +
+// sqrt(2))) / (3 sqrt(2)) = 0.541 for a square. For rectangles of aspect ratio x it grows from 1/2
+// to that roughly as x (2 - x). 1 without spin, when friction does not slide.
 Real spread_of(const StepContext &context, const Contact &contact) {
     constexpr Real line = Real(0.5), square = Real(0.541), disc = Real(2) / Real(3);
     const auto count = static_cast<std::size_t>(contact.manifold.count);

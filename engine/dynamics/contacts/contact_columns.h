@@ -61,7 +61,7 @@ struct ContactBlock {
     Column struck;    // 1 where the bodies closed faster than struck_speed in this substep
     Column corrected; // by how much the last pass changed a point's speed, at most (m/s)
     Column began;     // all normal impulses that were remembered as it began (N s)
-    // How far from the middle of the load friction acts, of how far the points are that bear it
+    // Lever arms of friction as a share of those of the points, about the centre of pressure
     // (spread_of).
     Column spread;
     Column rounding_a; // radius by which a round surface lies beyond its core (m)

@@ -90,12 +90,12 @@ HWY_INLINE Turns turns(const Vector &r_a, const Vector &r_b, const Vector &u) {
     return {cross(r_a, u), cross(r_b, u)};
 }
 
-// Where friction acts (ContactBlock::spread): points drawn in toward the middle of the load, as it
-// is remembered.
+// Where friction acts (ContactBlock::spread): the contact points, drawn in toward the centre of
+// pressure of the remembered impulses.
 struct Patch {
     bool is_spread;
     Lanes spread;
-    Vector middle_a, middle_b; // times what spread lacks to 1
+    Vector middle_a, middle_b; // centre of pressure times (1 - spread)
 
     HWY_INLINE Vector arm_a(const Vector &r_a) const {
         return is_spread ? plus(times(spread, r_a), middle_a) : r_a;
@@ -121,7 +121,7 @@ HWY_INLINE Patch patch_of(const ContactBlock &block, std::size_t lane) {
         sum_a = plus(sum_a, times(borne, load(point.r_a, lane)));
         sum_b = plus(sum_b, times(borne, load(point.r_b, lane)));
     }
-    // What bore nothing yet has no middle.
+    // Without a load there is no centre of pressure yet.
     patch.spread = hn::IfThenElse(hn::Gt(sum, zero), load(block.spread, lane), one);
     const Lanes rest = hn::Mul(hn::Sub(one, patch.spread), inverse(sum));
     patch.middle_a = times(rest, sum_a);

@@ -11,8 +11,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 // Whether one of two colliders is a cylinder.
 bool has_rim(const Collider &a, const Collider &b);
-// Whether points of a contact, in the frame of the collider's body, are on the rim of its cylinder,
-// or on a hull with faces of more corners than six: what they go round is as a disc.
+// Whether contact points (in the body's mass frame) lie on the rim of a cylinder, or on a hull with
+// faces of more than six corners: the patch inside them is about a disc.
 bool is_round_patch(const Collider &collider, std::span<const Vec3> points);
 
 // Sine of the least angle between a cylinder's side and a plane at which it stands on a rim; below
