@@ -1,4 +1,4 @@
-// The command that times the engine beside other libraries.
+// The command that times the engine against other libraries.
 #include "app/commands.h"
 
 #include "app/lab/csv.h"
@@ -23,13 +23,13 @@ namespace {
 struct BenchArguments {
     std::string what;
     int rounds = 5;
-    double seconds = 0; // 0: each scene's own
+    double seconds = 0; // 0: use each scene's own
     double size = 1;
     std::string only;
-    int threads = 2; // of Plumb, beside one
+    int threads = 2; // Plumb is timed with this many, and with one
 };
 
-// Each thing to time has options of its own: the others would be passed over in silence.
+// Each benchmark has its own options: the others would be silently ignored.
 void refuse_options_of_others(const CLI::App &bench_command, const std::string &what) {
     const std::map<std::string, std::set<std::string>> readers{
         {"--rounds", {"geometry"}},
@@ -44,7 +44,7 @@ void refuse_options_of_others(const CLI::App &bench_command, const std::string &
     }
 }
 
-// The other libraries are linked into a program of its own beside this one, which few people need.
+// The other libraries are linked into a separate program beside this one, which few people need.
 int bench(const BenchArguments &arguments, const CommonOptions &common) {
     const std::filesystem::path program =
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plumb-bench";

@@ -17,7 +17,7 @@ namespace plumb {
 
 namespace {
 
-// A chart of geometric queries steps no world, so it would pass over them in silence.
+// A chart of geometric queries steps no world, so it would silently ignore these options.
 void refuse_options_of_scenes(const CLI::App &chart_command) {
     for (const CLI::Option *option : chart_command.get_options())
         if (option->count() > 0 && option->get_name() != "SCENE" &&

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t most_steps = 1'000'000'000;
 
-// An option that gives settings, each as `prefix` and what was typed.
+// A repeatable option whose values are parsed as settings, `prefix` + value.
 void add_setting(CLI::App &command, CommonOptions &common, const std::string &option,
                  const std::string &prefix, const std::string &about, const std::string &type) {
     command
@@ -78,7 +78,7 @@ std::vector<std::uint64_t> parse_steps(const std::string &text) {
     return steps;
 }
 
-// Of options that count steps. CLI11 by itself reads -1 as the largest unsigned number.
+// For step counts. On its own, CLI11 reads -1 as the largest unsigned number.
 CLI::Range step_range() {
     return {0, static_cast<int>(most_steps)};
 }
@@ -111,7 +111,7 @@ void add_run_options(CLI::App &command, CommonOptions &common, bool chart) {
                     "The same as --set " + std::string(name) + "=VALUE", "VALUE");
     command.add_option("--precision", common.precision, "float or double")
         ->check(CLI::IsMember({"float", "double"}));
-    if (!chart) // which is timed on one thread
+    if (!chart) // charts are timed on one thread
         add_threads(command, common);
 }
 

@@ -1,4 +1,4 @@
-// The command line's options that several commands share, and how they are read.
+// Command line options shared by several commands, and their parsing.
 #pragma once
 
 #include "app/sandbox/session/scene_catalog.h"
@@ -13,7 +13,7 @@
 
 namespace plumb {
 
-// What several commands ask for.
+// Values of the shared options.
 struct CommonOptions {
     std::filesystem::path data = find_data_dir();
     std::vector<SceneEntry> catalogue = find_scenes(data / "scenes");
@@ -40,21 +40,21 @@ struct CommonOptions {
     std::filesystem::path shader_dir() const { return data / "shaders"; }
 };
 
-// "soft_step, tgs_soft, ...": for help.
+// "soft_step, tgs_soft, ...", for the help text.
 std::string method_names();
 
-// What an option takes: a number above 0; a count of steps.
+// Validators: a number above 0; a step count.
 CLI::Validator positive();
 CLI::Range step_range();
 
-// The items of an option's list; throws std::invalid_argument where one is empty.
+// Splits a list option; throws std::invalid_argument if an item is empty.
 std::vector<std::string> parse_list(const std::string &text);
-// "0,60,240"; throws likewise.
+// "0,60,240"; throws the same way.
 std::vector<std::uint64_t> parse_steps(const std::string &text);
 
 void add_scenes(CLI::App &command, CommonOptions &common);
 void add_threads(CLI::App &command, CommonOptions &common);
-// Of a chart: no method, as it runs several, and no threads, as it is timed on one.
+// A chart gets no method, as it runs several, and no threads, as it is timed on one.
 void add_run_options(CLI::App &command, CommonOptions &common, bool chart = false);
 void add_gl(CLI::App &command, CommonOptions &common);
 void add_out(CLI::App &command, CommonOptions &common, const std::string &by_default);

@@ -1,5 +1,5 @@
-// The commands: each adds itself to the command line, with its options, and sets the exit code when
-// it has been called.
+// The commands. Each adds itself and its options to the command line, and sets the exit code when
+// called.
 #pragma once
 
 #include "app/command_options.h"
@@ -14,15 +14,15 @@ inline int code_of(ExitCode code) {
     return static_cast<int>(code);
 }
 
-// All of it outlives the parse.
+// Everything in it must outlive the parse.
 struct CommandLine {
     CLI::App &app;
     CommonOptions &common;
     int &result;      // exit code
-    std::string text; // as it was typed, for a chart's footer
+    std::string text; // as typed, for a chart's footer
 };
 
-// Returns what it does without options: what the program does without a command.
+// Returns the action of `plumb run` without options, which is also what plain `plumb` does.
 std::function<int()> add_run(CommandLine &line);
 void add_replay(CommandLine &line);
 void add_snapshot(CommandLine &line);

@@ -1,4 +1,4 @@
-// `plumb hash`: a hash of the state of scenes after so many steps.
+// `plumb hash`: hashes the state of scenes after a given number of steps.
 #pragma once
 
 #include "app/lab/exit_code.h"
@@ -18,7 +18,7 @@ struct HashCommand {
     TaskPool *tasks = nullptr;
 };
 
-// A line to `out` for each scene. Ctrl-C ends it after the step at hand.
+// Writes one line per scene to `out`. Ctrl-C stops it after the current step.
 [[nodiscard]] ExitCode hash_scenes(const HashCommand &command, std::ostream &out,
                                    std::ostream &err);
 

@@ -1,4 +1,4 @@
-// Commands that judge, measure, map and tune.
+// Commands that check, measure, map and tune.
 #include "app/commands.h"
 
 #include "app/lab/map/stability_map.h"

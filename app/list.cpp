@@ -31,7 +31,7 @@ std::string json_string(std::string_view text) {
     return out + '"';
 }
 
-// An array of objects, one a line. Values are JSON already.
+// A JSON array of objects, one per line. Values must already be JSON.
 class JsonArray {
   public:
     using Members = std::initializer_list<std::pair<std::string_view, std::string>>;
@@ -120,7 +120,7 @@ void scenes_as_text(const std::vector<SceneEntry> &catalogue, std::ostream &out)
     }
 }
 
-// What it can run: "contacts, joints, springs".
+// What the method can run: "contacts, joints, springs".
 std::string what_runs(const MethodInfo &method) {
     std::string what = method.contacts ? "contacts" : "free bodies";
     if (method.joints)

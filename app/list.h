@@ -1,4 +1,4 @@
-// `plumb list`: what there is.
+// `plumb list`: scenes, methods, keys and settings.
 #pragma once
 
 #include "app/sandbox/session/scene_catalog.h"
@@ -10,7 +10,7 @@ namespace plumb {
 
 enum class Listed { scenes, methods, keys, settings };
 
-// For people, or as one JSON array.
+// As text for people, or as one JSON array.
 void list(Listed what, bool json, const std::vector<SceneEntry> &catalogue, std::ostream &out);
 
 } // namespace plumb

@@ -31,7 +31,7 @@ constexpr const char *exit_codes = "Exit codes:\n"
                                    "130  interrupted by Ctrl-C (143: by SIGTERM); what was done "
                                    "is kept\n";
 
-// The command as it was typed, for a chart's footer.
+// The command as typed, for a chart's footer.
 std::string command_text(int argc, char **argv) {
     std::string text = "plumb";
     for (int i = 1; i < argc; ++i) {
@@ -42,8 +42,8 @@ std::string command_text(int argc, char **argv) {
     return text;
 }
 
-// Of an option that the command does not have, and whose value may have been taken for a scene;
-// empty when there is none.
+// Reports an option the command does not have (its value may have been parsed as a scene). Empty if
+// there is none.
 std::string why_unknown(const CLI::App &app, std::span<char *> arguments) {
     if (app.get_subcommands().empty())
         return {};
@@ -100,7 +100,7 @@ int main_with_errors(int argc, char **argv) {
     } catch (const CLI::ParseError &error) {
         if (error.get_exit_code() == 0) // --help
             return app.exit(error);
-        // A misspelt command comes before anything that it could explain.
+        // Report a misspelt command first: its other errors follow from it.
         if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
             std::vector<std::string> names;
             for (const CLI::App *command : app.get_subcommands({}))
@@ -126,7 +126,7 @@ int main_with_errors(int argc, char **argv) {
     return result;
 }
 
-// What `work` returns, or the exit code of what kept it from doing so, which is said.
+// Returns what `work` returns. If it throws, prints why and returns the matching exit code.
 template <typename Work> int reported(const Work &work) {
     ExitCode code = ExitCode::bad_input;
     std::string what;

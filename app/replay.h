@@ -1,4 +1,4 @@
-// `plumb replay` without a window: a recorded run again, held to what it was.
+// `plumb replay` without a window: runs a recording again and compares each state with it.
 #pragma once
 
 #include "app/lab/exit_code.h"
@@ -14,8 +14,9 @@ struct ReplayCommand {
     TaskPool *tasks = nullptr;
 };
 
-// A line to `out` as `plumb hash` has it when every state is as recorded; else to `err` the first
-// step that differs, and outside_tolerance. Ctrl-C ends it after the step at hand.
+// If every state matches, writes the line `plumb hash` would print to `out`. Otherwise reports the
+// first step that differs to `err` and returns outside_tolerance. Ctrl-C stops it after the current
+// step.
 [[nodiscard]] ExitCode replay(const ReplayCommand &command, std::ostream &out, std::ostream &err);
 
 } // namespace plumb

@@ -1,4 +1,4 @@
-// Commands that open, draw, list and compare scenes.
+// Commands that open, render, list and compare scenes.
 #include "app/commands.h"
 
 #include "app/hash.h"
@@ -25,7 +25,7 @@ namespace plumb {
 namespace {
 
 constexpr const char *default_scene = "wrecking_ball";
-// Where the default scene looks best as a picture: the ball is in the wall.
+// The default scene makes its best picture here: the ball is in the wall.
 constexpr std::uint64_t default_scene_step = 125;
 
 struct RunArguments {
@@ -76,8 +76,7 @@ int run(const CommonOptions &common, const RunArguments &arguments) {
     return code_of(make_snapshots(snapshot, std::cout, std::cerr));
 }
 
-// In a window if there is one to be had, else without. What is wrong with the file is said by the
-// latter.
+// In a window if possible, else without. Errors in the file are reported by the windowless path.
 int replay_or_play(const CommonOptions &common, ReplayCommand command, bool no_window) {
     TaskPool tasks(common.threads);
     command.tasks = &tasks;
@@ -130,7 +129,7 @@ int snapshot(const CommonOptions &common, const SnapshotArguments &arguments) {
     return code_of(make_snapshots(command, std::cout, std::cerr));
 }
 
-// The decoder does not say why a file could not be opened.
+// The PNG decoder does not say why a file could not be opened.
 Image read_picture(const std::filesystem::path &path) {
     if (!std::ifstream(path))
         throw std::runtime_error("cannot read " + path.string() + ": " +

@@ -37,20 +37,19 @@ std::filesystem::path picture_path(const SnapshotCommand &command, const std::st
 }
 
 Image plain_picture(const SnapshotCommand &command, Sandbox &sandbox, Renderer &renderer) {
-    sandbox.clock().set_paused(true); // the state itself, not what lies between two steps
+    sandbox.clock().set_paused(true); // the exact state, not a blend of two steps
     sandbox.keep_in_picture();
     const glm::vec2 size(command.size);
     sandbox.view().camera.look_through(size, {0, 0}, size, sandbox.view().aspect);
     return render_image(renderer, sandbox.draw_list(), command.size, command.samples);
 }
 
-// One scene, stepped from picture to picture. The sandbox draws its panels around the same session
-// that a person would have.
+// Steps one scene from picture to picture, with the same session and panels a user would have.
 ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer &renderer,
                ProgressLine &line, std::ostream &out, std::ostream &err) {
     line.show(0, scene.name);
     Sandbox sandbox(Session(command.run, command.tasks), command.catalogue, command.out_dir);
-    // The panels mark the scene in their list.
+    // So that the panels can highlight the scene in their list.
     const auto listed = std::ranges::find(command.catalogue, scene.name, &SceneEntry::name);
     const std::filesystem::path scene_path =
         listed == command.catalogue.end() ? std::filesystem::path() : listed->path;
@@ -71,7 +70,7 @@ ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer 
             return ExitCode::fine;
         const bool arrived = !steps || done() == step;
         const std::filesystem::path path = picture_path(command, scene.name, done());
-        // Labels of probes are drawn as panels are.
+        // Probe labels are drawn by the panel code.
         sandbox.view().panels = command.panels;
         if (command.panels || !scene.probes.empty())
             write_png(path, ui_snapshot(sandbox, renderer, command.shader_dir,

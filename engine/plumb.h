@@ -1,6 +1,6 @@
-// Plumb's engine, whole. The types that compute motion are in float; define PLUMB_DOUBLE before the
-// first include (for a whole program: target_compile_definitions) to have them in double.
-// Simulation takes its precision from the scene, and is the same type in both.
+// The whole Plumb engine. Types that compute motion use float; define PLUMB_DOUBLE before the first
+// include (for a whole program: target_compile_definitions) to make them double. Simulation takes
+// its precision from the scene and is the same type either way.
 #pragma once
 
 #include "engine/core/check.h"

@@ -18,13 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t everybody = 0666; // less the umask
+constexpr mode_t everybody = 0666; // minus the umask
 
 [[noreturn]] void fail(int error, const std::string &name) {
     throw std::system_error(error, std::generic_category(), name + ": cannot be written");
 }
 
-// The number of one of this program's own descriptors, when the path is one.
+// The descriptor number, if the path names one of this program's own descriptors.
 std::optional<int> own_descriptor(const fs::path &path) {
     std::error_code error;
     const fs::path folder = fs::canonical(path.parent_path(), error);
@@ -33,7 +33,7 @@ std::optional<int> own_descriptor(const fs::path &path) {
     return std::atoi(path.filename().c_str());
 }
 
-// Beside a file, and different each time.
+// A temporary name beside a file, different each time.
 fs::path name_beside(const fs::path &place) {
     static std::atomic<unsigned> count{0};
     return place.parent_path() /
@@ -45,12 +45,12 @@ bool is_link(const fs::path &path) {
     return fs::is_symlink(fs::symlink_status(path, error));
 }
 
-// What a link leads to, one step on.
+// Follows a link one step.
 fs::path target_of(const fs::path &link) {
-    return link.parent_path() / fs::read_symlink(link); // the target alone, if it is absolute
+    return link.parent_path() / fs::read_symlink(link); // just the target, if absolute
 }
 
-constexpr int most_links = 40; // as many as Linux follows
+constexpr int most_links = 40; // Linux's own limit
 
 } // namespace
 
@@ -70,7 +70,7 @@ void OutputBuffer::write_out() {
     setp(bytes_.data(), bytes_.data() + bytes_.size());
     while (next < end) {
         const ssize_t written = ::write(descriptor_, next, static_cast<std::size_t>(end - next));
-        // EINTR too: the only signals that are caught ask the program to stop.
+        // No retry on EINTR: the only signals handled ask the program to stop.
         if (written < 0)
             fail(errno, name_);
         next += written;
@@ -136,7 +136,7 @@ OutputFile::Opened OutputFile::open(const fs::path &path) {
     if (opened.descriptor < 0)
         fail(errno, path.string());
     if (!is_new)
-        fchmod(opened.descriptor, before.st_mode & 07777U); // as far as one may
+        fchmod(opened.descriptor, before.st_mode & 07777U); // best effort: may not be permitted
     return opened;
 }
 
@@ -200,7 +200,7 @@ fs::path OutputFile::keep_partial() {
 
 StandardOutput::StandardOutput()
     : buffer_(STDOUT_FILENO, "standard output"), previous_(std::cout.rdbuf(&buffer_)),
-      tied_(std::cerr.tie(nullptr)) { // what is wrong with the one is said on the other
+      tied_(std::cerr.tie(nullptr)) { // untied: a stdout failure is reported on stderr
     std::cout.exceptions(std::ios::badbit);
 }
 

@@ -1,4 +1,4 @@
-// What the program writes: files that appear whole or not at all, and standard output.
+// Program output: files that appear whole or not at all, and standard output.
 #pragma once
 
 #include <array>
@@ -9,23 +9,23 @@
 
 namespace plumb {
 
-// Bytes on their way to a file descriptor.
+// Stream buffer that writes to a file descriptor.
 class OutputBuffer final : public std::streambuf {
   public:
-    // `name` stands in messages. Takes the descriptor over.
+    // `name` is used in error messages. Takes ownership of the descriptor.
     OutputBuffer(int descriptor, std::string name);
-    ~OutputBuffer() override; // closes without writing what is left
+    ~OutputBuffer() override; // closes without flushing
     OutputBuffer(const OutputBuffer &) = delete;
     OutputBuffer &operator=(const OutputBuffer &) = delete;
 
     [[nodiscard]] int descriptor() const { return descriptor_; }
-    // Writes what is left, and closes: some file systems say only then that the disk is full.
-    // Throws as overflow and sync do.
+    // Flushes and closes: some file systems report a full disk only on close. Throws as overflow
+    // and sync do.
     void close();
 
   protected:
-    // Throw std::system_error with the name and the reason, having dropped what was not written. A
-    // stream hands that on to who writes when its exceptions() have std::ios::badbit.
+    // Throw std::system_error with the name and the reason, and drop the unwritten bytes. A stream
+    // passes the exception on to its caller if its exceptions() include std::ios::badbit.
     int_type overflow(int_type next) override;
     int sync() override;
 
@@ -37,19 +37,19 @@ class OutputBuffer final : public std::streambuf {
     std::array<char, 1U << 16U> bytes_{};
 };
 
-// The one way in which files are written. A regular file, or one that does not exist yet, is
-// written beside its place (without a name, where the file system can do so: nothing is left of it
-// when the program is killed) and put there when it is complete. Until then an older one stays as
-// it is; its permissions are kept. Symbolic links are followed. To what is no regular file (a pipe,
-// a device) and to the program's own descriptors (/dev/stdout, /dev/fd/3) everything goes straight
-// through.
-//
-// All failures throw std::system_error with path and reason, those of stream() at once.
+// All files are written through this. A regular or new file is written to a temporary beside its
+// destination (an unnamed one where the file system supports it, so that nothing is left behind if
+// the program is killed) and moved into place when complete. Until then an existing file stays as
+// it is, and its permissions are kept. Symbolic links are followed. Anything that is not a regular
+// file (a pipe, a device) and the program's own descriptors (/dev/stdout, /dev/fd/3) are written
+// directly.
+// All failures throw std::system_error with path and reason; those of stream() throw as they
+// happen.
 class OutputFile {
   public:
-    // Creates no folders.
+    // Does not create folders.
     explicit OutputFile(const std::filesystem::path &path);
-    ~OutputFile(); // what is not finished is removed
+    ~OutputFile(); // removes an unfinished file
     OutputFile(const OutputFile &) = delete;
     OutputFile &operator=(const OutputFile &) = delete;
 
@@ -57,19 +57,18 @@ class OutputFile {
     [[nodiscard]] const std::filesystem::path &path() const { return path_; }
 
     void finish();
-    // Where what was written of one that will not be completed is kept: beside the file itself,
-    // under its name with ".partial" appended; links are followed here, too. Empty where everything
-    // goes straight through.
+    // Where keep_partial() puts an incomplete file: beside the file itself, with ".partial"
+    // appended to its name; links are followed here too. Empty if the output is written directly.
     [[nodiscard]] std::filesystem::path partial_place() const;
-    // Puts it there. Returns where, or path() where everything went straight through.
+    // Moves it there. Returns that path, or path() if the output is written directly.
     std::filesystem::path keep_partial();
 
   private:
     struct Opened {
         int descriptor = -1;
         bool straight_through = false;
-        std::filesystem::path place;  // the links followed
-        std::filesystem::path beside; // while it has a name
+        std::filesystem::path place;  // with links followed
+        std::filesystem::path beside; // the temporary's path; empty while it is unnamed
     };
     static Opened open(const std::filesystem::path &path);
     OutputFile(std::filesystem::path path, Opened opened);
@@ -81,7 +80,7 @@ class OutputFile {
     std::ostream stream_;
 };
 
-// While one lives, std::cout throws std::system_error when it cannot write. One at a time.
+// While one exists, std::cout throws std::system_error when a write fails. One at a time.
 class StandardOutput {
   public:
     StandardOutput();
@@ -89,7 +88,7 @@ class StandardOutput {
     StandardOutput(const StandardOutput &) = delete;
     StandardOutput &operator=(const StandardOutput &) = delete;
 
-    // Writes what is left, and closes. Nothing is written to it afterwards.
+    // Flushes and closes. Nothing may be written afterwards.
     void finish();
 
   private:
@@ -98,7 +97,7 @@ class StandardOutput {
     std::ostream *tied_;
 };
 
-// Creates a folder with those above it, unless it is there. Throws as OutputFile does.
+// Creates a folder and its parents if missing. Throws as OutputFile does.
 void create_folder(const std::filesystem::path &path);
 
 } // namespace plumb

@@ -1,13 +1,12 @@
-// What times are measured by. Only differences mean something.
+// Clocks for timing. Only differences mean something.
 #pragma once
 
 namespace plumb {
 
-// CPU time that the calling thread has used (s): other programs on the same machine do not add to
-// it, nor do other threads of this one.
+// CPU time used by the calling thread (s): neither other programs nor other threads add to it.
 [[nodiscard]] double thread_cpu_time();
 
-// The clock on the wall (s).
+// Wall-clock time (s).
 [[nodiscard]] double wall_time();
 
 } // namespace plumb

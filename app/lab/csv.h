@@ -39,22 +39,22 @@ class CsvWriter {
     bool row_begun_ = false;
 };
 
-// One row, quoted cells of several lines included; empty at the end. A row that the end cuts off is
+// One row, including quoted cells that span lines; empty at the end. A row cut off by the end is
 // dropped.
 [[nodiscard]] std::vector<std::string> read_csv_row(std::istream &in);
 
-// What exact_number wrote; nothing when it is no number.
+// Parses what exact_number wrote; nullopt if it is not a number.
 [[nodiscard]] std::optional<double> csv_number(std::string_view text);
 
-// Reads one table, row by row, by the names of its columns.
+// Reads one table row by row, with cells looked up by column name.
 class CsvReader {
   public:
-    // Reads the row of names. `in` must outlive the reader.
+    // Reads the header row. `in` must outlive the reader.
     explicit CsvReader(std::istream &in);
 
-    // False at the end. Rows with another number of cells than there are names are passed over.
+    // False at the end. Skips rows whose cell count differs from the header's.
     bool next();
-    // Of the present row; empty where there is no such column.
+    // In the current row; empty if there is no such column.
     [[nodiscard]] std::string_view cell(std::string_view column) const;
     [[nodiscard]] std::optional<double> number(std::string_view column) const {
         return csv_number(cell(column));

@@ -1,4 +1,4 @@
-// What commands tell the shell.
+// Exit codes of the commands.
 #pragma once
 
 namespace plumb {
@@ -12,8 +12,8 @@ enum class ExitCode {
     no_room = 5, // output could not be written, or memory ran out
 };
 
-// Of several outcomes, the one to report. What keeps a result from being worth anything comes
-// first: bad input, then no room, then no picture, then divergence, then a missed tolerance.
+// The outcome to report. Whatever makes the result worthless comes first: bad input, then no room,
+// then no picture, then divergence, then a missed tolerance.
 [[nodiscard]] constexpr ExitCode worse(ExitCode a, ExitCode b) {
     constexpr auto rank = [](ExitCode code) {
         switch (code) {

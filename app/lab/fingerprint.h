@@ -1,5 +1,5 @@
-// Of all that decides what is in a table's row, but for what the row says itself: rows with another
-// fingerprint are of no use to who goes on from them.
+// Fingerprint of everything that decides a table row's contents, except what the row itself states.
+// A command that resumes from a table cannot use rows with another fingerprint.
 #pragma once
 
 #include "engine/core/hash.h"
@@ -14,12 +14,12 @@ class Fingerprint {
   public:
     void add(std::string_view text);
     void add(double value) { hash_.add(value); }
-    void add(const RunOptions &options); // less its method
+    void add(const RunOptions &options); // all but the method
 
-    // of_program(), "-" and 16 hexadecimal digits at most.
+    // of_program(), "-" and up to 16 hexadecimal digits.
     [[nodiscard]] std::string text() const;
 
-    // Of this program's file: another build may come to other results.
+    // Hash of this executable: another build may produce other results.
     [[nodiscard]] static const std::string &of_program();
 
   private:

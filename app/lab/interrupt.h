@@ -5,8 +5,8 @@
 
 namespace plumb {
 
-// While one lives, the first SIGINT or SIGTERM is only noted, and the next of the same kind ends
-// the program as usual. One at a time.
+// While a guard exists, the first SIGINT or SIGTERM is only recorded; the next of the same kind
+// ends the program as usual. One guard at a time.
 class InterruptGuard {
   public:
     InterruptGuard();
@@ -15,7 +15,7 @@ class InterruptGuard {
     InterruptGuard &operator=(const InterruptGuard &) = delete;
 
     [[nodiscard]] static bool requested();
-    // 128 and the signal's number, as shells have it; 0 when nothing was requested.
+    // 128 plus the signal number, the shell convention; 0 if nothing was requested.
     [[nodiscard]] static int exit_code();
 
   private:

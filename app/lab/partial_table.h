@@ -1,4 +1,4 @@
-// What interrupted commands left of a table, and the next of them goes on from.
+// The partial table that an interrupted command leaves behind and the next one resumes from.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +10,22 @@ namespace plumb {
 
 class PartialTable {
   public:
-    // What lies at OutputFile::partial_place(); nothing where there is no such file.
+    // `place` is OutputFile::partial_place(); the table is empty if there is no such file.
     explicit PartialTable(std::filesystem::path place);
 
     [[nodiscard]] const std::filesystem::path &place() const { return place_; }
     [[nodiscard]] const std::string &text() const { return text_; }
 
-    // Those of its rows that `table` does not have, as they stand: what the same program found out
-    // in an earlier command with other methods, other values or another scene, or what this one was
-    // interrupted before. Rows are the same where they have the same in the columns `key`.
-    // `fingerprint` is the column with what Fingerprint::text gave: rows of another program are of
-    // no use and left out, as are all where `table` has other columns.
+    // The rows that are not in `table`, verbatim: results of the same program from an earlier
+    // command with other methods, values or another scene, or rows this command did not get to
+    // before it was interrupted. Rows are equal if their `key` columns are. `fingerprint` names the
+    // column holding Fingerprint::text: rows of another program are useless and left out, as are
+    // all rows if `table` has other columns.
     [[nodiscard]] std::string rows_not_in(const std::string &table,
                                           std::span<const std::string> key,
                                           std::string_view fingerprint) const;
 
-    // Writes these of its rows alone, or removes it where there are none.
+    // Rewrites the file with only these rows, or removes it if there are none.
     void keep_only(const std::string &rows) const;
 
   private:

@@ -1,5 +1,5 @@
-// Every action of the sandbox with its keys: the one list that the keyboard, the labels of the
-// panels, the help and the README's table are made from.
+// Every sandbox action and its keys: the single list behind the keyboard, the panels' labels, the
+// help and the README's table.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace plumb {
 
-// In the order of the help.
+// In help order.
 enum class Action {
     pause,
     step,
@@ -45,7 +45,7 @@ enum class Action {
     quit,
 };
 
-// A key by what it types in lower case ('p', '?', ' '), or one of these.
+// A key as the character it types, in lower case ('p', '?', ' '), or one of these.
 namespace special_key {
 inline constexpr char32_t escape = 0x110000; // beyond Unicode
 inline constexpr char32_t tab = 0x110001;
@@ -56,8 +56,8 @@ inline constexpr char32_t home = 0x110005;
 inline constexpr char32_t f1 = 0x110006;
 } // namespace special_key
 
-// A key with what is held down. For signs, Shift is part of what is typed ('?'), so `shift` is told
-// apart for special keys only.
+// A key with its modifiers. For symbols, Shift is already part of the character ('?'), so `shift`
+// is only set for special keys.
 struct Chord {
     char32_t key = 0;
     bool ctrl = false;
@@ -65,7 +65,7 @@ struct Chord {
     friend bool operator==(const Chord &, const Chord &) = default;
 };
 
-// Where an action's control stands, and so where its keys are shown.
+// Where an action's control is, and so where its keys are shown.
 enum class Place { transport, scenes, settings, view, general };
 
 struct ActionInfo {
@@ -73,11 +73,11 @@ struct ActionInfo {
     std::string_view title; // "Step back"
     std::string_view about; // a sentence for the tooltip and the help
     Place place = Place::general;
-    bool repeats = false;      // held down, the key acts again and again
-    std::vector<Chord> chords; // never empty; the first is shown at the control
+    bool repeats = false;      // acts repeatedly while the key is held
+    std::vector<Chord> chords; // never empty; the control shows the first
 };
 
-// In the order of the help; each action once.
+// In help order; each action once.
 [[nodiscard]] std::span<const ActionInfo> actions();
 [[nodiscard]] const ActionInfo &info(Action action);
 // Null if no action has this chord.

@@ -5,7 +5,7 @@
 namespace plumb {
 
 void Messages::say(Message::Severity severity, std::string text) {
-    // The same thing said again is the same message, new.
+    // A repeated message replaces the old one.
     std::erase_if(messages_, [&](const Message &m) { return m.text == text; });
     messages_.push_back({severity, std::move(text), 0});
     if (messages_.size() > most)

@@ -1,4 +1,4 @@
-// What the program has to say to the person at the window.
+// Messages to the user at the window.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@ struct Message {
     enum class Severity { note, warning, error };
     Severity severity = Severity::note;
     std::string text; // may have several lines
-    double age = 0;   // s of real time since it was said
+    double age = 0;   // s of real time since it was posted
 };
 
-// Notes go by themselves after a while; warnings and errors stay until dismissed.
+// Notes expire after a while; warnings and errors stay until dismissed.
 class Messages {
   public:
     static constexpr double note_lifetime = 5; // s
-    static constexpr std::size_t most = 50;    // further ones push out the oldest
+    static constexpr std::size_t most = 50;    // beyond this the oldest are dropped
 
     void say(Message::Severity severity, std::string text);
     void note(std::string text) { say(Message::Severity::note, std::move(text)); }

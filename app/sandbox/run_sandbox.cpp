@@ -36,15 +36,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A paused world is drawn this long after the last event, then only now and then.
+// A paused world is redrawn at full rate for this long after the last event, then only now and
+// then.
 constexpr double awake = 0.5;          // s
 constexpr double drowsy = 0.2;         // s between frames
-constexpr double title_interval = 0.2; // s between changes of the title while running
+constexpr double title_interval = 0.2; // s between title updates while running
 
-// ImGui's back end lives as long as this. Made after WindowInput, gone before it.
-//
-// ImGui looks at which keys are down once a frame: one that is pressed and released within a slow
-// frame would be lost. So it hears of a release only when it has seen the key.
+// Owns ImGui's GLFW back end. Construct after WindowInput, destroy before it.
+// ImGui samples key state once per frame, so a key pressed and released within one slow frame would
+// be lost. Releases are therefore held back until ImGui has seen the key.
 class GlfwBackEnd {
   public:
     explicit GlfwBackEnd(Window &window) : window_(window.handle()) {
@@ -52,11 +52,11 @@ class GlfwBackEnd {
         ImGui::GetIO().BackendLanguageUserData = this;
         glfwSetKeyCallback(window_, on_key);
     }
-    ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); } // which takes the callback away, too
+    ~GlfwBackEnd() { ImGui_ImplGlfw_Shutdown(); } // also removes the callback
     GlfwBackEnd(const GlfwBackEnd &) = delete;
     GlfwBackEnd &operator=(const GlfwBackEnd &) = delete;
 
-    // ImGui has seen the keys of the frame that it has drawn.
+    // Call after drawing: ImGui has now seen this frame's keys.
     void end_frame() {
         for (const Key &key : std::exchange(released_, {}))
             ImGui_ImplGlfw_KeyCallback(window_, key.key, key.scancode, GLFW_RELEASE, key.mods);
@@ -79,7 +79,7 @@ class GlfwBackEnd {
     std::vector<Key> released_;
 };
 
-// Everything that both loops draw with.
+// Everything both loops draw with.
 struct Stage {
     Stage(const SandboxOptions &options, bool in_software, float ui_scale, glm::ivec2 pixels)
         : ui(ui_scale), scale(ui_scale),
@@ -88,7 +88,7 @@ struct Stage {
           ui_renderer(options.shader_dir),
           target(pixels, options.samples.value_or(in_software ? 1 : 4)) {}
 
-    // Takes effect with the next frame that is begun.
+    // Takes effect when the next frame begins.
     void set_scale(float ui_scale) {
         if (ui_scale == scale)
             return;
@@ -97,7 +97,7 @@ struct Stage {
         ui_renderer.upload_fonts();
     }
 
-    // The panels first: the camera looks through what they leave free.
+    // Panels first: the camera looks through the part they leave free.
     void draw(Sandbox &sandbox) {
         PanelContext context = sandbox.panel_context(ui.fonts());
         const ImDrawData &data = ui.draw(context);
@@ -106,7 +106,7 @@ struct Stage {
         sandbox.take(context);
     }
 
-    // In pixels, which are so many to a unit of the panels' coordinates; less their round corners.
+    // In pixels, `density` to a unit of panel coordinates; without the rounded corners.
     std::vector<PixelRect> panels(float density) const {
         constexpr float corner = 3;
         std::vector<PixelRect> rects;
@@ -119,7 +119,7 @@ struct Stage {
     }
 
     Ui ui;
-    float scale = 1; // of ui
+    float scale = 1; // the scale `ui` has
     Renderer renderer;
     ImguiRenderer ui_renderer;
     Framebuffer target;
@@ -130,7 +130,7 @@ Sandbox make_sandbox(const SandboxOptions &options) {
     if (!options.record.empty())
         sandbox.session().record();
     sandbox.clock().set_paused(options.paused);
-    ProgressLine line(std::cerr); // no window shows anything yet
+    ProgressLine line(std::cerr); // no window shows the progress yet
     line.show(0, "opening the scene");
     if (!options.recording.empty())
         sandbox.open_recording(options.recording);
@@ -168,8 +168,8 @@ int finish(const SandboxOptions &options, const Sandbox &sandbox, const Stage &s
     return static_cast<int>(replayed);
 }
 
-// Runs the loop, and then writes the recording, whatever ended the loop. A place that cannot be
-// written to is found out before it.
+// Runs the loop, then writes the recording, however the loop ended. Opens the file first, so that
+// an unwritable path fails before the run.
 template <typename Loop>
 void with_recording(const SandboxOptions &options, const Sandbox &sandbox, const Loop &loop) {
     if (options.record.empty()) {
@@ -226,8 +226,7 @@ void handle_events(Sandbox &sandbox, Ui &ui, const Window &window,
         sandbox.open(events.dropped.front());
 }
 
-// Of text and panels. Pixels of the display to a unit of the window's coordinates are the back
-// end's business.
+// The scale of text and panels. The back end handles display pixels per window unit.
 float ui_scale(const SandboxOptions &options, const Window &window, const Sandbox &sandbox) {
     const float dense = static_cast<float>(window.framebuffer_size().x) /
                         static_cast<float>(std::max(window.size().x, 1));
@@ -261,7 +260,7 @@ void show_frames(const SandboxOptions &options, Window &window, WindowInput &inp
             std::chrono::duration_cast<std::chrono::nanoseconds>(now - last).count();
         last = now;
         const glm::ivec2 pixels = window.framebuffer_size();
-        if (pixels.x <= 0 || pixels.y <= 0) { // minimised: the world waits
+        if (pixels.x <= 0 || pixels.y <= 0) { // minimised: the world is on hold
             window.wait(drowsy);
             last = Clock::now();
             continue;

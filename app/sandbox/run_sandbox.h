@@ -1,4 +1,4 @@
-// The interactive program: a window, and the loop that keeps it alive.
+// The interactive program: a window and its main loop.
 #pragma once
 
 #include "app/render/context.h"
@@ -16,34 +16,34 @@
 namespace plumb {
 
 struct SandboxOptions {
-    std::vector<SceneEntry> scenes;      // to choose from
+    std::vector<SceneEntry> scenes;      // scenes to choose from
     std::filesystem::path initial_scene; // empty: the first of `scenes`
-    std::filesystem::path recording;     // to be played instead
+    std::filesystem::path recording;     // played instead of a scene
     GlChoice gl = GlChoice::automatic;
     glm::ivec2 size{1280, 800};
     std::filesystem::path shader_dir;
-    std::filesystem::path out_dir = "out"; // screenshots and saved scenes
+    std::filesystem::path out_dir = "out"; // for screenshots and saved scenes
     RunOptions run;
     TaskPool *tasks = nullptr; // may be null
     bool paused = false;
-    std::optional<int> samples;    // of multisampling; as the renderer can bear if empty
-    std::optional<float> ui_scale; // of the panels; the monitor's if empty
-    // For tests: ends after so many frames, and writes the last one to a file. Without a window
+    std::optional<int> samples;    // multisampling; if empty, what the renderer can afford
+    std::optional<float> ui_scale; // panel scale; if empty, the monitor's
+    // For tests: stop after this many frames and write the last one to a file. Without a window
     // each frame lasts 1/60 s.
     std::optional<int> max_frames;
     std::filesystem::path screenshot;
-    std::filesystem::path record; // the run that goes on at the end is recorded there
+    std::filesystem::path record; // the run in progress at the end is recorded here
 };
 
 struct SandboxResult {
     int exit_code = 0; // an ExitCode: bad_input if the initial scene could not run in the frames
-                       // asked; of a recording that was played, Session::replay_outcome
-    // Not empty: nothing was run, because there is no window, for this reason.
+                       // requested; for a played recording, Session::replay_outcome
+    // If not empty, nothing was run for lack of a window; this is why there is none.
     std::string why_no_window;
 };
 
-// Until the person has quit. Throws ContextError or std::runtime_error where a picture cannot be
-// made at all.
+// Runs until the user quits. Throws ContextError or std::runtime_error if nothing can be rendered
+// at all.
 SandboxResult run_sandbox(const SandboxOptions &options);
 
 } // namespace plumb

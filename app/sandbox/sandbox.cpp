@@ -16,7 +16,7 @@ namespace plumb {
 
 namespace {
 
-// What the pointer's ray hits first of the shapes that a probe picks among.
+// The first hit of the pointer's ray on the shapes of a picking probe.
 std::optional<ProbePoint> point_at(const Session &session, const PickRay &ray) {
     for (const ProbeDesc &probe : session.probes()) {
         if (probe.question != ProbeQuestion::pick)
@@ -39,7 +39,7 @@ std::optional<ProbePoint> point_at(const Session &session, const PickRay &ray) {
 Sandbox::Sandbox(Session session, std::vector<SceneEntry> scenes, std::filesystem::path out_dir)
     : session_(std::move(session)), scenes_(std::move(scenes)), out_dir_(std::move(out_dir)) {}
 
-// Both at once are asked to end, then waited for.
+// Ask both to stop before the members' destructors wait for them.
 Sandbox::~Sandbox() {
     chart_.stop();
     map_.stop();
@@ -219,7 +219,7 @@ void Sandbox::perform(Action action) {
 }
 
 void Sandbox::handle(const KeyEvent &event, bool in_text_field) {
-    // A text field that takes the keyboard in the next frame has it already.
+    // A text field about to take the keyboard in the next frame counts as having it.
     const bool typing = in_text_field || view_.focus_search;
     if (typing && !event.chord.ctrl && event.chord.key != special_key::escape &&
         event.chord.key != special_key::f1)
@@ -239,7 +239,7 @@ void Sandbox::handle(const KeyEvent &event, bool in_text_field) {
 void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
     tools_.handle(event,
                   {session_, view_.camera, view_.selected, view_.selected_particle, viewport});
-    // Whoever moves it or goes nearer wants to see something else.
+    // A user who pans or zooms wants to look at something else: stop following.
     if (tools_.drag() == Tools::Drag::pan ||
         (event.kind == PointerEvent::Kind::wheel && !event.over_panel)) {
         view_.follows = false;
@@ -340,14 +340,14 @@ void Sandbox::take_steps_back(int count) {
 }
 
 void Sandbox::reload() {
-    // The selected body is found again by its name.
+    // The selected body is found again by name.
     std::string name;
     if (view_.selected)
         name = session_.simulation()->body_info(*view_.selected).name;
     session_.messages().clear();
     if (!session_.reload())
         return;
-    forget_studies(); // the file may say otherwise now
+    forget_studies(); // the file may have changed
     view_.selected = name.empty() ? std::nullopt : session_.simulation()->find_body(name);
     started(false);
 }
@@ -356,7 +356,7 @@ void Sandbox::open_neighbour(int direction) {
     const auto count = static_cast<int>(scenes_.size());
     if (count == 0)
         return;
-    int now = direction > 0 ? -1 : count; // none of the list is open: begin at its end
+    int now = direction > 0 ? -1 : count; // no listed scene is open: start at the end
     for (int i = 0; i < count; ++i)
         if (scenes_[static_cast<std::size_t>(i)].path == session_.path())
             now = i;
@@ -383,7 +383,7 @@ void Sandbox::choose_neighbour_method(int direction) {
         able[direction > 0 ? (now + 1) % able.size() : (now + able.size() - 1) % able.size()]);
 }
 
-// By the method that was last chosen, or the next that can run the scene.
+// Uses the method last chosen, else the next that can run the scene.
 void Sandbox::toggle_ghost() {
     if (session_.ghost() || !session_.running()) {
         session_.set_ghost("");
@@ -409,7 +409,7 @@ void Sandbox::go_on_with(const RunChoice &choice) {
     if (choice.scene) {
         if (!session_.open(*choice.scene, session_.path(), choice.text))
             return;
-        chart_.clear(); // of the scene as it was
+        chart_.clear(); // it showed the old scene
         started(false);
     }
     if (choice.method != session_.simulation()->method().name &&
@@ -419,7 +419,7 @@ void Sandbox::go_on_with(const RunChoice &choice) {
 }
 
 void Sandbox::scale_panels(float factor) {
-    // Back where it was, after as many steps either way.
+    // Whole steps, so that equally many up and down return exactly to the start.
     constexpr float steps = 8;
     const float now = std::round(std::log(view_.ui_scale * factor) / std::log(1.1f));
     view_.ui_scale = std::pow(1.1f, std::clamp(now, -steps, steps));
@@ -445,7 +445,7 @@ void Sandbox::frame_selection() {
             5 * static_cast<float>(
                     session_.simulation()->soft_parts().particles[*view_.selected_particle].radius);
     }
-    // A body has its own width of air on each side, so that one sees where it is.
+    // Leave a body's own width free on each side, so that one sees where it is.
     Camera camera = view_.camera;
     const bool is_one = view_.selected || view_.selected_particle;
     camera.frame(sphere.centre, sphere.radius, is_one ? 1.0f / 3 : 0.9f);
@@ -540,7 +540,7 @@ std::filesystem::path Sandbox::new_file(const std::string &extension) const {
     if (session_.running())
         stem = session_.scene().name + "-" + std::to_string(session_.simulation()->step_count());
     std::filesystem::path path = out_dir_ / (stem + extension);
-    std::error_code error; // what cannot be looked at counts as absent: writing will say why
+    std::error_code error; // a failed check counts as absent: writing will report why
     for (int i = 2; std::filesystem::exists(path, error); ++i)
         path = out_dir_ / std::string(stem).append("-").append(std::to_string(i)).append(extension);
     return path;

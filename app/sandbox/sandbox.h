@@ -1,4 +1,4 @@
-// The sandbox without its window: scene, view, tools, clock and panels, driven by events and time.
+// The sandbox without a window: scene, view, tools, clock and panels, driven by events and time.
 #pragma once
 
 #include "app/render/draw_list.h"
@@ -23,12 +23,12 @@ namespace plumb {
 
 struct KeyEvent {
     Chord chord;
-    bool repeat = false; // held down
+    bool repeat = false; // key repeat
 };
 
 class Sandbox {
   public:
-    // `scenes` are listed in this order. Saved scenes go to `out_dir`.
+    // `scenes` are listed in this order. Scenes are saved to `out_dir`.
     explicit Sandbox(Session session, std::vector<SceneEntry> scenes = {},
                      std::filesystem::path out_dir = "out");
     ~Sandbox();
@@ -37,36 +37,37 @@ class Sandbox {
     Sandbox(const Sandbox &) = delete;
     Sandbox &operator=(const Sandbox &) = delete;
 
-    // With the scene's own camera and nothing selected. False, with messages, if it cannot run.
+    // Opens with the scene's own camera and nothing selected. False, with messages, if the scene
+    // cannot run.
     bool open(const std::filesystem::path &path);
     bool open(const SceneDesc &scene, const std::filesystem::path &path = {});
     bool open_recording(const std::filesystem::path &path);
 
     void perform(Action action);
-    // `in_text_field`: plain keys are being typed there, and only those with Ctrl, F1 and Esc act.
+    // `in_text_field`: plain keys go to the text field; only Ctrl chords, F1 and Esc act.
     void handle(const KeyEvent &event, bool in_text_field = false);
     void handle(const PointerEvent &event, glm::vec2 viewport);
-    // Real time goes on: as many steps as are due, but no longer than step_budget.
+    // Advances real time: takes the steps that are due, but for no longer than step_budget.
     void advance(std::int64_t nanoseconds);
-    static constexpr double step_budget = 0.05; // s of real time a frame
+    static constexpr double step_budget = 0.05; // s of real time per frame
 
-    // Has the camera go along when all that moves would leave the picture, and back when it
-    // returns; `advance` does so too.
+    // Moves the camera along when all that moves would leave the picture, and back when it returns;
+    // `advance` does so too.
     void keep_in_picture();
 
     [[nodiscard]] PanelContext panel_context(const Fonts &fonts, bool frozen = false);
-    // Does what the person asked for in the panels.
+    // Carries out what the user asked for in the panels.
     void take(const PanelContext &context);
 
-    // The present frame.
+    // The current frame.
     [[nodiscard]] DrawList draw_list() const;
     // "tower - paused - step 12 - Plumb"
     [[nodiscard]] std::string title() const;
 
-    // A file of this kind that does not exist yet: out_dir/scene-step.png
+    // A file of this type that does not exist yet: out_dir/scene-step.png
     [[nodiscard]] std::filesystem::path new_file(const std::string &extension) const;
 
-    // Asked for since the last call.
+    // Whether requested since the last call.
     [[nodiscard]] bool take_screenshot_request();
     [[nodiscard]] bool take_keyboard_release();
     [[nodiscard]] bool quit_requested() const { return quit_; }
@@ -80,8 +81,8 @@ class Sandbox {
     [[nodiscard]] const Tools &tools() const { return tools_; }
 
   private:
-    void look_from(Camera camera);                // through what the panels leave free, and follow
-    int take_due_steps(std::int64_t nanoseconds); // how many were taken
+    void look_from(Camera camera); // through the part the panels leave free, and follow
+    int take_due_steps(std::int64_t nanoseconds); // returns how many were taken
     void take_steps(int count);
     void take_steps_back(int count);
     void reload();
@@ -93,8 +94,8 @@ class Sandbox {
     void frame_selection();
     void dismiss();
     void started(bool another_scene);
-    void forget_studies();    // of a scene that is no longer there
-    void follow_simulation(); // the clock's dt, and a selection that may be gone
+    void forget_studies();    // of a scene that is gone
+    void follow_simulation(); // updates the clock's dt, and drops a selection that is gone
 
     Session session_;
     std::vector<SceneEntry> scenes_;

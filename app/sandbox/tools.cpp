@@ -104,7 +104,7 @@ void Tools::move(const PointerEvent &event, const ToolTargets &targets) {
     case Drag::none:
         break;
     case Drag::maybe_click:
-        // The camera waits until it is clear that this is no click, then makes up for the way.
+        // The camera waits until this is clearly not a click, then catches up with the pointer.
         if (glm::distance(event.position, pressed_at_) <= click_slack)
             return;
         drag_ = Drag::orbit;
@@ -123,7 +123,7 @@ void Tools::move(const PointerEvent &event, const ToolTargets &targets) {
                 targets.session.grab(grab);
             }
         } else {
-            drag_ = Drag::none; // the session let go: a restart, a step back
+            drag_ = Drag::none; // the session has let go: a restart or step back
         }
         break;
     case Drag::probe:
@@ -137,7 +137,7 @@ void Tools::move(const PointerEvent &event, const ToolTargets &targets) {
 void Tools::release(const PointerEvent &event, const ToolTargets &targets) {
     if (drag_ == Drag::grab)
         targets.session.grab({});
-    // Released over a panel, it is no click on the scene.
+    // A release over a panel is not a click on the scene.
     if (drag_ == Drag::maybe_click && !event.over_panel) {
         const Picked hit =
             pick(targets.session, targets.camera, pressed_at_, targets.viewport).value_or(Picked{});
@@ -175,7 +175,8 @@ void Tools::begin_grab(const PointerEvent &event, const ToolTargets &targets) {
 
 void Tools::shoot(const PointerEvent &event, const ToolTargets &targets) const {
     const PickRay ray = targets.camera.pick_ray(event.position, targets.viewport);
-    // As large on the screen at any distance, and started far enough ahead not to fill the view.
+    // The ball looks equally large at any camera distance, and starts far enough ahead not to fill
+    // the view.
     const double radius =
         std::clamp(0.02 * static_cast<double>(targets.camera.distance), 0.05, 1.0);
     const glm::dvec3 from = glm::dvec3(ray.origin) + glm::dvec3(ray.direction) * (4 * radius);

@@ -8,13 +8,13 @@ namespace plumb {
 
 Image ui_snapshot(Sandbox &sandbox, Renderer &renderer, const std::filesystem::path &shader_dir,
                   const UiSnapshotOptions &options, std::vector<Ui::Panel> *panels) {
-    sandbox.clock().set_paused(true); // the state itself, not what lies between two steps
+    sandbox.clock().set_paused(true); // the exact state, not a blend of two steps
     sandbox.keep_in_picture();
     Ui ui(scale_that_fits(options.scale, glm::vec2(options.size)));
     ImguiRenderer ui_renderer(shader_dir);
     const ImDrawData *data = nullptr;
-    // Panels are as high as their contents were in the frame before, and ImGui lays out tables and
-    // scroll bars by what it has shown.
+    // Panel heights come from the previous frame's contents, and ImGui lays out tables and scroll
+    // bars by what it last showed.
     constexpr int frames_to_settle = 4;
     for (int frame = 0; frame < frames_to_settle; ++frame) {
         ui.fill_input(glm::vec2(options.size), 1.0f / 60);

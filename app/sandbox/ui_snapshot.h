@@ -1,4 +1,4 @@
-// The sandbox as a picture, panels and all, without a window.
+// A picture of the sandbox with its panels, without a window.
 #pragma once
 
 #include "app/render/image.h"
@@ -14,13 +14,13 @@ namespace plumb {
 
 struct UiSnapshotOptions {
     glm::ivec2 size{1280, 800};
-    int samples = 1; // of multisampling
+    int samples = 1; // multisampling
     float scale = 1; // of text and panels
 };
 
-// The present state of the sandbox, which is paused, with its panels; wall times and their graph
-// are left out, so that the same state gives the same picture. A GL context must be current. If
-// `panels` is given, it gets the panels with their places.
+// The sandbox's current state with its panels; this pauses it. Wall times and their graph are left
+// out, so that the same state always gives the same picture. A GL context must be current.
+// `panels`, if given, receives the panels and their rectangles.
 [[nodiscard]] Image ui_snapshot(Sandbox &sandbox, Renderer &renderer,
                                 const std::filesystem::path &shader_dir,
                                 const UiSnapshotOptions &options,

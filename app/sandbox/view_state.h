@@ -1,4 +1,4 @@
-// What is shown, and from where: all that is not the world itself.
+// What is shown, and from where: everything but the world itself.
 #pragma once
 
 #include "app/render/camera.h"
@@ -12,7 +12,7 @@
 
 namespace plumb {
 
-// One of the places by which a probe can be moved.
+// A point by which a probe can be dragged.
 struct ProbeHandle {
     std::size_t probe = 0;
     std::size_t handle = 0;
@@ -20,19 +20,20 @@ struct ProbeHandle {
 };
 
 struct ViewState {
-    Camera camera; // looks through what the panels leave free
-    // Of a picture that holds all that the scene shows at its start, width over height.
+    Camera camera; // looks through the part the panels leave free
+    // Aspect (width over height) of a picture that holds everything the scene shows at its start.
     float aspect = 1;
-    // While the person has not moved the camera away, it goes along with what moves; as far, m.
+    // The camera follows what moves until the user moves it away; `followed` is how far it has
+    // gone, m.
     bool follows = true;
     glm::vec3 followed{0};
     std::optional<std::size_t> selected;
     std::optional<std::size_t> hovered;
-    // At most one of a body and a particle is selected, and likewise hovered.
+    // Either a body or a particle is selected, never both; the same goes for hovered.
     std::optional<std::size_t> selected_particle;
     std::optional<std::size_t> hovered_particle;
     std::optional<ProbeHandle> hovered_handle;
-    std::optional<ProbePoint> pointed_at; // of a picking probe's shapes, by the pointer's ray
+    std::optional<ProbePoint> pointed_at; // where the pointer's ray hits a picking probe's shapes
     bool contacts = false;
     bool joints = false;
     bool wireframe = false;
@@ -42,25 +43,25 @@ struct ViewState {
     bool diagnostics = true;
     bool lab = false;
     bool help = false;
-    PerPanel<std::optional<bool>> opened; // or closed to its title; as it likes until a person says
-    bool is_roomy = true;                 // the window, in which a panel likes to be open
+    PerPanel<std::optional<bool>> opened; // open, or folded to the title; unset: as is_roomy
+    bool is_roomy = true;                 // the window has room for open panels
     [[nodiscard]] bool is_open(PanelId panel) const { return opened[panel].value_or(is_roomy); }
-    float ui_scale = 1;                       // on top of the monitor's
-    std::optional<std::size_t> detailed_body; // that the details were last about, or
+    float ui_scale = 1;                       // times the monitor's scale
+    std::optional<std::size_t> detailed_body; // that the details last showed, or
     std::optional<std::size_t> detailed_particle;
-    std::string search;                      // in the list of scenes
-    std::string plot_of;                     // whose quantities are offered; empty: the scene's
-    std::optional<std::size_t> offered_body; // that was last selected for that, or
+    std::string search;  // text in the scene list's search box
+    std::string plot_of; // name whose quantities are offered; empty: the whole scene's
+    std::optional<std::size_t> offered_body; // last body selected for that, or
     std::optional<std::size_t> offered_particle;
-    std::string sweeps;                        // of the chart
+    std::string sweeps;                        // the chart's sweeps
     std::string sweep_mistake;                 // empty: none
-    std::string map_x = "dt=1/240..1/15:7log"; // axes of the map
+    std::string map_x = "dt=1/240..1/15:7log"; // the map's axes
     std::string map_y = "substeps=1,2,4,8,16";
     std::string map_mistake;
-    std::string ghost_method;             // that was last chosen
-    std::optional<double> plot_seconds;   // shown, up to now; all without
+    std::string ghost_method;             // last chosen
+    std::optional<double> plot_seconds;   // the last seconds shown; unset: all
     bool focus_search = false;            // the search box takes the keyboard in the next frame
-    std::filesystem::path scene_in_sight; // to which the list of scenes was last scrolled
+    std::filesystem::path scene_in_sight; // that the scene list last scrolled to
 };
 
 } // namespace plumb

@@ -39,7 +39,7 @@ char32_t lower(char32_t c) {
 
 } // namespace
 
-// GLFW's callbacks find their object by the window's user pointer.
+// GLFW's callbacks find the object through the window's user pointer.
 struct WindowInput::Callbacks {
     static WindowInput &self(GLFWwindow *window) {
         return *static_cast<WindowInput *>(glfwGetWindowUserPointer(window));
@@ -62,8 +62,8 @@ struct WindowInput::Callbacks {
             input.events_.keys.push_back({{*which, ctrl, shift}, input.repeat_});
             return;
         }
-        // Keys that type something arrive in `character`, after the keyboard's layout; with Ctrl
-        // they type nothing, so the layout is asked here.
+        // Keys that type a character arrive in `character`, after the keyboard layout. With Ctrl
+        // they type nothing, so look the layout up here.
         if (!ctrl)
             return;
         const char *name = glfwGetKeyName(key, scancode);
@@ -78,8 +78,8 @@ struct WindowInput::Callbacks {
             {{lower(static_cast<char32_t>(code)), false, false}, input.repeat_});
     }
 
-    // Where the moves before it led to. glfwGetCursorPos would say where the pointer is by now,
-    // which after a slow frame is not where a button was pressed.
+    // The position after the preceding move events. glfwGetCursorPos would give the pointer's
+    // position now, which after a slow frame is not where the button was pressed.
     static PointerEvent here(GLFWwindow *window, PointerEvent::Kind kind) {
         PointerEvent event;
         event.kind = kind;

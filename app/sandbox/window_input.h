@@ -1,5 +1,4 @@
-// What the keyboard and the mouse have done in a window, as events. The one file of the sandbox
-// that knows GLFW.
+// A window's keyboard and mouse input as events. The only sandbox file that knows GLFW.
 #pragma once
 
 #include "app/render/context.h"
@@ -15,7 +14,7 @@ namespace plumb {
 
 class WindowInput {
   public:
-    // Make it before ImGui's GLFW back end, which then passes events on to it.
+    // Construct before ImGui's GLFW back end, which then passes events on to it.
     explicit WindowInput(Window &window);
     ~WindowInput();
     WindowInput(const WindowInput &) = delete;
@@ -23,13 +22,13 @@ class WindowInput {
 
     struct Events {
         std::vector<KeyEvent> keys;
-        std::vector<PointerEvent> pointer; // over_panel is not known here
+        std::vector<PointerEvent> pointer; // over_panel is not set here
         std::vector<std::filesystem::path> dropped;
         [[nodiscard]] bool empty() const {
             return keys.empty() && pointer.empty() && dropped.empty();
         }
     };
-    // Those since the last call, in order.
+    // Events since the last call, in order.
     [[nodiscard]] Events take();
 
   private:
@@ -37,7 +36,7 @@ class WindowInput {
     GLFWwindow *window_ = nullptr;
     Events events_;
     glm::vec2 pointer_{0};
-    bool repeat_ = false; // the last key event was of a key held down
+    bool repeat_ = false; // the last key event was a repeat
 };
 
 } // namespace plumb

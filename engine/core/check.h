@@ -5,9 +5,9 @@
 //   PLUMB_RARELY(name, condition)           counts a numerical oddity; a test fails when it
 //                                           is more frequent than stated
 //
-// `message` is an expression that streams into an ostream, with the offending value in it:
+// `message` is streamed into an ostream and contains the offending value:
 //   PLUMB_CHECK(radius > 0, "sphere radius must be positive, got " << radius);
-// A failed check throws CheckFailure, so a program can say what was wrong and lose nothing.
+// A failed check throws CheckFailure, so a program can report the error and lose nothing.
 #pragma once
 
 #include <atomic>
@@ -26,13 +26,13 @@ class CheckFailure : public std::logic_error {
 [[noreturn]] void fail_check(const char *file, int line, const char *condition,
                              const std::string &message);
 
-// How often an oddity was looked for, and how often it was met. Thread-safe.
+// How often an oddity was checked for, and how often it occurred. Thread-safe.
 struct OddityCounter {
     std::atomic<std::uint64_t> looked{0};
     std::atomic<std::uint64_t> met{0};
 };
 
-// The counter of that name; created at first use, lives as long as the program.
+// The counter with that name, created on first use; it lives as long as the program.
 OddityCounter &oddity(const char *name);
 
 } // namespace plumb

@@ -1,4 +1,4 @@
-// What the parts of a shared out loop find, put together in the order of the items.
+// Gathers the results of a parallel loop in item order.
 #pragma once
 
 #include "engine/core/task_pool.h"
@@ -9,13 +9,13 @@
 
 namespace plumb {
 
-// Kept for its memory: a loop as large as one before allocates nothing.
+// Kept for its memory: a loop no larger than an earlier one allocates nothing.
 template <class T> struct FoundParts {
     std::vector<std::vector<T>> parts;
-    std::vector<std::size_t> starts; // of each part in what all found, and the end
+    std::vector<std::size_t> starts; // each part's start in the output, and the end
 };
 
-// How many parts the loops below have: what each of them needs for itself must be there.
+// How many parts the loops below run in, for sizing per-part data.
 inline std::size_t part_count(const TaskPool *tasks, std::size_t count, std::size_t grain) {
     if (tasks == nullptr || tasks->threads() == 1)
         return 1;
@@ -23,7 +23,7 @@ inline std::size_t part_count(const TaskPool *tasks, std::size_t count, std::siz
     return std::max<std::size_t>((count + grain - 1) / grain, 1);
 }
 
-// Calls body(begin, end, part) for parts of [0, count), which it counts from 0.
+// Calls body(begin, end, part) for parts of [0, count); `part` counts from 0.
 template <class Body>
 void for_counted_parts(TaskPool *tasks, std::size_t count, std::size_t grain, Body &&body) {
     if (part_count(tasks, count, grain) == 1) {
@@ -35,13 +35,13 @@ void for_counted_parts(TaskPool *tasks, std::size_t count, std::size_t grain, Bo
                      [&](std::size_t begin, std::size_t end) { body(begin, end, begin / grain); });
 }
 
-// Calls find(begin, end, part, found) for parts of [0, count); each appends what it finds to its
-// own `found`. `out` holds all of it then, the same for any number of threads.
+// Calls find(begin, end, part, found) for parts of [0, count); each call appends its results to its
+// own `found`. `out` gets all of them in item order, the same for any number of threads.
 template <class T, class Find>
 void collect(TaskPool *tasks, std::size_t count, std::size_t grain, FoundParts<T> &scratch,
              std::vector<T> &out, Find &&find) {
     const std::size_t parts = part_count(tasks, count, grain);
-    if (parts == 1) { // nothing to put together
+    if (parts == 1) { // nothing to merge
         out.clear();
         find(std::size_t{0}, count, std::size_t{0}, out);
         return;

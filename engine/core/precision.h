@@ -1,8 +1,7 @@
 // The one place where the engine's precision is chosen.
 //
 // Everything that computes motion is written in `Real` and compiled twice, into the inline
-// namespaces plumb::f32 and plumb::f64, so that one program holds both. Define PLUMB_DOUBLE for the
-// second.
+// namespaces plumb::f32 and plumb::f64, so one program can hold both. Define PLUMB_DOUBLE for f64.
 #pragma once
 
 #if defined(PLUMB_DOUBLE)

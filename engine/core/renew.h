@@ -1,4 +1,4 @@
-// Arrays that are filled anew, again and again.
+// Arrays that are refilled over and over.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace plumb {
 
-// So many times the same, in memory that grows by more than it must: sizes that waver allocate
-// nothing.
+// Makes `items` hold `count` copies of `item`. Capacity grows by more than needed, so fluctuating
+// sizes allocate nothing.
 template <typename Item>
 void renew(std::vector<Item> &items, std::size_t count, const Item &item = {}) {
     items.resize(count);

@@ -26,8 +26,8 @@ std::uint64_t loop_of(std::uint64_t share) {
     return share >> 2 * part_bits;
 }
 
-// Waits a moment. Now and then it lets others run, who may have more to do than wait where there
-// are fewer cores than threads.
+// Pauses briefly; now and then it yields, as other threads may have real work if there are fewer
+// cores than threads.
 void wait_a_moment(unsigned turn) {
     constexpr unsigned turns_on_end = 256;
     if (turn % turns_on_end == turns_on_end - 1)
@@ -77,8 +77,8 @@ void TaskPool::run(Loop loop) {
     done_.store(0, std::memory_order_relaxed);
     ++loops_;
     const std::size_t threads = shares_.size();
-    // Sequentially consistent, as is a worker's look at its share after it said that it sleeps: one
-    // of the two sees the other.
+    // Sequentially consistent, as is a worker's read of its share after it counts itself asleep:
+    // either we see it asleep or it sees the new loop.
     for (std::size_t i = 0; i < threads; ++i)
         shares_[i].parts.store(loops_ << 2 * part_bits | (parts * (i + 1) / threads) << part_bits |
                                parts * i / threads);
@@ -93,9 +93,9 @@ void TaskPool::run(Loop loop) {
         std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-// Takes parts of a share, one after another, until there are none; how many are done by that. That
-// the share is still as it was read says that the loop was not done, so what was read of the loop
-// is of the same.
+// Runs parts of a share until none are left; returns how many are done with, given-up ones
+// included. If the share is still as it was read, the loop was not finished, so the fields read in
+// between belong to that loop.
 std::uint32_t TaskPool::run_share(Share &share) {
     std::uint32_t done = 0;
     std::uint64_t seen = share.parts.load(std::memory_order_acquire);
@@ -120,7 +120,7 @@ std::uint32_t TaskPool::run_share(Share &share) {
     return done;
 }
 
-// Takes all parts that nobody has begun, and leaves them alone.
+// Claims all parts not yet started without running them; returns how many.
 std::uint32_t TaskPool::give_up() {
     std::uint64_t left = 0;
     for (Share &share : shares_) {
@@ -133,7 +133,7 @@ std::uint32_t TaskPool::give_up() {
     return static_cast<std::uint32_t>(left);
 }
 
-// A thread's own share, then what is left of the others'.
+// Runs a thread's own share, then the rest of the others'.
 void TaskPool::run_shares(std::size_t thread) {
     for (std::size_t i = 0; i < shares_.size(); ++i) {
         const std::uint32_t done = run_share(shares_[(thread + i) % shares_.size()]);

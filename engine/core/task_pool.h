@@ -1,4 +1,4 @@
-// Threads that share out a loop.
+// A thread pool for parallel loops.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@
 
 namespace plumb {
 
-// `threads` workers in all, the calling thread among them. Which thread runs which part is not
-// determined, so work that must give the same bits writes only to its own items.
+// `threads` workers, including the calling thread. Which thread runs which part is not determined,
+// so work that must be bit-reproducible writes only to its own items.
 class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache lines of their own
   public:
-    // `single` makes parts of one item each: slow, to look for races with.
+    // `single` makes every part one item: slow, for finding races.
     enum class Parts { large, single };
     explicit TaskPool(int threads, Parts parts = Parts::large); // 1 to 1024
     ~TaskPool();
@@ -28,8 +28,8 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
 
     int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-    // For a loop whose parts are of equal work: at least `least` items in a part, and no more parts
-    // than it takes to keep all threads busy to the end.
+    // For loops whose items cost the same: at least `least` items per part, and no more parts than
+    // it takes to keep all threads busy to the end.
     std::size_t equal_grain(std::size_t count, std::size_t least) const {
         if (parts_ == Parts::single)
             return 1;
@@ -40,10 +40,10 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
     // For other loops: as given.
     std::size_t grain(std::size_t given) const { return parts_ == Parts::single ? 1 : given; }
 
-    // Calls body(begin, end) for parts of [0, count), of at most `grain` items when there are
-    // several threads and in one part when there is one; returns when all are done. Parts begin at
-    // multiples of `grain`. Not reentrant. An exception from a part reaches the caller; parts not
-    // yet begun are left out then. Allocates nothing.
+    // Calls body(begin, end) for parts of [0, count) of at most `grain` items, or once for
+    // everything if there is only one thread; returns when all parts are done. Parts begin at
+    // multiples of `grain`. Not reentrant. An exception in a part reaches the caller, and parts not
+    // yet started are skipped. Allocates nothing.
     template <class Body> void for_parts(std::size_t count, std::size_t grain, Body &&body) {
         using Plain = std::remove_reference_t<Body>;
         run({std::addressof(body),
@@ -53,9 +53,8 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
              count, grain});
     }
 
-    // While one of these lives, idle workers wait for the next loop awake: it begins within a
-    // microsecond instead of some tens. For stretches in which one short loop follows another, such
-    // as a step; of null: nothing.
+    // While one of these lives, idle workers spin until the next loop, which then starts within a
+    // microsecond instead of tens. For runs of short loops, such as a step. Null does nothing.
     class Awake {
       public:
         explicit Awake(TaskPool *pool);
@@ -74,9 +73,9 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
         std::size_t count = 0;
         std::size_t grain = 1;
     };
-    // The parts of the loop in hand that one thread takes first: which loop it is (24 bits), where
-    // its parts end and which is next (20 bits each). The same thread has the same share of every
-    // loop, so that it finds in its cache what it worked on last; when it is done it helps others.
+    // The parts of the current loop that one thread takes first: the loop's number (24 bits), the
+    // end of its parts and the next part (20 bits each). A thread gets the same share of every
+    // loop, so its data are still in its cache; when it is done, it helps the others.
     struct alignas(64) Share {
         std::atomic<std::uint64_t> parts = 0;
     };
@@ -87,8 +86,8 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
     void work(std::size_t thread, const std::stop_token &stop);
     void wait_for_loop(const Share &share, std::uint64_t seen, const std::stop_token &stop);
 
-    // The loop in hand. Only used by who then takes a part of it, and it does not change before all
-    // its parts are done.
+    // The current loop. Used only by threads that then take a part of it; it does not change until
+    // all its parts are done.
     std::atomic<const void *> body_ = nullptr;
     std::atomic<void (*)(const void *, std::size_t, std::size_t)> call_ = nullptr;
     std::atomic<std::size_t> count_ = 0;
@@ -102,11 +101,11 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
     std::mutex mutex_;
     std::condition_variable_any wake_;
     std::exception_ptr failure_;
-    std::vector<std::jthread> workers_; // last: they stop before the rest goes
+    std::vector<std::jthread> workers_; // last: they stop before the rest is destroyed
 };
 
-// Items of equal work, at least `least` of them in a part. Without a pool: in one part, by the
-// caller.
+// For items that cost the same, at least `least` per part. Without a pool the caller runs them as
+// one part.
 template <class Body>
 void for_parts(TaskPool *tasks, std::size_t count, std::size_t least, Body &&body) {
     if (tasks != nullptr)

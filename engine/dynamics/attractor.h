@@ -1,5 +1,5 @@
-// Points that attract all that moves by forces, by Newton's law of gravitation, beside the gravity
-// that is the same everywhere.
+// Points that attract everything that forces move, by Newton's law of gravitation, on top of the
+// uniform gravity.
 #pragma once
 
 #include "engine/math/types.h"
@@ -20,8 +20,8 @@ struct Attractor {
     Real gravitational_parameter = Real(1); // G M (m^3/s^2)
 };
 
-// The acceleration at x: the sum of -mu r / |r|^3 (Landau, Lifshitz 1976, "Mechanics", sec. 15). In
-// the midst of an attractor that one adds nothing.
+// The acceleration at x: the sum of -mu r / |r|^3 (Landau, Lifshitz 1976, "Mechanics", sec. 15). An
+// attractor exactly at x adds nothing.
 inline Vec3 attraction(std::span<const Attractor> attractors, const Vec3 &x) {
     Vec3 sum{Real(0)};
     for (const Attractor &attractor : attractors) {
@@ -33,7 +33,8 @@ inline Vec3 attraction(std::span<const Attractor> attractors, const Vec3 &x) {
     return sum;
 }
 
-// The potential there, sum of -mu / |r| (J/kg), 0 far away; likewise.
+// The potential at x: the sum of -mu / |r| (J/kg), 0 far away. An attractor exactly at x adds
+// nothing.
 inline double attraction_potential(std::span<const Attractor> attractors, const glm::dvec3 &x) {
     double sum = 0;
     for (const Attractor &attractor : attractors) {
@@ -44,8 +45,8 @@ inline double attraction_potential(std::span<const Attractor> attractors, const 
     return sum;
 }
 
-// How the acceleration changes with the place: -mu / |r|^3 of a way across the line to an
-// attractor, and twice as much the other way along it, there no more than `most` (1/s^2).
+// The gradient of the acceleration at x: for each attractor -mu / |r|^3 across the line to it and
+// twice that with the opposite sign along the line, where it is capped at `most` (1/s^2).
 inline glm::dmat3 attraction_gradient(std::span<const Attractor> attractors, const glm::dvec3 &x,
                                       double most) {
     glm::dmat3 sum{0};
@@ -63,8 +64,8 @@ inline glm::dmat3 attraction_gradient(std::span<const Attractor> attractors, con
     return sum;
 }
 
-// v += h a, of the moving bodies and of the particles, at their present places. Where there is no
-// attractor these do nothing, and count no pass.
+// v += h a, for the moving bodies and for the particles, at their present positions. Without
+// attractors these do nothing and count no pass.
 void attract_bodies(StepContext &context, Real h);
 void attract_particles(StepContext &context, Real h);
 

@@ -1,4 +1,4 @@
-// Refuses numbers that a definition must not have.
+// Rejects numbers that a definition must not have.
 #pragma once
 
 #include "engine/core/check.h"

@@ -1,5 +1,5 @@
-// Blocks of rows on threads. Those of one colour share nothing that moves: they may be solved at
-// the same time, in any order, with the same bits.
+// Runs blocks of rows on threads. Blocks of one colour share nothing that moves, so they can be
+// solved at the same time, in any order, with bit-identical results.
 #pragma once
 
 #include "engine/core/task_pool.h"
@@ -10,8 +10,8 @@
 
 namespace plumb {
 
-// About a microsecond of work, as long as it takes to hand it out; but a colour has few blocks, and
-// with more in a part some threads would have nothing to do.
+// A block is about a microsecond of work, as long as it takes to hand it out; but a colour has few
+// blocks, and larger parts would leave some threads idle.
 inline constexpr std::size_t blocks_a_part = 1;
 
 // Calls use(blocks) for parts of blocks that nobody else writes to.
@@ -21,7 +21,8 @@ void for_blocks(TaskPool *tasks, std::span<Block> blocks, Use &&use) {
               [&](std::size_t begin, std::size_t end) { use(blocks.subspan(begin, end - begin)); });
 }
 
-// One colour after another, each up to one of `ends`; blocks after the last stand for themselves.
+// Runs one colour after another; `ends` holds each colour's end. Blocks after the last end have no
+// colour and are used on one thread.
 template <class Block, class Use>
 void for_colours(TaskPool *tasks, std::span<Block> blocks, std::span<const std::uint32_t> ends,
                  Use &&use) {

@@ -1,5 +1,5 @@
-// Columns as vectors of lanes. Included by files that Highway compiles once for each instruction
-// set, and like them once for each. Nothing is fused or reordered by width: each lane sees the same
+// Columns as vectors of lanes. Included by files that Highway compiles once per instruction set,
+// and so compiled once for each. Nothing is fused or reordered by width: each lane sees the same
 // operations whatever the processor.
 #if defined(PLUMB_DYNAMICS_COLUMNS) == defined(HWY_TARGET_TOGGLE)
 #ifdef PLUMB_DYNAMICS_COLUMNS
@@ -71,7 +71,7 @@ HWY_INLINE Vector times(const Symmetric &m, const Vector &v) {
             hn::Add(hn::Add(hn::Mul(m.xz, v.x), hn::Mul(m.yz, v.y)), hn::Mul(m.zz, v.z))};
 }
 
-// Three Reals of each lane's body or particle, `offset` Reals from where it begins.
+// Three Reals of each lane's body or particle, starting `offset` Reals in.
 HWY_INLINE Vector gather(const Real *first, int offset, Indices index) {
     const Real *from = first + offset;
     return {hn::GatherIndex(tag, from, index), hn::GatherIndex(tag, from + 1, index),
@@ -109,13 +109,13 @@ HWY_INLINE void scatter_rows(const Vector &v, const Vector &next, Real *first, i
 
 #else
 
-// Rows of four Reals and lanes of blocks of four, one for the other: where Reals are float and
-// vectors hold whole blocks. Gathering and scattering single Reals costs as much as all arithmetic
-// of a contact (AMD Zen 4).
+// Transposes between rows of four Reals and blocks of four lanes, where Reals are float and vectors
+// hold whole blocks. Gathering and scattering single Reals costs as much as all the arithmetic of a
+// contact (AMD Zen 4).
 template <typename D>
 constexpr bool has_blocks = sizeof(hn::TFromD<D>) == 4 && sizeof(hn::Vec<D>) >= 16;
 
-// The rows of every fourth lane.
+// Loads the rows of every fourth lane.
 template <typename D>
 HWY_INLINE hn::Vec<D> load_rows(D d, const Real *from, const IndexColumn::Index *index) {
     if constexpr (sizeof(hn::Vec<D>) == 16) {
@@ -127,7 +127,7 @@ HWY_INLINE hn::Vec<D> load_rows(D d, const Real *from, const IndexColumn::Index 
     }
 }
 
-// Of each block of four lanes.
+// Transposes each block of four lanes.
 template <typename D>
 HWY_INLINE void transpose(D d, hn::Vec<D> &a, hn::Vec<D> &b, hn::Vec<D> &c, hn::Vec<D> &e) {
     constexpr hn::Repartition<std::uint64_t, D> pairs{};
@@ -141,7 +141,7 @@ HWY_INLINE void transpose(D d, hn::Vec<D> &a, hn::Vec<D> &b, hn::Vec<D> &c, hn::
     e = hn::BitCast(d, hn::InterleaveUpper(pairs, upper_ab, upper_ce));
 }
 
-// As gather(), of what at least one Real follows.
+// Like gather(), but reads four Reals: at least one must follow the three.
 template <typename D = Tag>
 HWY_INLINE Vector gather_rows(const Real *first, int offset, const IndexColumn &index,
                               std::size_t lane) {
@@ -160,7 +160,7 @@ HWY_INLINE Vector gather_rows(const Real *first, int offset, const IndexColumn &
     }
 }
 
-// As scatter(), of two vectors one after the other.
+// Like scatter(), for two vectors stored one after the other.
 template <typename D = Tag>
 HWY_INLINE void scatter_rows(const Vector &v, const Vector &next, Real *first, int offset,
                              const IndexColumn &index, unsigned writes, std::size_t lane) {

@@ -1,5 +1,5 @@
-// The same number of 16 rows side by side, so that the processor works on as many at once as it
-// can.
+// Structure of arrays: the same value of 16 rows side by side, so that the processor works on as
+// many at once as it can.
 #pragma once
 
 #include "engine/math/types.h"
@@ -30,7 +30,7 @@ inline Vec3 get(const Columns3 &columns, std::size_t lane) {
 struct ColumnsSymmetric {
     Column xx, yy, zz, xy, xz, yz;
 };
-// Where a lane's body or particle is: its index in Reals, from the first one of the array.
+// Where each lane's body or particle starts, in Reals from the start of its array.
 struct alignas(64) IndexColumn {
     using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
     Index lanes[column_lanes]; // NOLINT(modernize-avoid-c-arrays)

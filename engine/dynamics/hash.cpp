@@ -1,4 +1,4 @@
-// The hash of all that decides the future.
+// The hash of everything that decides the future.
 #include "engine/dynamics/world.h"
 
 #include "engine/geometry/hull_mesh.h"
@@ -106,7 +106,7 @@ void add(StateHash &hash, const Joint &joint) {
     hash.add(static_cast<std::uint64_t>(joint.collide_connected));
 }
 
-// None at all are as good as zeros.
+// No penalties hash the same as zeros.
 template <std::size_t count>
 void add_penalties(StateHash &hash, const std::array<Real, count> &penalties) {
     if (penalties != std::array<Real, count>{})
@@ -126,7 +126,7 @@ std::uint64_t World::hash() const {
         hash.add(state_.clock.steps_before);
         hash.add(state_.clock.time_before);
     }
-    // Bodies are named by their rank among the living, so that holes do not count.
+    // Bodies are named by their rank among living bodies, so that holes do not count.
     std::vector<std::uint64_t> rank(bodies().size());
     std::uint64_t alive = 0;
     for (std::size_t i = 0; i < bodies().size(); ++i) {
@@ -189,7 +189,7 @@ std::uint64_t World::hash() const {
     }
     for (std::size_t i = 0; i < model_->springs.size(); ++i) {
         if (state_.torn[i] != 0)
-            continue; // exerts no force: a hole, as that of a removed body is
+            continue; // exerts no force: a hole, like a removed body's
         const Spring &spring = model_->springs[i];
         for (const SpringEnd &end : {spring.a, spring.b}) {
             const bool is_body = end.kind == SpringEnd::Kind::body;

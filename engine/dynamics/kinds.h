@@ -3,13 +3,14 @@
 
 namespace plumb {
 
-// "static", "kinematic", "dynamic" in files. Kinematic bodies move with a given velocity that
-// nothing changes; static ones not at all.
+// "static", "kinematic", "dynamic" in files. Kinematic bodies move at a given velocity that nothing
+// changes; static bodies never move.
 enum class BodyKind { static_body, kinematic, dynamic };
 
-// ball: a point of one body stays on a point of the other. distance: the two points stay between a
+// ball: an anchor of one body stays on an anchor of the other. distance: the anchors stay between a
 // least and a greatest distance, like a massless rod or rope. hinge: the bodies share a point and
-// an axis, about which they turn. slider: they only move along an axis. fixed: they are one.
+// an axis, about which they turn. slider: they only move along an axis. fixed: they are welded
+// together.
 //
 // The only list of them: each has a file in engine/dynamics/joints/kinds/ and a row in
 // engine/scene/joint_type.cpp.

@@ -1,4 +1,4 @@
-// What can be read off a world: energies, momenta, errors, loads.
+// Measurements of a world: energies, momenta, errors, loads.
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
 #include "engine/math/basis.h"
@@ -34,7 +34,7 @@ BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 
             mass * v, mass * glm::cross(x, v) + rotation * spin_momentum};
 }
 
-// See Measures. `rate`: substeps a second, by which impulses become forces.
+// See Measures. `rate`: substeps per second, which turns impulses into forces.
 void add_residuals(const Contact &contact, const Motion &a, const Motion &b, double rate,
                    Measures &m) {
     const glm::dvec3 normal{contact.manifold.normal};
@@ -74,7 +74,7 @@ double World::energy() const {
     return sum;
 }
 
-// The contact as it is at the present poses.
+// A contact's manifold at the present poses.
 Manifold World::present_manifold(const Contact &contact) const {
     const auto place = [&](std::uint32_t collider, std::uint32_t body) {
         const Motion &motion = state_.motions[body];
@@ -109,7 +109,7 @@ Measures World::measure() const {
         m.angular_momentum += one.angular_momentum;
         is_finite_world = is_finite_world && std::isfinite(one.kinetic + one.potential);
     }
-    // The pairs of the last step, at the poses that it led to.
+    // The pairs of the last step, at the poses it led to.
     double depth_sum = 0;
     int depth_count = 0;
     if (is_finite_world)

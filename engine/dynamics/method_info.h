@@ -1,4 +1,4 @@
-// What a method for advancing a world says about itself, in either precision.
+// The description of a method for advancing a world, the same in either precision.
 #pragma once
 
 #include "engine/dynamics/settings.h"
@@ -17,11 +17,11 @@ struct MethodInfo {
     bool contacts = false;   // can hold bodies apart
     bool joints = false;     // can hold bodies together
     bool springs = false;    // can move particles and springs
-    // Whether what moves fast for its size is collided with where it will be, and where it was
-    // struck to; otherwise all contacts are those of the start of the step.
+    // Whether bodies that move fast for their size are collided where they will be, and where
+    // impacts sent them; otherwise all contacts are those of the start of the step.
     bool looks_ahead = false;
-    std::vector<SettingGroup> reads; // of the settings, beside those that every method reads
-    // Whether each island may take substeps of its own.
+    std::vector<SettingGroup> reads; // setting groups, besides those that every method reads
+    // Whether each island may take its own number of substeps.
     bool chooses_substeps() const {
         return std::ranges::find(reads, SettingGroup::chosen) != reads.end();
     }
@@ -29,7 +29,7 @@ struct MethodInfo {
     bool keeps_penalties() const {
         return std::ranges::find(reads, SettingGroup::penalty) != reads.end();
     }
-    // What it runs with where nothing else is said.
+    // Used where nothing else is specified.
     StepSettings defaults{.substeps = 1, .iterations = 1};
 };
 
@@ -39,7 +39,7 @@ bool reads(const MethodInfo &method, const SettingRow &setting);
 // All methods, in the registry's order (engine/dynamics/methods/registry.cpp).
 std::span<const MethodInfo> method_infos();
 
-// Null when there is no method of that name.
+// Null if no method has that name.
 const MethodInfo *find_method_info(std::string_view name);
 
 } // namespace plumb

@@ -10,21 +10,22 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Shared by a world and everything saved of it; an edit of a shared model copies it first.
+// Shared by a world and its saves; editing a shared model copies it first.
 struct Model {
     std::vector<Body> bodies;          // holes included (Body::alive)
-    std::vector<Collider> colliders;   // holes included (Collider::body); a body's are in a row
+    std::vector<Collider> colliders;   // holes included (Collider::body); a body's are contiguous
     std::vector<Joint> joints;         // holes included
     std::vector<Particle> particles;   // never removed
-    std::vector<Spring> springs;       // likewise
-    std::vector<Attractor> attractors; // likewise
+    std::vector<Spring> springs;       // never removed
+    std::vector<Attractor> attractors; // never removed
     std::vector<std::uint32_t> free_bodies; // descending
     std::vector<std::uint32_t> free_joints;
-    // Pairs of bodies that a joint keeps from colliding, (lesser << 32 | greater), ascending; a
-    // pair comes as often as there are such joints.
+    // Pairs of bodies that a joint keeps from colliding, (lesser << 32 | greater), ascending; one
+    // entry per such joint.
     std::vector<std::uint64_t> joined;
     std::vector<std::uint32_t> half_spaces; // colliders, ascending
-    // Bit n: layer n. Those that colliders are on, and those that some do not ignore.
+    // Bit n: layer n. `layers`: some collider is on it; `heeded_layers`: some collider does not
+    // ignore it.
     std::uint32_t layers = 0;
     std::uint32_t heeded_layers = 0;
     std::uint32_t alive_bodies = 0;
@@ -37,7 +38,7 @@ struct Model {
         layers |= std::uint32_t{1} << filter.layer;
         heeded_layers |= ~filter.ignores;
     }
-    // Whether it ignores every layer that there is: it collides with no body.
+    // Whether it ignores every layer in use, and so collides with no body.
     bool ignores_all(const Filter &filter) const { return (~filter.ignores & layers) == 0; }
 };
 

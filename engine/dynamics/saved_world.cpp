@@ -7,7 +7,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Visits each column, of all that are given.
+// Visits each column of all the given states.
 template <typename Visit, typename... States> void for_columns(Visit visit, States &...states) {
     visit(states.motions...);
     visit(states.paces...);

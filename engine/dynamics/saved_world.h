@@ -1,5 +1,5 @@
-// What a save keeps: the state, column by column. A column in which no bit has changed since the
-// save before is shared with it, so that what rests is kept once, however often it is saved.
+// A save keeps the state column by column. A column whose bits have not changed since the previous
+// save is shared with it, so whatever rests is stored once, however often it is saved.
 #pragma once
 
 #include "engine/dynamics/method.h"
@@ -17,7 +17,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 template <typename Item> class SavedColumn {
   public:
-    // What this column held is overwritten in its place, unless another save shares it.
+    // Overwrites this column's items in place unless another save shares them.
     void take(const std::vector<Item> &items, const SavedColumn &before) {
         if (before.items_ != nullptr && same_bits(*before.items_, items))
             items_ = before.items_;
@@ -68,14 +68,15 @@ struct SavedState {
     Grab grab;
 };
 
-// What decides the future: the model, which saves share until it is edited, and the state.
+// Everything that decides the future: the model, which saves share until it is edited, the state,
+// the method and the settings.
 struct SavedWorld {
     std::shared_ptr<const Model> model;
     SavedState state;
     const Method *method = nullptr;
     StepSettings settings;
 
-    // What the state takes beside that of another save, which may be null.
+    // The bytes of the state that are not shared with another save, which may be null.
     std::size_t bytes_beside(const SavedWorld *before) const;
 };
 

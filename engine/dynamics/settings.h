@@ -1,8 +1,8 @@
-// Everything that a step can be told. Constants of one method stand where they are used.
+// All settings of a step. Constants of a single method stay where they are used.
 //
 // A setting is a member of StepSettings and a row of setting_rows. Checks, the state hash, scene
-// files, the command line, sweeps, the panel, charts and scenes/README.md are made from the table:
-// a new setting is two entries in this file.
+// files, the command line, sweeps, the panel, charts and scenes/README.md are generated from the
+// table, so a new setting is two entries in this file.
 #pragma once
 
 #include "engine/core/hash.h"
@@ -22,10 +22,10 @@ namespace plumb {
 struct StepSettings {
     glm::dvec3 gravity{0, -9.81, 0};
     double dt = 1.0 / 60.0;
-    int substeps = 4;       // the default of a method stands in its row of the registry
-    int max_substeps = 1;   // likewise
-    double sleep_after = 0; // likewise
-    int iterations = 1;     // likewise
+    int substeps = 4;       // methods set their own default in the registry
+    int max_substeps = 1;   // see the registry
+    double sleep_after = 0; // see the registry
+    int iterations = 1;     // see the registry
     double substep_tolerance = 2e-4;
     int substep_budget = 8192;
     double speculative_distance = 0.02;
@@ -50,24 +50,24 @@ struct StepSettings {
     double error_kept = 0.95;
 };
 
-// Settings that are read together: a method's row in the registry names the groups that it reads.
+// Settings that belong together: a method's row in the registry names the groups that it reads.
 // Every method reads the first two.
 enum class SettingGroup {
-    world,       // of the scene: the same for all methods
-    step,        // how any method cuts a step
-    chosen,      // substeps of each island's own
-    sleep,       // what rests is not stepped
-    constraints, // whatever solves contacts and joints
-    speculative, // contacts made before they touch
+    world,       // the scene's: the same for all methods
+    step,        // how any method divides a step
+    chosen,      // each island's own substeps
+    sleep,       // bodies at rest are not stepped
+    constraints, // methods that solve contacts and joints
+    speculative, // contacts made before bodies touch
     kept,        // manifolds kept while bodies rest against each other
-    baumgarte,   // a share of each error removed in a substep
+    baumgarte,   // a share of each error removed per substep
     split,       // by pseudo velocities, or through the velocities
     soft,        // contacts and joints as springs
-    push,        // overlap taken back no faster than so
-    threshold,   // what is too slow to bounce
+    push,        // the fastest that overlap is removed
+    threshold,   // impacts too slow to bounce
     impacts,     // bounces, propagated from contact to contact
     gyroscopic,  // an implicit gyroscopic term
-    penalty      // rows that stiffen while they err
+    penalty      // rows that stiffen while in error
 };
 
 using SettingMember =
@@ -195,13 +195,13 @@ static_assert(settings_detail::member_count<StepSettings>() == setting_rows.size
 // One number of a setting: a vector has three.
 struct SettingNumber {
     std::size_t row = 0; // of setting_rows
-    int component = 0;   // 0 to 2; 0 but for vectors
+    int component = 0;   // 0 to 2; always 0 except for vectors
 
     const SettingRow &setting() const { return setting_rows[row]; }
     auto operator<=>(const SettingNumber &) const = default;
 };
 
-// All of them, in the order of the table.
+// All numbers, in table order.
 std::span<const SettingNumber> setting_numbers();
 
 // "dt", "gravity.y"
@@ -209,22 +209,22 @@ std::string setting_name(SettingNumber number);
 
 double setting_value(const StepSettings &settings, SettingNumber number);
 
-// `value` must be in range; a whole number for those that are whole.
+// `value` must be in range, and whole for a whole-number setting.
 void set_setting(StepSettings &settings, SettingNumber number, double value);
 
 bool is_whole(const SettingRow &row);
 bool is_vector(const SettingRow &row);
 
-// Null when there is none of that name.
+// Null if no setting has that name.
 const SettingRow *find_setting(std::string_view name);
 
-// "a whole number from 1 to 10000", "a number from 1e-9 to 1 s"; of each number of a vector.
+// "a whole number from 1 to 10000", "a number from 1e-9 to 1 s"; for a vector, of each component.
 std::string range_text(const SettingRow &row);
 
-// Empty when that number may have that value; else "dt must be a number from 1e-9 to 1 s, got 2".
+// Empty if the value is allowed; else "dt must be a number from 1e-9 to 1 s, got 2".
 std::string why_refused(SettingNumber number, double value);
 
-// Throws CheckFailure, with the text of why_refused, when one is out of range.
+// Throws CheckFailure with the text of why_refused if a setting is out of range.
 void check_settings(const StepSettings &settings);
 
 void hash_settings(StateHash &hash, const StepSettings &settings);

@@ -1,4 +1,4 @@
-// All that survives a step.
+// Everything that survives a step.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -14,15 +14,15 @@ namespace plumb::inline PLUMB_PRECISION {
 
 struct StateClock {
     std::uint64_t step_count = 0;
-    // Simulated time is a product, not a sum, of each dt that was set.
-    double time_before = 0; // s, until dt was last changed
+    // Simulated time is the number of steps times dt, for each dt that was set, not a running sum.
+    double time_before = 0; // s, when dt was last changed
     std::uint64_t steps_before = 0;
 };
 
-// Flat arrays of plain values: a save is a copy, and a copy continues with the same bits.
+// Flat arrays of plain values: a save is a copy, and a copy continues bit for bit.
 struct State {
     std::vector<Motion> motions;         // one for each body of the model
-    std::vector<Pace> paces;             // likewise
+    std::vector<Pace> paces;             // one for each body of the model
     std::vector<JointMemory> joints;     // one for each joint of the model
     std::vector<ContactMemory> contacts; // ascending by key
     std::vector<PointMemory> points;

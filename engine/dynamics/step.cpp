@@ -14,11 +14,11 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Some microseconds of work.
+// A few microseconds of work.
 constexpr std::size_t loads_a_part = 256;
 constexpr std::size_t contacts_a_part = 256;
 
-// Adds the time until it goes to a phase, if anybody asks.
+// Adds its lifetime to the time of a phase, if anybody asks.
 class PhaseTimer {
   public:
     explicit PhaseTimer(double *seconds) : seconds_(seconds) {
@@ -40,8 +40,8 @@ class PhaseTimer {
 
 } // namespace
 
-// Whether one of the two is moved by the scene and turns, and the other turns with it, or would be
-// left far off the place where its surface was when the step began.
+// Whether one body is kinematic and spins, and the other turns with it, or would be left far off
+// the place where its surface was when the step began.
 bool World::is_turned(const Candidate &candidate) const {
     const std::uint32_t a = candidate.key.a;
     const std::uint32_t b = candidate.key.b;
@@ -56,7 +56,7 @@ bool World::is_turned(const Candidate &candidate) const {
     if (glm::dot(spin_a, spin_b) >
         Real(0.5) * std::max(glm::dot(spin_a, spin_a), glm::dot(spin_b, spin_b)))
         return true;
-    // Of a circle's chord and its arc: t^2 / 2 of the radius.
+    // How far a circle leaves its tangent: t^2 / 2 of the radius.
     constexpr Real far = Real(0.02);
     const auto dt = static_cast<Real>(settings_.dt);
     const Real extent =
@@ -64,15 +64,15 @@ bool World::is_turned(const Candidate &candidate) const {
     return Real(0.5) * squared * dt * dt * extent > far * moving_width(candidate);
 }
 
-// All but the last phase work on scratch: until then the state is as it was. Scratch that a failure
-// left half done is thrown away.
+// All phases but the last work on scratch, so until then the state is unchanged. Scratch that a
+// failure left half done is discarded.
 void World::step(TaskPool *tasks, StepTimes *times) {
     report_ = StepReport{};
     scratch_.impacts.clear();
     scratch_.surprised.clear();
     scratch_.paces = state_.paces;
     note_still(true);
-    // All that there is sleeps, or never moves.
+    // Everything sleeps or never moves.
     if (scratch_.awake == 0 && !moves_particles()) {
         report_.joints = model_->alive_joints;
         ++state_.clock.step_count;
@@ -93,7 +93,7 @@ void World::step(TaskPool *tasks, StepTimes *times) {
     }
 }
 
-// Whether nothing can touch, hold or pull a body, and nothing is remembered of what did.
+// Whether nothing can touch, hold or pull a body, and nothing is remembered from before.
 bool World::is_each_alone() const {
     return !needs_contacts() && model_->joints.empty() && !model_->has_particles() &&
            !state_.grab.is_holding() && state_.points.empty() && state_.penalties.points.empty();
@@ -131,7 +131,7 @@ void World::step_together(StepTimes *times) {
         for (int i = 0; i < most_refinements && went_too_coarsely(); ++i)
             try_step(); // with the loads that the first try found
         constexpr int most_tries = 8;
-        // More do not make it better: a coin that falls flat would be thrown up.
+        // More do not help: a coin that falls flat would be thrown up.
         constexpr int most_missed = 3;
         constexpr int most_missed_of_solids = 2;
         int missed = 0;
@@ -154,7 +154,8 @@ void World::step_together(StepTimes *times) {
     finish();
 }
 
-// Of all that moves. What that touches and sleeps is woken, and looked at again.
+// Finds the contacts of all moving bodies. Sleeping bodies that they touch are woken, and the
+// search is repeated.
 void World::find_contacts(StepTimes *times) {
     do {
         {
@@ -235,7 +236,7 @@ void World::advance() {
 
 void World::advance_groups() {
     Scratch &s = scratch_;
-    std::size_t joint_systems = 0; // the same for the same joints, whatever settles
+    std::size_t joint_systems = 0; // counted so that the same joints keep theirs, whatever settles
     for (std::size_t i = 0; i < s.group_count; ++i) {
         std::optional<StepSettings> own;
         if (s.groups[i].pace.substeps != settings_.substeps) {
@@ -284,7 +285,7 @@ void World::advance_groups() {
     }
 }
 
-// A contact that bears no load is not remembered.
+// Contacts without load are not remembered.
 std::uint32_t World::remembered_points(const Contact &contact) const {
     const auto count = static_cast<std::size_t>(contact.manifold.count);
     const auto is_zero = [](const Vec3 &impulse) { return impulse == Vec3{Real(0)}; };
@@ -293,8 +294,8 @@ std::uint32_t World::remembered_points(const Contact &contact) const {
                : static_cast<std::uint32_t>(count);
 }
 
-// Of a collision within the step nothing is remembered of its friction: what stopped the two from
-// sliding then is no load of the next step.
+// The friction of a collision within the step is not remembered: what stopped the sliding then is
+// no load of the next step.
 void World::remember(const Contact &contact, ContactMemory &memory) {
     memory.key = contact.key;
     memory.origin = contact.origin;
@@ -310,9 +311,9 @@ void World::remember(const Contact &contact, ContactMemory &memory) {
 
 namespace {
 
-// A normal that turned, and impulses along tangents that turned with it, as those of the manifold
-// that the next step will find there. When no try of the step is still to come: they all begin with
-// the normal of its start.
+// Expresses a normal that turned, and impulses along tangents that turned with it, in the manifold
+// that the next step will find there. Only when no try of the step is left: they all begin with the
+// normal of its start.
 void express_anew(Contact &contact, const Quat &turn) {
     const TangentBasis before = tangent_basis(contact.manifold.normal);
     contact.manifold.normal = turn * contact.manifold.normal;
@@ -329,7 +330,7 @@ void express_anew(Contact &contact, const Quat &turn) {
 
 } // namespace
 
-// What is remembered of contacts between those that were still stays as it is.
+// The memory of contacts between still bodies stays as it is.
 void World::gather_memory() {
     Scratch &s = scratch_;
     const std::size_t count = s.contacts.size();
@@ -397,14 +398,14 @@ void World::gather_memory() {
     }
 }
 
-// Here nothing can fail any more.
+// Nothing can fail from here on.
 void World::finish_motions() {
     Scratch &s = scratch_;
     for (const std::uint32_t i : s.moving)
         state_.motions[i] = s.bodies[i];
     std::swap(state_.paces, s.paces);
     ++state_.clock.step_count;
-    // Those of what slept were not looked for.
+    // Contacts of sleeping bodies were not looked for.
     s.contacts_are_current = std::ranges::none_of(state_.paces, &Pace::is_asleep);
 }
 

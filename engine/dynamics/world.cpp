@@ -1,4 +1,4 @@
-// Edits of a world, and what is asked of it between steps.
+// Edits of a world, and queries between steps.
 #include "engine/dynamics/world.h"
 
 #include "engine/core/check.h"
@@ -47,7 +47,7 @@ Transform into(const Transform &frame) {
     return {back * -frame.position, back};
 }
 
-// Products of rotations round; the next one starts anew.
+// Products of rotations round off; normalising keeps the error from passing on to the next one.
 Shape with_unit_rotation(Shape shape) {
     if (auto *box = std::get_if<Box>(&shape))
         box->rotation = glm::normalize(box->rotation);
@@ -109,7 +109,7 @@ void World::set_settings(const StepSettings &settings) {
     use(settings);
 }
 
-// What rests keeps its swept box from step to step; how far that reaches is a setting.
+// Resting bodies keep their swept boxes from step to step, and how far those reach is a setting.
 void World::use(const StepSettings &settings) {
     if (settings.speculative_distance != settings_.speculative_distance)
         scratch_ = Scratch{};
@@ -200,7 +200,7 @@ BodyId World::add_body(const BodyDef &def) {
     return id;
 }
 
-// A body's colliders lie in a row: in the holes that its slot's predecessor left, or at the end.
+// A body's colliders are contiguous: in the holes that its slot's predecessor left, or at the end.
 void World::add_colliders(const BodyDef &def, Body &body, std::uint32_t slot) {
     Model &model = *model_;
     const auto count = static_cast<std::uint32_t>(def.colliders.size());
@@ -268,8 +268,8 @@ void World::remove_body(BodyId id) {
     body.collider_room = gone.collider_room;
     state_.motions[id.index] = Motion{};
     state_.paces[id.index] = Pace{};
-    // The first hole is filled first, so that where a new body goes depends on where holes are
-    // alone.
+    // The first hole is filled first, so that a new body's slot depends only on where the holes
+    // are.
     model.free_bodies.insert(
         std::ranges::upper_bound(model.free_bodies, id.index, std::ranges::greater{}), id.index);
 }
@@ -279,7 +279,7 @@ bool World::is_alive(BodyId id) const {
            bodies()[id.index].generation == id.generation;
 }
 
-// Takes a body's colliders out of the broad phase: the next step finds their places anew.
+// Takes a body's colliders out of the broad phase; the next step places them again.
 void World::forget_places_of(const Body &body) {
     Scratch &s = scratch_;
     bool any = false;
@@ -307,7 +307,7 @@ void World::forget_contacts_of(std::uint32_t body) {
     });
 }
 
-// Of what has diverged they are no numbers, and the next step would begin with them.
+// The loads of diverged bodies are not finite, and the next step would begin with them.
 void World::forget_lost_loads_of(std::uint32_t body) {
     const auto are_numbers = [](std::span<const Real> values) {
         return std::ranges::all_of(values, [](Real value) { return std::isfinite(value); });
@@ -448,7 +448,7 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
     motion = {pose.position, pose.rotation, velocity, angular_velocity};
     if (body.kind == BodyKind::static_body)
         motion.velocity = motion.angular_velocity = Vec3{Real(0)};
-    // What sleeps is not looked at when something that does not move is put there.
+    // Sleeping bodies are not tested against a body that does not move, so one put there wakes all.
     if (body.kind != BodyKind::dynamic && motion.velocity == Vec3{Real(0)} &&
         motion.angular_velocity == Vec3{Real(0)})
         wake_all();
@@ -571,7 +571,7 @@ const std::vector<Contact> &World::contacts() const {
             find_pairs();
             collide();
         } catch (...) {
-            scratch_ = Scratch{}; // what was found is only a part
+            scratch_ = Scratch{}; // what was found is incomplete
             throw;
         }
         scratch_.contacts_are_current = true;

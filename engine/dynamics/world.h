@@ -14,14 +14,15 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Which body a ray meets first, which of its colliders, and where.
+// The first body that a ray hits, which of its colliders, and where.
 struct WorldHit {
     BodyId body;
     std::uint16_t child = 0;
     RayHit hit;
 };
 
-// A manifold and the poses that it is of: those of now, or those in which two bodies will touch.
+// A manifold and the poses it was found at: the present ones, or those at which the bodies will
+// touch.
 struct FoundManifold {
     Manifold manifold;
     Motion a;
@@ -30,12 +31,12 @@ struct FoundManifold {
     bool is_turning = false;
 };
 
-// Three things: the model (what only an edit changes), the state (all that survives a step), and
-// scratch, which may be thrown away between any two steps. What follows depends only on the first
-// two, the method and the settings, never on the way that led there.
+// Three parts: the model (what only an edit changes), the state (everything that survives a step),
+// and scratch, which may be discarded between any two steps. The future depends only on the model,
+// the state, the method and the settings, never on how the world got there.
 class World {
   public:
-    // A method unknown to the registry, or settings out of range, fail a check.
+    // Fails a check on a method unknown to the registry, and on settings out of range.
     World(std::string_view method, const StepSettings &settings);
 
     void set_method(std::string_view method);
@@ -51,70 +52,72 @@ class World {
     void remove_body(BodyId id);
     bool is_alive(BodyId id) const;
 
-    // Between two bodies that are not dynamic it does nothing.
+    // A joint between two bodies that are not dynamic does nothing.
     JointId add_joint(const JointDef &def);
     void remove_joint(JointId id);
     bool is_alive(JointId id) const;
 
-    // Particles and springs are never removed. Both return the index. A mass or radius that is not
-    // positive, a NaN, a negative stiffness, an end that is not there, fail a check.
+    // Particles and springs are never removed. Both functions return the index. They fail a check
+    // on a mass or radius that is not positive, a NaN, a negative stiffness, and an end that does
+    // not exist.
     std::uint32_t add_particle(const ParticleDef &def);
     std::uint32_t add_spring(const SpringDef &def);
-    // Never removed either. Numbers that are not finite fail a check; one below 0 repels.
+    // Never removed either. Numbers that are not finite fail a check; a parameter below 0 repels.
     void add_attractor(const Attractor &attractor);
 
     const Model &model() const { return *model_; }
     const State &state() const { return state_; }
-    // All slots, holes included (Body::alive, Joint::alive). Index i of each belongs together.
+    // All slots, holes included (Body::alive, Joint::alive). bodies()[i] and motions()[i] belong
+    // together.
     const std::vector<Body> &bodies() const { return model_->bodies; }
     const std::vector<Motion> &motions() const { return state_.motions; }
     const std::vector<Joint> &joints() const { return model_->joints; }
     BodyId body_id(std::uint32_t index) const { return {index, bodies()[index].generation}; }
 
-    // Of the last step, ascending by key; found again at the present poses when a world was
-    // restored or edited since.
+    // Contacts of the last step, ascending by key; found again at the present poses if the world
+    // was restored or edited since, or if any body is asleep.
     const std::vector<Contact> &contacts() const;
     const std::vector<Impact> &impacts() const { return scratch_.impacts; } // of the last step
 
     // The pose of the body's own frame.
     Transform pose_of(std::uint32_t body) const;
-    // Sets pose and velocity of a body, as a tool or a test does. A static one has no velocity.
+    // Sets a body's pose and velocity, as a tool or a test does. A static body has no velocity.
     void set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
                     const Vec3 &angular_velocity);
-    // Changes a dynamic body's velocity at once: `impulse` in N s at a world point. Others ignore
-    // it.
+    // Changes a dynamic body's velocity immediately: `impulse` in N s at a world point. Other
+    // bodies ignore it.
     void apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point);
-    // Holds a point of a dynamic body (in its own frame) at the target, until release or until the
-    // body is removed; a second grab replaces the first. Others ignore it.
+    // Holds a point of a dynamic body (in its own frame) at the target until release or until the
+    // body is removed; a second grab replaces the first. Other bodies ignore it.
     void grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force,
               const GrabSpring &spring = {});
-    void move_grab(const Vec3 &target); // nothing held: does nothing
+    void move_grab(const Vec3 &target); // does nothing if nothing is held
     void release();
-    // Puts a particle somewhere, as a tool or a test does. A pinned one stays at rest there.
+    // Moves a particle, as a tool or a test does. A pinned particle stays at rest there.
     void set_particle(std::uint32_t index, const Vec3 &position, const Vec3 &velocity);
-    // As grab, of a particle that is not pinned; a pinned one is not held.
+    // Like grab, for a particle. A pinned particle is not held.
     void grab_particle(std::uint32_t index, const Vec3 &target, Real max_force,
                        const GrabSpring &pull = {});
-    // Puts the solver's memory of a contact back, for a world that continues a saved one. Points
-    // are known by feature; a contact that the next step does not find again is forgotten.
+    // Restores the solver's memory of a contact, for a world that continues a saved one. Points are
+    // matched by feature id; a contact that the next step does not find again is forgotten.
     void remember_contact(const ContactKey &key, const ContactOrigin &origin,
                           std::span<const PointMemory> points,
                           std::span<const PointPenalty> penalties = {});
 
     // Advances by settings().dt. `tasks` may be null: one thread. Same bits for any thread count. A
-    // step that throws leaves the state as it was. `times`, when not null, gets the phases' times.
+    // step that throws leaves the state unchanged. `times`, if not null, gets the phases' times.
     void step(TaskPool *tasks, StepTimes *times = nullptr);
     const StepReport &report() const { return report_; }
     std::uint64_t step_count() const { return state_.clock.step_count; }
-    // For a world that continues a saved one, when its bodies and joints are there again.
+    // For a world that continues a saved one, once its bodies and joints are back.
     void set_pace(BodyId id, const Pace &pace);
     // For a world that continues a saved one. Fails a check unless dt was last changed at a time
     // that is finite and not negative, and after no more steps than were taken.
     void set_clock(const StateClock &clock);
-    // Likewise: takes a grab up again, with what the solver remembers of it. What cannot be held is
-    // not held, as with `grab`.
+    // For a world that continues a saved one: resumes a grab, with what the solver remembers of it.
+    // A body or particle that cannot be held is not held, as with `grab`.
     void hold(const Grab &grab);
-    // Simulated time (s): step k is where it should be.
+    // Simulated time (s), without the rounding of a running sum.
     double time() const {
         const StateClock &clock = state_.clock;
         return clock.time_before +
@@ -122,41 +125,40 @@ class World {
     }
 
     // Copies the state, shares the model, and shares with `before` (may be null) each part of the
-    // state that has not changed since. `into` keeps its memory, so that a ring of saves allocates
-    // nothing once it is full, as long as all that it saves moves.
+    // state that has not changed since. `into` reuses its memory, so a full ring of saves allocates
+    // nothing as long as everything it saves moves.
     void save(SavedWorld &into, const SavedWorld *before = nullptr) const;
     void restore(const SavedWorld &saved);
 
-    // The nearest body; of two at the same t, the one with the lower index. Sensors are not met.
+    // The nearest body hit; at equal t, the one with the lower index. Rays pass through sensors.
     std::optional<WorldHit> raycast(const Ray &ray) const;
 
     Measures measure() const;
     double energy() const; // kinetic and potential, J
-    // How far a joint's rows are from holding, and the length of both together, in which an error
-    // of 1 rad counts as one of 1 m.
+    // A joint's linear and angular error, and the length of both together, counting 1 rad as 1 m.
     JointError joint_errors(std::uint32_t joint) const;
     Real joint_error(std::uint32_t joint) const;
-    // What it bore in the last substep: force at the anchor and torque, on b, in world axes.
+    // A joint's load in the last substep: force at the anchor and torque, on b, in world axes.
     struct JointLoad {
         Vec3 force{Real(0)};  // N
         Vec3 torque{Real(0)}; // N m
     };
     JointLoad joint_load(std::uint32_t joint) const;
-    // The substeps that a body's island took in the last step.
+    // The number of substeps that a body's island took in the last step.
     int substeps_of(std::uint32_t body) const;
-    // The one of two bodies in whose island their contact or joint is; either may be Joint::world.
+    // Which of two bodies has their contact or joint in its island; either may be Joint::world.
     std::uint32_t island_body(std::uint32_t a, std::uint32_t b) const;
     Vec3 anchor_a(const Joint &joint) const; // world
     Vec3 anchor_b(const Joint &joint) const;
     const Motion &joint_motion(std::uint32_t body) const; // the world's is the identity
 
-    // Of all that decides the future as long as no body is added. Holes do not count: a world saved
-    // and loaded has the same. (A new body fills a hole, and so comes earlier in the solver's
-    // order.)
+    // Hash of everything that decides the future as long as no body is added. Holes do not count,
+    // so a world has the same hash after a save and load. (A new body fills a hole, and so comes
+    // earlier in the solver's order.)
     std::uint64_t hash() const;
 
   private:
-    // The phases of a step; those that are const work on scratch alone.
+    // The phases of a step; const ones work on scratch alone.
     bool is_each_alone() const;
     void step_each_alone(StepTimes *times);
     void step_together(StepTimes *times);
@@ -237,8 +239,8 @@ class World {
     void add_particles(Measures &m) const;
     double particle_energy() const;
 
-    // The acceleration of gravity and attractors where a body or particle began the step; none of
-    // what does not move by forces.
+    // The acceleration by gravity and attractors where a body or particle began the step; zero for
+    // anything that forces do not move.
     Vec3 pull_on(std::uint32_t body) const;
     Vec3 pull_on_particle(std::uint32_t particle) const;
 
@@ -275,36 +277,36 @@ class World {
                      const ContactMemory *before, const FoundManifold &found,
                      std::vector<Contact> &out) const;
     void set_anchor(Contact &contact, std::size_t k, const Motion &a, const Motion &b) const;
-    // Of a point, from its anchor (m).
+    // A point's separation, from its anchor (m).
     Real separation_now(const Contact &contact, std::size_t k) const;
     void note_static_neighbors() const;
-    // Without what a static body's neighbours cover (inner_edges.h).
+    // Drops the part that a static body's neighbours cover (inner_edges.h).
     void drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
                           FoundManifold &found) const;
-    // Contacts of what does not touch yet (predicted_contact.cpp).
+    // Contacts of bodies that do not touch yet (predicted_contact.cpp).
     const Motion &going(std::uint32_t body) const;
     Real least_half_width(const Body &body) const;
     bool find_surprises();
-    // What no contact stopped (missed_contact.cpp).
+    // Bodies that no contact stopped (missed_contact.cpp).
     bool find_missed_points(bool of_solids);
     bool find_missed_points(Contact &contact) const;
     bool find_passed_points(const Candidate &candidate);
     bool add_missed(const Manifold &now, Real deep, Contact &contact) const;
     Real contact_reach(const Candidate &candidate) const;
     Real moving_width(const Candidate &candidate) const;
-    // How far its spin moves its surface at most, a radian (m).
+    // How far turning moves the body's surface at most, per radian (m).
     Real extent_of(std::uint32_t index) const;
     Real turning_reach(std::uint32_t index) const;
     Real way_of(const Candidate &candidate) const;
     void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                       Manifold &manifold) const;
-    // `normal`: of the manifold at the start.
+    // `normal`: the manifold's at the start.
     FoundManifold predicted_manifold(const Candidate &candidate, const Vec3 &normal) const;
     FoundManifold predicted_manifold(const Candidate &candidate, const Vec3 &normal,
                                      std::uint32_t triangle) const;
 
     void use(const StepSettings &settings);
-    // The model, to be changed; a copy of its own when saves share it.
+    // The model for editing; copied first if saves share it.
     Model &edit();
     void add_colliders(const BodyDef &def, Body &body, std::uint32_t slot);
     void forget_contacts_of(std::uint32_t body);

@@ -75,15 +75,15 @@ void check_room(const IntervalBatch &intervals, std::size_t count) {
     PLUMB_CHECK(room >= count, count << " intervals need as many numbers, got room for " << room);
 }
 
-// The kernels say that a number is not valid, and the scalar function says which: it is asked one
-// element after the other until it refuses.
+// The kernels only report that some number is invalid. To find out which, run the scalar function
+// over the elements until it refuses one.
 template <typename Ask> void refuse(std::size_t count, Ask &&ask) {
     for (std::size_t i = 0; i < count; ++i)
         ask(i);
     PLUMB_CHECK(false, "a batch of " << count << " holds a number that is not valid");
 }
 
-// Calls fix(i) for every bit that is set.
+// Calls fix(i) for every set bit.
 template <typename Fix>
 void each_bit(std::span<const std::uint64_t> bits, std::size_t first, Fix &&fix) {
     for (std::size_t word = 0; word < bits.size(); ++word)
@@ -96,7 +96,7 @@ void put_bit(std::span<std::uint64_t> bits, std::size_t i, bool is_set) {
     bits[i / 64] = is_set ? bits[i / 64] | bit : bits[i / 64] & ~bit;
 }
 
-// Batches with bits that only the batch needs go through in pieces, whose bits lie on the stack.
+// Batches that need temporary bits are processed in pieces, so the bits fit on the stack.
 constexpr std::size_t piece_size = 4096;
 using PieceBits = std::array<std::uint64_t, bit_words(piece_size)>;
 
@@ -124,7 +124,7 @@ void check_valid_planes(const Frustum &frustum) {
         check_valid(plane);
 }
 
-// The scalar function is asked where the kernel is unsure.
+// Falls back to the scalar function where the kernel is unsure.
 template <typename Batch>
 void classify_all(const Frustum &frustum, const Batch &batch, const FrustumBits &answers) {
     const std::size_t count = count_of(batch);

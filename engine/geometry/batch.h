@@ -1,12 +1,13 @@
-// The geometric questions a caller asks of many shapes at once, answered several at a time.
+// Geometric queries over many shapes at once, several per vector instruction.
 //
-// Shapes come in columns, one array for each coordinate. Every answer is the same to the last bit
-// as that of the scalar function named beside it, at every vector width: the same operations in the
-// same order, none fused. The widest instructions that the processor has are chosen at run time.
+// Shapes come in columns (SoA), one array per coordinate. Every answer is bit for bit that of the
+// scalar function named beside it, at every vector width: the same operations in the same order,
+// none fused. The widest instruction set the processor has is chosen at run time.
 //
-// Columns of one batch have one length; results have at least room for it. A bit answer i stands in
-// bit i % 64 of word i / 64; the rest of the last word is zero. A length that does not fit, and
-// whatever the scalar function refuses, fails a check; the results are then unspecified.
+// All columns of a batch have the same length, and results need room for at least that many. Bit
+// answer i is bit i % 64 of word i / 64; unused bits of the last word are zero. A length that does
+// not fit, or any input the scalar function refuses, fails a check; the results are then
+// unspecified.
 #pragma once
 
 #include "engine/geometry/frustum.h"
@@ -42,37 +43,36 @@ struct RayBatch {
     std::span<const Real> max_t;
 };
 
-// How many words hold `count` bits.
+// Words needed for `count` bits.
 constexpr std::size_t bit_words(std::size_t count) {
     return (count + 63) / 64;
 }
 
-// Whether bit i is set.
 constexpr bool bit_at(std::span<const std::uint64_t> bits, std::size_t i) {
     return ((bits[i / 64] >> (i % 64)) & 1U) != 0;
 }
 
-// The intervals of rays in solids; where there is none, both ends are 0.
+// Ray intervals inside solids; on a miss both ends are 0.
 struct IntervalBatch {
     std::span<std::uint64_t> is_met;
     std::span<Real> t_enter, t_exit;
 };
 
-// --- ray_interval (raycast.h), of many boxes that of a PreparedRay. The normal is not given: ask
-// for it where it is wanted.
+// --- ray_interval (raycast.h); for many boxes, the PreparedRay overload. No normals: ask the
+// scalar function for those you need.
 void ray_interval(const AabbBatch &boxes, const Ray &ray, const IntervalBatch &intervals);
 void ray_interval(const Aabb &box, const RayBatch &rays, const IntervalBatch &intervals);
 void ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &intervals);
 
-// --- raycast (raycast.h): the first triangle that the ray meets, the lowest of those met
-// at the same t.
+// --- raycast (raycast.h): the first triangle the ray hits, the lowest index among hits at the same
+// t.
 struct BatchHit {
     std::size_t index = 0;
     RayHit hit;
 };
 std::optional<BatchHit> raycast(const TriangleBatch &triangles, const Ray &ray);
 
-// --- overlaps (overlap.h): of pair i, and of one shape with each of many.
+// --- overlaps (overlap.h): pair by pair, or one shape against many.
 void overlaps(const AabbBatch &a, const AabbBatch &b, std::span<std::uint64_t> answers);
 void overlaps(const Aabb &box, const AabbBatch &boxes, std::span<std::uint64_t> answers);
 void overlaps(const Sphere &sphere, const SphereBatch &spheres, std::span<std::uint64_t> answers);
@@ -83,8 +83,8 @@ void contains(const Aabb &box, const PointBatch &points, std::span<std::uint64_t
 void contains(const Box &box, const PointBatch &points, std::span<std::uint64_t> answers);
 void contains(const Frustum &frustum, const PointBatch &points, std::span<std::uint64_t> answers);
 
-// --- classify (frustum.h), for culling: FrustumSide::inside sets both bits, across the first only,
-// outside none.
+// --- classify (frustum.h), for culling: FrustumSide::inside sets both bits, across only the first,
+// outside neither.
 struct FrustumBits {
     std::span<std::uint64_t> not_outside;
     std::span<std::uint64_t> inside;

@@ -1,4 +1,4 @@
-// Compiled once for each instruction set, by including itself.
+// Compiled once per instruction set, by including itself.
 #include "engine/geometry/batch_kernels.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/geometry/batch_kernels.cpp"
-// Vectors of unknown size cannot stand in arrays.
+// Vectors of unknown size cannot be array elements.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which must choose the target first.
@@ -64,21 +64,21 @@ HWY_INLINE Mask is_finite(const Vector &v) {
 HWY_INLINE std::uint64_t bits_of(Mask mask) {
     alignas(8) std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(tag, mask, bytes);
-    // No more than was stored: processors wait for a load that takes from two stores.
+    // Load no more bytes than were stored: a load spanning two stores stalls.
     std::uint64_t bits = 0;
     std::memcpy(&bits, bytes, (hn::MaxLanes(tag) + 7) / 8);
     return bits;
 }
 
-// The answers to a block of questions, at least one of each kind so that there is an array.
+// The answers for one block; at least one of each kind, since arrays cannot be empty.
 template <std::size_t Bits, std::size_t Reals> struct Answers {
     Mask bits[Bits];
     Lanes reals[Reals];
     Mask is_valid;
 };
 
-// Asks ask(columns) for each block of elements, the last filled up with copies of the last element.
-// The sizes of vectors divide 64, so no block's bits stand in two words.
+// Calls ask(columns) for each block of elements; the last block is padded with copies of the last
+// element. Vector sizes divide 64, so a block's bits never straddle two words.
 template <std::size_t In, std::size_t Bits, std::size_t Reals, typename Ask>
 HWY_INLINE bool for_each_block(const Real *const (&in)[In], std::size_t count,
                                std::uint64_t *const (&bits)[Bits], Real *const (&reals)[Reals],
@@ -125,7 +125,7 @@ HWY_INLINE bool for_each_block(const Real *const (&in)[In], std::size_t count,
     return hn::AllTrue(tag, is_valid);
 }
 
-// Bits alone.
+// Bits only.
 template <std::size_t In, typename Ask>
 HWY_INLINE bool for_each_block(const Real *const (&in)[In], std::size_t count, std::uint64_t *bits,
                                const Ask &ask) {
@@ -139,12 +139,12 @@ HWY_INLINE bool for_each_block(const Real *const (&in)[In], std::size_t count, s
                           });
 }
 
-// An interval where `met`, zeros elsewhere.
+// The interval where `met`, zeros elsewhere.
 HWY_INLINE Answers<1, 2> interval(Mask met, Lanes enter, Lanes exit, Mask is_valid) {
     return {{met}, {hn::IfThenElseZero(met, enter), hn::IfThenElseZero(met, exit)}, is_valid};
 }
 
-// slab_interval (slab.h), and what ray_interval of an Aabb makes of it.
+// slab_interval (slab.h), with what ray_interval for an Aabb adds to it.
 struct Slabs {
     Lanes enter, exit;
     Mask missed;
@@ -227,7 +227,7 @@ HWY_ATTR bool rays_against_aabb(const Aabb &box, const RayBatch &rays, const Int
             has_direction = hn::Or(has_direction, hn::Not(is_zero));
             const Mask outside = hn::Or(hn::Lt(origin, low), hn::Gt(origin, high));
             slabs.missed = hn::Or(slabs.missed, hn::And(is_zero, outside));
-            // A direction of 0 cuts nothing.
+            // A direction of 0 clips nothing.
             const Lanes divisor = hn::IfThenElse(is_zero, all(Real(1)), direction);
             Slabs cut = slabs;
             cut.cut(hn::Div(hn::Sub(low, origin), divisor),
@@ -242,20 +242,20 @@ HWY_ATTR bool rays_against_aabb(const Aabb &box, const RayBatch &rays, const Int
     });
 }
 
-// What a sphere's depth may be off by (raycast.cpp); reach is the square of its radius.
+// Error bound for the origin's depth in a sphere (raycast.cpp); `reach` is the radius squared.
 HWY_INLINE Lanes depth_doubt(Lanes reach, Lanes away) {
     return hn::Add(hn::Mul(all(Real(4) * epsilon), hn::Add(reach, away)),
                    all(std::numeric_limits<Real>::min()));
 }
 
-// As ray_interval of raycast.cpp has it for a sphere that it is sure of.
+// The fast path of ray_interval for a sphere (raycast.cpp).
 HWY_ATTR bool ray_against_spheres(const SphereBatch &spheres, const Ray &ray,
                                   const IntervalBatch &out, std::uint64_t *unsure) {
     const Real *const in[4] = {spheres.x.data(), spheres.y.data(), spheres.z.data(),
                                spheres.radius.data()};
     std::uint64_t *const bits[2] = {out.is_met.data(), unsure};
     Real *const reals[2] = {out.t_enter.data(), out.t_exit.data()};
-    // The direction divided by the power of two in its largest component.
+    // Scale the direction by the power of two in its largest component.
     const Real largest_component =
         std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
     const Real power = std::max(std::scalbn(Real(1), std::ilogb(largest_component)),
@@ -318,7 +318,7 @@ HWY_ATTR bool ray_against_spheres(const SphereBatch &spheres, const Ray &ray,
     });
 }
 
-// Of finite boxes, empty ones too.
+// For finite boxes, empty ones included.
 HWY_INLINE Mask boxes_overlap(const Lanes *a_min, const Lanes *a_max, const Lanes *b_min,
                               const Lanes *b_max, Mask &is_valid) {
     Mask overlap = hn::Not(none());
@@ -425,10 +425,10 @@ HWY_ATTR bool points_in_box(const Box &box, const PointBatch &points, std::uint6
         });
 }
 
-// What the planes of a frustum say of a shape with the centre c that reaches `reach` along a
-// plane's normal: in front of one it is outside, behind all inside. Nearer to touching a plane than
-// `doubt` times the largest of what was added up, it is for the scalar function to say; its own
-// roundings are at most 8 epsilon of the largest coordinate or size (frustum.h), ours less.
+// Tests a shape with its centre at `height` above a plane and extent `reach` along the plane's
+// normal: in front of one plane it is outside, behind all planes inside. Closer than `doubt` to
+// touching a plane, the scalar function must decide; its own roundings are at most 8 epsilon times
+// the largest coordinate or size (frustum.h), ours are less.
 struct FrustumSides {
     Mask outside, inside, unsure;
 
@@ -438,7 +438,7 @@ struct FrustumSides {
         const Lanes farthest = hn::Add(height, reach);
         outside = hn::Or(outside, hn::Gt(nearest, doubt));
         inside = hn::And(inside, hn::Lt(farthest, hn::Zero(tag)));
-        // Written so that what overflowed to NaN is unsure.
+        // Written so that NaN from an overflow is unsure.
         unsure = hn::Or(unsure, hn::Not(hn::Gt(hn::Abs(nearest), doubt)));
         unsure = hn::Or(unsure, hn::Not(hn::Gt(hn::Abs(farthest), doubt)));
     }
@@ -518,7 +518,7 @@ HWY_ATTR bool aabbs_in_frustum(const Frustum &frustum, const AabbBatch &boxes,
                 sides.test(height, reach,
                            hn::Mul(all(doubt_factor), hn::Max(size, hn::Abs(offset))));
             }
-            // Empty boxes are for the scalar function to say.
+            // Leave empty boxes to the scalar function.
             const Mask is_empty =
                 hn::Or(hn::Or(hn::Gt(low.x, high.x), hn::Gt(low.y, high.y)), hn::Gt(low.z, high.z));
             Answers<3, 1> answers = sides.finish(hn::And(is_finite(low), is_finite(high)));
@@ -527,10 +527,10 @@ HWY_ATTR bool aabbs_in_frustum(const Frustum &frustum, const AabbBatch &boxes,
         });
 }
 
-// The ray's line passes a triangle without doubt when it passes one edge on the left and another on
-// the right: the signs of triple products. Each is off by less than 7 u (1 + 8 u) times its
-// permanent, u half an epsilon (Shewchuk 1997, section 4.3, bound A of orient3d), and that has six
-// products of the largest components.
+// The ray's line certainly misses a triangle if it passes one edge on the left and another on the
+// right, by the signs of triple products. Each is off by less than 7 u (1 + 8 u) times its
+// permanent, where u is half an epsilon (Shewchuk 1997, section 4.3, bound A of orient3d) and the
+// permanent is at most six products of the largest components.
 HWY_ATTR bool may_meet_triangles(const TriangleBatch &triangles, const Ray &ray,
                                  std::uint64_t *answers) {
     const Real *const in[9] = {triangles.ax.data(), triangles.ay.data(), triangles.az.data(),
@@ -553,7 +553,7 @@ HWY_ATTR bool may_meet_triangles(const TriangleBatch &triangles, const Ray &ray,
                                   from[k] = minus(corners[k], origin);
                                   size[k] = largest(from[k]);
                               }
-                              // 22 epsilon > 6 * 7 u; and where products underflow the error is
+                              // 22 epsilon > 6 * 7 u; where products underflow the error is
                               // absolute.
                               const Lanes doubt = all(Real(22) * epsilon * direction_size);
                               const Lanes floor = all(std::numeric_limits<Real>::min());
@@ -621,7 +621,8 @@ bool contains(const Aabb &box, const PointBatch &points, std::uint64_t *answers)
     return HWY_DYNAMIC_DISPATCH(points_in_aabb)(box, points, answers);
 }
 bool contains(const Box &box, const PointBatch &points, std::uint64_t *answers) {
-    // As for the scalar function: without rotation the faces are where the caller has them.
+    // As in the scalar function: without rotation the faces are where the caller would compute
+    // them.
     if (box.rotation.x == Real(0) && box.rotation.y == Real(0) && box.rotation.z == Real(0))
         return contains(Aabb{box.center - box.half_extents, box.center + box.half_extents}, points,
                         answers);

@@ -1,7 +1,7 @@
-// What of batch.h runs on vectors: the part compiled for each instruction set.
+// The vector part of batch.h, compiled once per instruction set.
 //
-// Nothing is checked here but the numbers: each returns whether all were valid, as far as the
-// scalar function asks (a NaN, an infinity, a negative radius are not).
+// Only the numbers are checked here: each kernel returns whether all inputs were valid by the
+// scalar function's rules (no NaN, no infinity, no negative radius).
 #pragma once
 
 #include "engine/geometry/batch.h"
@@ -11,7 +11,7 @@ namespace kernels {
 
 bool ray_interval(const AabbBatch &boxes, const Ray &ray, const IntervalBatch &out);
 bool ray_interval(const Aabb &box, const RayBatch &rays, const IntervalBatch &out);
-// Where `unsure` is set the scalar function must be asked.
+// Where `unsure` is set, ask the scalar function.
 bool ray_interval(const SphereBatch &spheres, const Ray &ray, const IntervalBatch &out,
                   std::uint64_t *unsure);
 
@@ -24,7 +24,7 @@ bool contains(const Sphere &sphere, const PointBatch &points, std::uint64_t *ans
 bool contains(const Aabb &box, const PointBatch &points, std::uint64_t *answers);
 bool contains(const Box &box, const PointBatch &points, std::uint64_t *answers);
 
-// Answers without doubt; where `unsure` is set the scalar function must be asked.
+// Certain answers, except where `unsure` is set: ask the scalar function there.
 struct Verdicts {
     std::uint64_t *not_outside;
     std::uint64_t *inside;
@@ -34,7 +34,7 @@ bool classify(const Frustum &frustum, const PointBatch &points, const Verdicts &
 bool classify(const Frustum &frustum, const SphereBatch &spheres, const Verdicts &out);
 bool classify(const Frustum &frustum, const AabbBatch &boxes, const Verdicts &out);
 
-// Sets the bits of the triangles that the ray's line may meet; the others it passes without doubt.
+// Sets the bits of the triangles the ray's line may hit; it certainly misses the others.
 bool may_meet(const TriangleBatch &triangles, const Ray &ray, std::uint64_t *answers);
 
 } // namespace kernels

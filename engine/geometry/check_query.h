@@ -1,11 +1,11 @@
-// Refuses points and rays that no query has an answer for. One combined test where all is well.
+// Refuses points and rays that no query can answer. A single combined test when all is well.
 #pragma once
 
 #include "engine/geometry/shapes.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Fails the check that names what is wrong, if anything is.
+// Fails the check that names the problem, if there is one.
 [[gnu::cold]] void refuse(const Vec3 &point);
 [[gnu::cold]] void refuse(const Ray &ray);
 

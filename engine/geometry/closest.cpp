@@ -13,17 +13,17 @@ SegmentPair closest_between_segments(const Vec3 &start_a, const Vec3 &along_a, c
             best = {s, t, difference, squared_distance};
     };
 
-    // An end of one against the other segment: exact whatever the angle between them.
+    // Each end against the other segment: exact for any angle between them.
     const Vec3 zero{Real(0)};
     consider(Real(0), closest_parameter(offset, along_b, zero), true);
     consider(Real(1), closest_parameter(offset, along_b, along_a), false);
     consider(closest_parameter(zero, along_a, offset), Real(0), false);
     consider(closest_parameter(zero, along_a, offset + along_b), Real(1), false);
 
-    // Both in their interiors: offset + t b - s a is parallel to c = a x b, so crossing with b and
+    // Both points interior: offset + t b - s a is parallel to c = a x b, so crossing with b and
     // projecting on c gives s |c|^2 = ((offset x b) . c). In this form the error of s is of order
-    // eps |offset| / sin(angle), and moving s by that much moves the distance by order eps |offset|
-    // only, also for nearly parallel segments; the usual form a.a b.b - (a.b)^2 has eps / sin^2.
+    // eps |offset| / sin(angle), which changes the distance only by order eps |offset|, even for
+    // nearly parallel segments; the usual form a.a b.b - (a.b)^2 has eps / sin^2.
     const Vec3 cross = glm::cross(along_a, along_b);
     const Real squared_cross = glm::dot(cross, cross);
     if (squared_cross > Real(0)) {

@@ -1,4 +1,4 @@
-// Closest points of segments: a part of other queries, in hot code, so nothing is checked.
+// Closest points of segments. A building block for hot code, so nothing is checked.
 #pragma once
 
 #include "engine/math/types.h"
@@ -8,8 +8,8 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// The parameter in [0, 1] of the point of `start + s * along` that is closest to `point`; 0 when
-// the segment has no length.
+// The parameter s in [0, 1] at which `start + s * along` is closest to `point`; 0 for a segment of
+// zero length.
 inline Real closest_parameter(const Vec3 &start, const Vec3 &along, const Vec3 &point) {
     const Real squared = glm::dot(along, along);
     if (!(squared > Real(0)))
@@ -25,8 +25,8 @@ struct SegmentPair {
     Real squared_distance = Real(0);
 };
 
-// Parallel segments have many closest pairs; one of them that includes an end is given. Segments
-// without length are points.
+// Parallel segments have many closest pairs; returns one that includes an end. Segments of zero
+// length are points.
 SegmentPair closest_between_segments(const Vec3 &start_a, const Vec3 &along_a, const Vec3 &start_b,
                                      const Vec3 &along_b);
 

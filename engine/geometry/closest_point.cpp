@@ -29,8 +29,8 @@ Vec3 beyond(const Box &box, const Vec3 &local) {
     return local - glm::clamp(local, -box.half_extents, box.half_extents);
 }
 
-// The parameter of the point of the ray closest to `point`, and the direction it counts in: with
-// its largest component in [1, 2), so that its square neither overflows nor vanishes.
+// The parameter of the ray's closest point, in units of `direction`: the ray's direction rescaled
+// so that its largest component is in [1, 2) and its square neither overflows nor vanishes.
 struct AlongRay {
     Vec3 direction{Real(0)};
     Real t = Real(0);

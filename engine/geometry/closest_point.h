@@ -1,13 +1,13 @@
-// The point of a shape that is closest to a given point.
+// The point of a shape closest to a given point.
 //
-// Solids are solid: a point that `contains` finds inside is its own closest point, to the bit. A
-// shape that is not valid, an empty box, or a point that is not finite, fails a check with the
-// value in its message.
+// Solids are solid: a point that `contains` reports inside is its own closest point, bit for bit.
+// An invalid shape, an empty box, or a non-finite point fails a check with the value in its
+// message.
 //
-// The result is off the true closest point by at most 16 epsilon times the size of the arguments
-// (the largest coordinate of any of them, or size): the result itself is rounded at that size.
-// It is in the shape within as much. Lengths whose squares overflow or underflow (in float, beyond
-// 1e18 m or below 1e-18 m) are not covered.
+// The result is within 16 epsilon times the largest coordinate or size among the arguments of the
+// true closest point (the result itself is rounded at that scale), and in the shape within the same
+// bound. Lengths whose squares overflow or underflow (in float, beyond 1e18 m or below 1e-18 m) are
+// not covered.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -22,14 +22,14 @@ Vec3 closest_point(const Cylinder &cylinder, const Vec3 &point);
 Vec3 closest_point(const HalfSpace &half_space, const Vec3 &point);
 Vec3 closest_point(const Shape &shape, const Vec3 &point);
 Vec3 closest_point(const Plane &plane, const Vec3 &point);
-// An end is given to the bit.
+// An end is returned bit for bit.
 Vec3 closest_point(const Segment &segment, const Vec3 &point);
 // max_t must not be negative.
 Vec3 closest_point(const Ray &ray, const Vec3 &point);
 
-// The square of the distance (m^2) of a point; 0 inside. Of a box it is taken from differences, so
-// it is true to 8 epsilon of itself for an Aabb however far from the origin; and for an Aabb or a
-// Segment of small integers, exact but for one division.
+// Squared distance (m^2) to a point; 0 inside. For boxes it is computed from differences, so for an
+// Aabb the relative error is at most 8 epsilon however far it is from the origin. For an Aabb or
+// Segment of small integers it is exact except for one division.
 Real squared_distance(const Aabb &box, const Vec3 &point);
 Real squared_distance(const Box &box, const Vec3 &point);
 Real squared_distance(const Segment &segment, const Vec3 &point);

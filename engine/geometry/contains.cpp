@@ -26,8 +26,8 @@ bool contains(const Aabb &box, const Vec3 &point) {
 bool contains(const Box &box, const Vec3 &point) {
     check_valid(box);
     check_point(point);
-    // Without rotation the faces are where the caller would compute them, so that points on them
-    // are exact.
+    // Without rotation the faces are where the caller would compute them, so points on them are
+    // exact.
     if (box.rotation.x == Real(0) && box.rotation.y == Real(0) && box.rotation.z == Real(0)) {
         const Vec3 low = box.center - box.half_extents;
         const Vec3 high = box.center + box.half_extents;
@@ -53,8 +53,7 @@ bool contains(const Capsule &capsule, const Vec3 &point) {
         const Vec3 from_b = point - capsule.b;
         return glm::dot(from_b, from_b) <= squared_radius;
     }
-    // The distance of the line is |from_a x along| / |along|. Without the division integers stay
-    // integers.
+    // The distance to the line is |from_a x along| / |along|. Not dividing keeps integers exact.
     const Vec3 cross = glm::cross(from_a, along);
     return glm::dot(cross, cross) <= squared_radius * squared_length;
 }
@@ -90,8 +89,8 @@ bool contains(const Segment &segment, const Vec3 &point) {
     check_valid(segment);
     check_point(point);
     const auto &[a, b] = segment;
-    // On one line when the shadows on all three coordinate planes are, and then between the ends
-    // when no coordinate is beyond them.
+    // Collinear if the projections on all three coordinate planes are; then between the ends if
+    // every coordinate is.
     const Vec3 low = glm::min(a, b), high = glm::max(a, b);
     return point.x >= low.x && point.x <= high.x && point.y >= low.y && point.y <= high.y &&
            point.z >= low.z && point.z <= high.z &&
@@ -112,14 +111,14 @@ bool contains(const Ray &ray, const Vec3 &point) {
         cross_sign(Vec2{d.y, d.z}, Vec2{o.y, o.z}, Vec2{point.y, point.z}) != 0 ||
         cross_sign(Vec2{d.z, d.x}, Vec2{o.z, o.x}, Vec2{point.z, point.x}) != 0)
         return false;
-    // On the line, so one coordinate tells where: (point - o) / d <= max_t.
+    // The point is on the line, so one coordinate decides: (point - o) / d <= max_t.
     int axis = 0;
     while (d[axis] == Real(0))
         ++axis;
     const bool is_forward = (point[axis] > o[axis]) == (d[axis] > Real(0));
     if (!is_forward || max_t == std::numeric_limits<Real>::infinity())
         return is_forward;
-    // d max_t - 1 (point - o), as the cross product of (d, 1) with the way from (o, 0) to
+    // d max_t - 1 (point - o), as the cross product of (d, 1) with the vector from (o, 0) to
     // (point, max_t).
     const int beyond =
         cross_sign(Vec2{d[axis], Real(1)}, Vec2{o[axis], Real(0)}, Vec2{point[axis], max_t});

@@ -19,7 +19,8 @@ bool contains(const Ray2 &ray, const Vec2 &point) {
     check_valid(point);
     if (cross_sign(ray.direction, ray.origin, point) != 0)
         return false;
-    // On the line, t is the quotient of the components on either axis: take the larger.
+    // On the line, t is the quotient of the components on either axis; use the axis with the larger
+    // one.
     const int i = std::abs(ray.direction.x) >= std::abs(ray.direction.y) ? 0 : 1;
     if (ray.direction[i] > Real(0) ? point[i] < ray.origin[i] : point[i] > ray.origin[i])
         return false;

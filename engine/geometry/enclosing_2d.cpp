@@ -20,10 +20,10 @@ Real squared_distance(const Vec2 &a, const Vec2 &b) {
     return glm::dot(d, d);
 }
 
-// The centre of the circle through three points. From the corner with the largest angle, which in a
-// triangle that is not obtuse is at least 60 degrees: so however close two of the points are, it is
-// off by some epsilon times the radius only. Obtuse ones are not asked for in the end; what they
-// give may be far off, or not finite.
+// The centre of the circle through three points. Computed from the corner with the largest angle,
+// which is at least 60 degrees, so unless the triangle is obtuse the error is only a few epsilon
+// times the radius, however close two of the points are. Obtuse triangles are not used in the end;
+// their result may be far off or not finite.
 Vec2 circumcenter(Vec2 a, Vec2 b, Vec2 c) {
     const Real opposite_a = squared_distance(b, c);
     const Real opposite_b = squared_distance(c, a);
@@ -39,16 +39,17 @@ Vec2 circumcenter(Vec2 a, Vec2 b, Vec2 c) {
                    (Real(1) / twice_cross);
 }
 
-// Up to three points on the border of the smallest circle around them, and one to be added.
+// Up to three points on the border of their smallest enclosing circle, and room for one to be
+// added.
 struct Support {
     std::array<Vec2, 4> points{};
     std::size_t count = 0;
     Vec2 center{Real(0)};
     Real squared_radius = Real(0);
 
-    // A point outside of the circle is on the border of the next one: with each one or two of the
-    // others it makes a circle, and the smallest that leaves none out is taken. Whether it leaves
-    // none out is not asked: its radius is what it takes to reach them all.
+    // A point outside the circle is on the border of the next one. Try the circles through it and
+    // each one or two of the others and take the smallest. Each candidate's radius is enlarged to
+    // reach all points, so none needs testing for containment.
     void add(const Vec2 &point) {
         points[count++] = point;
         squared_radius = infinity;
@@ -80,8 +81,8 @@ struct Support {
     }
 };
 
-// The least circle around `center` in which `contains` finds every point, or one of few epsilons
-// more: distances are rounded, `contains` is not.
+// The smallest circle around `center` in which `contains` finds every point, or one a few epsilons
+// larger: distances are rounded, `contains` is not.
 Circle reaching_all(const Vec2 &center, std::span<const Vec2> points) {
     Real squared = Real(0);
     for (const Vec2 &point : points)
@@ -95,23 +96,23 @@ Circle reaching_all(const Vec2 &center, std::span<const Vec2> points) {
 
 } // namespace
 
-// The smallest circle around the points found so far to matter, then the point furthest outside is
-// added to those, until there is none: Welzl 1991, "Smallest enclosing disks", with the choice of
-// the furthest point of Gaertner 1999, "Fast and robust smallest enclosing balls". A few rounds
-// whatever the number of points, and nothing random.
+// Repeatedly adds the point farthest outside the circle around the current support points, until
+// none is outside: Welzl 1991, "Smallest enclosing disks", with the farthest-point rule of Gaertner
+// 1999, "Fast and robust smallest enclosing balls". Takes a few rounds for any number of points,
+// and nothing is random.
 Circle containing_circle(std::span<const Vec2> points) {
     PLUMB_CHECK(!points.empty(), "a circle around no points was asked for, got " << points.size());
     for (const Vec2 &point : points)
         check_valid(point);
 
-    // Relative to one of them, so that what is rounded is of the size of the circle.
+    // Relative to one of the points, so that roundings scale with the circle's size.
     const Vec2 origin = points[0];
     Support support;
     support.count = 1;
     Vec2 best_center{Real(0)};
     Real best_squared = infinity;
-    // No circle around them all is smaller than that around the support. Each distance carries
-    // some roundings: when the furthest point is not further out than that, it is done.
+    // No circle around all points is smaller than the one around the support. Distances are
+    // rounded: stop when the farthest point is outside by no more than that.
     constexpr Real slack = Real(1) + Real(16) * std::numeric_limits<Real>::epsilon();
     constexpr int most_rounds = 100;
     for (int round = 0; !PLUMB_RARELY("containing_circle ran out of rounds", round == most_rounds);

@@ -1,4 +1,4 @@
-// The smallest circle and the smallest axis-aligned rectangle around points of the plane.
+// The smallest circle and the smallest axis-aligned rectangle around 2D points.
 #pragma once
 
 #include "engine/geometry/shapes_2d.h"
@@ -7,12 +7,12 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Every given point is in the circle, as `contains` answers, and its radius is the least but for
-// rounding: at most 8 epsilon (radius + largest coordinate) more. Duplicates, points on one line
-// and points on one circle are as good as any. No points, or one that is not finite, fail a check.
+// `contains` reports every given point inside the circle. Its radius exceeds the minimum by
+// rounding only: at most 8 epsilon (radius + largest coordinate). Duplicates, collinear points and
+// points on one circle are fine. No points, or a non-finite one, fails a check.
 Circle containing_circle(std::span<const Vec2> points);
 
-// Exact. No points, or one that is not finite, fail a check.
+// Exact. No points, or a non-finite one, fails a check.
 Rectangle containing_rectangle(std::span<const Vec2> points);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -62,7 +62,7 @@ int Polytope::add_face(int p, int q, int r) {
         face.height = std::max({glm::dot(face.normal, at_p), glm::dot(face.normal, at_q),
                                 glm::dot(face.normal, at_r)});
     } else {
-        // A sliver without a normal: neither near nor in sight of anything.
+        // A sliver without a normal: never the nearest, and seen by no point.
         face.normal = Vec3{Real(0)};
         face.height = std::numeric_limits<Real>::infinity();
     }
@@ -83,7 +83,7 @@ void Polytope::measure(Face &face, const Vec3 &size) const {
     const Vec3 &p = vertices_[face.vertices[0]].w;
     const Vec3 &q = vertices_[face.vertices[1]].w;
     const Vec3 &r = vertices_[face.vertices[2]].w;
-    // Where the foot of the origin is in the triangle, the height is the distance.
+    // If the origin's projection is in the triangle, the height is the distance.
     if (glm::dot(glm::cross(p, q - p), face.normal) >= Real(0) &&
         glm::dot(glm::cross(q, r - q), face.normal) >= Real(0) &&
         glm::dot(glm::cross(r, p - r), face.normal) >= Real(0))
@@ -122,8 +122,8 @@ bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
         std::uint8_t face, side;
     };
     constexpr std::size_t most = 2 * face_limit + 2;
-    std::array<Side, most> open;   // sides still to be looked across, the last one first
-    std::array<Side, most> border; // of faces that stay, in order around those that do not
+    std::array<Side, most> open;   // a stack of edges still to be crossed
+    std::array<Side, most> border; // the horizon: edges of faces that stay, in order around the hole
     std::array<std::uint8_t, slot(face_limit)> removed;
     std::size_t open_count = 0;
     std::size_t border_count = 0;
@@ -154,8 +154,8 @@ bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
         else
             border[border_count++] = at;
     }
-    // One loop: each side of the border ends where the next begins (they run backwards, seen from
-    // the faces that stay), and a vertex is passed once.
+    // The horizon must be one loop: each edge ends where the next begins (they run backwards as
+    // seen from the faces that stay), and each vertex is passed once.
     const auto from = [&](std::size_t k) {
         return faces_[border[k].face].vertices[(border[k].side + 1U) % 3];
     };
@@ -228,7 +228,7 @@ void keep_independent(Simplex &simplex, const Vec3 &size) {
             simplex.count = 3;
     }
     if (simplex.count == 3) {
-        // Of three on a line the two outer ones.
+        // Of three collinear vertices keep the outer two.
         const std::array<Real, 3> sides = {glm::distance(at(1), at(2)), glm::distance(at(2), at(0)),
                                            glm::distance(at(0), at(1))};
         const auto longest = std::max_element(sides.begin(), sides.end());
@@ -245,8 +245,8 @@ void keep_independent(Simplex &simplex, const Vec3 &size) {
 
 namespace {
 
-// Where a polytope has too many faces for EPA, all directions that its nearest face can have are
-// tried. Then the shapes are moved apart by a little more, and GJK finds where they are closest.
+// When the polytope has too many faces for EPA, try every possible face normal. Then move the
+// shapes apart by a little more than the depth and let GJK find the closest points.
 [[gnu::cold]] Penetration across_the_nearest_face(const CorePair &cores, Vec3 out, Real least,
                                                   const Vec3 &size) {
     Penetration result;
@@ -273,8 +273,8 @@ namespace {
 } // namespace
 
 Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
-    // A curved surface takes more vertices the closer it is followed, and around an axis of
-    // symmetry everywhere at once: with this, 64 around each rim.
+    // A curved surface needs more vertices the closer it is approximated, and around an axis of
+    // symmetry it needs them all around: this tolerance takes 64 on each rim.
     constexpr Real of_polytopes = sizeof(Real) == 4 ? Real(1e-5) : Real(1e-10);
     const Real relative = cores.is_curved() ? Real(4e-3) : of_polytopes;
     Simplex simplex = overlap.simplex;
@@ -286,8 +286,8 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
         ++result.iterations;
         return vertex;
     };
-    // Adds the support point, of those along the directions and against them, that is farthest off
-    // the simplex; false when none is, by more than rounding.
+    // Of the support points along the directions and their opposites, adds the one farthest from
+    // the simplex; false if none is off it by more than rounding.
     const auto widen = [&](std::span<const Vec3> directions, const auto &off) {
         Real most = Real(0);
         SimplexVertex farthest;
@@ -301,7 +301,7 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
                 }
             }
         }
-        // Off a plane only what rounds along its normal counts, so that large and thin is not flat.
+        // For a plane only the rounding along its normal counts, so large thin shapes are not flat.
         const Real rounding = Real(2) * (simplex.count == 3 ? rounding_along(directions[0], size)
                                                             : rounding_of(size));
         if (!(most > rounding))
@@ -356,15 +356,15 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
             least = height;
             best_normal = face.normal;
         }
-        // The difference contains a part of itself, and the ball in it: no way out is shorter than
-        // the distance of its surface, which grows with it but for rounding. A plane that the
-        // difference is behind is a way out. Both are below zero by rounding where the shapes touch
-        // within it only.
+        // The polytope is inside the Minkowski difference, so the distance to its surface is a
+        // lower bound on the depth; up to rounding it only grows. A plane with the whole difference
+        // behind it gives an upper bound. If the shapes touch only within rounding, both bounds can
+        // be negative.
         bound = std::max(bound, face.distance);
         if (least - bound <= relative * std::abs(least) + rounding_along(face.normal, size))
             break;
-        // A face that does not grow is finished once, and ends this when it is the nearest again;
-        // the second limit is for coordinates beyond all sizes, whose products overflow.
+        // A face that cannot grow is finished, and the loop ends when it is the nearest again. The
+        // iteration limit is for coordinates so large that products overflow.
         if (polytope.is_full() || result.iterations > 2 * Polytope::vertex_limit) {
             (void)PLUMB_RARELY("epa: vertex limit", true);
             if (!cores.is_curved())
@@ -385,7 +385,7 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
 
 namespace {
 
-// From the cores' points to those of the shapes.
+// Converts the cores' closest points to those of the shapes.
 Proximity apart(const CorePair &cores, const Vec3 &difference, Real between, const Vec3 &on_a,
                 const Vec3 &on_b) {
     Proximity result;
@@ -400,7 +400,7 @@ Proximity apart(const CorePair &cores, const Vec3 &difference, Real between, con
 
 Proximity proximity(const CorePair &cores, Real far, const Vec3 &guess) {
     const Real radii = cores.radius_a() + cores.radius_b();
-    // With a closed form, what it says decides whether the cores overlap, as for `overlaps`.
+    // If there is a closed form, it decides whether the cores overlap, as in `overlaps`.
     const bool is_decided = cores.has_closed_form();
     if (is_decided) {
         const NearestPoints found = cores.closed_form();

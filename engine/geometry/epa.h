@@ -1,8 +1,8 @@
-// How deep two convex shapes are in each other, by EPA.
+// Penetration depth of two convex shapes, by EPA.
 //
 // Van den Bergen 2001, "Proximity queries and penetration depth computation on 3D game objects": a
-// polyhedron inside of the difference B - A is grown where its surface is nearest to the origin,
-// until it cannot grow there. Shapes with a radius whose cores are apart need GJK only.
+// polyhedron inside the Minkowski difference B - A is expanded where its surface is closest to the
+// origin, until it cannot grow there. Rounded shapes whose cores are apart need only GJK.
 #pragma once
 
 #include "engine/geometry/gjk.h"
@@ -18,24 +18,26 @@ struct Penetration {
     Vec3 normal{Real(0)};  // unit, from A to B: B moved by depth * normal just touches A
     Vec3 on_a{Real(0)};    // the deepest point of A in B
     Vec3 on_b{Real(0)};    // the deepest point of B in A: on_a - depth * normal
-    Real excess = Real(0); // by which `depth` may be more than the least; see below
+    Real excess = Real(0); // how far `depth` may exceed the minimum; see below
     int iterations = 0;    // support points taken
 };
 
-// The least translation that parts two convex shapes that overlap; none for shapes that do not
-// (touching ones do, with depth 0).
+// The minimum translation that separates two overlapping convex shapes; none if they do not overlap
+// (touching shapes do, with depth 0).
 //
-// `depth` along `normal` parts them, and is the shortest way to, within the rounding of `distance`
-// (gjk.h) and relative 1e-5 in float, 1e-10 in double. Where cylinders are in each other (not where
-// a cylinder is in the radius of another shape only) the shortest way is found within 4e-3, and the
-// points may be as much off the surface. A cylinder and a hull with so many faces about as far out
-// that the search meets its limit miss that by at most `excess` (metres), zero for all others.
-// Where several ways are as short, one of them. Shapes that are flat together, such as triangles in
-// one plane, part across the plane with depth 0; concentric points along +Y.
+// Moving B by `depth` along `normal` separates them, and no translation is shorter, within the
+// rounding of `distance` (gjk.h) and a relative 1e-5 in float, 1e-10 in double. When the cores
+// overlap and one is a cylinder (not when a cylinder only reaches into another shape's radius), the
+// relative tolerance is 4e-3, and the points may be off the surface by as much. A cylinder against
+// a hull with so many faces at about the same depth that the search hits its limit misses that by
+// at most `excess` (metres), which is zero for all others. Ties are broken arbitrarily. Shapes that
+// are flat together, such as coplanar triangles, separate across their plane with depth 0;
+// concentric points separate along +Y.
 template <typename A, typename B>
 requires ConvexPair<A, B> std::optional<Penetration> penetration(const A &a, const B &b);
 
-// `distance` and `penetration` in one: where two shapes are closest, or deepest in each other.
+// `distance` and `penetration` in one: the closest points, or the deepest points of overlapping
+// shapes.
 struct Proximity {
     Real separation = Real(0); // negative in penetration
     Vec3 normal{Real(0)};      // unit, from A to B
@@ -43,56 +45,57 @@ struct Proximity {
     Vec3 on_b{Real(0)};
     Real excess = Real(0); // of a penetration
     int iterations = 0;
-    bool is_beyond = false; // farther apart than was asked for; nothing else is known
+    bool is_beyond = false; // farther apart than asked for; nothing else is known
 };
 template <typename A, typename B>
 requires ConvexPair<A, B> Proximity proximity(const A &a, const B &b);
 
 // --- The parts -----------------------------------------------------------------------------------
 
-// The polyhedron that EPA grows: triangles, each knowing its neighbours.
+// The polyhedron EPA expands: triangles with adjacency.
 class Polytope {
   public:
     static constexpr int vertex_limit = 128;
 
-    // Not initialised, for there is room for many.
+    // Left uninitialised: the array is large.
     struct Face {
         Vec3 normal;   // unit, outward
         Real height;   // of the plane above the origin
-        Real distance; // of the triangle from the origin; no less, while it is not measured
+        Real distance; // of the triangle from the origin; a lower bound until it is measured
         std::array<std::uint8_t, 3> vertices;
-        std::array<std::uint8_t, 3> neighbors;      // across the side from vertex i to the next
-        std::array<std::uint8_t, 3> neighbor_sides; // which of the neighbour's sides it is
+        std::array<std::uint8_t, 3> neighbors;      // across the edge from vertex i to the next
+        std::array<std::uint8_t, 3> neighbor_sides; // which of the neighbour's edges it is
         bool is_used;
         bool is_visible;
         bool is_measured;
     };
 
-    // A tetrahedron that is not flat.
+    // From a tetrahedron that is not flat.
     explicit Polytope(const Simplex &simplex);
 
-    // The face that is nearest to the origin as a triangle: no ball around the origin that it does
-    // not meet leaves the polyhedron, whatever the normals are worth. In a convex polyhedron it is
-    // also the face with the lowest plane; but the normal of a sliver far from the origin is mostly
-    // rounding, and so is then the height of its plane. Van den Bergen 2001 leaves out faces that
-    // the foot of the origin is not in, for that reason; this does not lose the nearest point where
-    // it is on an edge.
+    // The face closest to the origin, measured to the triangle rather than its plane: a ball around
+    // the origin that does not reach this face stays inside the polyhedron, however bad the normals
+    // are. In a convex polyhedron this is also the face with the lowest plane, but the normal of a
+    // sliver far from the origin is mostly rounding, and so is the height of its plane. Van den
+    // Bergen 2001 therefore skips faces that do not contain the origin's projection; measuring the
+    // triangle instead does not lose a closest point that lies on an edge.
     int nearest(const Vec3 &size);
     const Face &face(int i) const { return faces_[static_cast<std::size_t>(i)]; }
     bool is_full() const { return vertex_count_ == vertex_limit; }
-    // No support point is farther along the face's normal than this: its height, then.
+    // Sets the face's final height: no support point is farther along its normal.
     void finish(int i, Real height);
 
-    // Grows to a point in front of the face; false, and nothing changed, when it is in front of no
-    // face, within rounding, or the border of those it is in front of is not one loop.
+    // Expands to a point in front of the face. Returns false and changes nothing when, within
+    // rounding, the point is in front of no face, or the horizon around the faces it sees is not a
+    // single loop.
     bool grow(int i, const SimplexVertex &point, const Vec3 &size);
 
-    // The points of the shapes where the surface is nearest to the origin, which is at `normal`
-    // times `height`: in the plane of a face there may be others, and only one of them is there.
+    // The points of the shapes behind the surface point closest to the origin, `normal` times
+    // `height`. Several faces may share that plane, and only one of them contains the point.
     Witnesses nearest_points(const Vec3 &normal, Real height, const Vec3 &size) const;
 
   private:
-    // A polyhedron of triangles has 2 v - 4 of them.
+    // A polyhedron of triangles with v vertices has 2 v - 4 of them.
     static constexpr int face_limit = 2 * vertex_limit - 4;
 
     int add_face(int p, int q, int r);
@@ -100,22 +103,22 @@ class Polytope {
     void join(int f, int side, int g, int other_side);
 
     int vertex_count_ = 0;
-    int face_end_ = 0;   // those from here on were never used
-    int first_free_ = 0; // none before is free
+    int face_end_ = 0;   // faces from here on were never used
+    int first_free_ = 0; // no face before this one is free
     std::array<SimplexVertex, static_cast<std::size_t>(vertex_limit)> vertices_;
     std::array<Face, static_cast<std::size_t>(face_limit)> faces_;
 };
 
-// Leaves out vertices of a simplex that contains the origin, within rounding, which others make
-// superfluous: too near to another, to the line of two, to the plane of three.
+// Drops redundant vertices from a simplex that contains the origin within rounding: vertices too
+// close to another vertex, to the line through two, or to the plane through three.
 void keep_independent(Simplex &simplex, const Vec3 &size);
 
-// The penetration of two cores, relative to their origin, without their radii, where GJK ended with
-// an overlap.
+// The penetration of two cores for which GJK found an overlap, without their radii and relative to
+// their origin.
 Penetration core_penetration(const CorePair &cores, const GjkResult &overlap);
 
-// For two cores, relative to their origin; is_beyond when they are farther apart than `far`.
-// `guess` is a direction from A to B to look along first; zero: from middle to middle.
+// For two cores, relative to their origin; is_beyond if they are farther apart than `far`. `guess`
+// is the direction from A to B to search first; zero: from A's middle to B's.
 Proximity proximity(const CorePair &cores, Real far, const Vec3 &guess = Vec3{Real(0)});
 
 template <typename A, typename B>

@@ -10,7 +10,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The face of a core that looks most along a direction.
+// The face of a core whose normal is closest to a direction.
 struct BoxFace {
     const BoxCore &box;
     int axis = 0;
@@ -29,7 +29,7 @@ struct BoxFace {
     }
     Vec3 normal() const { return sign * box.axes[axis]; }
     Vec3 inside(const Vec3 &point) const { return (point - box.center) * box.axes; }
-    // The rest is about points in the core's own frame.
+    // Below, points are in the core's own frame.
     Real height(const Vec3 &local) const { return sign * local[axis] - box.half_extents[axis]; }
     bool is_under(const Vec3 &local) const {
         for (int i = 0; i < 3; ++i)
@@ -38,7 +38,7 @@ struct BoxFace {
         return true;
     }
     bool is_nearest(const Vec3 &local, Real height) const {
-        for (int i = 0; i < 3; ++i) // the face opposite, too
+        for (int i = 0; i < 3; ++i) // including the opposite face
             if (!(std::abs(local[i]) - box.half_extents[i] <= height))
                 return false;
         return true;
@@ -82,7 +82,7 @@ HullFace face_of(const HullCore &hull, const Vec3 &direction) {
     return {hull, direction};
 }
 
-// From the owner of the face to the other.
+// The result with a face of `owner`, from `owner` to `other`.
 template <typename Owner, typename Other>
 std::optional<Proximity> above(const Owner &owner, const Other &other, const Vec3 &guess,
                                Real far) {

@@ -1,5 +1,5 @@
-// How far apart two polyhedra are, or how deep in each other, where that is known from one face:
-// much sooner than by GJK and EPA, but only with a guess, such as the normal of a step before.
+// Distance or penetration of two polyhedra when a single face decides it: much faster than GJK and
+// EPA, but needs a guess, such as the previous step's normal.
 #pragma once
 
 #include "engine/geometry/epa.h"
@@ -15,14 +15,16 @@ concept HasFaceGap = std::same_as<Core, BoxCore> || std::same_as<Core, HullCore>
 template <typename A, typename B>
 concept HaveFaceGap = HasFaceGap<std::remove_const_t<A>> && HasFaceGap<std::remove_const_t<B>>;
 
-// Two cores relative to one origin. `guess` points from A to B; it needs no length, but must not be
-// zero. None where neither of the two faces that look most along the guess decides it, and where a
-// box is flat. The normal is that of the face; what is said to be farther apart than `far` is so.
+// The cores are relative to a common origin. `guess` points from A to B; its length does not
+// matter, but it must not be zero. Returns none if neither shape's face most aligned with the guess
+// decides the result, or if the box that owns the face is flat. The normal is the face's. A result
+// with is_beyond really is farther apart than `far`.
 //
-// The corner of the other that is deepest along the face's normal decides: apart, when it is over
-// the face, for the plane parts them, and nothing is nearer than the corner and its foot. In
-// penetration, when no other plane of the face's owner is as near to the corner: the corner has to
-// leave, which takes at least that far, and so far along the normal all of it has left.
+// The other shape's deepest corner along the face's normal decides. If it is outside and over the
+// face, the plane separates the shapes, and no points are closer than the corner and its
+// projection. If it is inside, the result holds when no other face plane of the owner is closer to
+// the corner: the corner must get out, which takes at least that depth, and that far along the
+// normal the whole shape is out.
 template <HasFaceGap A, HasFaceGap B>
 std::optional<Proximity> face_gap(const A &a, const B &b, const Vec3 &guess, Real far);
 

@@ -34,7 +34,7 @@ Vec3 narrow(const glm::dvec3 &v) {
     return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
 
-// Heights over a face: a shape that reaches from `lowest` to `highest`.
+// Tests a shape that reaches from `lowest` to `highest` above a face.
 void meet(FrustumSide &side, Real lowest, Real highest) {
     if (lowest > Real(0))
         side = FrustumSide::outside;
@@ -46,7 +46,7 @@ Real height_over(const Plane &plane, const Vec3 &point) {
     return glm::dot(plane.normal, point) - plane.offset;
 }
 
-// A box of any orientation, with its axes written out.
+// An oriented box with its axes as a matrix.
 struct OpenBox {
     Vec3 center{Real(0)};
     Mat3 axes{Real(1)};
@@ -65,7 +65,7 @@ FrustumSide classify_box(const Frustum &frustum, const OpenBox &box) {
     return side;
 }
 
-// Whether an axis of the box, or one across an edge of each, separates them.
+// Whether an axis of the box, or the cross product of an edge of each, separates them.
 bool is_separated(const Frustum &frustum, const OpenBox &box) {
     // The frustum in the box's frame.
     std::array<Vec3, 8> corners;
@@ -83,8 +83,8 @@ bool is_separated(const Frustum &frustum, const OpenBox &box) {
     for (const auto &[first, second] : box_edges) {
         const Vec3 edge = corners[second] - corners[first];
         for (int i = 0; i < 3; ++i) {
-            // The axis e_i x edge, of any length: what the roundings are worth is in proportion to
-            // it, and where it vanishes nothing is separated.
+            // The axis e_i x edge, of any length: roundings scale with it, and a zero axis
+            // separates nothing.
             const int j = (i + 1) % 3, k = (i + 2) % 3;
             const Real y = -edge[k], z = edge[j];
             const Real reach = std::abs(y) * box.half[j] + std::abs(z) * box.half[k];
@@ -107,8 +107,8 @@ bool is_behind_all(const Frustum &frustum, const Vec3 &point) {
         frustum.planes, [&](const Plane &plane) { return height_over(plane, point) <= Real(0); });
 }
 
-// A common point, where one is found without search: the box's middle, or its point closest to the
-// frustum's. Of boxes across the border most have one.
+// A common point that needs no search: the box's centre, or its closest point to the frustum's
+// centre. Most boxes across the border have one.
 bool has_obvious_point(const Frustum &frustum, const OpenBox &box) {
     if (is_behind_all(frustum, box.center))
         return true;
@@ -154,7 +154,7 @@ void check_finite(const Mat4 &m) {
 
 Frustum frustum_of(const Mat4 &view_projection) {
     check_finite(view_projection);
-    // In double: a perspective's far plane is a small difference.
+    // In double: the far plane of a perspective is a small difference.
     const glm::dmat4 matrix{view_projection};
     const glm::dmat4 rows = glm::transpose(matrix);
     const glm::dmat4 inverse = glm::inverse(matrix);
@@ -241,7 +241,7 @@ bool contains(const Frustum &frustum, const Vec3 &point) {
 Vec3 closest_point(const Frustum &frustum, const Vec3 &point) {
     if (contains(frustum, point))
         return point;
-    // The foot on a face's plane, if it is in the face.
+    // The projection on a face's plane, if it is in the face.
     for (const Plane &plane : frustum.planes) {
         const Real height = height_over(plane, point);
         if (height <= Real(0))
@@ -253,9 +253,10 @@ Vec3 closest_point(const Frustum &frustum, const Vec3 &point) {
         if (is_in_face)
             return foot;
     }
-    // On an edge or in a corner. Several may be as near but for roundings and yet lie far apart, as
-    // the distance changes with the square of the way along an edge; what changes with the way
-    // itself is how far the frustum reaches beyond the plane across the way to the point.
+    // Otherwise the closest point is on an edge or corner. Several candidates may be equally close
+    // up to rounding and yet far apart, because the distance is quadratic in the offset along an
+    // edge. So compare instead how far the frustum reaches beyond the plane through the candidate
+    // perpendicular to the direction to the point, which is linear in that offset.
     Vec3 closest{Real(0)};
     Real least = std::numeric_limits<Real>::infinity();
     for (const auto &[first, second] : box_edges) {

@@ -7,7 +7,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The edges of a box whose axes are given.
+// The Gauss map of a box with the given axes.
 GaussMap box_map(const Mat3 &axes) {
     GaussMap map;
     for (int i = 0; i < 3; ++i) {
@@ -28,7 +28,7 @@ GaussMap gauss_map(const PointCore & /*point*/) {
     return {};
 }
 
-// A great circle, in quarters.
+// A great circle, as four quarter arcs.
 GaussMap gauss_map(const SegmentCore &segment) {
     const Vec3 edge = segment.b - segment.a;
     const Real length = glm::length(edge);
@@ -39,14 +39,14 @@ GaussMap gauss_map(const SegmentCore &segment) {
             {{edge, 0, 1}, {edge, 1, 2}, {edge, 2, 3}, {edge, 3, 0}}};
 }
 
-// From its front to its back around each side, in quarters.
+// From front to back across each edge, as quarter arcs.
 GaussMap gauss_map(const TriangleCore &triangle) {
     const std::array<Vec3, 3> corners = {triangle.a, triangle.b, triangle.c};
     const Vec3 normal =
         triangle_normal(corners[1] - corners[0], corners[2] - corners[0], corners[2] - corners[1]);
     const Real length = glm::length(normal);
     GaussMap map;
-    if (!(length >= std::sqrt(std::numeric_limits<Real>::min()))) { // flat: its longest side
+    if (!(length >= std::sqrt(std::numeric_limits<Real>::min()))) { // flat: its longest edge
         Real longest = Real(0);
         for (std::size_t i = 0; i < 3; ++i) {
             const SegmentCore side{corners[i], corners[(i + 1) % 3]};

@@ -1,8 +1,8 @@
-// The Gauss map of a polyhedron: each face as its normal on the unit sphere, each edge as the arc
-// from the normal of the one of its faces to that of the other.
+// The Gauss map of a polyhedron: each face becomes its normal on the unit sphere, each edge the arc
+// between the normals of its two faces.
 //
-// The faces of the difference B - A of two polyhedra have the normals of B's faces, those of A's
-// turned around, and those where an arc of B crosses one of A turned around: there the two edges
+// The Minkowski difference B - A of two polyhedra has three kinds of face normals: those of B,
+// those of A negated, and those where an arc of B crosses a negated arc of A, where the two edges
 // span a face (Gregorius 2013, "The separating axis test between convex polyhedra", GDC).
 #pragma once
 
@@ -15,14 +15,15 @@ namespace plumb::inline PLUMB_PRECISION {
 
 struct GaussMap {
     struct Arc {
-        Vec3 edge{Real(0)};     // its direction, of any length
-        std::uint32_t from, to; // normals, less than half a turn apart
+        Vec3 edge{Real(0)};     // direction, of any length
+        std::uint32_t from, to; // indices of normals less than half a turn apart
     };
-    std::vector<Vec3> normals; // unit; some may be of no face, where an edge has a face on one side
+    std::vector<Vec3>
+        normals; // unit; some may belong to no face, where an edge has a face on one side only
     std::vector<Arc> arcs;
 };
 
-// A point, and a cylinder, which is no polyhedron, have none.
+// Empty for a point, and for a cylinder, which is no polyhedron.
 GaussMap gauss_map(const PointCore &point);
 GaussMap gauss_map(const SegmentCore &segment);
 GaussMap gauss_map(const TriangleCore &triangle);
@@ -31,21 +32,21 @@ GaussMap gauss_map(const BoxCore &box);
 GaussMap gauss_map(const CylinderCore &cylinder);
 GaussMap gauss_map(const HullCore &hull);
 
-// All directions that a face of the difference B - A can have, and some more.
+// Visits every possible face normal of the Minkowski difference B - A, and some more.
 template <typename Visit>
 void for_each_face_normal(const GaussMap &a, const GaussMap &b, const Visit &visit) {
     for (const Vec3 &normal : b.normals)
         visit(normal);
     for (const Vec3 &normal : a.normals)
         visit(-normal);
-    std::vector<Real> along(b.normals.size()); // of B's normals along an edge of A
+    std::vector<Real> along(b.normals.size()); // B's normals projected on an edge of A
     for (const GaussMap::Arc &of_a : a.arcs) {
         for (std::size_t i = 0; i < along.size(); ++i)
             along[i] = glm::dot(b.normals[i], of_a.edge);
         const Vec3 from = -a.normals[of_a.from], to = -a.normals[of_a.to];
         for (const GaussMap::Arc &of_b : b.arcs) {
-            // The ends of each on different sides of the other's great circle; and of the two
-            // points where these cross, both arcs pass the same one.
+            // Each arc's ends must be on different sides of the other's great circle, and both arcs
+            // must pass the same one of the two points where the great circles cross.
             if ((along[of_b.from] < Real(0)) == (along[of_b.to] < Real(0)) ||
                 (glm::dot(from, of_b.edge) < Real(0)) == (glm::dot(to, of_b.edge) < Real(0)))
                 continue;

@@ -27,8 +27,8 @@ SimplexPart edge_part(const Simplex &simplex, int i, int j) {
     if (!(from_q > Real(0)))
         return vertex_part(simplex, j);
     const Real s = from_p / squared;
-    // Made perpendicular to the edge once more: rounding leaves eps |p| along it, which can be more
-    // than the distance, and the direction to the next support point is only as good as this.
+    // Make it perpendicular to the edge again: rounding leaves eps |p| along the edge, which can
+    // exceed the distance, and the next search direction is only as good as this vector.
     Vec3 closest = from_p < from_q ? p + s * along : q - (from_q / squared) * along;
     closest -= along * (glm::dot(closest, along) / squared);
     return {closest, glm::dot(closest, closest), {Real(1) - s, s}, {i, j}, 2};
@@ -39,13 +39,13 @@ void keep_closer(SimplexPart &best, const SimplexPart &other) {
         best = other;
 }
 
-// Whether the projection of the origin is on the inner side of the side from `start` along `side`,
-// given its (signed, scaled) area with it. A positive slack lets it be outside by as many roundings
-// of that area.
+// Whether the origin's projection is on the inner side of the edge from `start` along `side`, given
+// the (signed, scaled) area they span. A positive slack allows it to be outside by that many
+// roundings of the area.
 bool is_inner(Real area, const Vec3 &start, const Vec3 &side, Real squared_normal, Real slack) {
     if (area > Real(0))
         return true;
-    // By lengths: the squares of areas would overflow.
+    // Compare lengths: squared areas would overflow.
     return slack > Real(0) &&
            -area <= slack * std::sqrt(squared_normal) * glm::length(start) * glm::length(side);
 }
@@ -67,8 +67,8 @@ SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, const Vec
     const Vec3 pr = r - p;
     const Vec3 qr = r - q;
     const Real squared = glm::dot(normal, normal);
-    // The area of each side with the origin's projection on the plane, times twice the triangle's.
-    // As p x (q - p), not p x q: the error is then in proportion to the side's length.
+    // The area each edge spans with the origin's projection, scaled by the normal's length. As p x
+    // (q - p), not p x q: the error is then proportional to the edge's length.
     const Real area_p = glm::dot(glm::cross(q, qr), normal);
     const Real area_q = glm::dot(glm::cross(pr, r), normal);
     const Real area_r = glm::dot(glm::cross(p, pq), normal);
@@ -78,7 +78,7 @@ SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, const Vec
     const Real sum =
         std::max(area_p, Real(0)) + std::max(area_q, Real(0)) + std::max(area_r, Real(0));
     if (in_p && in_q && in_r && sum > Real(0)) {
-        // Along the normal, so its direction is as good as the plane's however small it is.
+        // Along the normal, so its direction is as good as the plane's, however short it is.
         const Vec3 closest = normal * (glm::dot(p, normal) / squared);
         return {closest,
                 glm::dot(closest, closest),
@@ -87,7 +87,7 @@ SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, const Vec
                 {i, j, k},
                 3};
     }
-    // The closest point is on a side that the projection is beyond.
+    // The closest point is on an edge that the projection is beyond.
     SimplexPart best;
     if (!(area_p > Real(0)))
         keep_closer(best, edge_part(simplex, j, k));
@@ -100,11 +100,11 @@ SimplexPart triangle_part(const Simplex &simplex, int i, int j, int k, const Vec
 
 constexpr int newest = 3;
 
-// The faces of a tetrahedron that have the newest vertex: face i with vertex i and the next; its
-// opposite vertex is the one after.
+// The faces of a tetrahedron at the newest vertex: face i also has vertices i and i + 1; vertex i +
+// 2 is opposite (indices mod 3).
 struct NewFaces {
     std::array<Vec3, 3> normals{};
-    std::array<Real, 3> heights{}; // of the opposite vertex, scaled as the normal is
+    std::array<Real, 3> heights{}; // of the opposite vertex, scaled like the normal
 };
 NewFaces new_faces(const Simplex &simplex) {
     NewFaces faces;
@@ -141,9 +141,9 @@ SimplexPart tetrahedron_part(const Simplex &simplex, const Vec3 &size, Real slac
     return best;
 }
 
-// The weights of the vertices of a tetrahedron around the origin: of each the height of the origin
-// above the face opposite of it, in heights of the vertex. Then again for what rounding left, of
-// the thinnest most.
+// Vertex weights of a tetrahedron around the origin: the origin's height above the opposite face
+// over the vertex's height above it. Repeated to refine what rounding left, which is most for thin
+// tetrahedra.
 std::array<Real, 4> inner_weights(const Simplex &simplex, const Vec3 &size) {
     const NewFaces faces = new_faces(simplex);
     std::array<Real, 4> weights{};
@@ -169,7 +169,7 @@ std::array<Real, 4> inner_weights(const Simplex &simplex, const Vec3 &size) {
     off = weighted_sum();
     constexpr Real nothing = Real(8) * std::numeric_limits<Real>::epsilon();
     if (glm::dot(off, off) > nothing * nothing * glm::dot(size, size)) {
-        // So thin that the volumes are mostly rounding: the nearest face is as good.
+        // So thin that the volumes are mostly rounding: the closest face does as well.
         SimplexPart face = triangle_part(simplex, 0, 1, 2, normal_of(simplex, 0, 1, 2), Real(0));
         for (int i = 0; i < 3; ++i)
             keep_closer(face, triangle_part(simplex, newest, i, (i + 1) % 3,
@@ -223,8 +223,8 @@ void reduce(Simplex &simplex, const SimplexPart &part) {
 
 namespace {
 
-// Of a needle the areas say well where across it a point is, and badly where along it: from the
-// point that the weights should add up to, that is put right.
+// For a needle, areas locate a point well across it but badly along it. Corrects the weights along
+// the longest edge so that they sum to the known closest point.
 void settle_along_longest(Simplex &simplex, const Vec3 &closest) {
     const auto count = static_cast<std::size_t>(simplex.count);
     const auto difference = [&](std::size_t i) {
@@ -277,7 +277,7 @@ Witnesses witnesses(const GjkResult &result) {
         spread_a = std::max(spread_a, from_a.x + from_a.y + from_a.z);
         spread_b = std::max(spread_b, from_b.x + from_b.y + from_b.z);
     }
-    // An error of the weights moves the point on the smaller simplex less.
+    // Errors in the weights move the point on the smaller simplex less.
     if (spread_a <= spread_b)
         on_b = on_a + result.difference;
     else
@@ -292,7 +292,7 @@ ClosestPoints closest_points(const NearestPoints &found, Real radius_a, Real rad
     const Real radii = radius_a + radius_b;
     const Real between = std::sqrt(found.squared_distance);
     if (found.is_overlapping || between <= radii) {
-        // Between the surfaces there is at least one common point of the two.
+        // Any point between the two surfaces is common to both shapes.
         const Real share = radii > Real(0) ? radius_a / radii : Real(0);
         result.on_a = result.on_b = origin + (found.on_a + share * (found.on_b - found.on_a));
         return result;

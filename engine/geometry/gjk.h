@@ -1,4 +1,4 @@
-// The distance of any two convex shapes, by GJK.
+// Distance between any two convex shapes, by GJK.
 //
 // Gilbert, Johnson, Keerthi 1988, "A fast procedure for computing the distance between complex
 // objects in three-dimensional space", with the stopping rules of van den Bergen 1999, "A fast and
@@ -18,88 +18,88 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 struct ClosestPoints {
-    Real distance = Real(0); // 0: the shapes overlap
+    Real distance = Real(0); // 0 when the shapes overlap
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
     Vec3 normal{Real(0)}; // unit, from A to B; zero when the shapes overlap
-    int iterations = 0;   // support points taken; none where the answer is a closed form
+    int iterations = 0;   // support points taken; 0 for a closed form
 };
 
-// The distance of two convex shapes and a pair of closest points; for shapes that overlap 0 and a
-// common point twice.
+// Distance and a pair of closest points of two convex shapes; for overlapping shapes 0, and both
+// points are the same common point.
 //
-// Right within relative 16 epsilon (cylinders 1e-5 in float, 1e-9 in double) plus 32 epsilon times
-// the largest coordinate of either shape, measured from A's place: what the shapes' own corners are
-// rounded by. Shapes that are closer may count as overlapping, and their normal is then no better
-// than that either. Axes along which all coordinates are small keep their own rounding: a box on a
-// ground of 200 km has its distance to 1e-6 m. For the range of sizes and distances see shapes.h.
-// Points, segments and shapes without thickness are allowed, but not a point with a point.
+// Accurate to a relative 16 epsilon (cylinders: 1e-5 in float, 1e-9 in double) plus 32 epsilon
+// times the largest coordinate of either shape relative to A's position, which is the rounding of
+// the shapes' own corners. Shapes closer than that may count as overlapping, and the normal is no
+// better either. Axes with only small coordinates keep their own small rounding: a box on a 200 km
+// ground has its distance to 1e-6 m. For the range of sizes and distances see shapes.h. Points,
+// segments and shapes without thickness are allowed, but not point against point.
 template <typename A, typename B>
 requires ConvexPair<A, B> ClosestPoints distance(const A &a, const B &b);
 ClosestPoints distance(const Sphere &a, const Box &b);
 ClosestPoints distance(const Box &a, const Sphere &b);
 
-// Whether the shapes have a common point; touching ones do. Those for which overlap.h or sat.h has
-// an exact answer use that. True for shapes closer than the rounding given at `distance`.
+// Whether the shapes overlap; touching counts. Pairs with an exact test in overlap.h or sat.h use
+// that. True for shapes closer than the rounding given at `distance`.
 template <typename A, typename B>
 requires ConvexPair<A, B>
 bool overlaps(const A &a, const B &b);
 
 // --- The parts -----------------------------------------------------------------------------------
 
-// A point of the difference B - A, and the points of A and B that it comes from.
-// Not initialised, for arrays of them are large.
+// A point of the Minkowski difference B - A, and the points of A and B it comes from. Left
+// uninitialised because arrays of them are large.
 struct SimplexVertex {
     Vec3 a;
     Vec3 b;
     Vec3 w; // b - a
 };
 
-// Up to four of them, and the point of their hull closest to the origin as the sum of
-// weights[i] * vertices[i].w. All weights are positive once it is reduced. Of four the origin is
-// inside, and the weights are left to `witnesses`, for few ask.
+// Up to four vertices; the point of their hull closest to the origin is the sum of weights[i] *
+// vertices[i].w. All weights are positive once reduced. With four vertices the origin is inside,
+// and the weights are left to `witnesses`, since few callers need them.
 struct Simplex {
     std::array<SimplexVertex, 4> vertices;
     std::array<Real, 4> weights;
     int count = 0;
 };
 
-// The smallest part of a simplex that has its point closest to the origin.
+// The smallest sub-simplex containing the simplex's closest point to the origin.
 struct SimplexPart {
     Vec3 closest{Real(0)};
     Real squared_distance = std::numeric_limits<Real>::infinity();
     std::array<Real, 4> weights{};
     std::array<int, 4> indices{};
-    int count = 0; // 4: the origin is inside, and nothing else is said
+    int count = 0; // 4: the origin is inside, and nothing else is set
 };
 
-// Rounding along the direction v of points whose coordinates are below `size`, times |v|: each
-// coordinate of a support point carries up to 4 half epsilons, and so does the product.
+// Rounding error along v, times |v|, for points with coordinates below `size`: each coordinate of a
+// support point carries up to 4 half epsilons, and so does the dot product.
 inline Real rounding_along(const Vec3 &v, const Vec3 &size) {
     constexpr Real roundings = Real(4) * std::numeric_limits<Real>::epsilon();
     return roundings * glm::dot(glm::abs(v), size);
 }
 
-// The same for a unit vector of any direction.
+// The same for a unit vector in any direction.
 inline Real rounding_of(const Vec3 &size) {
     return Real(4) * std::numeric_limits<Real>::epsilon() * glm::length(size);
 }
 
-// The last vertex is the newest: the closest point is assumed to need it. A tetrahedron thinner
+// The last vertex is the newest, and the closest point is assumed to need it. A tetrahedron thinner
 // than the rounding of coordinates of the given size does not contain the origin. With a positive
-// `slack` a triangle is preferred to its sides when the origin is beyond them by no more than that
-// many times the rounding: its normal is the better direction.
+// `slack` a triangle wins over its edges when the origin is beyond them by at most that many times
+// the rounding: the triangle's normal is the better direction.
 SimplexPart closest_part(const Simplex &simplex, const Vec3 &size, Real slack = Real(0));
 
-// The normal of the triangle p, q, r with its double area as length, from its two shorter sides: of
-// a needle seen from its tip the cross product would be mostly rounding. What is left of that along
-// the longest side is taken out, for it would tilt the plane by much.
+// The normal of triangle p, q, r, with twice the area as its length, from the two shorter edges:
+// for a needle the cross product of the two long edges would be mostly rounding. The remaining
+// component along the longest edge is removed, since it would tilt the plane badly.
 Vec3 triangle_normal(const Vec3 &pq, const Vec3 &pr, const Vec3 &qr);
 
-// Keeps the part only.
+// Keeps only the part.
 void reduce(Simplex &simplex, const SimplexPart &part);
 
-// Whether a vertex has that difference, bit for bit.
+// Whether a vertex equals w bit for bit.
 inline bool has(const Simplex &simplex, const Vec3 &w) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(simplex.count); ++i)
         if (simplex.vertices[i].w == w)
@@ -107,28 +107,28 @@ inline bool has(const Simplex &simplex, const Vec3 &w) {
     return false;
 }
 
-// How a run of GJK on two cores ended.
+// The result of running GJK on two cores.
 struct GjkResult {
     Simplex simplex;
     Vec3 difference{Real(0)}; // from the closest point of A's core to that of B's core
     Real squared_distance = std::numeric_limits<Real>::infinity();
-    Vec3 size{Real(0)};          // of the coordinates that were added up, for rounding_along
+    Vec3 size{Real(0)};          // of the coordinates summed up, for rounding_along
     bool is_overlapping = false; // or closer than rounding
-    bool is_beyond = false;      // farther than asked for; `difference` still separates them
+    bool is_beyond = false;      // farther than `far`; `difference` still separates them
     int iterations = 0;
 };
 
-// More than any input needs; when the limit is met the oddity "gjk: iteration limit" is counted and
-// the best pair so far stands.
+// More than any input needs. If the limit is hit, the oddity "gjk: iteration limit" is counted and
+// the best pair so far is returned.
 inline constexpr int gjk_iteration_limit = 200;
 
-// Stops early when the cores are proved to be farther apart than `far`. `guess` is a direction from
-// A to B, of any length; zero is allowed. There is one for each two cores of support.h, made in
-// gjk_pairs.cpp.
+// Stops early once the cores are proven to be farther apart than `far`. `guess` is a direction from
+// A to B, of any length; zero is allowed. Instantiated in gjk_pairs.cpp for each pair of the cores
+// in support.h.
 template <typename CoreA, typename CoreB>
 GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far);
 
-// Where two cores are closest.
+// The closest points of two cores.
 struct NearestPoints {
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
@@ -138,8 +138,8 @@ struct NearestPoints {
     int iterations = 0;
 };
 
-// A point and what has its closest point in closed form. Those relative to an origin near both keep
-// their digits, as closest_point (closest_point.h) in the world does not.
+// Closed forms for a point against a core. Relative to an origin near both they keep full
+// precision, unlike closest_point (closest_point.h) in world space.
 NearestPoints nearest_points(const PointCore &a, const PointCore &b);
 NearestPoints nearest_points(const PointCore &a, const SegmentCore &b);
 NearestPoints nearest_points(const PointCore &a, const AabbCore &b);
@@ -160,7 +160,7 @@ concept HasNearestPoints = requires(const CoreA &a, const CoreB &b) {
     nearest_points(a, b);
 };
 
-// Two cores whatever their kinds, for what spends most of its time elsewhere. Borrows them.
+// A type-erased pair of cores, for code that spends most of its time elsewhere. Borrows the cores.
 class CorePair {
   public:
     template <typename CoreA, typename CoreB>
@@ -177,13 +177,13 @@ class CorePair {
     }
 
     GjkResult search(const Vec3 &guess, Real far) const { return gjk_(a_, b_, guess, far); }
-    // With B moved by that much.
+    // With B translated by `by`.
     GjkResult search_moved(const Vec3 &by) const { return moved_(a_, b_, by); }
-    // What the faces and edges of the two cores look like from everywhere.
+    // The Gauss maps of A and B.
     std::pair<GaussMap, GaussMap> gauss_maps() const { return maps_(a_, b_); }
     bool has_closed_form() const { return closed_form_ != nullptr; }
     NearestPoints closed_form() const { return closed_form_(a_, b_); }
-    // The point of the difference B - A farthest along a direction.
+    // The support point of the Minkowski difference B - A.
     SimplexVertex support(const Vec3 &direction) const { return support_(a_, b_, direction); }
     Real radius_a() const { return radius_a_; }
     Real radius_b() const { return radius_b_; }
@@ -227,14 +227,14 @@ class CorePair {
     bool is_curved_;
 };
 
-// The points of the cores that the simplex ended at; they differ by `difference`.
+// The points on the cores behind the final simplex; they differ by `difference`.
 struct Witnesses {
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
 };
 Witnesses witnesses(const GjkResult &result);
 
-// What `distance` says of shapes whose cores, relative to an origin, are so.
+// Converts a result for cores, relative to `origin`, into that of `distance` for the shapes.
 ClosestPoints closest_points(const NearestPoints &found, Real radius_a, Real radius_b,
                              const Vec3 &origin);
 ClosestPoints closest_points(const GjkResult &found, Real radius_a, Real radius_b,

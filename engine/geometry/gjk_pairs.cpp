@@ -1,12 +1,12 @@
-// GJK for each pair of cores, compiled here once.
+// GJK, instantiated here once for each pair of cores.
 #include "engine/geometry/gjk.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 
 template <typename CoreA, typename CoreB>
 GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
-    // A pair of closest points is known to be right when the support point is no nearer than they
-    // are (van den Bergen 1999, (3)), within this much of the squared distance.
+    // The closest points are final when the support point is no closer to the origin than they are
+    // (van den Bergen 1999, (3)), within this fraction of the squared distance.
     constexpr Real relative = Real(16) * std::numeric_limits<Real>::epsilon();
     constexpr int stall_limit = 6;
     const Real squared_far = far * far;
@@ -33,8 +33,8 @@ GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
             return result;
         }
         if (simplex.count > 0) {
-            // Within rounding too, where v is the normal of a triangle or there is no new point:
-            // the direction of an edge that is long and near is itself mostly rounding.
+            // Rounding counts as well only if v is a triangle's normal or there is no new point:
+            // the direction to a long edge nearby is itself mostly rounding.
             const Real gap = result.squared_distance - along;
             const Real allowed = relative * result.squared_distance;
             if (gap <= allowed ||
@@ -55,15 +55,15 @@ GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
             result.is_overlapping = true;
             return result;
         }
-        // Each step comes closer. Near the end it may not by as much as rounding: the distance is
-        // then right, but the direction may still be the better one; a few such steps are taken.
+        // Each step gets closer, but near the end rounding can hide that. The distance is then
+        // final, but the new direction may still be better, so take a few such steps.
         if (!(part.squared_distance < result.squared_distance)) {
             part =
                 closest_part(simplex, result.size, Real(8) * std::numeric_limits<Real>::epsilon());
             if (++stalls > stall_limit ||
                 part.squared_distance > result.squared_distance + Real(2) * rounding) {
                 --simplex.count;
-                // Nothing shows that they are apart, and they are hardly farther than rounding.
+                // Nothing proves them apart, and the distance is hardly more than rounding.
                 result.is_overlapping =
                     result.squared_distance <= (along <= Real(0) ? Real(4) : Real(1)) * rounding;
                 return result;
@@ -72,7 +72,7 @@ GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
         reduce(simplex, part);
         v = part.closest;
         result.squared_distance = part.squared_distance;
-        // Below the least normal number nothing is left of a direction.
+        // Below the smallest normal number no direction is left.
         if (result.squared_distance < std::numeric_limits<Real>::min() ||
             (simplex.count == 3 && result.squared_distance <= rounding_along(v, result.size))) {
             result.is_overlapping = true;

@@ -1,4 +1,4 @@
-// The closest points of a point and a core in closed form.
+// Closest points of a point and a core, in closed form.
 #include "engine/geometry/closest.h"
 #include "engine/geometry/gjk.h"
 #include "engine/math/rigid.h"
@@ -9,13 +9,14 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The vector without what rounding left of it along `side`.
+// Removes what rounding left of v along `side`.
 Vec3 across(const Vec3 &v, const Vec3 &side, Real squared_side) {
     return v - side * (glm::dot(v, side) / squared_side);
 }
 
-// From the point to the core. With the size of the core's coordinates, what is nearer than they
-// round by overlaps, as for GJK: such a difference has no direction.
+// `difference` is from the point to the core. If the size of the core's coordinates is given,
+// distances below their rounding count as overlapping, as in GJK: such a difference has no
+// direction.
 NearestPoints from_point(const PointCore &a, const Vec3 &difference,
                          const std::optional<Vec3> &size) {
     const Real squared = glm::dot(difference, difference);
@@ -25,8 +26,8 @@ NearestPoints from_point(const PointCore &a, const Vec3 &difference,
     return {a.point, a.point + difference, difference, squared, is_overlapping, 0};
 }
 
-// Beyond no face there is no distance, and beyond one there is nothing but that: the direction is
-// good however small, and nothing needs to count as overlapping.
+// The difference is exactly how far the point is beyond the faces, and zero if it is beyond none.
+// So its direction is good however short it is, and no rounding needs to count as overlap.
 NearestPoints to_box(const PointCore &a, const Vec3 &center, const Mat3 &axes,
                      const Vec3 &half_extents) {
     const Vec3 local = (a.point - center) * axes; // transposed: into the box's frame
@@ -82,7 +83,7 @@ NearestPoints nearest_points(const PointCore &a, const CylinderCore &b) {
     return from_point(a, difference, larger(b.a, b.b) + b.side);
 }
 
-// These two without the edges that only a search needs.
+// Sphere against box without the half edges of BoxCore, which only a search needs.
 ClosestPoints distance(const Sphere &a, const Box &b) {
     check_valid(b);
     const PointCore point = core_of(a, a.center);

@@ -16,8 +16,8 @@ bool overlaps(const HalfSpace &a, const HalfSpace &b) {
     }
     if (glm::dot(a.normal, b.normal) > Real(0))
         return true;
-    // B's normal is A's times -k, so B begins at the height -b.offset / k over A's plane; k is the
-    // quotient of any of their components that are not zero.
+    // B's normal is A's times -k, so B starts at the height -b.offset / k along A's normal; k is
+    // the ratio of any pair of non-zero components.
     int i = 0;
     while (std::abs(a.normal[i]) < Real(0.5))
         ++i;

@@ -1,9 +1,9 @@
-// A half-space against every convex shape (Convex, support.h), in closed form.
+// A half-space against any convex shape (Convex, support.h), in closed form.
 //
-// Off by at most 8 epsilon times the largest coordinate or size, the offset among them; exact, for
-// the numbers as they are given, in whether a point, a segment or a triangle overlaps. Shapes that
-// touch overlap. A shape that is not valid, and an empty Aabb, fail a check; but an empty Aabb
-// overlaps nothing. For contacts see manifold.h, for a surface without depth plane.h.
+// Off by at most 8 epsilon times the largest coordinate, size or offset. For a point, segment or
+// triangle the overlap test is exact for the inputs as given. Touching shapes overlap. An invalid
+// shape or an empty Aabb fails a check, except that in `overlaps` an empty Aabb overlaps nothing.
+// For contacts see manifold.h, for a surface without depth plane.h.
 #pragma once
 
 #include "engine/geometry/gjk.h"
@@ -27,10 +27,10 @@ template <Convex A> bool overlaps(const A &a, const HalfSpace &b) {
 template <Convex B> bool overlaps(const HalfSpace &a, const B &b) {
     return overlaps(b, a);
 }
-// Unless their surfaces are exactly parallel and face each other from apart.
+// True unless the planes are exactly parallel, face each other and are apart.
 bool overlaps(const HalfSpace &a, const HalfSpace &b);
 
-// As for two convex shapes (gjk.h). Of those that overlap the common point is A's deepest.
+// As for two convex shapes (gjk.h). If they overlap, the common point is A's deepest.
 template <Convex A> ClosestPoints distance(const A &a, const HalfSpace &b) {
     check_valid(b);
     const PlaneTest test = classify(Plane{b.normal, b.offset}, a);
@@ -52,7 +52,8 @@ template <Convex B> ClosestPoints distance(const HalfSpace &a, const B &b) {
     return found;
 }
 
-// As for two convex shapes (shape_cast.h), but that a touch is a touch as `distance` rounds it.
+// As for two convex shapes (shape_cast.h), except that touching is decided by the rounded
+// `distance`.
 template <Convex A>
 std::optional<CastHit> cast(const A &a, const Vec3 &translation, const HalfSpace &b) {
     check_translation(translation);

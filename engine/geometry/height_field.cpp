@@ -19,7 +19,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The lines of the grid across one axis. Places ascend with the index, rounded or not.
+// The grid lines across one axis. Positions ascend with the index, even after rounding.
 struct Lines {
     Real origin = Real(0);
     Real spacing = Real(1);
@@ -27,8 +27,8 @@ struct Lines {
 
     Real place(int line) const { return origin + Real(line) * spacing; }
 
-    // The line at or before x, but at most the last but one and at least the first: that of the
-    // cell that x is in.
+    // The index of the cell that contains x: the last line at or before x, clamped to the first and
+    // the last but one.
     int cell_of(Real x) const {
         const Real guess = glm::clamp((x - origin) / spacing, Real(0), Real(count - 2));
         int cell = static_cast<int>(guess);
@@ -66,11 +66,10 @@ void check_counts(const HeightField &field) {
                     << field.spacing << " and " << Printed{field.origin});
 }
 
-// Calls visit(row, column) for every cell that the ray may cross up to ray.max_t, which `visit` may
-// lower, roughly in the ray's order, until it returns false. A zero direction is a point.
+// Calls visit(row, column) for every cell the ray may cross up to ray.max_t (which `visit` may
+// lower), roughly in order along the ray, until it returns false. A zero direction is a point.
 template <typename Visit> void walk(const HeightField &field, const Ray &ray, Visit &&visit) {
-    // One line of cells after the other along the axis of the greater component, so that within one
-    // line the ray passes few cells.
+    // Step through lines of cells along the major axis, so that the ray crosses few cells per line.
     const int major = std::abs(ray.direction.x) >= std::abs(ray.direction.z) ? 0 : 2;
     const int minor = 2 - major;
     const Lines along = lines_across(field, major);
@@ -80,8 +79,8 @@ template <typename Visit> void walk(const HeightField &field, const Ray &ray, Vi
     const Real slope = direction == Real(0) ? Real(0) : ray.direction[minor] / direction;
     const Real climb = direction == Real(0) ? Real(0) : ray.direction.y / direction;
 
-    // |slope| <= 1, so a place on the ray carries less than 8 roundings of coordinates as large as
-    // these.
+    // |slope| <= 1, so a position on the ray carries less than 8 roundings of coordinates as large
+    // as these.
     const auto farthest = [](const Lines &lines) {
         return std::max(std::abs(lines.place(0)), std::abs(lines.place(lines.count - 1)));
     };
@@ -99,7 +98,7 @@ template <typename Visit> void walk(const HeightField &field, const Ray &ray, Vi
         const int line = is_forward ? first + step : last - 1 - step;
         Real low = along.place(line), high = along.place(line + 1);
         if (direction != Real(0)) {
-            // What of the line of cells is before the origin or beyond the end is left out.
+            // Clip the line of cells to the part between the ray's origin and end.
             const Real until = end();
             if (is_forward ? low > until + room : high < until - room)
                 return;
@@ -112,7 +111,7 @@ template <typename Visit> void walk(const HeightField &field, const Ray &ray, Vi
         const Real at_high = origin[minor] + slope * (high - origin[major]);
         const auto [first_across, last_across] = across.cells_touching(
             std::min(at_low, at_high) - room, std::max(at_low, at_high) + room);
-        // The heights that the ray has there. Along y itself it has all, as it may when the
+        // The ray's range of heights there. A vertical ray has all heights, and so does one whose
         // quotient overflows.
         const Real rise_low = climb * (low - origin[major]);
         const Real rise_high = climb * (high - origin[major]);
@@ -268,7 +267,7 @@ Vec3 closest_point(const HeightField &field, const Vec3 &point) {
             }
         }
     };
-    // The cell below, or the nearest to it, gives a first bound for the others.
+    // The cell below, or the closest one to that, gives a first bound.
     look_at(lines_across(field, 2).cell_of(point.z), lines_across(field, 0).cell_of(point.x));
     const Real reach = std::sqrt(best_squared) * (Real(1) + Real(4) * epsilon);
     const CellRange range = cells_touching(field, Aabb{point - reach, point + reach});

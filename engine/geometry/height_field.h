@@ -11,10 +11,10 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// A surface, not a solid: a sheet over a rectangle of the xz plane, with nothing below and no rim.
-// Sample (row, column) is at origin + (column * spacing, heights[row * columns + column], row *
-// spacing). Each cell between four samples is two triangles, cut from its least (row, column) to
-// its greatest; their fronts look up.
+// A surface, not a solid: a sheet over a rectangle of the xz plane, with nothing below it and no
+// rim. Sample (row, column) is at origin + (column * spacing, heights[row * columns + column], row
+// * spacing). Each cell between four samples is two triangles, split along the diagonal from its
+// lowest (row, column) to its highest; their fronts face up.
 struct HeightField {
     Vec3 origin{Real(0)};
     Real spacing = Real(1); // > 0
@@ -23,19 +23,19 @@ struct HeightField {
     std::vector<Real> heights;
 };
 
-// Fails a check, naming the value, when there are fewer than two rows or columns, when the number
-// of heights is not rows * columns, when the spacing is not positive or so small that rounding puts
-// two columns or rows in the same place, or when anything is not finite. Looks at every height: the
-// queries check the rest only.
+// Fails a check, naming the value, if there are fewer than two rows or columns, if the number of
+// heights is not rows * columns, if the spacing is not positive or so small that rounding puts two
+// columns or rows in the same place, or if anything is not finite. Looks at every height; the
+// queries check only the rest.
 void check_valid(const HeightField &field);
 
 Aabb bounds(const HeightField &field);
 
-// The samples' points, the same bits in every query.
+// The position of a sample, bit for bit the same in every query.
 Vec3 sample_point(const HeightField &field, int row, int column);
 
-// Cell (row, column) has the triangles first_triangle and first_triangle + 1: the one on the side
-// of greater z, and that of greater x.
+// Cell (row, column) consists of triangles first_triangle, on the side of greater z, and
+// first_triangle + 1, on the side of greater x.
 inline std::uint32_t first_triangle(const HeightField &field, int row, int column) {
     return 2 * (static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(field.columns - 1) +
                 static_cast<std::uint32_t>(column));
@@ -43,19 +43,20 @@ inline std::uint32_t first_triangle(const HeightField &field, int row, int colum
 std::uint32_t triangle_count(const HeightField &field);
 Triangle triangle(const HeightField &field, std::uint32_t index);
 
-// The height y of the surface over (x, z), borders included; nothing outside. Exact at samples,
-// within 8 epsilon of the cell's greatest |y| elsewhere. NaN fails a check.
+// The surface height y at (x, z), borders included; none outside. Exact at samples, elsewhere
+// within 8 epsilon times the cell's greatest |y|. NaN fails a check.
 std::optional<Real> height_at(const HeightField &field, Real x, Real z);
 
-// The cells that touch a box as seen from above, as half-open ranges; empty beside the field.
+// The cells that touch a box seen from above, as half-open ranges; empty if the box is beside the
+// field.
 struct CellRange {
     int first_row = 0, end_row = 0;
     int first_column = 0, end_column = 0;
 };
 CellRange cells_touching(const HeightField &field, const Aabb &box);
 
-// Calls visit(index, triangle) for each triangle whose bounds touch the box, by ascending index,
-// until it returns false.
+// Calls visit(index, triangle) for each triangle whose bounds touch the box, in ascending order of
+// index, until it returns false.
 template <typename Visit>
 void triangles_touching(const HeightField &field, const Aabb &box, Visit &&visit) {
     const CellRange range = cells_touching(field, box);
@@ -71,23 +72,22 @@ void triangles_touching(const HeightField &field, const Aabb &box, Visit &&visit
         }
 }
 
-// The first point of the surface on the ray, from either side, as of its triangles (raycast.h):
-// watertight, and every triangle that the ray meets is asked. The normal is of the side that the
-// ray comes from.
+// The first hit on the surface, from either side, as for its triangles (raycast.h): watertight, and
+// every triangle on the ray's way is tested. The normal is on the side the ray comes from.
 //
 // The grid is walked cell by cell (Amanatides, Woo 1987, "A fast voxel traversal algorithm for ray
-// tracing"), but not by summed steps: of each column (row, for rays steeper than that) the stretch
-// of cells that the ray crosses is computed afresh, with room for rounding.
+// tracing"), but without accumulating steps: the cells the ray crosses in each column (row, for
+// rays mostly along z) are computed from scratch, with room for rounding.
 std::optional<RayHit> raycast(const HeightField &field, const Ray &ray);
 
 // Whether the segment from a to b touches the surface; exact. a == b is a point.
 bool linetest(const HeightField &field, const Vec3 &a, const Vec3 &b);
 
-// A point of the surface that is closest, as of its triangles (triangle.h). From high above it
-// looks at all cells that are not farther, seen from above, than the height.
+// A closest point of the surface, as for its triangles (triangle.h). From high above it looks at
+// all cells whose horizontal distance is not larger than the height.
 Vec3 closest_point(const HeightField &field, const Vec3 &point);
 
-// As of the triangles (triangle_overlap.h).
+// As for the triangles (triangle_overlap.h).
 bool overlaps(const HeightField &field, const Sphere &sphere);
 bool overlaps(const HeightField &field, const Aabb &box);
 bool overlaps(const HeightField &field, const Capsule &capsule);

@@ -1,5 +1,5 @@
-// What is asked of all vertices or faces of a hull, of as many at once as the processor works on.
-// Compiled once for each instruction set, by including itself.
+// Searches over all vertices or faces of a hull, several at once with vector instructions. Compiled
+// once per instruction set, by including itself.
 #include "engine/geometry/hull_queries.h"
 
 #include "engine/core/check.h"
@@ -13,7 +13,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/geometry/hull_kernels.cpp"
-// Vectors of unknown size cannot stand in structs.
+// Vectors of unknown size cannot be struct members.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which must choose the target first.
@@ -63,8 +63,8 @@ HWY_INLINE Vector load(const Plane *planes) {
     return load_planes(planes).normal;
 }
 
-// Lane k looks at the elements k, k + n, k + 2 n, ...; the last vector of them ends with the last
-// one, and sees some again. Of equals the first counts, so the answer is the same at any width.
+// Lane k looks at elements k, k + n, k + 2 n, ...; the last vector ends at the last element and
+// revisits some. The first of equals wins, so the answer is the same at any width.
 template <typename Element>
 std::size_t farthest_of_many(const Element *elements, std::size_t count, const Vec3 &direction) {
     const std::size_t lanes = hn::Lanes(tag);
@@ -84,7 +84,7 @@ std::size_t farthest_of_many(const Element *elements, std::size_t count, const V
     const auto none = hn::Set(index_tag, std::numeric_limits<Index>::max());
     const auto found = hn::IfThenElse(hn::RebindMask(index_tag, is_greatest), best, none);
     const auto least = static_cast<std::size_t>(hn::GetLane(hn::MinOfLanes(index_tag, found)));
-    return least < count ? least : 0; // no lane is the greatest where the direction is not a number
+    return least < count ? least : 0; // if the direction is NaN, no lane is the greatest
 }
 
 template <typename Element>

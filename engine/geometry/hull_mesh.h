@@ -1,4 +1,4 @@
-// The convex polyhedron as data, and the solid that places it in the world.
+// Convex polyhedron data; a ConvexHull (shapes.h) places it in the world.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -9,7 +9,7 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// A closed convex polyhedron, in its own frame. Made by `convex_hull` (quickhull.h) and not changed
+// A closed convex polyhedron in its own frame. Made by `convex_hull` (quickhull.h) and immutable
 // afterwards.
 struct HullMesh {
     // vertices[vertex_indices[first .. first + count)], counter-clockwise from outside; count >= 3.
@@ -17,8 +17,8 @@ struct HullMesh {
         std::uint32_t first = 0;
         std::uint32_t count = 0;
     };
-    // Each edge once; `a` and `b` are vertices, the faces are those on its left and on its right
-    // for one who goes from a to b on the outside: the left face lists a before b.
+    // Each edge once, from vertex a to vertex b. Left and right are as seen from outside, going
+    // from a to b: the left face lists a before b.
     struct Edge {
         std::uint32_t a = 0, b = 0;
         std::uint32_t left_face = 0, right_face = 0;
@@ -26,10 +26,10 @@ struct HullMesh {
 
     std::vector<Vec3> vertices;
     std::vector<Face> faces;
-    std::vector<Plane> planes; // of the faces, outward; no vertex is in front of any
+    std::vector<Plane> planes; // of the faces, outward; no vertex is in front of any plane
     std::vector<std::uint32_t> vertex_indices;
-    // Three vertices of each face, counter-clockwise, such that exactly no vertex is in front of
-    // the plane through them: what decides where the rounded planes leave doubt.
+    // Three vertices of each face, counter-clockwise, such that no vertex is in front of the plane
+    // through them, by exact signs. They decide where the rounded planes leave doubt.
     std::vector<std::array<std::uint32_t, 3>> face_corners;
     std::vector<Edge> edges;
     // The vertices that share an edge with vertex v:
@@ -37,18 +37,18 @@ struct HullMesh {
     std::vector<std::uint32_t> first_neighbor;
     std::vector<std::uint32_t> neighbors;
     Aabb box; // of the vertices, exactly
-    // How much the height of a point in `box` above a plane, as computed in Real, can differ from
-    // its height above the plane of the face's three corners. Metres.
+    // Bound (m) on the difference between the height of a point in `box` above a face's plane,
+    // computed in Real, and its height above the plane through the face's three corners.
     Real slack = Real(0);
     std::uint32_t most_corners = 0; // of a face
-    bool has_flat_faces = true;     // exactly: all vertices of each face are in one plane
+    bool has_flat_faces = true;     // exactly: the vertices of each face are coplanar
     Vec3 center{Real(0)};           // of mass, for uniform density
     Real volume = Real(0);          // m^3
     Mat3 inertia{Real(0)};          // about the centre, for a density of 1 kg/m^3
 };
 
-// A mesh that is missing or has no vertices, a position that is not finite, and a rotation that is
-// not of unit length (is_unit) fail a check: here, and in each query that takes a ConvexHull.
+// A missing mesh, a mesh without vertices, a non-finite position, or a rotation that is not of unit
+// length (is_unit) fails a check: here, and in every query that takes a ConvexHull.
 void check_valid(const ConvexHull &hull);
 
 } // namespace plumb::inline PLUMB_PRECISION

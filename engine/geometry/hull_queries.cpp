@@ -19,7 +19,7 @@ namespace {
 
 using Index = std::uint32_t;
 
-// From the world into the frame of the mesh and back. Without rotation only the position counts, so
+// From world space to the mesh's frame and back. Without rotation only the position is applied, so
 // that small integers stay exact.
 class MeshFrame {
   public:
@@ -65,8 +65,8 @@ bool contains_local(const HullMesh &mesh, const Vec3 &p) {
     if (!(p.x >= mesh.box.min.x && p.x <= mesh.box.max.x && p.y >= mesh.box.min.y &&
           p.y <= mesh.box.max.y && p.z >= mesh.box.min.z && p.z <= mesh.box.max.z))
         return false;
-    // For points in the box the slack bounds the error of a height. What the heights leave in
-    // doubt, the exact sign decides.
+    // For points in the box the slack bounds the error of a height. Where the heights leave doubt,
+    // the exact sign decides.
     bool is_doubtful = false;
     for (const Plane &plane : mesh.planes) {
         const Real above = height(plane, p);
@@ -81,10 +81,10 @@ bool contains_local(const HullMesh &mesh, const Vec3 &p) {
     return true;
 }
 
-// The point of a face that is closest to p, which is `above` its plane.
+// The closest point of a face to p, which is at height `above` over its plane.
 struct FacePoint {
     Vec3 point{Real(0)};
-    bool is_inner = true; // the foot of p, not a point of an edge
+    bool is_inner = true; // the projection of p, not a point on an edge
 };
 
 FacePoint closest_on_face(const HullMesh &mesh, std::size_t face, const Vec3 &p, Real above) {
@@ -96,7 +96,7 @@ FacePoint closest_on_face(const HullMesh &mesh, std::size_t face, const Vec3 &p,
     for (Index i = loop.first; i < loop.first + loop.count; ++i) {
         const Vec3 to = mesh.vertices[mesh.vertex_indices[i]];
         const Vec3 along = to - from;
-        // Beyond an edge: the closest point is on one of the edges that p is beyond.
+        // Beyond an edge. The closest point is on one of the edges that p is beyond.
         if (glm::dot(glm::cross(along, normal), p - from) > Real(0)) {
             const Vec3 candidate = from + closest_parameter(from, along, p) * along;
             const Vec3 d = p - candidate;
@@ -122,7 +122,7 @@ Vec3 closest_local(const HullMesh &mesh, const Vec3 &p) {
             highest = face;
         }
     }
-    // Nothing of the solid is nearer than the plane p is highest above.
+    // No point of the solid is closer than the plane that p is highest above.
     const FacePoint first = closest_on_face(mesh, highest, p, greatest);
     if (first.is_inner)
         return first.point;
@@ -144,10 +144,10 @@ Vec3 closest_local(const HullMesh &mesh, const Vec3 &p) {
     return best;
 }
 
-// Exact, for a mesh with flat faces: whether a line meets the solid. It does if it passes all edges
-// of a face on the same side. A face that the line lies in says nothing, but a line that meets such
-// a face also meets another one that it does not lie in. `side_of` is the side on which the line
-// passes the edge between two vertices.
+// Whether a line hits the solid; exact for a mesh with flat faces. It does if it passes all edges
+// of a face on the same side. A face that contains the line decides nothing, but a line that hits
+// such a face also hits another face that does not contain it. `side_of` is the side on which the
+// line passes the edge between two vertices.
 template <typename SideOf> bool line_meets(const HullMesh &mesh, const SideOf &side_of) {
     for (const HullMesh::Face &loop : mesh.faces) {
         bool any_left = false;
@@ -166,25 +166,26 @@ template <typename SideOf> bool line_meets(const HullMesh &mesh, const SideOf &s
     return false;
 }
 
-// Exact, for a ray that starts outside of a mesh with flat faces: whether it meets the solid.
+// Whether a ray that starts outside hits the solid; exact for a mesh with flat faces.
 bool truly_meets(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction) {
-    // In front of a face and not coming closer to its plane.
+    // In front of a face and not approaching its plane: a miss.
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         const auto &[a, b, c] = mesh.face_corners[face];
         if (is_in_front(mesh, face, origin) &&
             triple_sign(direction, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) >= 0)
             return false;
     }
-    // Else every face that the origin is in front of is ahead, so the solid is if the line meets
-    // it.
+    // Otherwise every face that the origin is in front of is ahead, so if the line hits the solid,
+    // it hits ahead.
     return line_meets(mesh, [&](const Vec3 &from, const Vec3 &to) {
         return triple_sign(direction, origin, from, to);
     });
 }
 
-// The same of a segment with both ends outside. From its ends, for their difference is rounded.
+// The same for a segment with both ends outside. Uses the ends, because their difference is
+// rounded.
 bool segment_truly_meets(const HullMesh &mesh, const Vec3 &a, const Vec3 &b) {
-    // A solid that the line meets beyond one end has a face that both ends are in front of.
+    // If the line hits the solid beyond one end, both ends are in front of some face.
     for (std::size_t face = 0; face < mesh.faces.size(); ++face)
         if (is_in_front(mesh, face, a) && is_in_front(mesh, face, b))
             return false;
@@ -193,22 +194,22 @@ bool segment_truly_meets(const HullMesh &mesh, const Vec3 &a, const Vec3 &b) {
 }
 
 // The ray against the half-spaces of the faces (Cyrus, Beck 1978, "Generalized two- and
-// three-dimensional clipping"), each known but for the doubt: what is met even when all are moved
-// in by it is met, what is missed even when all are moved out is missed.
+// three-dimensional clipping"), each known only within the doubt: a ray that hits even with all
+// planes moved in by the doubt hits, one that misses even with all moved out misses.
 struct Clip {
     Real enter = -infinity;
     Real exit = infinity;
-    Real late_enter = -infinity; // what `enter` may be at most, and at least
+    Real late_enter = -infinity; // upper bound of `enter`; early_enter is the lower
     Real early_enter = -infinity;
-    std::size_t face = 0; // that the ray enters by
+    std::size_t face = 0; // the ray enters through
     bool is_missed = false;
     bool is_doubtful = false;
 };
 
 Clip clip(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction) {
     const Real doubt = doubt_at(mesh, origin);
-    // Over the whole way to the far side of the mesh, a height that changes by less than the doubt
-    // is that of the origin.
+    // If a height changes by less than the doubt all the way to the far side of the mesh, use the
+    // origin's height.
     const Real way = sum_of_magnitudes(origin) + Real(2) * sum_of_magnitudes(mesh.box.max) +
                      Real(2) * sum_of_magnitudes(mesh.box.min);
     const Real flat_climb = doubt / way * sum_of_magnitudes(direction);
@@ -248,7 +249,7 @@ Clip clip(const HullMesh &mesh, const Vec3 &origin, const Vec3 &direction) {
     }
     result.is_missed = result.early_enter > late_exit || late_exit < Real(0);
     result.is_doubtful |= !(result.late_enter <= early_exit && early_exit >= Real(0));
-    // A ray that touches an edge or a corner may seem to leave before it enters. Where all heights
+    // A ray that touches an edge or corner may seem to leave before it enters. Where all heights
     // are within the doubt, it is on the surface.
     if (result.enter > result.exit)
         result.enter = result.exit = Real(0.5) * (result.early_enter + late_exit);
@@ -357,7 +358,7 @@ std::optional<RayInterval> ray_interval(const ConvexHull &hull, const Ray &ray) 
     const MeshFrame frame(hull);
     const HullMesh &mesh = *hull.mesh;
     const Vec3 origin = frame.local_point(ray.origin);
-    // Scaled by a power of two to a length near 1, which changes no digit.
+    // Scaled by a power of two to a length near 1, which is exact.
     const Real largest =
         std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
     const int exponent = std::ilogb(largest);
@@ -395,7 +396,7 @@ bool linetest(const ConvexHull &hull, const Vec3 &a, const Vec3 &b) {
         return true;
     if (from == to)
         return false;
-    // The rounded difference decides where it leaves no doubt.
+    // The rounded difference decides if it leaves no doubt.
     const Clip through = clip(mesh, from, to - from);
     if (through.is_missed || through.early_enter > Real(1))
         return false;

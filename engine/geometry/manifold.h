@@ -1,4 +1,4 @@
-// Where two solids touch, or nearly touch: a normal and up to four points.
+// Contact manifold of two solids that touch or nearly touch: a normal and up to four points.
 #pragma once
 
 #include "engine/geometry/hull_mesh.h"
@@ -12,18 +12,18 @@ namespace plumb::inline PLUMB_PRECISION {
 struct ManifoldPoint {
     Vec3 position{Real(0)};    // world, midway between the two surfaces
     Real separation = Real(0); // along the normal; negative in penetration
-    std::uint32_t feature = 0; // names the pair of features that made it: the same while they last
+    std::uint32_t feature = 0; // id of the feature pair that made it, stable while the pair lasts
 };
 
 struct Manifold {
     Vec3 normal{Real(0)}; // unit, from A to B
     std::array<ManifoldPoint, 4> points{};
-    int count = 0; // 0: further apart than the margin
+    int count = 0; // 0: farther apart than the margin
 };
 
-// The contacts of one pair of solids, in one order: behind `collide`, which checks what these do
-// not. Shapes are valid and `margin` >= 0. `guess`: about the normal from A to B, of any length;
-// zero: unknown.
+// The implementations behind `collide`, each for one argument order. The checks are in `collide`:
+// here shapes must be valid and `margin` >= 0. `guess`: an approximate normal from A to B, of any
+// length; zero: unknown.
 namespace unchecked {
 
 Manifold collide(const Sphere &a, const Sphere &b, Real margin);
@@ -55,7 +55,7 @@ Manifold collide(const ConvexHull &a, const HalfSpace &b, Real margin);
 Manifold collide(const Triangle &a, const Triangle &b, Real margin);
 Manifold collide(const Triangle &a, const HalfSpace &b, Real margin);
 inline Manifold collide(const HalfSpace &, const HalfSpace &, Real) {
-    return {}; // nothing that moves has endless contact
+    return {}; // a dynamic body is never a half-space
 }
 
 } // namespace unchecked
@@ -75,47 +75,45 @@ concept CollidesFromGuess = requires(const A &a, const B &b) {
     unchecked::collide(a, b, Real(0), Vec3{Real(0)});
 };
 
-// Any two of Sphere, Box, Capsule, Cylinder, ConvexHull, Triangle and HalfSpace. Another one in a
+// Any two of Sphere, Box, Capsule, Cylinder, ConvexHull, Triangle and HalfSpace. Adding a type to
 // Shape does not compile until all its pairs are above.
 template <typename A, typename B>
 concept Collidable = CollidesInOrder<A, B> || CollidesInOrder<B, A>;
 
 void check_margin(Real margin);
 
-// Contact points of all places where A and B are closer than `margin` (>= 0, metres). A NaN, a
-// negative size or margin fails a check.
+// Contact points wherever A and B are closer than `margin` (>= 0, metres). A NaN, a negative size
+// or a negative margin fails a check.
 //
 // The least separation is the signed distance: for disjoint shapes the distance of their closest
-// points, for overlapping ones minus the least translation along `normal` that parts them; where
-// a feature nearly as good stands for the best, for it wavers less, it is up to 0.2 mm off.
-// Cylinders, hulls and triangles in each other add what EPA is off by (epa.h).
+// points, for overlapping ones minus the least translation along `normal` that separates them. It
+// is up to 0.2 mm off when a nearly as good feature is preferred because it is more stable.
+// Overlapping cylinders, hulls and triangles add the error of EPA (epa.h).
 //
-// Deterministic; depends on nothing but the arguments. Swapped arguments give the same points with
-// the normal negated, except where the choice between equals needs an order: two boxes of one size
-// that touch face to face take the first as the reference, and concentric spheres push along +Y
-// both ways. Other shapes with a common centre part along their axis of least depth. Half-space
-// against half-space gives none. A triangle is a thin solid with two sides: what is behind it is
-// pushed out to the back.
+// Deterministic; depends only on the arguments. Swapping the arguments gives the same points with
+// the normal negated, except where a tie needs an order: for two boxes of equal size touching face
+// to face the first is the reference, and concentric spheres push along +Y both ways. Other
+// concentric shapes separate along their axis of least depth. Half-space against half-space gives
+// no contacts. A triangle is a thin two-sided solid: a shape behind it is pushed out to the back.
 //
 // Box-box by SAT (Gottschalk, Lin, Manocha 1996) over 15 axes, parallel-edge axes dropped, then the
-// incident face clipped against the reference face (Sutherland-Hodgman), at most four points kept;
-// edge-edge gives one point, and so do boxes apart that are closest at a corner. Capsules that lie
-// on a face, along an edge or along each other give two. A tilted capsule's points are the feet of
-// points of its axis, so but for the deepest one they may lie up to r (1 - cos tilt) under its
+// incident face clipped against the reference face (Sutherland-Hodgman), keeping at most four
+// points. Edge-edge gives one point, and so do disjoint boxes that are closest at a corner. A
+// capsule on a face, along an edge or along another capsule gives two. A tilted capsule's points
+// are projected from its axis, so all but the deepest may lie up to r (1 - cos tilt) under its
 // surface.
 //
-// Cylinders, hulls and triangles take the separation and the normal from GJK and EPA (epa.h says
-// how exact they are), unless the normal of a face that the contact is on is as good within
-// 0.1 mm: then that is taken, so that what rests on a face does not waver. The face or side of the
-// other shape that looks most against the normal is clipped by it, and of the points within the
-// margin four are kept: the deepest, and those that span the largest area with it. Two sides along
-// each other give two points. Everything else gives one. The end of a cylinder is clipped as the
-// octagon in its rim, whose corners are points of it: the area of contact is up to 10 % smaller,
-// but the deepest point of the rim is always there. Of a hull face with more than 16 corners, 16
-// are taken, evenly.
+// Cylinders, hulls and triangles take separation and normal from GJK and EPA (accuracy: epa.h),
+// unless the normal of a face under the contact is as good within 0.1 mm: then the face normal is
+// used, so that a body resting on a face does not jitter. The other shape's most anti-parallel face
+// or side is clipped against it, and four of the points within the margin are kept: the deepest,
+// and those that span the largest area with it. Two parallel sides give two points, everything else
+// one. A cylinder's end is clipped as the octagon inscribed in its rim: the contact area is up to
+// 10 % smaller, but the deepest point of the rim is always included. Of a hull face with more than
+// 16 corners, 16 evenly spaced ones are used.
 //
-// With a `guess`, about the normal from A to B, such as that of the step before, it is the same to
-// rounding, and sooner where hulls are in it; zero: unknown.
+// `guess` is an approximate normal from A to B, such as the previous step's; zero: unknown. It
+// changes the result only by rounding, but speeds up pairs with hulls.
 template <typename A, typename B>
 requires Collidable<A, B> Manifold collide(const A &a, const B &b, Real margin,
                                            const Vec3 &guess = Vec3{Real(0)}) {

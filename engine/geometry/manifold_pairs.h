@@ -1,4 +1,4 @@
-// What the contacts of the single pairs of shapes have in common.
+// Shared by the contact functions of all shape pairs.
 #pragma once
 
 #include "engine/geometry/manifold.h"
@@ -10,14 +10,13 @@ inline void add_point(Manifold &manifold, const Vec3 &position, Real separation,
     manifold.points[static_cast<std::size_t>(manifold.count++)] = {position, separation, feature};
 }
 
-// Separations (metres) that differ by less than this count as equal where a choice between contact
-// features is made: a face is kept unless an edge or another face is better by more, and a vertex
-// this little outside of a face is on it. So boxes at rest on each other do not change their
-// features with the solver's small motions. 0.1 mm is far below the sizes simulated and above their
-// jitter.
+// Separations (metres) that differ by less than this count as equal when choosing contact features:
+// a face is kept unless an edge or another face is better by more, and a vertex this close outside
+// a face counts as on it. So boxes at rest on each other keep their features despite the solver's
+// small motions. 0.1 mm is far below the sizes simulated and above their jitter.
 inline constexpr Real feature_tolerance = Real(1e-4);
 
-// A direction at right angles to `axis`, which need not have unit length; +Y when axis is zero.
+// A direction perpendicular to `axis`, which need not be of unit length; +Y if `axis` is zero.
 Vec3 any_perpendicular(const Vec3 &axis);
 
 } // namespace plumb::inline PLUMB_PRECISION

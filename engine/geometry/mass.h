@@ -12,20 +12,20 @@ Real volume(const Shape &shape); // m^3; infinite for a half-space
 Real volume(const Cylinder &cylinder);
 Real volume(const ConvexHull &hull);
 
-// Principal moments of inertia (kg m^2) about the centre of mass for a solid of that mass (kg) and
-// uniform density, in the shape's own principal frame: the local axes for a Box and a Sphere; for a
-// Capsule and a Cylinder y is along the axis; those of a hull ascend. A half-space has none: fails
-// a check.
+// Principal moments of inertia (kg m^2) about the centre of mass for a solid of uniform density and
+// the given mass (kg), in the shape's principal frame: the local axes for a Box and a Sphere; y
+// along the axis for a Capsule and a Cylinder; ascending for a hull. A half-space has none and
+// fails a check.
 Vec3 principal_inertia(const Shape &shape, Real mass);
 Vec3 principal_inertia(const Cylinder &cylinder, Real mass); // y along its axis
 
-// The inertia of a hull of that mass about its centre of mass (mesh->center), on the axes of its
+// The inertia of a hull of the given mass about its centre of mass (mesh->center), in the mesh's
 // own frame.
 Mat3 inertia(const ConvexHull &hull, Real mass);
 
-// Principal moments and the axes they belong to: inertia = R diag(moments) R^T, with R the rotation
-// from the principal frame. For a symmetric matrix; the moments ascend, and the axes of equal ones
-// are any. An inertia that is diagonal already gives axes that are axes.
+// Principal moments and axes of a symmetric matrix: inertia = R diag(moments) R^T, where R rotates
+// from the principal frame. The moments ascend; equal moments have arbitrary axes. A matrix that is
+// already diagonal gives coordinate axes.
 struct PrincipalFrame {
     Vec3 moments{Real(0)};
     Quat rotation = identity_rotation;
@@ -38,12 +38,12 @@ struct MassProperties {
     Mat3 inertia{Real(0)}; // about the centre, for a density of 1 kg/m^3
 };
 
-// Of a solid where it is. A half-space fails a check.
+// Of a solid in place, in world space. A half-space fails a check.
 MassProperties mass_properties(const Shape &shape);
 
-// Of the solid within a closed surface of triangles, counter-clockwise from outside. Inside out the
-// volume is negative; a surface around no volume gives zeros. Computed in double; from the
-// surface's own middle, so a place far away costs no digits.
+// Of the solid inside a closed triangle surface, counter-clockwise from outside. The volume is
+// negative if the surface is inside out; a surface that encloses no volume gives zeros. Computed in
+// double relative to the surface's own middle, so being far from the origin costs no precision.
 MassProperties mass_properties(std::span<const Triangle> surface);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,15 +1,15 @@
-// Whether two shapes have a common point. Box with Box and with Aabb are in sat.h.
+// Whether two shapes overlap. Box with Box and Box with Aabb are in sat.h.
 //
-// All sets are closed: shapes that touch overlap. A shape that is not valid fails a check with the
-// value in its message; an empty Aabb overlaps nothing.
+// All sets are closed: touching shapes overlap. An invalid shape fails a check with the value in
+// its message; an empty Aabb overlaps nothing.
 //
-// Exact when everything is a small integer (products of their sixth powers can be represented, for
-// Capsule with Capsule and boxes; fourth elsewhere) and no Box is rotated; for Aabb with Aabb and
-// Plane with Plane, always. Elsewhere the answer may be wrong for shapes whose surfaces are nearer
-// to touching than 32 epsilon times the largest coordinate or size. Lengths beyond 1e6 m or below
-// 1e-6 m may overflow or underflow in float, and are not covered.
+// Exact when all inputs are small integers (products of their sixth powers are representable for
+// Capsule with Capsule and boxes, of their fourth powers otherwise) and no Box is rotated; always
+// exact for Aabb with Aabb and Plane with Plane. Otherwise the answer may be wrong for shapes whose
+// surfaces are closer to touching than 32 epsilon times the largest coordinate or size. Lengths
+// beyond 1e6 m or below 1e-6 m may overflow or underflow in float and are not covered.
 //
-// Against a plane, see also `classify` (plane.h), which says on which side a shape is and how far.
+// For planes see also `classify` (plane.h), which gives a shape's side and distance.
 #pragma once
 
 #include "engine/geometry/sat.h"
@@ -25,7 +25,7 @@ bool overlaps(const Sphere &sphere, const Plane &plane);
 bool overlaps(const Aabb &a, const Aabb &b);
 bool overlaps(const Aabb &box, const Plane &plane);
 bool overlaps(const Box &box, const Plane &plane);
-// Planes overlap unless they are parallel, as given, and apart.
+// Planes overlap unless they are exactly parallel, as given, and apart.
 bool overlaps(const Plane &a, const Plane &b);
 
 bool overlaps(const Capsule &a, const Capsule &b);
@@ -34,7 +34,7 @@ bool overlaps(const Capsule &capsule, const Aabb &box);
 bool overlaps(const Capsule &capsule, const Box &box);
 bool overlaps(const Capsule &capsule, const Plane &plane);
 
-// The same asked the other way around.
+// The same with the arguments swapped.
 inline bool overlaps(const Aabb &box, const Sphere &sphere) {
     return overlaps(sphere, box);
 }

@@ -1,4 +1,4 @@
-// The convex hull of points.
+// The convex hull of a point set.
 #pragma once
 
 #include "engine/geometry/hull_mesh.h"
@@ -8,38 +8,39 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Why points have no solid hull.
+// Why a point set has no solid hull.
 enum class HullProblem {
     none,
     too_few_points,   // fewer than four
     not_finite,       // a NaN or an infinity among them
-    all_in_one_point, // within the tolerance; likewise the next two
+    all_in_one_point, // within the tolerance, as for the next two
     all_on_one_line,
     all_in_one_plane,
     out_of_range, // the volume or the inertia overflows or vanishes in Real
 };
 
 struct HullResult {
-    std::optional<HullMesh> mesh; // of value exactly when the problem is `none`
+    std::optional<HullMesh> mesh; // set exactly when the problem is `none`
     HullProblem problem = HullProblem::none;
-    // 3 epsilon (max |x| + max |y| + max |z|): what the rounding of coordinates can do to points of
-    // one plane, and the height below which a point beyond the hull is taken to be on it (Gregorius
-    // 2014). Metres.
+    // 3 epsilon (max |x| + max |y| + max |z|), metres: how far coordinate rounding can move
+    // coplanar points off their plane, and the height below which a point outside the hull counts
+    // as on it (Gregorius 2014).
     Real tolerance = Real(0);
-    // How far the farthest of the points is in front of a plane of the mesh: at most three times
-    // the tolerance, unless `max_vertices` cut the hull short. Metres.
+    // How far the farthest input point is in front of a plane of the mesh, metres: at most three
+    // times the tolerance, unless `max_vertices` cut the hull short.
     Real left_out = Real(0);
 };
 
-// The convex hull, with faces that are in one plane (within the tolerance) merged into polygons.
+// The convex hull, with coplanar faces (within the tolerance) merged into polygons.
 //
-// Its vertices are some of the points, bit for bit, so it is never outside of the true hull. When
-// the hull needs more than `max_vertices` (>= 4, or a check fails), those that are farthest beyond
-// what there is already are taken first, and the mesh stays inside of the true hull; `left_out`
-// says by how much. Any duplicates, and points in faces, edges or the inside, are left out.
+// Its vertices are input points, bit for bit, so it never extends outside the true hull. If the
+// hull needs more than `max_vertices` (>= 4, or a check fails), the points farthest outside the
+// current hull are added first, and the mesh stays inside the true hull; `left_out` tells by how
+// much. Duplicates and points in faces, on edges or in the interior are dropped.
 //
-// Signs are exact (predicates.h), so no order or place of the points can tear the surface. The same
-// points in the same order give the same mesh, bit for bit. Not for each frame: it allocates.
+// Signs are exact (predicates.h), so no order or position of the points can tear the surface. The
+// same points in the same order give the same mesh, bit for bit. Allocates: do not call it every
+// frame.
 HullResult convex_hull(std::span<const Vec3> points, int max_vertices);
 
 } // namespace plumb::inline PLUMB_PRECISION

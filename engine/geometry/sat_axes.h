@@ -1,12 +1,12 @@
-// The 15 candidate axes of two boxes, best of each kind: what the overlap test and the contact
-// manifold have in common.
+// The 15 candidate axes of two boxes, best of each kind: shared by the overlap test and the contact
+// manifold.
 #pragma once
 
 #include "engine/geometry/shapes.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Box B seen from box A: `position` is B's centre and the columns of `axes` are B's axes, both in
+// Box B relative to box A: `position` is B's centre and the columns of `axes` are B's axes, both in
 // A's frame.
 struct RelativeBox {
     Vec3 position{Real(0)};
@@ -28,8 +28,8 @@ struct BoxAxes {
     BoxAxis edges; // separation -infinity when all edges of A are parallel to edges of B
 };
 
-// The best axis of each kind. Stops early, with only what it has seen, at an axis with a separation
-// above `margin`.
+// The best axis of each kind. Stops at the first axis with a separation above `margin`, with the
+// best axes so far.
 BoxAxes best_axes(const RelativeBox &relative, const Vec3 &half_a, const Vec3 &half_b, Real margin);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,10 +1,10 @@
-// A convex shape that moves along a line until it touches another.
+// Shape cast: moves a convex shape along a line until it touches another.
 //
 // Conservative advancement (Mirtich 1996, "Impulse-based dynamic simulation of rigid body systems",
-// 2.3): it is moved as far as the slab between the closest points lets it, again and again. For a
+// 2.3): repeatedly advance the shape as far as the slab between the closest points allows. For
 // straight motion the distance is a convex function of time and the slab its tangent, so this is
-// Newton's method from the side from which it never passes the root: nothing is tunnelled through,
-// however thin.
+// Newton's method from the side that never overshoots the root: no tunnelling, however thin the
+// shapes.
 #pragma once
 
 #include "engine/geometry/epa.h"
@@ -20,34 +20,34 @@ struct CastHit {
     bool starts_overlapping = false;
 };
 
-// The first touch of A, moved by t * translation, with B. Both are solid: when they overlap (or
-// touch, within cast_target) at t = 0 that is the hit, whichever way A goes, with the normal that
-// `penetration` gives. A translation of zero asks only that. One that is not finite fails a check.
+// The first contact of A, moved by t * translation, with B. Both are solid: if they overlap (or
+// touch, within cast_target) at t = 0, that is the hit, whichever way A moves, with the normal that
+// `penetration` gives. A zero translation tests only that. A non-finite one fails a check.
 //
-// At `t` the shapes are within cast_target of each other, and not in each other: the true hit is no
-// earlier, but for the rounding of `distance` (gjk.h), with the translation as one of the
-// coordinates. A pass closer than the target is a hit, one farther is not.
+// At `t` the shapes are within cast_target of each other but do not overlap. The true hit is no
+// earlier, up to the rounding of `distance` (gjk.h) with the translation counted among the
+// coordinates. Passing closer than the target is a hit, farther is not.
 template <typename A, typename B>
 requires ConvexPair<A, B> std::optional<CastHit> cast(const A &a, const Vec3 &translation,
                                                       const B &b);
 
-// Fails a check when it is not finite.
+// Fails a check if it is not finite.
 void check_translation(const Vec3 &translation);
 
-// How close is a touch, in metres, for coordinates of that size, from the start of the motion: 32
-// times what they are rounded by, so that the direction between the closest points means something.
+// The distance (m) that counts as touching, for coordinates of the given size over the whole
+// motion: 32 times their rounding, so that the direction between the closest points is meaningful.
 inline Real cast_target(Real size) {
     return Real(32) * std::numeric_limits<Real>::epsilon() * size;
 }
 
-// A core that can be put elsewhere than where it starts, whatever its kind. Borrows both.
+// A type-erased core that can be moved from its start. Borrows both cores.
 class MovingCore {
   public:
     template <typename Core>
     MovingCore(Core &core, const Core &start)
         : core_(&core), start_(&start), place_(place_core<Core>) {}
 
-    // At its start, moved by that much.
+    // Places the core at its start moved by `by`.
     void place(const Vec3 &by) const { place_(core_, start_, by); }
 
   private:
@@ -62,7 +62,7 @@ class MovingCore {
     void (*place_)(void *, const void *, const Vec3 &);
 };
 
-// The cast of two cores, of which B comes towards A. The hit's point is relative to their origin.
+// Casts two cores, moving B towards A. The hit point is relative to their origin.
 std::optional<CastHit> cast_cores(const CorePair &cores, const MovingCore &core_b,
                                   const Vec3 &translation);
 

@@ -1,12 +1,12 @@
-// The solid shapes of the engine and the ray, as plain values.
+// The engine's shapes, and the ray, as plain values.
 //
 // All sets are closed: a point on the surface is inside. Lengths in metres.
 //
-// Range, here and in the other headers of geometry unless they give their own: what is called exact
-// is so for all finite floats, and for doubles that are 0 or of magnitude 1e-60 to 1e70, as the
-// signs of predicates.h are. Bounds in epsilon hold where sizes, and distances that are not 0, are
-// from 2^-20 to 2^28 m in float (1e-6 to 2.6e8), from 2^-160 to 2^160 m in double: beyond, products
-// of lengths underflow or overflow.
+// Range, here and in the other geometry headers unless they give their own: "exact" holds for all
+// finite floats, and for doubles that are 0 or of magnitude 1e-60 to 1e70, as for the signs of
+// predicates.h. Bounds in epsilon hold if sizes and non-zero distances are from 2^-20 to 2^28 m in
+// float (1e-6 to 2.6e8), from 2^-160 to 2^160 m in double: beyond that, products of lengths
+// underflow or overflow.
 #pragma once
 
 #include "engine/math/rigid.h"
@@ -44,8 +44,8 @@ struct HalfSpace {
     Real offset = Real(0);
 };
 
-// All points within `radius` of the segment from a to b, cut off flat at both ends. a == b gives a
-// disc without a direction, and is refused.
+// All points within `radius` of the segment from a to b, cut off flat at both ends. a == b would be
+// a disc without a direction and is invalid.
 struct Cylinder {
     Vec3 a{Real(0)};
     Vec3 b{Real(0), Real(1), Real(0)};
@@ -64,8 +64,8 @@ struct Plane {
     Real offset = Real(0);
 };
 
-// A flat piece of surface, counter-clockwise from its front. Corners on one line or in one point
-// leave a segment or a point, which is allowed.
+// A flat piece of surface, counter-clockwise seen from its front. Collinear or coincident corners
+// make it a segment or a point, which is allowed.
 struct Triangle {
     Vec3 a{Real(0)};
     Vec3 b{Real(0)};
@@ -80,7 +80,7 @@ struct ConvexHull {
     Quat rotation = identity_rotation;
 };
 
-// What dynamics moves. A pair of them is collided in this order (manifold_pairs.h).
+// The shapes of bodies. Pairs are collided in this order (manifold_pairs.h).
 using Shape = std::variant<Sphere, Box, Capsule, Cylinder, ConvexHull, HalfSpace>;
 
 // An axis-aligned box; empty when min > max in any component.
@@ -89,16 +89,15 @@ struct Aabb {
     Vec3 max{std::numeric_limits<Real>::lowest()};
 };
 
-// The points origin + t * direction for 0 <= t <= max_t. `direction` has any length but zero, and t
-// is in units of it, so the segment from a to b is Ray{a, b - a, 1}.
+// The points origin + t * direction for 0 <= t <= max_t. `direction` may have any non-zero length,
+// and t is in units of it, so the segment from a to b is Ray{a, b - a, 1}.
 struct Ray {
     Vec3 origin{Real(0)};
     Vec3 direction{Real(0), Real(0), Real(1)};
     Real max_t = std::numeric_limits<Real>::infinity();
 };
 
-// The same shape, moved by `pose`. A shape or pose that is not valid fails a check, here and in all
-// that follows.
+// The shape moved by `pose`. An invalid shape or pose fails a check, here and in everything below.
 Sphere placed(const Sphere &local, const Transform &pose);
 Box placed(const Box &local, const Transform &pose);
 Capsule placed(const Capsule &local, const Transform &pose);
@@ -109,8 +108,9 @@ Segment placed(const Segment &local, const Transform &pose);
 Triangle placed(const Triangle &local, const Transform &pose);
 Shape placed(const Shape &local, const Transform &pose);
 
-// The smallest axis-aligned box around a shape. A half-space has no finite one: only its
-// axis-aligned side is bounded, so callers treat half-spaces apart; asking fails a check.
+// The smallest axis-aligned box around a shape. A half-space has no finite one (at most one side is
+// bounded, if it is axis-aligned), so callers handle half-spaces separately; asking for one fails a
+// check.
 Aabb bounds(const Sphere &sphere);
 Aabb bounds(const Box &box);
 Aabb bounds(const Capsule &capsule);
@@ -119,8 +119,8 @@ Aabb bounds(const Segment &segment);
 [[noreturn]] Aabb bounds(const HalfSpace &half_space);
 Aabb bounds(const Shape &shape);
 
-// Whether all are numbers, neither NaN nor infinite: only then is nothing times each nothing.
-// Faster than asking one by one, and never wrong by overflow.
+// Whether no argument is NaN or infinite: only for finite x is 0 * x zero. Faster than testing one
+// by one, and overflow cannot break it.
 template <typename... Numbers> bool are_finite(Numbers... numbers) {
     return ((numbers * Real(0)) + ...) == Real(0);
 }
@@ -128,14 +128,15 @@ inline bool is_finite(const Vec3 &v) {
     return are_finite(v.x, v.y, v.z);
 }
 
-// Planes may have a normal that is off unit length by up to 1e-3: one of few digits, on which
-// points can lie exactly.
+// A plane's normal may be off unit length by up to 1e-3, so that it can have few digits and points
+// can lie exactly on the plane.
 inline bool is_nearly_unit(Real squared_length) {
     return std::abs(squared_length - Real(1)) <= Real(2e-3);
 }
 
-// Whether no member is NaN or infinite, no size negative, rotations and normals of unit length
-// (is_unit: within roundings, so that all queries speak of the same solid). An empty Aabb is valid.
+// Whether no member is NaN or infinite, no size is negative, and rotations and normals have unit
+// length (is_unit: within roundings, so that all queries see the same solid). An empty Aabb is
+// valid.
 inline bool is_valid(const Sphere &sphere) {
     return sphere.radius >= Real(0) &&
            are_finite(sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius);
@@ -175,7 +176,7 @@ inline bool is_valid(const Aabb &box) {
     return are_finite(a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
-// Fails a check with what is not valid about the shape.
+// Fails a check that names what is invalid about the shape.
 [[gnu::cold]] void refuse(const Sphere &sphere);
 [[gnu::cold]] void refuse(const Box &box);
 [[gnu::cold]] void refuse(const Capsule &capsule);
@@ -186,7 +187,7 @@ inline bool is_valid(const Aabb &box) {
 [[gnu::cold]] void refuse(const Triangle &triangle);
 [[gnu::cold]] void refuse(const Aabb &box);
 
-// Fails a check, naming the value, when a shape is not valid.
+// Fails a check, naming the value, if a shape is invalid.
 inline void check_valid(const Sphere &sphere) {
     if (!is_valid(sphere)) [[unlikely]]
         refuse(sphere);

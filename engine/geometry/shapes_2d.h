@@ -1,4 +1,4 @@
-// The shapes of the xy plane and the ray in it, as plain values.
+// 2D shapes in the xy plane, and the 2D ray, as plain values.
 //
 // All sets are closed: a point on the border is inside. Solid shapes are filled. Lengths in metres.
 #pragma once
@@ -18,7 +18,7 @@ struct Segment2 {
 };
 
 // The points origin + t * direction for 0 <= t <= max_t; none when max_t is negative. `direction`
-// has any length but zero, and t is in units of it.
+// may have any non-zero length, and t is in units of it.
 struct Ray2 {
     Vec2 origin{Real(0)};
     Vec2 direction{Real(1), Real(0)};
@@ -37,29 +37,29 @@ struct Rectangle {
 };
 
 // A rectangle of any orientation. `axis` is the unit vector of its own x axis; its y axis is
-// perpendicular(axis), a quarter turn further counter-clockwise.
+// perpendicular(axis), a quarter turn counter-clockwise from it.
 struct OrientedRectangle {
     Vec2 center{Real(0)};
     Vec2 axis{Real(1), Real(0)};
     Vec2 half_extents{Real(0)}; // >= 0 in each component
 };
 
-// v turned counter-clockwise by a quarter.
+// v rotated by 90 degrees counter-clockwise.
 inline Vec2 perpendicular(const Vec2 &v) {
     return {-v.y, v.x};
 }
 
-// Turned counter-clockwise by `angle`. The cosine of a float quarter turn is not zero: for quarter
-// turns without rounding, give the axis itself.
+// Rotated counter-clockwise by `angle` (radians). The cosine of a float quarter turn is not zero:
+// for exact quarter turns set the axis directly.
 OrientedRectangle oriented_rectangle(const Vec2 &center, Real angle, const Vec2 &half_extents);
 
 using Part2 = std::variant<Circle, Rectangle, OrientedRectangle>;
 
-// The union of some parts, with a rectangle around them all, so that most questions are answered
-// without looking at the parts. The parts may overlap each other.
+// The union of some parts, with a bounding rectangle so that most queries need not look at the
+// parts. The parts may overlap.
 class Compound2 {
   public:
-    // At least one part; an empty rectangle is none. Parts are checked here, once.
+    // Needs at least one part; an empty rectangle does not count. Parts are checked here, once.
     explicit Compound2(std::vector<Part2> parts);
 
     const std::vector<Part2> &parts() const { return parts_; }
@@ -75,8 +75,8 @@ inline bool is_empty(const Rectangle &rectangle) {
 }
 
 // The smallest rectangle around a shape, rounded outwards: no point of the shape is outside. Exact
-// when it can be represented, unless an oriented rectangle is not turned by quarters; then it is at
-// most 8 epsilon |half_extents| wider on each side, besides the rounding.
+// if representable, except for an oriented rectangle not turned by a multiple of 90 degrees: that
+// adds at most 8 epsilon |half_extents| on each side, besides the rounding.
 Rectangle bounds(const Segment2 &segment);
 Rectangle bounds(const Circle &circle);
 Rectangle bounds(const OrientedRectangle &rectangle);
@@ -87,10 +87,10 @@ inline const Rectangle &bounds(const Compound2 &compound) {
     return compound.bounds();
 }
 
-// Within 2 epsilon of itself, where its square neither overflows nor underflows.
+// Relative error at most 2 epsilon if the square neither overflows nor underflows.
 Real length(const Segment2 &segment);
 
-// The same in space, in the plane z = 0.
+// The same in 3D, in the plane z = 0.
 inline Aabb lifted(const Rectangle &rectangle) {
     return {Vec3{rectangle.min, Real(0)}, Vec3{rectangle.max, Real(0)}};
 }
@@ -98,15 +98,15 @@ inline Ray lifted(const Ray2 &ray) {
     return {Vec3{ray.origin, Real(0)}, Vec3{ray.direction, Real(0)}, ray.max_t};
 }
 
-// Fails a check, naming the value, when a member is NaN or infinite (a ray's max_t may be
-// infinite), a size is negative, a direction zero, or an axis not of unit length (is_unit). An
-// empty rectangle is valid: the empty set.
+// Fails a check, naming the value, if a member is NaN or infinite (a ray's max_t may be infinite),
+// a size is negative, a direction is zero, or an axis is not of unit length (is_unit). An empty
+// rectangle is valid: the empty set.
 void check_valid(const Vec2 &point);
 void check_valid(const Segment2 &segment);
 void check_valid(const Ray2 &ray);
 void check_valid(const Circle &circle);
 void check_valid(const Rectangle &rectangle);
 void check_valid(const OrientedRectangle &rectangle);
-inline void check_valid(const Compound2 &) {} // cannot be made otherwise
+inline void check_valid(const Compound2 &) {} // valid by construction
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -12,10 +12,10 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// A ray for many boxes: its reciprocals are taken once.
+// A ray for many boxes: its reciprocals are computed once.
 struct SlabRay {
     Ray ray;
-    Vec3 inverse{Real(0)}; // 1 / direction, when all of both are normal numbers
+    Vec3 inverse{Real(0)}; // 1 / direction; usable if every component of both is a normal number
     bool has_inverse = true;
 
     explicit SlabRay(const Ray &given) : ray(given) {
@@ -28,15 +28,15 @@ struct SlabRay {
     }
 };
 
-// Between three pairs of planes, each met at `near` and `far`; -infinity and infinity for a ray
-// along them and between.
+// Intersects three slabs, each crossed from `near` to `far`; -infinity to infinity for a ray inside
+// a slab and parallel to it.
 inline bool slab_interval(const Vec3 &near, const Vec3 &far, Real max_t, Real &enter, Real &exit,
                           int &enter_axis) {
     constexpr Real slack = Real(1) + Real(4) * std::numeric_limits<Real>::epsilon();
     constexpr Real least = std::numeric_limits<Real>::min();
     const Real latest = std::max(std::max(std::max(Real(0), near.x), near.y), near.z);
     const Real earliest = std::min(std::min(far.x, far.y), far.z);
-    // All at once: which of them fails is a guess to the processor.
+    // Evaluated together: separate branches would be unpredictable.
     const bool is_missed = (static_cast<unsigned>(earliest < Real(0)) |
                             static_cast<unsigned>(latest > earliest * slack + least) |
                             static_cast<unsigned>(latest > max_t * slack)) != 0;
@@ -47,16 +47,15 @@ inline bool slab_interval(const Vec3 &near, const Vec3 &far, Real max_t, Real &e
     return !is_missed && exit >= enter;
 }
 
-// The interval [enter, exit] of the ray's parameter in a closed box, cut to [0, max_t], and the
-// axis of the face it enters by (-1 when it starts inside). Returns whether there is one.
+// The interval [enter, exit] of the ray's parameter in a closed box, clipped to [0, max_t], and the
+// axis of the face it enters through (-1 when it starts inside). Returns whether there is one.
 //
-// A component of the direction that is 0 or -0 decides by the origin alone, so a ray that lies in a
-// face is inside. The signs of the quotients, so the comparison with 0, are exact. The quotients
-// carry at most two roundings each, three with SlabRay, and are allowed that much, and what
-// underflow takes, where enter is compared with exit and with max_t: a ray through an edge or
-// corner, or one that ends at a face, is never missed because of them. And as every operation is
-// monotonic, a box that holds another is met by every ray that meets the other: trees prune without
-// loss.
+// Where the direction is 0 or -0 the origin alone decides, so a ray lying in a face is inside. The
+// signs of the quotients, and so the comparison with 0, are exact. The quotients carry at most two
+// roundings each, three with SlabRay. Comparing enter with exit and with max_t allows for that and
+// for underflow, so a ray through an edge or corner, or one that ends at a face, is never missed
+// because of rounding. Every operation is monotonic, so a ray that hits a box also hits every box
+// around it: pruning in trees loses nothing.
 inline bool slab_interval(const Aabb &box, const Ray &ray, Real &enter, Real &exit,
                           int &enter_axis) {
     constexpr Real endless = std::numeric_limits<Real>::infinity();
@@ -69,8 +68,8 @@ inline bool slab_interval(const Aabb &box, const Ray &ray, Real &enter, Real &ex
                 return false;
             continue;
         }
-        // The lesser and the greater, not a choice by the sign of the direction, which for rays of
-        // all directions would be a guess.
+        // Min and max rather than a branch on the direction's sign, which would be unpredictable
+        // for rays in all directions.
         const Real to_low = (box.min[i] - origin) / direction;
         const Real to_high = (box.max[i] - origin) / direction;
         near[i] = std::min(to_low, to_high);

@@ -1,8 +1,8 @@
 // Convex shapes as GJK and EPA see them: a core with a support function, and a radius around it.
 //
 // A sphere is a point with a radius and a capsule a segment with one, so both are exact. Cores are
-// placed relative to an origin near the pair, so that far from the world's origin nothing is lost
-// but the roundings of the inputs.
+// placed relative to an origin near the pair, so that far from the world's origin only the inputs'
+// own rounding is lost.
 #pragma once
 
 #include "engine/core/check.h"
@@ -18,8 +18,8 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// In all cores: `support` is the point farthest along a direction of any length but zero, `middle`
-// some inner point (only where a search starts depends on it), `move` a translation.
+// In all cores: `support` is the point farthest along a non-zero direction, `middle` some interior
+// point (used only as the start of a search), `move` a translation.
 
 struct PointCore {
     Vec3 point{Real(0)};
@@ -87,7 +87,7 @@ struct BoxCore {
     Vec3 center{Real(0)};
     Mat3 axes{Real(0)};
     Vec3 half_extents{Real(0)};
-    Mat3 half_edges{Real(0)}; // the axes, each as long as its half extent
+    Mat3 half_edges{Real(0)}; // the axes scaled by the half extents
     static constexpr Real radius = Real(0);
 
     Vec3 support(const Vec3 &direction) const {
@@ -107,16 +107,17 @@ struct CylinderCore {
     Vec3 a{Real(0)};
     Vec3 b{Real(0)};
     Vec3 axis{Real(0)};  // unit, from a to b
-    Real side = Real(0); // the cylinder's radius; it has no rounding of its own
+    Real side = Real(0); // the cylinder's radius; `radius` (the rounding) is 0
     static constexpr Real radius = Real(0);
 
     Vec3 support(const Vec3 &direction) const {
         const Real along = glm::dot(axis, direction);
         const Vec3 end = along > Real(0) ? b : a;
         Vec3 outward = direction - along * axis;
-        outward -= glm::dot(axis, outward) * axis; // rounding left eps |direction| along the axis
+        outward -= glm::dot(axis, outward) * axis; // rounding leaves eps |direction| along the axis
         const Real squared = glm::dot(outward, outward);
-        // Along the axis every point of the disc is farthest, to rounding; its middle is steady.
+        // Along the axis every point of the disc is farthest, within rounding; its centre is
+        // stable.
         constexpr Real rounding = std::numeric_limits<Real>::epsilon();
         if (!(squared > rounding * rounding * along * along))
             return end;
@@ -133,12 +134,12 @@ struct HullCore {
     const HullMesh *mesh = nullptr;
     Vec3 position{Real(0)};
     Mat3 rotation{Real(1)};
-    mutable std::uint32_t last = 0; // the last answer: where the next climb starts
+    mutable std::uint32_t last = 0; // the last answer, where the next hill climb starts
     static constexpr Real radius = Real(0);
 
     Vec3 support(const Vec3 &direction) const {
         const Vec3 local = direction * rotation; // transposed: into the mesh's frame
-        // Up to here looking at all vertices is as fast as a climb from neighbour to neighbour.
+        // Up to this size brute force is as fast as hill climbing.
         constexpr std::size_t few = 40;
         last = mesh->vertices.size() <= few ? support_vertex(*mesh, local)
                                             : support_vertex(*mesh, local, last);
@@ -148,7 +149,7 @@ struct HullCore {
     void move(const Vec3 &by) { position += by; }
 };
 
-// Where a shape is: the origin that cores of a pair are relative to.
+// A shape's position: the origin that both cores of a pair are relative to.
 template <typename Shape> Vec3 place_of(const Shape &shape) {
     if constexpr (std::same_as<Shape, Vec3>)
         return shape;
@@ -162,8 +163,8 @@ template <typename Shape> Vec3 place_of(const Shape &shape) {
         return shape.a;
 }
 
-// The core of a shape relative to an origin. A shape that is not valid (check_valid) fails a check;
-// so does an empty Aabb.
+// The core of a shape relative to an origin. An invalid shape (check_valid) or an empty Aabb fails
+// a check.
 PointCore core_of(const Vec3 &point, const Vec3 &origin);
 SegmentCore core_of(const Segment &segment, const Vec3 &origin);
 TriangleCore core_of(const Triangle &triangle, const Vec3 &origin);
@@ -175,13 +176,13 @@ CylinderCore core_of(const Cylinder &cylinder, const Vec3 &origin);
 HullCore core_of(const ConvexHull &hull, const Vec3 &origin);
 
 // A shape with a core: Vec3 (a point), Segment, Triangle, Sphere, Box, Aabb, Capsule, Cylinder,
-// ConvexHull; nothing that merely converts to one.
+// ConvexHull; not types that merely convert to one.
 template <typename T>
 concept Convex = std::same_as<T, Vec3> || std::same_as<T, Segment> || std::same_as<T, Triangle> ||
     std::same_as<T, Sphere> || std::same_as<T, Box> || std::same_as<T, Aabb> ||
     std::same_as<T, Capsule> || std::same_as<T, Cylinder> || std::same_as<T, ConvexHull>;
 
-// Two of them, not both points.
+// Two convex shapes, not both points.
 template <typename A, typename B>
 concept ConvexPair = Convex<A> && Convex<B> && !(std::same_as<A, Vec3> && std::same_as<B, Vec3>);
 

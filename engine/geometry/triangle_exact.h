@@ -1,8 +1,8 @@
-// Whether points, segments, triangles and axis-aligned boxes have common points: exactly, for the
-// numbers as they are given.
+// Exact overlap tests of points, segments, triangles and axis-aligned boxes, for the inputs as
+// given.
 //
-// Closed sets; triangles may be flat, segments without length. Nothing is checked here: coordinates
-// are finite, boxes not empty.
+// Closed sets; triangles may be flat, segments may have zero length. Nothing is checked here:
+// coordinates must be finite and boxes not empty.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -15,7 +15,7 @@ bool triangle_meets_triangle(const Triangle &a, const Triangle &b);
 bool segment_meets_box(const Segment &segment, const Aabb &box);
 bool triangle_meets_box(const Triangle &triangle, const Aabb &box);
 
-// Seen along an axis, so that areas keep the sign they have in that component of a normal.
+// Projection along an axis; a signed area keeps the sign of that component of the normal.
 inline Vec2 seen_along(int axis, const Vec3 &v) {
     return {v[(axis + 1) % 3], v[(axis + 2) % 3]};
 }

@@ -1,15 +1,13 @@
-// Whether a triangle and another shape have a common point.
+// Whether a triangle overlaps another shape.
 //
-// All sets are closed: shapes that touch overlap. A triangle is its surface, flat ones included
-// (triangle.h). A shape that is not valid fails a check with the value in its message; an empty
-// Aabb overlaps nothing.
+// All sets are closed: touching shapes overlap. Flat triangles are allowed (triangle.h). An invalid
+// shape fails a check with the value in its message; an empty Aabb overlaps nothing.
 //
-// Triangle with Triangle, Aabb and Plane is exact for the numbers as they are given (in the range
-// of predicates.h); with Segment, see linetest (raycast.h). Sphere and Capsule are exact when
-// everything is an integer of at most 63 in magnitude; elsewhere the answer may be wrong for shapes
-// whose surfaces are nearer to touching than 8 epsilon times the largest coordinate or size, and so
-// it may for a rotated Box. Sizes whose sixth powers overflow or underflow a double are not
-// covered.
+// Triangle with Triangle, Aabb and Plane is exact for the inputs as given (in the range of
+// predicates.h); for Segment see linetest (raycast.h). Sphere and Capsule are exact if all inputs
+// are integers of at most 63 in magnitude. Otherwise, and for a rotated Box, the answer may be
+// wrong for shapes whose surfaces are closer to touching than 8 epsilon times the largest
+// coordinate or size. Sizes whose sixth powers overflow or underflow a double are not covered.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -24,7 +22,7 @@ bool overlaps(const Triangle &triangle, const Aabb &box);
 bool overlaps(const Triangle &triangle, const Box &box);
 bool overlaps(const Triangle &triangle, const Plane &plane);
 
-// The same asked the other way around.
+// The same with the arguments swapped.
 inline bool overlaps(const Sphere &sphere, const Triangle &t) {
     return overlaps(t, sphere);
 }

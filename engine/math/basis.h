@@ -13,19 +13,19 @@ struct TangentBasis {
     Vec3 t2{Real(0)};
 };
 
-// Two unit vectors at right angles to the unit vector n and to each other, t1 x t2 = n.
+// Two unit vectors perpendicular to the unit vector n and to each other, with t1 x t2 = n.
 //
-// The Householder reflection that carries a fixed direction p to -n carries its companions u and v
-// to the basis (Hughes, Moeller 1999, "Building an Orthonormal Basis from a Unit Vector", with the
-// one pole moved from an axis to -p, a direction that no contact on a floor or a wall has).
-// Continuous everywhere else, so that friction impulses kept in this basis stay true when a normal
-// wavers. At n == -p itself, and closer to it than roundings tell apart: v and u.
+// The Householder reflection that maps a fixed direction p to -n maps its companions u and v to the
+// basis (Hughes, Moeller 1999, "Building an Orthonormal Basis from a Unit Vector", with the single
+// pole moved from an axis to -p, a direction no contact on a floor or wall has). Continuous
+// everywhere else, so friction impulses stored in this basis stay valid when a normal jitters. At n
+// == -p, or within rounding of it: v and u.
 inline TangentBasis tangent_basis(const Vec3 &n) {
     const Vec3 p{Real(0.48), Real(0.6), Real(0.64)};
     const Vec3 u{Real(-0.8), Real(0), Real(0.6)};
     const Vec3 v{Real(0.36), Real(-0.8), Real(0.48)};
-    // Written in w alone (n . u = w . u), what comes out is a reflection whatever rounding does to
-    // w; with 1 + n . p it would lose its right angles by epsilon / |w|^2 near the pole.
+    // In terms of w alone (n . u = w . u) the result is a reflection however w is rounded; with 1 +
+    // n . p it would lose orthogonality by epsilon / |w|^2 near the pole.
     const Vec3 w = n + p;
     const Real squared = glm::dot(w, w);
     if (squared <= std::numeric_limits<Real>::epsilon())

@@ -1,4 +1,4 @@
-// Numbers that formulas are written with.
+// Numeric constants.
 #pragma once
 
 #include "engine/math/types.h"

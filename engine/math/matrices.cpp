@@ -11,7 +11,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// a b - c d, and the same with both products positive, which measures what its roundings may be.
+// a b - c d, and the same with both products positive, which measures the possible rounding error.
 struct Determinant {
     Real value = Real(0);
     Real permanent = Real(0);
@@ -79,7 +79,7 @@ template <int N> std::optional<MatN<N>> inverse_by_adjugate(MatN<N> m) {
         }
     if (largest == Real(0))
         return std::nullopt;
-    // By a power of two, so that products of N entries do not overflow; exact.
+    // Scale by a power of two, which is exact, so that products of N entries do not overflow.
     const int exponent = std::ilogb(largest);
     for (int j = 0; j < N; ++j)
         for (int i = 0; i < N; ++i)
@@ -92,7 +92,7 @@ template <int N> std::optional<MatN<N>> inverse_by_adjugate(MatN<N> m) {
             const Determinant minor = minor_of(m, j, i);
             const Real sign = (i + j) % 2 == 1 ? Real(-1) : Real(1);
             adjugated[i][j] = sign * minor.value;
-            if (j == 0) { // developed by the first column
+            if (j == 0) { // expand along the first column
                 determinant.value += sign * m[0][i] * minor.value;
                 determinant.permanent += std::abs(m[0][i]) * minor.permanent;
             }

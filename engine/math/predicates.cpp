@@ -9,8 +9,8 @@ namespace exact {
 
 namespace {
 
-// A real number as the exact sum of doubles, small ones first, none of them zero, whose bits do not
-// overlap; so the last one has the sign of the sum. N is the most there can be.
+// A real number as the exact sum of nonzero doubles with non-overlapping bits, smallest first, so
+// the last one has the sign of the sum. N is the maximum count.
 template <std::size_t N> struct Expansion {
     std::array<double, N> parts; // uninitialised beyond count
     std::size_t count = 0;
@@ -21,7 +21,7 @@ template <std::size_t N> struct Expansion {
         add(error);
         add(value);
     }
-    // One that had more room than parts.
+    // From an expansion with spare capacity.
     template <std::size_t M>
     explicit Expansion(const Expansion<M> &other) requires(M > N) : count(other.count) {
         std::copy_n(other.parts.begin(), count, parts.begin());
@@ -30,7 +30,7 @@ template <std::size_t N> struct Expansion {
         if (part != 0.0)
             parts[count++] = part;
     }
-    // The whole in one number, off by at most two roundings (Shewchuk 1997, section 2.8).
+    // The sum as one double, off by at most two roundings (Shewchuk 1997, section 2.8).
     double rounded() const {
         double total = 0.0;
         for (std::size_t i = 0; i < count; ++i)
@@ -40,7 +40,7 @@ template <std::size_t N> struct Expansion {
     int sign() const { return count == 0 ? 0 : (parts[count - 1] > 0.0 ? 1 : -1); }
 };
 
-// What a + b loses in rounding to `sum` (Knuth 1969; Shewchuk 1997, theorem 7).
+// The part of a + b lost in rounding to `sum` (Knuth 1969; Shewchuk 1997, theorem 7).
 double error_of_sum(double a, double b, double sum) {
     const double b_virtual = sum - a;
     const double a_virtual = sum - b_virtual;
@@ -65,7 +65,7 @@ struct Halves {
     }
 };
 
-// What a * b loses in rounding to `product` (Shewchuk 1997, theorem 18).
+// The part of a * b lost in rounding to `product` (Shewchuk 1997, theorem 18).
 double error_of_product(double a, double b, double product) {
     const Halves x(a), y(b);
     const double rest = product - x.high * y.high - x.low * y.high - x.high * y.low;
@@ -152,7 +152,7 @@ Expansion<16> minor_of(const Expansion<2> &a, const Expansion<2> &b, const Expan
 
 } // namespace
 
-// Vectors come as the two ends of each component, the second to be subtracted from the first.
+// Each vector component is passed as a pair of numbers: the first minus the second.
 
 int cross_sign(const double (&u)[2][2], const double (&v)[2][2]) {
     return minor_of(difference(u[0][0], u[0][1]), difference(u[1][0], u[1][1]),

@@ -1,4 +1,4 @@
-// Vectors in the messages of failed checks.
+// Prints vectors in check messages.
 #pragma once
 
 #include "engine/math/types.h"

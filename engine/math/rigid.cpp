@@ -19,8 +19,9 @@ Mat4 with_translation(const Mat3 &linear, const Vec3 &position) {
                 Vec4{position, Real(1)}};
 }
 
-// What is left of v without its parts along the unit vectors `a` and `b`; once more, as the first
-// time leaves roundings of the size of what was taken away. None when that is all that is left.
+// The unit vector of v without its parts along the unit vectors `a` and `b`; these are removed
+// twice, as the first pass leaves rounding the size of the removed parts. None if only rounding is
+// left.
 std::optional<Vec3> perpendicular_part(const Vec3 &v, const Vec3 &a, const Vec3 &b) {
     const std::optional<Vec3> unit = normalized<3>(v);
     if (!unit)
@@ -153,7 +154,7 @@ Quat rotation_of(const AxisAngle &turn) {
 }
 
 AxisAngle axis_angle(const Quat &rotation) {
-    // q and -q are one rotation; the one with w >= 0 turns by at most pi.
+    // q and -q are the same rotation; the one with w >= 0 turns by at most pi.
     const Quat q = rotation.w < Real(0) ? -rotation : rotation;
     const Vec3 v{q.x, q.y, q.z};
     const std::optional<Vec3> axis = normalized<3>(v);

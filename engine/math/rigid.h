@@ -1,4 +1,4 @@
-// Rotations and rigid transforms, in and out of other forms.
+// Conversions between forms of rotations and rigid transforms.
 #pragma once
 
 #include "engine/math/types.h"
@@ -9,20 +9,21 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Whether the squared length is that of a vector or quaternion of unit length, but for roundings:
-// the length is off by at most 16 epsilon. That many a product of several rotations leaves; the
-// digits of one that was typed in by hand do not do.
+// Whether this is the squared length of a unit vector or quaternion up to rounding: the length is
+// off by at most 16 epsilon. A product of several rotations passes; one typed in by hand with few
+// digits does not.
 inline bool is_unit(Real squared_length) {
     return std::abs(squared_length - Real(1)) <= Real(32) * std::numeric_limits<Real>::epsilon();
 }
 
-// The same rotation with unit length; itself, bit for bit, when it has that. q is not zero.
+// The same rotation with unit length; q itself, bit for bit, if it is unit already. q must not be
+// zero.
 inline Quat unit(const Quat &q) {
     return is_unit(glm::dot(q, q)) ? q : glm::normalize(q);
 }
 
-// The matrix of q's rotation; a rotation also when q is off unit length, where glm::mat3_cast gives
-// a matrix that scales or shears. q is not zero.
+// q's rotation matrix, a rotation even when q is off unit length, where glm::mat3_cast gives a
+// matrix that scales or shears. q must not be zero.
 inline Mat3 rotation_matrix(const Quat &q) {
     const Real scale = Real(2) / glm::dot(q, q);
     const Real x = scale * q.x, y = scale * q.y, z = scale * q.z;
@@ -46,18 +47,17 @@ Transform inverse(const Transform &t);
 
 Mat4 to_matrix(const Transform &t);
 
-// The inverse of a matrix that rotates (or mirrors) and translates only, without a determinant: the
-// rotation transposed. For any other matrix the answer is wrong; in debug builds a matrix that is
-// not rigid within 1e-3 fails a check.
+// The inverse of a matrix that only rotates (or mirrors) and translates: transposes the rotation,
+// with no determinant. Wrong for any other matrix; in debug builds a matrix that is not rigid
+// within 1e-3 fails a check.
 Mat4 rigid_inverse(const Mat4 &m);
 
 // --- Matrices that have drifted, or scale ------------------------------------------------------
 
-// The columns made orthonormal one after the other, so that the first keeps its direction and the
-// second its plane (Gram and Schmidt, each twice: Giraud, Langou, Rozloznik 2005, "The loss of
-// orthogonality in the Gram-Schmidt orthogonalization process"). Of the same handedness as before.
-// None when the columns are in one plane: when what is left of one has less than 8 epsilon of its
-// length, or it is zero.
+// Orthonormalises the columns in order, so the first keeps its direction and the second its plane
+// with the first (Gram-Schmidt, each step twice: Giraud, Langou, Rozloznik 2005, "The loss of
+// orthogonality in the Gram-Schmidt orthogonalization process"). Keeps the handedness. None when
+// the columns are coplanar: one is zero, or less than 8 epsilon of its length is left.
 std::optional<Mat3> orthonormalized(const Mat3 &m);
 
 // Scale along the axes, then rotate, then translate.
@@ -69,17 +69,17 @@ struct ScaledTransform {
 
 Mat4 to_matrix(const ScaledTransform &t);
 
-// The parts of a matrix made of them. A mirroring matrix gets a negative scale.x (which axis was
-// mirrored cannot be told: two mirrors are half a turn), so the parts need not be those that made
-// it, but make the same matrix. None when a column of the 3x3 part is zero or they are in one plane
-// (see orthonormalized), when two columns are not at right angles (their cosine is above 1e-3: a
+// Splits a matrix into these parts. A mirroring matrix gets a negative scale.x (the mirrored axis
+// cannot be recovered: two mirrors are half a turn), so the parts may differ from the original ones
+// but give the same matrix. None when a column of the 3x3 part is zero or the columns are coplanar
+// (see orthonormalized), when two columns are not perpendicular (their cosine is above 1e-3: a
 // shear, which these parts cannot express), or when the last row is not (0, 0, 0, 1).
 std::optional<ScaledTransform> decompose(const Mat4 &m);
 
 // --- Euler angles ------------------------------------------------------------------------------
 
-// Turned about Y by yaw, about the new X by pitch, about the newest Z by roll (intrinsic Y-X'-Z'';
-// as matrices Y(yaw) X(pitch) Z(roll)), radians, each right-handed.
+// Yaw about Y, then pitch about the new X, then roll about the newest Z (intrinsic Y-X'-Z''; as
+// matrices Y(yaw) X(pitch) Z(roll)); radians, right-handed.
 struct EulerAngles {
     Real yaw = Real(0);
     Real pitch = Real(0);
@@ -90,8 +90,9 @@ Quat rotation_of(const EulerAngles &angles);
 
 // The angles of a rotation: yaw and roll in [-pi, pi], pitch in [-pi/2, pi/2] (Bernardes, Viollet
 // 2022, "Quaternion to Euler angles conversion: A direct, general and computationally efficient
-// method"). At a pitch of pi/2 and -pi/2 (gimbal lock) yaw and roll turn about one line and only
-// their difference or sum is known: there, within 8 epsilon, roll is 0 and yaw has all of it.
+// method"). At a pitch of pi/2 or -pi/2 (gimbal lock) yaw and roll turn about the same line and
+// only their difference or sum is determined: there, within 8 epsilon, roll is 0 and yaw takes it
+// all.
 EulerAngles euler_angles(const Quat &rotation);
 
 // --- Axis and angle ----------------------------------------------------------------------------
@@ -104,8 +105,8 @@ struct AxisAngle {
 // The rotation about an axis of any length; a zero axis fails a check.
 Quat rotation_of(const AxisAngle &turn);
 
-// Angle in [0, pi]. No rotation at all has the axis +Y; of half a turn, either of the two. Accurate
-// for small angles, where glm::axis and glm::angle are not.
+// Angle in [0, pi]. The identity has axis +Y; half a turn, either of its two axes. Accurate for
+// small angles, where glm::axis and glm::angle are not.
 AxisAngle axis_angle(const Quat &rotation);
 
 } // namespace plumb::inline PLUMB_PRECISION

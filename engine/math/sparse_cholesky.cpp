@@ -30,7 +30,7 @@ void SparseCholesky::factor(int unknowns, std::span<const MatrixEntry> entries) 
     find_values();
 }
 
-// Where everything is to stand. Eigen permutes a matrix whose values are their own places.
+// The symbolic phase. Eigen permutes a matrix whose values are their own places.
 void SparseCholesky::arrange(int unknowns, std::span<const MatrixEntry> entries) {
     using Matrix = Eigen::SparseMatrix<double>;
     std::vector<Eigen::Triplet<double>> ones;
@@ -52,7 +52,7 @@ void SparseCholesky::arrange(int unknowns, std::span<const MatrixEntry> entries)
     starts_.assign(permuted.outerIndexPtr(), permuted.outerIndexPtr() + unknowns + 1);
     rows_.assign(permuted.innerIndexPtr(), permuted.innerIndexPtr() + permuted.nonZeros());
     values_.resize(rows_.size());
-    std::vector<int> moved(rows_.size()); // where each value of `lower` has come to
+    std::vector<int> moved(rows_.size()); // where each value of `lower` ended up
     for (int place = 0; place < permuted.nonZeros(); ++place)
         moved[at(static_cast<int>(permuted.valuePtr()[place]))] = place;
     entry_places_.clear();
@@ -64,7 +64,7 @@ void SparseCholesky::arrange(int unknowns, std::span<const MatrixEntry> entries)
             moved[static_cast<std::size_t>(std::lower_bound(column, end, entry.row) - rows)]);
     }
 
-    // The rows of L, each along the paths from its entries up the tree of eliminations.
+    // The rows of L: each follows the paths from its entries up the elimination tree.
     const std::size_t n = order_.size();
     parents_.assign(n, -1);
     visitors_.assign(n, -1);
@@ -100,7 +100,7 @@ void SparseCholesky::find_values() {
     std::ranges::fill(visitors_, -1);
     std::copy_n(factor_starts_.begin(), n, factor_ends_.begin());
     for (int k = 0; k < n; ++k) {
-        // Which columns have an entry in row k, each after those that it depends on.
+        // The columns with an entry in row k, each after the columns it depends on.
         int top = n;
         visitors_[at(k)] = k;
         for (int p = starts_[at(k)]; p < starts_[at(k) + 1]; ++p) {

@@ -1,4 +1,4 @@
-// Names for GLM's types in the engine's precision, and the rigid transform.
+// GLM's types in the engine's precision, and the rigid transform.
 #pragma once
 
 #include "engine/core/precision.h"
@@ -29,9 +29,8 @@ struct Transform {
     Quat rotation = identity_rotation;
 };
 
-// q v q^-1. Exact in length for a quaternion that is a rounding off unit length, where GLM's
-// product scales the vector: what turns a vector back and forth in every step then loses or gains
-// it.
+// q v q^-1. Keeps the length even if rounding leaves q slightly off unit length, where GLM's
+// product scales the vector: rotated back and forth every step, it would gain or lose length.
 inline Vec3 rotated(const Quat &q, const Vec3 &v) {
     const Vec3 axis{q.x, q.y, q.z};
     const Real scale = Real(2) / glm::dot(q, q);

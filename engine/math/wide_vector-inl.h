@@ -1,8 +1,8 @@
-// Vectors of lanes: as many Vec3 at once as the processor works on. Included by files that Highway
-// compiles once for each instruction set, and like them once for each.
+// SIMD vectors: as many Vec3 side by side as the processor handles. Included by files that Highway
+// compiles once for each instruction set, and compiled as often.
 //
-// Nothing is fused, and minimum and maximum choose between zeros of two signs as std::min and
-// std::max do, so each lane has the bits of the scalar functions on every processor.
+// Nothing is fused, and min and max choose between +0 and -0 as std::min and std::max do, so each
+// lane has the bits of the scalar functions on every processor.
 #if defined(PLUMB_MATH_WIDE_VECTOR) == defined(HWY_TARGET_TOGGLE)
 #ifdef PLUMB_MATH_WIDE_VECTOR
 #undef PLUMB_MATH_WIDE_VECTOR
@@ -20,7 +20,7 @@ namespace wide::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Of two equal ones the first.
+// If equal, the first.
 template <typename Lanes> HWY_INLINE Lanes min(Lanes a, Lanes b) {
     return hn::IfThenElse(hn::Lt(b, a), b, a);
 }

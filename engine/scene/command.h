@@ -1,5 +1,5 @@
-// What a caller can do to a running scene between two steps, as values: what is done, recorded and
-// replayed. A new command is an alternative here, with its fields, and an `obey` in
+// What a caller can do to a running scene between two steps, as values that are executed, recorded
+// and replayed. To add a command, add an alternative with its fields here and an `obey` in
 // engine/scene/real/world_simulation.cpp.
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace plumb {
 
-// `name` is the command's in a recording; each_field(command, visit) calls visit(key, field) for
-// all that it says, visit(key, field, or_default) for what a recording may leave out. Bodies are
-// named; all places and vectors are the world's unless they say otherwise.
+// `name` is the command's name in a recording. each_field(command, visit) calls visit(key, field)
+// for each field, or visit(key, field, or_default) for one that a recording may leave out. Bodies
+// go by name; points and vectors are in world coordinates unless stated otherwise.
 
 struct OrDefault {};
 inline constexpr OrDefault or_default{};
 
-// Its name must be free.
+// The body's name must be free.
 struct AddBody {
     static constexpr std::string_view name = "add";
     BodyDesc body;
@@ -28,7 +28,7 @@ struct AddBody {
     }
 };
 
-// With its contacts and joints.
+// Removes a body with its contacts and joints.
 struct RemoveBody {
     static constexpr std::string_view name = "remove";
     std::string body;
@@ -37,8 +37,8 @@ struct RemoveBody {
     }
 };
 
-// Puts a body somewhere else, or gives it another velocity; what the body has locked stays 0, and
-// so does what is static.
+// Teleports a body and sets its velocity; velocities stay 0 along locked axes and for static
+// bodies.
 struct SetMotion {
     static constexpr std::string_view name = "move";
     std::string body;
@@ -55,7 +55,7 @@ struct SetMotion {
     }
 };
 
-// Changes a dynamic body's velocity at once. Others ignore it.
+// Changes a dynamic body's velocity immediately. Other bodies ignore it.
 struct ApplyImpulse {
     static constexpr std::string_view name = "push";
     std::string body;
@@ -68,8 +68,8 @@ struct ApplyImpulse {
     }
 };
 
-// Holds a point of a dynamic body at a target, by a damped spring of limited strength, until it is
-// released or the body removed. A second grab replaces the first. Others ignore it.
+// Holds a point of a dynamic body at a target with a damped spring of limited force, until it is
+// released or the body removed. A second grab replaces the first. Other bodies ignore it.
 struct GrabBody {
     static constexpr std::string_view name = "grab";
     std::string body;
@@ -87,7 +87,8 @@ struct GrabBody {
     }
 };
 
-// The same of a particle, by its name or as one of a cloth ("sheet[3,4]"). A pinned one ignores it.
+// Grabs a particle, by its own name or its name in a cloth ("sheet[3,4]"). Pinned particles ignore
+// it.
 struct GrabParticle {
     static constexpr std::string_view name = "grab_particle";
     std::string particle;
@@ -103,7 +104,7 @@ struct GrabParticle {
     }
 };
 
-// Nothing held: does nothing.
+// Does nothing when nothing is held.
 struct MoveGrab {
     static constexpr std::string_view name = "drag";
     glm::dvec3 target{0};
@@ -117,7 +118,7 @@ struct ReleaseGrab {
     template <typename Self, typename Visit> static void each_field(Self &, Visit &&) {}
 };
 
-// Settings stay as they are.
+// Leaves the settings as they are.
 struct SetMethod {
     static constexpr std::string_view name = "method";
     std::string method;
@@ -126,7 +127,7 @@ struct SetMethod {
     }
 };
 
-// Those that are not given stay as they are.
+// Settings that are not given stay as they are.
 struct SetSettings {
     static constexpr std::string_view name = "settings";
     GivenSettings settings;

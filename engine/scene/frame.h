@@ -1,5 +1,5 @@
-// All that is to be seen of a simulation at one moment, as flat arrays of plain values in double:
-// what the app blends and draws, and the lab measures.
+// A snapshot of a simulation's visible state, as flat arrays of plain values in double: what the
+// app blends and draws, and the lab measures.
 #pragma once
 
 #include "engine/dynamics/kinds.h"
@@ -33,12 +33,12 @@ struct ContactView {
     std::size_t body_b = 0;
     std::size_t child_a = 0; // which collider of each body, as in BodyInfo
     std::size_t child_b = 0;
-    // Of the mesh or height field, when one of them is.
+    // Index in the mesh or height field, if one of the colliders is one.
     std::optional<std::size_t> triangle;
-    // Names the pair of features that made the point, the same as long as they last. Only within
-    // one contact.
+    // Feature id: identifies the pair of features that made the point, for as long as they last.
+    // Unique only within one contact.
     std::uint32_t feature = 0;
-    bool is_sensor = false;       // one of them is: it pushes nothing
+    bool is_sensor = false;       // either collider is: no forces
     glm::dvec3 position{0};       // world
     glm::dvec3 normal{0};         // from a to b
     double separation = 0;        // m
@@ -51,28 +51,29 @@ struct JointView {
     JointType type = JointType::ball;
     std::optional<std::size_t> body_a, body_b; // empty: the world
     glm::dvec3 anchor_a{0}, anchor_b{0};       // world, now
-    // World, now; the x axes are that of a hinge or slider. Fixed joints have frames too.
+    // World, now; the x axes are the hinge's or slider's axis. Fixed joints have frames too.
     glm::dquat frame_a{1, 0, 0, 0}, frame_b{1, 0, 0, 0};
-    // Angle of a hinge (rad), place of a slider (m), distance of the anchors of a distance joint
-    // (m), and its rate; 0 for the others.
+    // Hinge angle (rad), slider position (m) or anchor distance of a distance joint (m), and its
+    // rate; 0 for the others.
     double position = 0;
     double speed = 0;
-    // Of a hinge or slider where it has some; least and greatest length of a distance joint.
+    // Hinge or slider limits, if any; min and max length of a distance joint.
     std::optional<std::array<double, 2>> limits;
     std::optional<double> motor_speed; // rad/s or m/s
     double max_motor_force = 0;        // N m or N
-    double motor_force = 0;            // now, likewise
+    double motor_force = 0;            // now; N m or N
     double frequency = 0;              // Hz; 0: rigid
     double break_force = 0;            // N; 0: never
     bool broken = false;
-    double drift = 0;       // m, by which the anchors miss what they are held to, limits included
-    double angle_drift = 0; // rad, likewise of the frames
-    // Of all rows, on b, mean over the last substep: at its anchor (N), and about it (N m). World.
+    double drift = 0;       // m, position error of the anchors, limits included
+    double angle_drift = 0; // rad, the same for the frames
+    // Load on b from all rows, mean over the last substep: at its anchor (N) and about it (N m).
+    // World.
     glm::dvec3 force{0};
     glm::dvec3 torque{0};
 };
 
-// A body's point, or a particle, held to a target.
+// A point of a body, or a particle, held to a target.
 struct GrabView {
     std::size_t body = 0;
     glm::dvec3 local_point{0};
@@ -81,7 +82,7 @@ struct GrabView {
     std::optional<std::size_t> particle{}; // instead of the body
 };
 
-// A bounce within the last step.
+// A bounce during the last step.
 struct ImpactView {
     std::size_t body_a = 0;
     std::size_t body_b = 0;
@@ -90,7 +91,7 @@ struct ImpactView {
     double impulse = 0;     // N s
 };
 
-// What is read besides bodies, particles and springs; nothing is computed that is not asked for.
+// What to read besides bodies, particles and springs; parts not asked for are not computed.
 struct FrameParts {
     bool joints = false;
     bool contacts = false;
@@ -102,9 +103,9 @@ struct Frame {
     double time = 0;                      // s, since the start of the scene
     std::vector<BodyState> bodies;        // by index, holes included
     std::vector<ParticleState> particles; // by index, as in Simulation::soft_parts
-    std::vector<std::uint8_t> torn;       // of each spring: 1 when it pulls no more
-    std::vector<JointView> joints;        // those that are there, ascending
-    std::vector<ContactView> contacts;    // of the last step, a point each
+    std::vector<std::uint8_t> torn;       // by spring: 1 if torn
+    std::vector<JointView> joints;        // existing ones, ascending
+    std::vector<ContactView> contacts;    // of the last step, one per point
     std::vector<ImpactView> impacts;      // of the last step
 };
 

@@ -1,4 +1,4 @@
-// The settings that somebody gives: a scene file, the command line, a sweep.
+// Settings given explicitly: by a scene file, the command line, a sweep.
 #pragma once
 
 #include "engine/dynamics/settings.h"
@@ -11,10 +11,10 @@
 
 namespace plumb {
 
-// Values of some of the settings, each number by itself.
+// Values for some of the settings; the components of a vector count separately.
 class GivenSettings {
   public:
-    // Goes before what was given earlier. Not checked: see why_refused.
+    // Overrides earlier values. Not checked: see why_refused.
     void give(SettingNumber number, double value) { values_[number] = value; }
     void give(double StepSettings::*member, double value);
     void give(int StepSettings::*member, int value);
@@ -23,9 +23,9 @@ class GivenSettings {
 
     bool empty() const { return values_.empty(); }
     std::optional<double> find(SettingNumber number) const;
-    bool has(const SettingRow &row) const; // any number of it
+    bool has(const SettingRow &row) const; // any of its numbers
 
-    // Those of which the predicate is true are given no longer.
+    // Drops the settings for which the predicate is true.
     template <typename Predicate> void erase_if(const Predicate &predicate) {
         std::erase_if(values_, [&](const auto &entry) { return predicate(entry.first.setting()); });
     }
@@ -33,7 +33,7 @@ class GivenSettings {
     void apply_to(StepSettings &settings) const;
     StepSettings applied() const; // to StepSettings{}
 
-    // Every setting in which `settings` differs from `by_default`, to the bit.
+    // Every setting where `settings` differs from `by_default`, bit for bit.
     static GivenSettings differences(const StepSettings &by_default, const StepSettings &settings);
 
     bool operator==(const GivenSettings &) const = default;
@@ -42,25 +42,25 @@ class GivenSettings {
     std::map<SettingNumber, double> values_;
 };
 
-// "0.01", or a fraction such as "1/60". Throws std::invalid_argument that says what is wrong.
+// "0.01", or a fraction such as "1/60". Throws std::invalid_argument saying what is wrong.
 double parse_number(std::string_view text);
 
-// The numbers that a name stands for: one, or for "gravity" its three. Throws
-// std::invalid_argument, with the nearest name, when there is none of that name.
+// The numbers that a name stands for: one, or three for "gravity". Throws std::invalid_argument,
+// suggesting the nearest name, for an unknown one.
 std::vector<SettingNumber> find_setting_numbers(std::string_view name);
 
-// "substeps=8", "gravity=0,-3,0", "gravity.y=-3", "dt=1/120". Throws std::invalid_argument that
-// says what is wrong and what would be right.
+// "substeps=8", "gravity=0,-3,0", "gravity.y=-3", "dt=1/120". Throws std::invalid_argument saying
+// what is wrong and what would be right.
 GivenSettings parse_setting(std::string_view text);
 
-// As parse_setting has it, after the "=".
+// What parse_setting reads after the "=".
 std::string setting_text(const SettingRow &row, const StepSettings &settings);
 
-// The fewest digits that read back to the same value, or 1/n where that is the very number and the
-// digits are many. parse_number reads it.
+// The fewest digits that round-trip, or 1/n where that is exactly the value and the digits are
+// many. parse_number reads it.
 std::string number_or_fraction(double value);
 
-// The table for people: name, values, default, methods that read it, reason; in Markdown.
+// The settings as a Markdown table: name, values, default, methods that read it, reason.
 std::string settings_as_markdown();
 
 } // namespace plumb

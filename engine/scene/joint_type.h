@@ -1,5 +1,5 @@
-// The types of joints: what each is called in files, reads, remembers and looks like. The reader,
-// the writer, their errors and the reference in scenes/README.md come from this table.
+// The joint types: each one's name and keys in files, the impulses it keeps, how it is drawn. The
+// reader, the writer, their errors and the reference in scenes/README.md come from this table.
 #pragma once
 
 #include "engine/scene/file/bounds.h"
@@ -15,18 +15,18 @@
 
 namespace plumb {
 
-// A key of a joint in files whose value is one member of its JointDesc.
+// A joint's key in files, whose value is one member of JointDesc.
 struct JointKey {
-    struct Length {}; // min_length and max_length at once
+    struct Length {}; // sets both min_length and max_length
     using Member = std::variant<Length, bool JointDesc::*, double JointDesc::*,
                                 std::optional<double> JointDesc::*,
                                 std::optional<std::array<double, 2>> JointDesc::*>;
     std::string_view name;
     Member member;
-    // "rad" and "rad/s": an angle; the key with _deg at its end then takes degrees.
+    // "rad" and "rad/s": an angle; the key with _deg appended then takes degrees.
     std::string_view unit;
-    scene_file::Bounds bounds; // of an angle: in degrees
-    std::string_view needs;    // the key without which this one says nothing; empty: none
+    scene_file::Bounds bounds; // in degrees for an angle
+    std::string_view needs;    // a key this one is meaningless without; empty: none
     std::string_view about;
     std::string_view by_default;
 
@@ -34,9 +34,10 @@ struct JointKey {
 };
 
 struct JointTypeInfo {
-    // axis: of the frames the x axes are the joint's axis. whole: each axis counts.
+    // axis: the frames' x axes are the joint's axis. whole: every axis counts.
     enum class Frames { none, axis, whole };
-    // Where they begin. on_axis: of a's frame. apart: where none are given, at the centres.
+    // Where the anchors start. together: at one point. on_axis: on the x axis of a's frame. apart:
+    // anywhere; default to the body origins.
     enum class Anchors { together, on_axis, apart };
 
     JointType type;
@@ -45,19 +46,19 @@ struct JointTypeInfo {
     std::string_view drawn;
     Anchors anchors;
     Frames frames;
-    // What it leaves free, in a word, "" if it has no place (JointPlace), and whether that is an
-    // angle (rad) and no length (m).
+    // One word for its free coordinate (JointPlace), "" if it has none, and whether that is an
+    // angle (rad) rather than a length (m).
     std::string_view place;
     bool turns;
-    std::vector<JointKey> keys;         // besides those that every joint has
-    std::vector<std::string_view> rows; // what the impulses are of, in this order
+    std::vector<JointKey> keys;         // in addition to the common ones
+    std::vector<std::string_view> rows; // what each impulse is of, in row order
 };
 
 const std::vector<JointKey> &common_joint_keys();
 const JointTypeInfo &joint_type(JointType type);
 std::span<const JointTypeInfo *const> joint_types(); // in the order of the enumeration
 
-// As tables in Markdown: what scenes/README.md says of types and keys.
+// The types and keys as Markdown tables for scenes/README.md.
 std::string joint_reference();
 
 } // namespace plumb

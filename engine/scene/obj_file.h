@@ -12,20 +12,20 @@
 
 namespace plumb {
 
-// Stated limits: a file beyond these is refused.
+// A file beyond these limits is refused.
 inline constexpr std::size_t max_obj_bytes = 64U << 20U;
 inline constexpr std::size_t max_obj_line_bytes = 1U << 16U;
 inline constexpr std::size_t max_obj_vertices = 2'000'000;
 inline constexpr std::size_t max_obj_triangles = 4'000'000;
 inline constexpr std::size_t max_obj_polygon_corners = 255;
-inline constexpr double max_obj_coordinate = 1e8; // in magnitude; what a MeshTree takes
-// Cutting a polygon compares corners with triangles, in the worst case its corners' number cubed
-// times; all polygons of a file together at most so often, which takes seconds.
+inline constexpr double max_obj_coordinate = 1e8; // in magnitude; the most a MeshTree takes
+// Triangulating a polygon tests corners against triangles, cubic in the number of corners at worst.
+// This caps the tests for all polygons of a file, which then take seconds.
 inline constexpr std::size_t max_obj_corner_tests = 500'000'000;
 
 struct ObjMesh {
-    std::vector<glm::dvec3> vertices; // all of the file's, in its order, used or not
-    std::vector<std::array<std::uint32_t, 3>> triangles; // in the order and sense of the faces
+    std::vector<glm::dvec3> vertices; // all of the file's, in file order, used or not
+    std::vector<std::array<std::uint32_t, 3>> triangles; // in the faces' order and winding
 };
 
 struct ObjResult {
@@ -34,19 +34,19 @@ struct ObjResult {
     bool ok() const { return error.empty(); }
 };
 
-// The positions and faces of all objects of a file as one mesh. Names, groups, materials, normals,
-// texture coordinates, lines, points and whatever else a line begins with are passed over unread.
+// Reads the positions and faces of all objects in a file as one mesh. Names, groups, materials,
+// normals, texture coordinates, lines, points and all other kinds of line are skipped.
 //
-// `v` gives three numbers, each read to the nearest double; more on the line are passed over. `f`
-// names three or more vertices, from 1 in the order of the file, or from the last one so far by -1;
-// what follows a slash is not used. A polygon is cut into triangles with its own corners (ear
-// clipping, Meisters 1975; which side a corner is on is decided exactly), after the projection
-// along an axis that keeps most of its area. It may be concave and need not be plane, but its
-// outline must not cross itself. One without area becomes as many flat triangles.
+// `v` gives three numbers, each read to the nearest double; further numbers are ignored. `f` lists
+// three or more vertices, counted from 1 in file order, or backwards from -1, the last one so far;
+// anything after a slash is ignored. Polygons are triangulated without adding vertices (ear
+// clipping, Meisters 1975, with exact orientation tests), projected along the axis that keeps most
+// of their area. A polygon may be concave and need not be planar, but its outline must not cross
+// itself. A polygon without area becomes as many degenerate triangles.
 //
-// A number that is not finite or too large, a vertex that is not in the file, a file without faces,
-// and what is beyond the limits above, are refused. Never throws for what is in the file. `name`
-// stands in messages only.
+// Numbers that are not finite or too large, vertices that are not in the file, files without faces
+// and files beyond the limits above are refused. Never throws because of a file's contents. `name`
+// is used in messages only.
 ObjResult read_obj(std::istream &in, const std::string &name);
 
 } // namespace plumb

@@ -17,12 +17,12 @@ namespace plumb {
 template <typename Desc> struct ParticleKey {
     using Member = std::variant<std::monostate, bool Desc::*, double Desc::*, glm::dvec3 Desc::*>;
     std::string_view name;
-    // What it is the value of; none: it is read and written by hand.
+    // The member it sets; none: read and written by hand.
     Member member;
-    scene_file::Bounds bounds; // of a number
+    scene_file::Bounds bounds; // for numbers
     std::string_view about;
     std::string_view by_default;
-    std::string_view also{}; // other keys that say the same in their own way: "or `frequency`"
+    std::string_view also{}; // alternative keys for the same thing: "or `frequency`"
 };
 
 std::span<const ParticleKey<AttractorDesc>> attractor_keys();
@@ -30,7 +30,7 @@ std::span<const ParticleKey<ParticleDesc>> particle_keys();
 std::span<const ParticleKey<SpringDesc>> spring_keys();
 std::span<const ParticleKey<ClothDesc>> cloth_keys();
 
-// As tables in Markdown: what scenes/README.md says of the keys of each.
+// The keys of each as Markdown tables for scenes/README.md.
 std::string attractor_reference();
 std::string particle_reference();
 std::string spring_reference();

@@ -1,4 +1,4 @@
-// What a probe is answered, as plain values: to be drawn, printed and compared.
+// Answers to probes, as plain values: to be drawn, printed and compared.
 #pragma once
 
 #include "engine/scene/scene_desc.h"
@@ -14,22 +14,22 @@
 
 namespace plumb {
 
-// What a mark says; the app has a colour for each.
+// The meaning of a mark; the app has a colour for each.
 enum class ProbeTone {
-    plain,  // a shape that was asked, in a colour of its own
-    query,  // what was asked with: a ray, a point
+    plain,  // a queried shape, in a colour of its own
+    query,  // the query itself: a ray, a point
     yes,    // hit, inside, overlapping, seen
     partly, // across
     no,     // missed, outside, culled
-    result, // the points that were found
+    result, // the points found
     normal,
     axis,
     edge,  // of a shape
-    faint, // nodes of a tree, helping lines
+    faint, // tree nodes, guide lines
 };
 
 struct ProbeValue {
-    // An entry is one of a matrix's; the three of a row stand together.
+    // entry: of a matrix; the three of a row are consecutive.
     enum class Form { number, count, flag, entry };
     std::string_view name; // one of the question's values
     double value = 0;
@@ -50,7 +50,7 @@ struct ProbeSurface {
     std::vector<glm::dvec3> corners;
     ProbeTone tone = ProbeTone::plain;
     std::size_t number = 0;
-    bool is_opaque = false; // else what is behind shows through
+    bool is_opaque = false; // else things behind it show through
 };
 struct ProbeLine {
     glm::dvec3 a{0}, b{0};
@@ -78,15 +78,15 @@ struct ProbeAnswer {
     std::vector<ProbePoint> points;
     std::vector<ProbeLabel> labels;
 
-    // NaN when there is none of that name: the t of a ray that hits nothing.
+    // NaN when there is none of that name, such as the t of a ray that hits nothing.
     [[nodiscard]] double value(std::string_view name) const;
 };
 
-// Asked anew, in the precision given. The same probe gives the same bits. What the geometry refuses
-// to answer (a direction of no length, say) is a refusal.
+// Computes the answer in the given precision; the same probe gives the same bits. A query that the
+// geometry rejects (a zero direction, say) yields a refusal.
 ProbeAnswer answer(const ProbeDesc &probe, Precision precision);
 
-// Of the numbers of all answers, bit for bit.
+// Hashes the numbers of all answers, bit for bit.
 std::uint64_t hash_of_answers(std::span<const ProbeDesc> probes, Precision precision);
 
 } // namespace plumb

@@ -1,5 +1,5 @@
-// Probes: questions that a scene puts to the geometry, as plain values in double precision. What
-// they are answered is probe.h's business. SI units, radians.
+// Probes: a scene's geometry queries, as plain values in double precision. For their answers see
+// probe.h. SI units, radians.
 #pragma once
 
 #include "engine/scene/shape_desc.h"
@@ -19,24 +19,26 @@
 
 namespace plumb {
 
-// Stated limits: beyond these a scene is refused.
+// A scene beyond these limits is refused.
 inline constexpr std::size_t max_scene_probes = 1000;
 inline constexpr std::size_t max_probe_shapes = 1000;
 inline constexpr std::size_t max_probe_points = 10'000;
 inline constexpr int max_probe_items = 20'000; // scattered
 
-// Shapes that can be asked, besides those of bodies. A box whose axes are the world's:
+// Shapes that can be queried besides those of bodies.
+
+// A box along the world axes.
 struct AabbDesc {
     glm::dvec3 half_extents{0.5};
 };
-// In the world.
+// In world coordinates.
 struct SegmentDesc {
     std::array<glm::dvec3, 2> points{};
 };
 struct TriangleDesc {
     std::array<glm::dvec3, 3> points{};
 };
-// From here on in the xy plane.
+// The shapes from here on are in the xy plane.
 struct FlatSegmentDesc {
     std::array<glm::dvec3, 2> points{};
 };
@@ -53,7 +55,7 @@ struct OrientedRectangleDesc {
 using FlatPartShape = std::variant<CircleDesc, RectangleDesc, OrientedRectangleDesc>;
 struct FlatPartDesc {
     FlatPartShape shape;
-    glm::dvec3 position{0}; // about the compound's
+    glm::dvec3 position{0}; // relative to the compound's
 };
 struct FlatCompoundDesc {
     std::vector<FlatPartDesc> parts;
@@ -67,16 +69,16 @@ using ProbeShape =
 
 struct ProbeShapeDesc {
     ProbeShape shape;
-    glm::dvec3 position{0};             // the centre; of a plane: a point of it
-    glm::dquat orientation{1, 0, 0, 0}; // identity for kinds that are not turned
+    glm::dvec3 position{0};             // the centre; for a plane, a point on it
+    glm::dquat orientation{1, 0, 0, 0}; // identity for kinds without rotation
     std::string name{}, parent{};       // in "models": parents come before their children
 };
 
-// origin + t * direction, 0 <= t <= max_t; or, with an end, the segment to it.
+// origin + t * direction, 0 <= t <= max_t; or, with an end, the segment from origin to end.
 struct ProbeRayDesc {
     glm::dvec3 origin{0};
-    glm::dvec3 direction{0, 0, -1}; // of a segment: not read
-    std::optional<double> max_t;    // likewise
+    glm::dvec3 direction{0, 0, -1}; // not read for a segment
+    std::optional<double> max_t;    // not read for a segment
     std::optional<glm::dvec3> end;
 };
 
@@ -85,14 +87,14 @@ struct ProbeCameraDesc {
     glm::dvec3 eye{0, 1, 5};
     glm::dvec3 target{0};
     double fov = 0.8;             // vertical
-    std::optional<double> height; // of the view, metres: orthographic, and fov is not read
+    std::optional<double> height; // of the view (m): orthographic; fov is not read
     double aspect = 16.0 / 9.0;
     double near = 0.5;
     double far = 20;
-    std::optional<glm::dvec2> pixel; // picked: from the top left of a picture 100 high
+    std::optional<glm::dvec2> pixel; // to pick: from the top left of a picture 100 high
 };
 
-// Many at once: uniform in a box, from a seed of its own. Boxes for trees, points to be enclosed.
+// Random items, uniform in a box, with a seed of their own: boxes for trees, points to enclose.
 struct ProbeScatterDesc {
     int count = 0;
     glm::dvec3 center{0};
@@ -101,7 +103,7 @@ struct ProbeScatterDesc {
     std::uint64_t seed = 1;
 };
 
-// What the question is; the table probe_questions() says what each needs and answers.
+// The kinds of query; probe_questions() lists what each needs and answers.
 enum class ProbeQuestion {
     vectors,
     basis,
@@ -141,13 +143,13 @@ struct ProbeDesc {
     std::optional<ProbeCameraDesc> camera;
     std::optional<ProbeScatterDesc> scatter;
     std::optional<ProbeTree> tree;
-    int level = -1;       // of a tree, to be drawn; -1: all
+    int level = -1;       // tree level to draw; -1: all
     double margin = 0;    // collide, metres
-    glm::dvec3 motion{0}; // cast, metres: of the first shape
+    glm::dvec3 motion{0}; // cast, metres: by the first shape
     glm::dvec3 scale{1};  // transform
     std::vector<ProbeExpectDesc> expects;
-    double tolerance = 0; // of the expects that are no yes or no, absolute
-    std::string source;   // where what is expected comes from
+    double tolerance = 0; // absolute; for expects other than yes or no
+    std::string source;   // where the expected values come from
 };
 
 struct ProbeQuestionInfo {
@@ -160,8 +162,8 @@ struct ProbeQuestionInfo {
     std::string_view about;
     Range shapes;
     Range points;
-    std::vector<std::string_view> takes;  // keys besides those
-    std::vector<std::string_view> values; // that the answer can have
+    std::vector<std::string_view> takes;  // keys besides shapes and points
+    std::vector<std::string_view> values; // that the answer can contain
     [[nodiscard]] bool does_take(std::string_view key) const;
 };
 const std::vector<ProbeQuestionInfo> &probe_questions(); // in the order of the enumeration
@@ -170,13 +172,13 @@ const ProbeQuestionInfo &probe_question(ProbeQuestion question);
 std::string_view shape_name(const ProbeShape &shape); // in files
 bool is_flat(const ProbeShape &shape);                // in the xy plane
 
-// Whether all of the probe lies in the xy plane.
+// Whether the whole probe lies in the xy plane.
 bool is_flat(const ProbeDesc &probe);
 
-// What a person can take hold of: points, shapes, ends of rays, a camera's eye and target.
+// What the user can drag: points, shapes, ends of rays, a camera's eye and target.
 std::vector<glm::dvec3> probe_handles(const ProbeDesc &probe);
-// Moves a handle, counted as above, to a place. What lies in the xy plane stays there; an end that
-// would leave a ray without direction stays where it is.
+// Moves a handle, indexed as above. Handles in the xy plane stay in it; an end that would leave its
+// ray without a direction does not move.
 void move_probe_handle(ProbeDesc &probe, std::size_t handle, const glm::dvec3 &place);
 
 } // namespace plumb

@@ -1,4 +1,4 @@
-// The Simulation of a scene that has only probes: there is no world, and a step costs nothing.
+// The Simulation of a scene that has only probes: no world, and steps that cost nothing.
 #pragma once
 
 #include "engine/scene/simulation.h"

@@ -11,7 +11,7 @@ struct ProbeSize {
     std::size_t shapes = 0;    // with the parts of compounds
     std::size_t triangles = 0; // of meshes and height fields
     std::size_t scattered = 0;
-    std::size_t questions = 0; // each shape and each point, or each two shapes
+    std::size_t questions = 0; // shape and point pairs, or shape pairs
 };
 ProbeSize size_of(const ProbeDesc &probe);
 

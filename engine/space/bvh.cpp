@@ -40,15 +40,15 @@ Aabb joined_children(const Bvh::Node &node) {
 
 } // namespace
 
-// The binary tree from which the nodes are made.
+// The binary tree that is collapsed into nodes.
 struct Bvh::Builder {
     struct Item {
         Aabb box;
         std::uint32_t index = 0;
-        // Twice the centre: that is as good for sorting.
+        // Twice the centre, which sorts the same.
         Real center(int axis) const { return box.min[axis] + box.max[axis]; }
     };
-    // Items [first, first + count), whose boxes `box` holds.
+    // Items [first, first + count) and their bounds.
     struct Range {
         std::uint32_t first = 0;
         std::uint32_t count = 0;
@@ -61,13 +61,13 @@ struct Bvh::Builder {
         std::uint32_t left = 0, right = 0;
     };
     struct Split {
-        int axis = -1; // -1: none is worth anything
-        int bin = 0;   // the first of the right side
+        int axis = -1; // -1: no useful split
+        int bin = 0;   // first bin of the right side
     };
 
     static constexpr int bin_count = 16;
-    // Below this depth ranges are halved by count, so that the tree's height, and with it the
-    // stack of a visit, is bounded: 32 levels more hold all there can be.
+    // Below this depth ranges are halved by count, which bounds the tree's height and with it the
+    // traversal stack: 32 more levels hold the maximum number of items.
     static constexpr int greedy_depth = 36;
 
     std::vector<Item> items;
@@ -95,7 +95,7 @@ struct Bvh::Builder {
         return range;
     }
 
-    // Bins lie evenly between the lowest and the highest centre.
+    // Bins are evenly spaced between the lowest and the highest centre.
     struct Bins {
         Real lowest;
         Real scale;
@@ -107,14 +107,14 @@ struct Bvh::Builder {
         }
     };
 
-    // Wald 2007, section 3: the plane between two bins with the least A_l N_l + A_r N_r, N in
-    // leaves, as a leaf's items are met all at once.
+    // Wald 2007, section 3: the plane between two bins with the least A_l N_l + A_r N_r, N counted
+    // in leaves, as a leaf's items are tested all at once.
     Split best_split(const Range &range) const {
         Split best;
         Real best_cost = std::numeric_limits<Real>::infinity();
         for (int axis = 0; axis < 3; ++axis) {
             const Bins bin_of(range, axis);
-            if (!std::isfinite(bin_of.scale)) // the centres are, nearly, at one place
+            if (!std::isfinite(bin_of.scale)) // the centres (nearly) coincide
                 continue;
             std::array<Aabb, bin_count> boxes{};
             std::array<std::uint32_t, bin_count> counts{};
@@ -151,7 +151,7 @@ struct Bvh::Builder {
         return count == 0 ? Real(0) : half_area(box) * static_cast<Real>(leaves);
     }
 
-    // Where the right side of the range begins; its items are put in order.
+    // Partitions the range's items; returns where the right side begins.
     std::uint32_t divided(const Range &range, int depth) {
         const auto first = items.begin() + std::ptrdiff_t(range.first);
         const auto last = first + std::ptrdiff_t(range.count);
@@ -192,11 +192,11 @@ struct Bvh::Builder {
         split(left + 1, depth + 1);
     }
 
-    // Appends the node that has `root` of the binary tree at its top, and all below it.
+    // Appends the node for `root` of the binary tree, and everything below it.
     std::uint32_t collapse(Bvh &bvh, std::uint32_t root) const {
         std::array<std::uint32_t, width> children{root};
         std::size_t count = 1;
-        while (count < width) { // open the largest
+        while (count < width) { // open the largest child
             std::size_t widest = width;
             for (std::size_t i = 0; i < count; ++i)
                 if (branches[children[i]].left != 0 &&

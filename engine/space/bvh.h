@@ -1,4 +1,4 @@
-// A tree of axis-aligned boxes that is built once: a static bounding volume hierarchy.
+// A static bounding volume hierarchy of axis-aligned boxes.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -13,47 +13,46 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Built from the top by the surface area heuristic over bins (Wald 2007, "On fast Construction of
-// SAH-based Bounding Volume Hierarchies"), then collapsed into nodes of eight children, whose
-// bounds lie side by side, so that one ray meets them all at once (Wald, Benthin, Boulos 2008,
-// "Getting Rid of Packets"). Copyable; flat arrays; the same boxes give the same tree.
+// Built top-down with the binned surface area heuristic (Wald 2007, "On fast Construction of
+// SAH-based Bounding Volume Hierarchies"), then collapsed into nodes of eight children with their
+// bounds side by side, so one ray tests all eight at once (Wald, Benthin, Boulos 2008, "Getting Rid
+// of Packets"). Copyable; flat arrays; the same boxes give the same tree.
 class Bvh {
   public:
     static constexpr std::size_t width = 8;
-    static constexpr std::size_t leaf_size = 4; // most items in a leaf
+    static constexpr std::size_t leaf_size = 4; // maximum items in a leaf
 
-    // A child is a node, or a leaf (then with `leaf_bit`), or missing: its bounds, lowest above
-    // highest, are met by nothing.
+    // A child is a node, a leaf (marked by `leaf_bit`), or missing: then its bounds are inverted,
+    // lowest above highest, and nothing meets them.
     static constexpr std::uint32_t leaf_bit = 0x8000'0000U;
     static constexpr std::uint32_t no_child = 0xFFFF'FFFFU;
     struct alignas(64) Node {
         Real bounds[3][2][width]; // by axis, lowest and highest, child
         std::uint32_t children[width];
     };
-    // Children waiting to be visited, at most, in a visit from the top.
+    // Maximum number of pending children in a traversal from the root.
     static constexpr std::size_t stack_size = 512;
 
-    // Items are known by their place in `boxes`. None is fine; a box that is empty, not finite or
-    // beyond 1e15 m, where areas overflow in float, fails a check.
+    // Items are identified by their index in `boxes`. No boxes is fine; a box that is empty, not
+    // finite or beyond 1e15 m, where areas overflow in float, fails a check.
     explicit Bvh(std::span<const Aabb> boxes);
 
-    // The same tree for boxes that have moved: `boxes` must be as many as before. Answers stay
-    // right; queries slow down with the distance from where the tree was built.
+    // Refits the same tree to boxes that have moved; there must be as many as before. Answers stay
+    // right; queries slow down as boxes move away from where the tree was built.
     void refit(std::span<const Aabb> boxes);
 
     std::size_t size() const { return items_.size(); }
-    const Aabb &bounds() const { return bounds_; } // empty when there is no item
+    const Aabb &bounds() const { return bounds_; } // empty without items
 
-    // Nodes with a parent before its children, the root first; none when there is no item.
+    // Parents before their children, the root first; empty without items.
     std::span<const Node> nodes() const { return nodes_; }
     std::size_t leaf_count() const { return first_.size() - 1; }
-    // The items of a leaf.
     std::span<const std::uint32_t> items(std::size_t leaf) const {
         return std::span(items_).subspan(first_[leaf], first_[leaf + 1] - first_[leaf]);
     }
 
-    // Calls visit(item) for the items of every leaf whose box touches `box` (closed sets), so for
-    // all whose own box does and some beside; stops when it returns false.
+    // Calls visit(item) for the items of every leaf whose box touches `box` (closed sets): all
+    // items that touch it and some that do not. Stops when visit returns false.
     template <typename Visit> void query(const Aabb &box, Visit &&visit) const {
         query_where(
             [&box](const Node &node, std::size_t child) {
@@ -65,13 +64,12 @@ class Bvh {
             visit);
     }
 
-    // Calls visit(item) for the items of every leaf that meets(node, child) lets through, and
-    // whose ancestors it does; stops when it returns false. A missing child must not be let
-    // through.
+    // Calls visit(item) for the items of every leaf that meets(node, child) accepts along with all
+    // its ancestors; stops when visit returns false. meets must reject a missing child.
     template <typename Meets, typename Visit> void query_where(Meets &&meets, Visit &&visit) const;
 
-    // Calls visit(item) -> Real for the items of leaves, the nearer to `point` first, as long as
-    // a leaf's squared distance is at most `most`, or what visit returned last.
+    // Calls visit(item) -> Real for the items of leaves, those nearer to `point` first, while a
+    // leaf's squared distance is at most `most`, or what visit last returned.
     template <typename Visit> void nearest(const Vec3 &point, Real most, Visit &&visit) const;
 
   private:
@@ -79,7 +77,7 @@ class Bvh {
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> items_; // by leaf
-    std::vector<std::uint32_t> first_; // of each leaf in items_, and the end
+    std::vector<std::uint32_t> first_; // each leaf's start in items_, and the end
     Aabb bounds_;
 };
 
@@ -112,8 +110,7 @@ template <typename Visit> void Bvh::nearest(const Vec3 &point, Real most, Visit 
         Real squared;
         std::uint32_t child;
     };
-    // Squared distances of a box and of something in it, each rounded a few times, may come in the
-    // wrong order.
+    // Rounding may put an item's squared distance below that of the box around it.
     constexpr Real slack = Real(1) - Real(8) * std::numeric_limits<Real>::epsilon();
     std::array<Entry, stack_size> pending;
     std::size_t count = 0;

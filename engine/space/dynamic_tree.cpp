@@ -140,14 +140,14 @@ void DynamicTree::release(Index index) {
     free_ = index;
 }
 
-// The node beside which a new leaf adds the least area to the tree: the area of the new parent, and
-// what all its ancestors grow by. Branch and bound: below a node the cost is at least the leaf's
-// own area and the growth so far.
+// The sibling for which a new leaf adds the least area to the tree: the area of the new parent plus
+// the growth of all its ancestors. Branch and bound: below a node the cost is at least the leaf's
+// own area plus the growth so far.
 DynamicTree::Index DynamicTree::best_sibling(const Aabb &box) const {
     const Real own_area = half_area(box);
     Index best = root_;
     Real best_cost = half_area(joined(node(root_).box, box));
-    Pending pending; // the key is the growth of the ancestors
+    Pending pending; // keyed by the ancestors' growth
     pending.push(root_, Real(0));
     while (!pending.is_empty()) {
         const typename Pending::Entry entry = pending.pop();
@@ -165,7 +165,7 @@ DynamicTree::Index DynamicTree::best_sibling(const Aabb &box) const {
         const Real growth = entry.key + (joined_area - half_area(here.box));
         if (own_area + growth >= best_cost)
             continue;
-        // The child that grows less first: its cost is likely to bound the other away.
+        // Visit the child that grows less first: its cost is likely to prune the other.
         std::array<Real, 2> grown{};
         for (std::size_t i = 0; i < 2; ++i) {
             const Aabb &child = node(here.children[i]).box;
@@ -186,9 +186,9 @@ DynamicTree::Index DynamicTree::sibling_of(Index index) const {
     return node(node(index).parent).children[static_cast<std::size_t>(1 - slot_in_parent(index))];
 }
 
-// Whether a leaf with another box is still well placed beside its sibling: refitting the boxes
-// above it, with rotations, costs a quarter of looking for a better place (Kopta et al. 2012,
-// "Fast, effective BVH updates for animated scenes").
+// Whether a leaf with a new box is still well placed beside its sibling: refitting its ancestors,
+// with rotations, costs a quarter of finding a better place (Kopta et al. 2012, "Fast, effective
+// BVH updates for animated scenes").
 bool DynamicTree::is_still_near(Leaf leaf, const Aabb &box) const {
     constexpr Real most = Real(1.5);
     if (node(leaf).parent == none)
@@ -250,15 +250,15 @@ void DynamicTree::refit_upwards(Index index) {
     }
 }
 
-// Swaps a child with a grandchild on the other side when that makes the inner box that changes
-// smaller. Only that box and the heights above it change (Kopta et al. 2012).
+// Swaps a child with a grandchild on the other side if that shrinks the other child's box. Only
+// that box and the heights above it change (Kopta et al. 2012).
 void DynamicTree::rotate(Index index) {
     const Node &here = node(index);
     Real best_gain = Real(0);
     std::size_t best_child = 0;
     std::size_t best_grandchild = 0;
     for (std::size_t i = 0; i < 2; ++i) {
-        // The child on side i goes down, in the place of grandchild j, which comes up.
+        // Child i moves down into the place of grandchild j, which moves up.
         const Node &child = node(here.children[i]);
         const Node &other = node(here.children[1 - i]);
         if (other.is_leaf())
@@ -287,8 +287,8 @@ void DynamicTree::rotate(Index index) {
     refit(index);
 }
 
-// The tree against itself: below every inner node the pairs of its two children, each with the
-// other, and going down the larger box of a pair that touches.
+// Tests the tree against itself: for every inner node, one child's subtree against the other's,
+// descending into the larger box of each touching pair.
 void DynamicTree::overlapping_pairs(
     std::vector<std::pair<std::uint32_t, std::uint32_t>> &pairs) const {
     pairs.clear();

@@ -1,4 +1,4 @@
-// A binary tree of axis-aligned boxes that change: the broad phase.
+// A dynamic binary tree of axis-aligned boxes: the broad phase.
 #pragma once
 
 #include "engine/geometry/frustum.h"
@@ -18,83 +18,82 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Leaves hold boxes fattened by a margin, so that small moves cost nothing. Insertion by branch and
+// Leaves hold boxes fattened by a margin, so small moves cost nothing. Insertion is branch and
 // bound on the surface area, with rotations (Catto, "Dynamic Bounding Volume Hierarchies", GDC
-// 2019). Copyable: a copy answers every query as the original does. The set of leaves a query
-// visits depends on the fat boxes alone; the order of visits on the history. The tree must not be
-// changed from within a visit.
+// 2019). Copyable: a copy answers every query like the original. Which leaves a query visits
+// depends only on the fat boxes; their order depends on the history. Do not change the tree from
+// within a visit.
 class DynamicTree {
   public:
     using Leaf = std::int32_t;
     static constexpr Leaf none = -1;
 
-    // `margin` >= 0 in metres is added on every side of each box.
+    // `margin` >= 0, in metres, is added on every side of each box.
     explicit DynamicTree(Real margin);
 
-    // `user` is given back by queries. An empty or non-finite box fails a check.
+    // Queries return `user`. An empty or non-finite box fails a check.
     Leaf insert(const Aabb &box, std::uint32_t user);
-    // A leaf that is not in the tree fails a check, here and below. Its number may be used again.
+    // A leaf that is not in the tree fails a check, here and below. Its number may be reused.
     void remove(Leaf leaf);
-    // Returns whether the leaf got a new fat box: the old one no longer held the new box.
-    // The new fat box reaches farther by `way`, along which the box is expected to go on.
+    // Returns whether the leaf got a new fat box because the old one no longer contained `box`. The
+    // new one is extended by `way`, the motion expected next.
     bool update(Leaf leaf, const Aabb &box, const Vec3 &way = Vec3{Real(0)});
 
-    // Whether the leaf's fat box holds a box: then `update` changes nothing.
+    // Whether the leaf's fat box contains `box`; if so, `update` changes nothing.
     bool holds(Leaf leaf, const Aabb &box) const;
     std::uint32_t user(Leaf leaf) const;
     const Aabb &fat_bounds(Leaf leaf) const;
     std::size_t size() const { return leaf_count_; }
 
     // Calls visit(user) for every leaf whose fat box touches `box` (closed sets; an empty box
-    // touches nothing); stops when it returns false.
+    // touches nothing); stops when visit returns false.
     template <typename Visit> void query(const Aabb &box, Visit &&visit) const;
 
-    // Calls visit(user, ray) -> Real for leaves whose fat box the ray meets, the nearer child
-    // first; the answer is the new max_t (return ray.max_t to go on, 0 to stop). The closest-hit
-    // search is built on it. A zero or non-finite direction, or a NaN, fails a check.
+    // Calls visit(user, ray) -> Real for leaves whose fat box the ray hits, the nearer child first;
+    // the result is the new max_t (return ray.max_t to continue, 0 to stop). Closest-hit searches
+    // can be built on this. A zero or non-finite direction, or a NaN, fails a check.
     template <typename Visit> void raycast(Ray ray, Visit &&visit) const;
 
-    // What the queries below are made of: calls visit(user) for every leaf with meets(fat box), and
-    // stops when that returns false. Whole branches are left out, so where `meets` says yes to a
-    // box it must say yes to every box that holds it, to the last bit.
+    // The building block of the queries below: calls visit(user) for every leaf with meets(fat
+    // box), and stops when visit returns false. Whole branches are skipped, so if `meets` accepts a
+    // box it must accept every box that contains it, to the last bit.
     template <typename Meets, typename Visit> void query_if(Meets &&meets, Visit &&visit) const;
 
-    // Every leaf whose fat box touches the sphere: the rounded squared distance of its centre is at
-    // most the rounded squared radius. A wrong answer is possible only where the distance is within
-    // 2 epsilon radius of the radius (a radius whose square underflows is a point's). A NaN, an
+    // Every leaf whose fat box touches the sphere: the rounded squared distance to its centre is at
+    // most the rounded squared radius. The answer can be wrong only if the distance is within 2
+    // epsilon radius of the radius (a radius whose square underflows counts as zero). A NaN, an
     // infinity or a negative radius fails a check.
     template <typename Visit> void query(const Sphere &sphere, Visit &&visit) const;
-    // Every leaf whose fat box touches the segment, by the slab test (slab.h); a box that holds an
-    // end of it always does. a == b is a point. A NaN or an infinity fails a check.
+    // Every leaf whose fat box touches the segment, by the slab test (slab.h); a box that contains
+    // an endpoint always does. a == b is a point. A NaN or an infinity fails a check.
     template <typename Visit> void query(const Segment &segment, Visit &&visit) const;
-    // Every leaf whose fat box is not wholly in front of a plane of the frustum, as `classify`
-    // (frustum.h) has it, by its corner that is farthest behind; off by 4 epsilon times the largest
-    // coordinate at most.
+    // Every leaf whose fat box is not entirely in front of a frustum plane, judged as in `classify`
+    // (frustum.h) by its corner farthest behind the plane; off by at most 4 epsilon times the
+    // largest coordinate.
     template <typename Visit> void query(const Frustum &frustum, Visit &&visit) const;
 
     struct Hit {
         std::uint32_t user = 0;
         Real t = Real(0);
     };
-    // The first of what the leaves hold on the ray. Calls hit(user, ray) -> optional<Real>: where
-    // the ray, shortened to the nearest hit so far, first meets what `user` stands for. Of hits at
-    // the same t the least user is taken; so where no hit is before its leaf's box, the answer does
-    // not depend on the tree's history.
+    // The first hit along the ray. Calls hit(user, ray) -> optional<Real>: where the ray, shortened
+    // to the nearest hit so far, first hits the object that `user` stands for. At equal t the least
+    // user wins, so as long as no hit lies before its leaf's box, the answer does not depend on the
+    // tree's history.
     template <typename FirstHit>
     std::optional<Hit> closest_hit(const Ray &ray, FirstHit &&hit) const;
-    // Whether is_hit(user, ray) -> bool for any leaf whose fat box the ray meets; asks no more
-    // leaves then.
+    // Whether is_hit(user, ray) -> bool is true for any leaf whose fat box the ray hits; stops at
+    // the first.
     template <typename IsHit> bool any_hit(const Ray &ray, IsHit &&is_hit) const;
 
-    // Writes over `pairs` the users (lesser, greater) of all leaves whose fat boxes touch each
-    // other, each pair once, in ascending order. The vector's memory is used again.
+    // Replaces `pairs` with the users (lesser, greater) of all leaves whose fat boxes touch each
+    // other, each pair once, in ascending order. The vector's memory is reused.
     void overlapping_pairs(std::vector<std::pair<std::uint32_t, std::uint32_t>> &pairs) const;
 
-    // Calls visit(box, depth, is_leaf) for every node, a parent before its children; the root has
-    // depth 0.
+    // Calls visit(box, depth, is_leaf) for every node, parents first; the root has depth 0.
     template <typename Visit> void each_node(Visit &&visit) const;
 
-    // Fails a check when links, boxes or heights are not consistent. For tests.
+    // Fails a check when links, boxes or heights are inconsistent. For tests.
     void validate() const;
     int height() const; // 0 for a single leaf or none
 
@@ -103,7 +102,7 @@ class DynamicTree {
 
     struct Node {
         Aabb box;
-        Index parent = none; // of a free node: the next free one
+        Index parent = none; // in a free node: the next free one
         std::array<Index, 2> children{none, none};
         std::int32_t height = 0; // 0: leaf, -1: free
         std::uint32_t user = 0;
@@ -111,7 +110,7 @@ class DynamicTree {
         bool is_leaf() const { return height == 0; }
     };
 
-    // Indices still to be visited: on the stack of the caller unless the tree is very deep.
+    // Nodes still to visit: on the caller's stack unless the tree is very deep.
     class Pending {
       public:
         bool is_empty() const { return count_ == 0; }
@@ -153,13 +152,13 @@ class DynamicTree {
     static void check_sphere(const Sphere &sphere);
     static void check_segment(const Segment &segment);
     static bool touches(const Aabb &box, const Sphere &sphere) {
-        // Every operation is monotonic: a box that holds another is not farther.
+        // Every operation is monotonic: a box that contains another is never farther.
         const Vec3 gap =
             glm::max(glm::max(box.min - sphere.center, sphere.center - box.max), Vec3{Real(0)});
         return gap.x * gap.x + gap.y * gap.y + gap.z * gap.z <= sphere.radius * sphere.radius;
     }
     static bool touches(const Aabb &box, const Frustum &frustum) {
-        // Again monotonic: a larger box has its corner no farther in front.
+        // Monotonic too: a larger box's corner is never farther in front.
         return std::ranges::all_of(frustum.planes, [&](const Plane &plane) {
             const Vec3 &n = plane.normal;
             const Real x = n.x * (n.x > Real(0) ? box.min.x : box.max.x);
@@ -168,8 +167,8 @@ class DynamicTree {
             return !(x + y + z > plane.offset);
         });
     }
-    // Calls visit(user, ray) -> bool for leaves whose fat box the ray meets, the nearer child
-    // first, until it returns false. It may shorten the ray.
+    // Calls visit(user, ray) -> bool for leaves whose fat box the ray hits, the nearer child first,
+    // until it returns false. visit may shorten the ray.
     template <typename Visit> void walk(Ray ray, Visit &&visit) const;
 
     Node &node(Index index) { return nodes_[static_cast<std::size_t>(index)]; }
@@ -248,12 +247,12 @@ template <typename Visit> void DynamicTree::walk(Ray ray, Visit &&visit) const {
     int axis = -1;
     if (!slab_interval(node(root_).box, ray, enter, exit, axis))
         return;
-    Pending pending; // nodes that the ray meets, with the parameter where it enters
+    Pending pending; // nodes the ray hits, keyed by entry parameter
     pending.push(root_, enter);
     while (!pending.is_empty()) {
         const typename Pending::Entry entry = pending.pop();
         if (entry.key > ray.max_t)
-            continue; // a hit since then is nearer
+            continue; // a nearer hit was found since
         const Node &here = node(entry.index);
         if (here.is_leaf()) {
             if (!visit(here.user, ray))

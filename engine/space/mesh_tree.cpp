@@ -40,7 +40,7 @@ void check_point_of_mesh(const Vec3 &point) {
                                             << mesh_reach << " m, got " << Printed{point});
 }
 
-// In double, where the scaled direction must not overflow or vanish; as a float it cannot.
+// For double, where the scaled direction must not overflow or vanish; in float it cannot.
 constexpr Real least_length =
     sizeof(Real) == sizeof(double) ? Real(1e-300) : std::numeric_limits<Real>::denorm_min();
 constexpr Real most_length =
@@ -51,7 +51,7 @@ void check_ray_of_mesh(const Ray &ray) {
     const Vec3 &d = ray.direction;
     const Real length = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
     const Real distance = std::max(std::max(std::abs(o.x), std::abs(o.y)), std::abs(o.z));
-    // A maximum may lose a NaN, a sum does not. One that overflows is looked at more closely.
+    // max may drop a NaN, a sum does not. A sum that overflows is checked in detail below.
     const Real sum = o.x + o.y + o.z + d.x + d.y + d.z;
     if (sum * Real(0) == Real(0) && distance <= mesh_reach && length >= least_length &&
         length <= most_length && !std::isnan(ray.max_t)) [[likely]]
@@ -76,7 +76,7 @@ Real largest_part(const Vec3 &v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// Whether a triangle overlaps a shape that lies in `box`, rounding and all.
+// Whether a triangle overlaps a shape that lies in `box`, rounding included.
 template <typename Shape>
 bool overlaps_within(const MeshTree &mesh, const Aabb &box, const Shape &shape) {
     bool is_found = false;
@@ -126,7 +126,7 @@ void MeshTree::pack() {
 
 namespace {
 
-// The unit normal of a triangle's front, from the plain cross product where that is good enough.
+// The unit normal of a triangle's front, from the plain cross product if that is accurate enough.
 Vec3 front_of(const Triangle &triangle) {
     const glm::dvec3 ab = glm::dvec3(triangle.b) - glm::dvec3(triangle.a);
     const glm::dvec3 ac = glm::dvec3(triangle.c) - glm::dvec3(triangle.a);
@@ -139,13 +139,13 @@ Vec3 front_of(const Triangle &triangle) {
     return normal(triangle);
 }
 
-// The weights of a point that is on the triangle, but for rounding.
+// The barycentric weights of a point that is on the triangle up to rounding.
 glm::dvec3 weights_at(const Triangle &triangle, const Vec3 &point) {
     if (const std::optional<Vec3> found = barycentric(triangle, point)) {
         const glm::dvec3 weights = glm::max(glm::dvec3(*found), 0.0);
         return weights / (weights.x + weights.y + weights.z);
     }
-    // Flat: on the longest edge.
+    // Flat triangle: use the longest edge.
     const glm::dvec3 corners[3] = {glm::dvec3(triangle.a), glm::dvec3(triangle.b),
                                    glm::dvec3(triangle.c)};
     int first = 0;
@@ -201,7 +201,7 @@ bool is_met(const MeshTree &mesh, const Ray &ray) {
 bool linetest(const MeshTree &mesh, const Vec3 &a, const Vec3 &b) {
     check_point_of_mesh(a);
     check_point_of_mesh(b);
-    // Boxes are asked for the segment's middle and half, grown by what rounding may take from the
+    // Tests boxes against the segment's midpoint and half vector, with slack for rounding, on the
     // three axes across the segment and the three of the box (Ericson 2005, "Real-Time Collision
     // Detection", 5.3.3).
     const Vec3 middle = (a + b) / Real(2);
@@ -258,7 +258,7 @@ bool overlaps(const MeshTree &mesh, const Aabb &box) {
 
 bool overlaps(const MeshTree &mesh, const Box &box) {
     check_valid(box);
-    // A rotation may be off unit length by 16 epsilon, and a reach, of three parts, with it.
+    // A rotation may be off unit length by 16 epsilon, and with it the reach, a sum of three parts.
     const Real slack = Real(256) * epsilon * largest_part(box.half_extents) +
                        Real(8) * epsilon * largest_part(box.center);
     return overlaps_within(mesh, grown(bounds(box), slack), box);
@@ -318,8 +318,8 @@ Vec3 closest_point(const MeshTree &mesh, const Vec3 &point) {
 
 namespace {
 
-// Seen from +x: whether the point, moved by next to nothing towards +z and by still less towards
-// +y, is in the outline. So of triangles with a common edge or corner exactly one has it.
+// Seen from +x: whether the point, nudged infinitesimally towards +z and even less towards +y, is
+// inside the outline. So exactly one of the triangles that share an edge or corner contains it.
 bool is_over(const Vec2 (&corners)[3], const Vec2 &point) {
     bool is_in = false;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -352,8 +352,8 @@ bool contains(const MeshTree &mesh, const Vec3 &point) {
             return false;
         }
         const Vec2 corners[3] = {{t.a.y, t.a.z}, {t.b.y, t.b.z}, {t.c.y, t.c.z}};
-        // The plane is crossed towards +x where the point is behind a front that looks that way, or
-        // in front of one that looks back.
+        // Going along +x the plane is crossed if the point is behind a front that faces +x, or in
+        // front of one that faces -x.
         if (is_over(corners, seen) &&
             orient3d(t.a, t.b, t.c, point) == -orient2d(corners[0], corners[1], corners[2]))
             is_inside = !is_inside;

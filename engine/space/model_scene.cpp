@@ -44,7 +44,7 @@ Vec3 to_local_point(const Placement &placement, const Vec3 &world) {
            placement.scale;
 }
 
-// The ray in the mesh's frame; its parameters are the same.
+// The ray in the mesh's frame; its parameter t stays the same.
 Ray to_local(const Placement &placement, const Ray &ray) {
     return {to_local_point(placement, ray.origin),
             rotated(glm::conjugate(placement.rotation), ray.direction) / placement.scale,
@@ -71,7 +71,7 @@ Aabb world_bounds(const Placement &placement, const Aabb &local) {
         axis[i] = half[i];
         reach += glm::abs(rotated(placement.rotation, axis));
     }
-    // Outwards by more than all roundings above: each is of one of these sizes.
+    // Rounded outwards by more than all the rounding above, whose terms have one of these sizes.
     const Vec3 size = placement.scale * glm::max(glm::abs(local.min), glm::abs(local.max));
     const Vec3 slack =
         Real(16) * epsilon * (size.x + size.y + size.z + glm::abs(placement.position));
@@ -129,11 +129,11 @@ std::vector<ModelScene::Model> ModelScene::with_all_below(Model top) const {
     return all;
 }
 
-// Gives `top` a placement and a parent, if that leaves every placement below valid.
+// Gives `top` a placement and a parent, if every placement below it stays valid.
 void ModelScene::place(Model top, const Placement &local, Model parent) {
     const std::vector<Model> models = with_all_below(top);
     std::vector<Placement> worlds(models.size());
-    std::size_t above = 0; // of the parent in `models`: children come in the order of their parents
+    std::size_t above = 0; // the parent's index in `models`: children are in their parents' order
     for (std::size_t i = 0; i < models.size(); ++i) {
         if (i == 0) {
             const Placement upright{local.position, glm::normalize(local.rotation), local.scale};
@@ -170,7 +170,7 @@ void ModelScene::fit_leaf(Model model) {
 }
 
 ModelScene::Model ModelScene::add(const MeshTree *mesh, const Placement &local, Model parent) {
-    const Placement placement = local; // which may be that of a model, and so about to move
+    const Placement placement = local; // a copy: `local` may be a model's, about to move
     if (parent != none)
         check_model(parent);
     check_placement(placement, "model's");
@@ -277,7 +277,7 @@ std::vector<ModelScene::Model> ModelScene::roots() const {
 std::optional<ModelScene::Hit> ModelScene::raycast(const Ray &ray) const {
     MeshHit nearest;
     std::optional<DynamicTree::Hit> best;
-    // The same choice as closest_hit makes, to keep what it does not: the mesh's answer.
+    // Makes the same choice as closest_hit, to keep what that drops: the mesh's hit.
     tree_.closest_hit(ray, [&](std::uint32_t user, const Ray &left) -> std::optional<Real> {
         const Node &here = node(static_cast<Model>(user));
         const auto hit = plumb::raycast(*here.mesh, to_local(here.world, left));

@@ -22,7 +22,7 @@ template <int Dim> void Orthtree<Dim>::check_point(const Point &point) {
     PLUMB_CHECK(all_finite(point), "point must be finite, got " << Printed{point});
 }
 
-// Infinite boxes may be asked for.
+// Query boxes may be infinite.
 template <int Dim> void Orthtree<Dim>::check_numbers(const Box &box) {
     for (int i = 0; i < Dim; ++i)
         PLUMB_CHECK(!std::isnan(box.min[i]) && !std::isnan(box.max[i]),
@@ -124,8 +124,8 @@ template <int Dim> const typename Orthtree<Dim>::Box &Orthtree<Dim>::bounds(Item
     return entry(item).box;
 }
 
-// The child that the centre of the box is in, when it holds the box; else none. The halves are
-// added after halving, so that no box is too large.
+// The child that contains the box's centre, if it (grown) contains the box; else none. Halves are
+// added, so no box is too large.
 template <int Dim>
 typename Orthtree<Dim>::Index Orthtree<Dim>::child_for(const Cell &parent, const Box &box) const {
     if (parent.first_child == none)
@@ -147,7 +147,7 @@ template <int Dim> typename Orthtree<Dim>::Index Orthtree<Dim>::destination(cons
     }
 }
 
-// Counts the item in the cells on its way down, and divides what thereby has too many.
+// Counts the item in the cells on its way down, and divides those that become too full.
 template <int Dim> void Orthtree<Dim>::attach(Item item) {
     Index here = 0;
     for (;;) {
@@ -163,7 +163,7 @@ template <int Dim> void Orthtree<Dim>::attach(Item item) {
     link(item, here);
 }
 
-// Unites the topmost cell that thereby has no more than its capacity.
+// Merges the topmost cell that is left with no more than its capacity.
 template <int Dim> void Orthtree<Dim>::detach(Item item) {
     const Index from = entry(item).cell;
     unlink(item);
@@ -231,7 +231,7 @@ template <int Dim> void Orthtree<Dim>::divide(Index index) {
     }
 }
 
-// Brings all that is below into the cell itself.
+// Moves all items below into the cell itself.
 template <int Dim> void Orthtree<Dim>::unite(Index index) {
     const Index first = cell(index).first_child;
     for (Index k = first; k < first + fan_out; ++k) {

@@ -1,4 +1,4 @@
-// Boxes in the cells of a regularly divided world: the quadtree and the octree.
+// The quadtree and the octree: boxes in the cells of a regularly divided world.
 #pragma once
 
 #include "engine/geometry/shapes_2d.h"
@@ -32,21 +32,21 @@ template <> struct OrthtreeShapes<3> {
     using HalfLine = Ray;
 };
 
-// A tree of cells, each divided into 2^Dim equal ones. An item is in one cell only: the deepest one
-// on the way to the item's centre that holds it when grown to twice its size ("loose", Ulrich 2000,
-// "Loose Octrees", Game Programming Gems). In cells that are not grown, every item on a dividing
-// plane, however small, stays at the top, and each query tests it; with an item in many cells,
-// queries meet it many times. What is too large for all cells or outside of the world is in the
-// root, and is found as everything else is, only not as fast.
+// A tree of cells, each divided into 2^Dim equal ones. An item is in exactly one cell: the deepest
+// on the way to the item's centre that contains it when grown to twice its size ("loose", Ulrich
+// 2000, "Loose Octrees", Game Programming Gems). If cells were not grown, every item on a dividing
+// plane, however small, would stay at the top and be tested by each query; with an item in many
+// cells, queries would meet it many times. Items too large for any cell or outside the world are in
+// the root: they are found like all others, only more slowly.
 //
-// A cell is divided exactly when more than `capacity` items are in it and below, so the cells
-// depend on the items that are in the tree, not on what was there before. Copyable. The order of
-// visits depends on the history. The tree must not be changed from within a visit.
+// A cell is divided if and only if there are more than `capacity` items in and below it, so the
+// cells depend on the current items, not on the history. Copyable. The order of visits depends on
+// the history. Do not change the tree from within a visit.
 //
-// A box, ball, line or ray that is not finite or not valid, and an item that is not in the tree,
-// fail a check. All sets are closed; sizes and positions are compared without rounding, so what a
-// query finds by boxes is exact, but for balls (the square of the distance is rounded: 4 epsilon)
-// and for lines and rays (slab.h).
+// A non-finite or invalid box, ball, line or ray, or an item that is not in the tree, fails a
+// check. All sets are closed; sizes and positions are compared without rounding, so queries are
+// exact for the boxes, except those with balls (the squared distance is rounded: 4 epsilon) and
+// with lines and rays (slab.h).
 template <int Dim> class Orthtree {
   public:
     using Point = typename OrthtreeShapes<Dim>::Point;
@@ -58,53 +58,53 @@ template <int Dim> class Orthtree {
     static constexpr Item none = -1;
     static constexpr int depth_limit = 16;
 
-    // The root, at depth 0, is `world`, which has some size on every axis. max_depth in
-    // [0, depth_limit], capacity > 0.
+    // The root, at depth 0, is `world`, which must have a size on every axis. max_depth in [0,
+    // depth_limit], capacity > 0.
     Orthtree(const Box &world, int max_depth, int capacity);
 
-    // `user` is given back by queries. An empty box fails a check.
+    // Queries return `user`. An empty box fails a check.
     Item insert(const Box &box, std::uint32_t user);
-    // The item's number may be used again.
+    // The item's number may be reused.
     void remove(Item item);
-    // Returns whether the item had to be moved to another cell.
+    // Returns whether the item moved to another cell.
     bool update(Item item, const Box &box);
 
     std::uint32_t user(Item item) const;
     const Box &bounds(Item item) const;
     std::size_t size() const { return static_cast<std::size_t>(cells_[0].count); }
 
-    // Each calls visit(user) -> bool for every item whose box has a point in common with what is
-    // given, and stops when it returns false. Empty boxes touch nothing.
+    // Each calls visit(user) -> bool for every item whose box touches the given shape, and stops
+    // when visit returns false. Empty boxes touch nothing.
     template <typename Visit> void query(const Box &box, Visit &&visit) const;
     template <typename Visit> void query(const Ball &ball, Visit &&visit) const;
     template <typename Visit> void query(const Line &line, Visit &&visit) const;
-    // With any region: meets(box) -> bool. It must not say no to a box that holds another to which
-    // it says yes.
+    // For any region: meets(box) -> bool. If it accepts a box it must accept every box that
+    // contains it.
     template <typename Meets, typename Visit> void query_if(Meets &&meets, Visit &&visit) const;
 
-    // Calls visit(user, ray) -> Real for items whose box the ray meets, nearer cells first; the
-    // answer is the new max_t (return ray.max_t to go on, 0 to stop: that is how to ask for any
-    // hit). The closest-hit search is built on it.
+    // Calls visit(user, ray) -> Real for items whose box the ray hits, nearer cells first; the
+    // result is the new max_t (return ray.max_t to continue, 0 to stop, as for an any-hit query).
+    // Closest-hit searches can be built on this.
     template <typename Visit> void raycast(HalfLine ray, Visit &&visit) const;
 
     struct Closest {
         std::uint32_t user = 0;
         Real distance = Real(0);
     };
-    // The item of least distance(user) -> Real from `point`, and of equal ones that of the least
-    // user. The distance is not negative, and not less than that to the item's box; infinity leaves
-    // an item out. None when all are left out.
+    // The item with the least distance(user) -> Real from `point`; of equal ones, the least user.
+    // The distance must not be negative or less than that to the item's box; infinity skips an
+    // item. None when all are skipped.
     template <typename Distance>
     std::optional<Closest> closest(const Point &point, Distance &&distance) const;
 
-    // Calls visit(user_a, user_b) once for each two items whose boxes touch.
+    // Calls visit(user_a, user_b) once for each pair of items whose boxes touch.
     template <typename Visit> void pairs(Visit &&visit) const;
 
-    // Calls visit(box, depth, count) for every cell, each before those in it, with the number of
-    // items in it and below; the box is not grown.
+    // Calls visit(box, depth, count) for every cell, parents first, with the number of items in and
+    // below it; the box is not grown.
     template <typename Visit> void cells(Visit &&visit) const;
 
-    // Fails a check when links, counts or places are not consistent. For tests.
+    // Fails a check when links, counts or places are inconsistent. For tests.
     void validate() const;
 
   private:
@@ -117,19 +117,19 @@ template <int Dim> class Orthtree {
         Index parent = none;
         Index first_child = none; // the others follow it
         Index first_item = none;
-        std::int32_t count = 0; // of items, here and below
+        std::int32_t count = 0; // items here and below
         std::int32_t depth = 0;
     };
 
     struct Entry {
         Box box;
-        Index cell = none; // of a free entry: none
-        Index next = none; // of a free entry: the next free one
+        Index cell = none; // none in a free entry
+        Index next = none; // in a free entry: the next free one
         Index previous = none;
         std::uint32_t user = 0;
     };
 
-    // Each cell on the way down leaves at most fan_out - 1 others to be visited.
+    // Each cell on the way down leaves at most fan_out - 1 others pending.
     static constexpr std::size_t pending_capacity = 1 + depth_limit * (fan_out - 1);
 
     static bool touches(const Box &a, const Box &b) {
@@ -144,7 +144,7 @@ template <int Dim> class Orthtree {
                 return false;
         return true;
     }
-    // Every operation is monotonic: a box that holds another is not found to be further away.
+    // Every operation is monotonic: a box that contains another is never farther.
     static Real squared_distance(const Box &box, const Point &point) {
         Real sum = Real(0);
         for (int i = 0; i < Dim; ++i) {
@@ -161,7 +161,7 @@ template <int Dim> class Orthtree {
         else
             return slab_interval(box, ray, enter, exit, axis);
     }
-    // What the items of a cell other than the root lie in.
+    // The box around the items of any cell but the root.
     static Box grown(const Cell &cell) {
         return {cell.center - Real(2) * cell.half_extents,
                 cell.center + Real(2) * cell.half_extents};
@@ -207,7 +207,7 @@ using Octree = Orthtree<3>;
 template <int Dim>
 template <typename Meets, typename Visit>
 void Orthtree<Dim>::visit_met(Meets &&meets, Visit &&visit) const {
-    std::array<Index, pending_capacity> pending; // cells that were found to be met
+    std::array<Index, pending_capacity> pending; // cells known to be met
     std::size_t count = 0;
     pending[count++] = 0;
     while (count > 0) {
@@ -255,8 +255,8 @@ void Orthtree<Dim>::query(const Line &line, Visit &&visit) const {
         query(Box{line.a, line.a}, visit);
         return;
     }
-    // The end b is not lost by rounding: where it is in a box, a quotient of the slab test has the
-    // numerator rounded as the denominator is, and so is at most 1.
+    // The endpoint b is not lost to rounding: if it is in a box, the slab test's quotient has its
+    // numerator rounded like its denominator, and so is at most 1.
     const HalfLine ray{line.a, line.b - line.a, Real(1)};
     check_ray(ray);
     Real enter = Real(0);
@@ -277,7 +277,7 @@ void Orthtree<Dim>::raycast(HalfLine ray, Visit &&visit) const {
     while (count > 0) {
         const Met met = pending[--count];
         if (met.enter > ray.max_t)
-            continue; // a hit since then is nearer
+            continue; // a nearer hit was found since
         const Cell &here = cell(met.cell);
         for (Index i = here.first_item; i != none; i = entry(i).next) {
             Real enter = Real(0);
@@ -308,10 +308,10 @@ auto Orthtree<Dim>::closest(const Point &point, Distance &&distance) const
     -> std::optional<Closest> {
     check_point(point);
     constexpr Real endless = std::numeric_limits<Real>::infinity();
-    // The squares are rounded, each by less than 4 epsilon of itself.
+    // Each square is rounded by less than 4 epsilon of itself.
     constexpr Real slack = Real(1) + Real(8) * std::numeric_limits<Real>::epsilon();
     Closest best{0, endless};
-    Real bound = endless; // boxes with a squared distance above it are not closer
+    Real bound = endless; // boxes with a larger squared distance are not closer
     struct Near {
         Index cell;
         Real squared;

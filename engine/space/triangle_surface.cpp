@@ -14,8 +14,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Two faces whose normals differ by less than this (rad) are one plane: a ridge as flat as that
-// lifts a body of a metre by less than the margin of contact features.
+// Faces whose normals differ by less than this (rad) count as coplanar: a ridge that flat lifts a
+// one-metre body by less than the contact feature margin.
 constexpr Real flat_angle = Real(1e-3);
 
 Vec3 normal_or_zero(const Triangle &t) {
@@ -40,7 +40,8 @@ void add_vector(StateHash &hash, const Vec3 &v) {
     hash.add(v.z);
 }
 
-// Vertices by place, so that triangles that repeat a corner's coordinates are neighbours, too.
+// Identifies vertices by position, so triangles that duplicate a corner's coordinates are
+// neighbours, too.
 std::vector<std::uint32_t> same_places(const std::vector<Vec3> &vertices) {
     std::vector<std::uint32_t> order(vertices.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
@@ -103,8 +104,8 @@ Vec3 TriangleSurface::normal_beyond(std::uint32_t index, int edge) const {
     return normal_or_zero(triangle(other == none ? index : other));
 }
 
-// Edges that two triangles use in opposite directions join them; one that more than two use, or
-// that two use the same way, is a border of each.
+// An edge that two triangles use in opposite directions joins them; one used by more than two, or
+// by two in the same direction, is a border of each.
 void TriangleSurface::link(const std::vector<std::array<std::uint32_t, 3>> &corners) {
     std::vector<EdgeUse> uses;
     uses.reserve(3 * corners.size());
@@ -137,13 +138,13 @@ void TriangleSurface::link(const std::vector<std::array<std::uint32_t, 3>> &corn
                 neighbors_[q.triangle][q.edge] = p.triangle;
                 const Triangle t = triangle(p.triangle), u = triangle(q.triangle);
                 const Vec3 n = normal_or_zero(t), m = normal_or_zero(u);
-                // The far corner of the neighbour lies below the face's plane at a ridge.
+                // At a ridge, the neighbour's far corner is below the face's plane.
                 const Vec3 &far = corner(u, static_cast<int>((q.edge + 2) % 3));
                 const bool is_below = glm::dot(n, far - corner(t, static_cast<int>(p.edge))) < 0;
                 const bool is_bent =
                     glm::length(glm::cross(n, m)) > flat_angle || glm::dot(n, m) < Real(0);
                 const bool is_ridge = is_below && is_bent;
-                // What is solid on both sides has ridges on both.
+                // A surface that is solid on both sides has ridges on both.
                 if (!(is_ridge || (sides_ == Sides::both && is_bent))) {
                     outer_edges_[p.triangle] &= static_cast<std::uint8_t>(~(1U << p.edge));
                     outer_edges_[q.triangle] &= static_cast<std::uint8_t>(~(1U << q.edge));

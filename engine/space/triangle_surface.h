@@ -1,5 +1,5 @@
-// Ground and walls of triangles, as bodies collide with them: a mesh or a height field whose
-// triangles know their neighbours.
+// Triangle ground and walls for collision: a mesh or a height field whose triangles know their
+// neighbours.
 #pragma once
 
 #include "engine/geometry/height_field.h"
@@ -19,7 +19,7 @@ enum class Sides { front, both };
 
 class TriangleSurface {
   public:
-    // A mesh or field that is not valid fails a check.
+    // An invalid mesh or field fails a check.
     TriangleSurface(TriangleMesh mesh, Sides sides);
     TriangleSurface(HeightField field, Sides sides);
 
@@ -29,16 +29,16 @@ class TriangleSurface {
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(outer_edges_.size()); }
     Triangle triangle(std::uint32_t index) const;
 
-    // Whether the surface turns away beyond the edge from corner `edge` to the next one: it is a
-    // border or a ridge. Over the others, which are flat or in a hollow, nothing can rest on the
-    // edge alone: what meets it there meets a face at the same time.
+    // Whether the surface turns away beyond the edge from corner `edge` to the next: a border or a
+    // ridge. At other edges, flat or concave, nothing can rest on the edge alone: a shape that
+    // touches the edge touches a face at the same time.
     bool is_outer_edge(std::uint32_t triangle, int edge) const {
         return (outer_edges_[triangle] >> edge & 1U) != 0;
     }
     // The unit normal of the triangle beyond an edge; the triangle's own at a border.
     Vec3 normal_beyond(std::uint32_t triangle, int edge) const;
 
-    // Calls visit(index) for every triangle whose bounds touch the box, by ascending index.
+    // Calls visit(index) for every triangle whose bounds touch the box, in ascending order.
     template <typename Visit>
     void each_touching(const Aabb &box, std::vector<std::uint32_t> &scratch, Visit &&visit) const {
         if (const auto *field = std::get_if<HeightField>(&source_)) {
@@ -58,7 +58,7 @@ class TriangleSurface {
             visit(index);
     }
 
-    // Of all numbers that a body can feel; for the hash of a world's state.
+    // Covers everything a body can feel; for the hash of a world's state.
     std::uint64_t content_hash() const { return content_hash_; }
 
   private:
@@ -67,7 +67,7 @@ class TriangleSurface {
     std::variant<MeshTree, HeightField> source_;
     Sides sides_;
     Aabb bounds_;
-    std::vector<std::uint8_t> outer_edges_; // three bits each
+    std::vector<std::uint8_t> outer_edges_; // three bits per triangle
     static constexpr std::uint32_t none = UINT32_MAX;
     std::vector<std::array<std::uint32_t, 3>> neighbors_; // the triangle beyond each edge, or none
     std::uint64_t content_hash_ = 0;

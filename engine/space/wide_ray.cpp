@@ -14,7 +14,7 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 WideRay wide_ray(const Ray &ray, const Aabb &bounds) {
-    // No branches on signs and sizes: of rays in all directions they are mispredicted.
+    // No branches on signs or sizes: with rays in all directions they are mispredicted.
     WideRay result;
     result.given = ray;
     const Real *const direction = glm::value_ptr(ray.direction);
@@ -32,16 +32,16 @@ WideRay wide_ray(const Ray &ray, const Aabb &bounds) {
     result.time_scale = scale;
     result.max_time = static_cast<Real>(double(ray.max_t) * std::bit_cast<double>(exponent << 52));
 
-    // At least so much that squares of roundings do not vanish.
+    // Large enough that squared rounding errors do not vanish.
     Real reach = Real(1e-9);
     for (std::size_t i = 0; i < 3; ++i)
         reach = std::max(reach, std::max(highest[i] - origin[i], origin[i] - lowest[i]));
     result.reach = reach;
 
-    // What the ray enters it has entered by the time `reach`, so there (bound - origin) * inverse
-    // is off by 1.5 epsilon reach at most. The origins are moved by more than that, whatever is
-    // lost in moving them. A component of zero, or nearly, takes the ray less far than its origin
-    // is moved: with 2^-60 in its place all that is computed is finite.
+    // Any box the ray enters is entered by time `reach`, so there (bound - origin) * inverse is off
+    // by at most 1.5 epsilon reach. The origins are shifted by more than that, even after the shift
+    // is rounded. Along a zero or tiny component the ray travels less than its origin is shifted,
+    // so 2^-60 can stand in for it, which keeps everything finite.
     constexpr Real least = Real(0x1p-60);
     for (std::size_t i = 0; i < 3; ++i) {
         result.origin[i] = origin[i];
@@ -60,9 +60,8 @@ WideRay wide_ray(const Ray &ray, const Aabb &bounds) {
 
 namespace {
 
-// Keeps the time of a hit within that in which the ray is in the triangle's own box, by the
-// operations by which it is found to be in the boxes around it: so no box is passed over whose
-// triangle's time is earlier than that of another.
+// Clamps a hit's time to the interval in which the ray is in the triangle's own box, using the same
+// operations as for the boxes around it, so no box is skipped whose triangle is hit before another.
 Real within_box(const WideRay &ray, const Triangle &triangle, double time) {
     const Real *const a = glm::value_ptr(triangle.a);
     const Real *const b = glm::value_ptr(triangle.b);
@@ -81,7 +80,7 @@ Real within_box(const WideRay &ray, const Triangle &triangle, double time) {
     return std::max(std::min(static_cast<Real>(time), leave), enter);
 }
 
-// Where rounding leaves the signs open.
+// For signs that rounding leaves undecided.
 bool meets_exactly(const WideRay &ray, const Triangle &triangle, Real &time) {
     const std::optional<RayHit> hit = raycast(triangle, {ray.given.origin, ray.given.direction});
     if (!hit)
@@ -115,8 +114,8 @@ bool meets(const WideRay &ray, const Triangle &triangle, Real &time, std::array<
     const double least = std::min(std::min(u, v), w);
     const double most = std::max(std::max(u, v), w);
 
-    // The x and y are off by delta = 12 reach 2^-53 at most, so an edge function by less than
-    // 1.5 sum delta + 2 delta^2.
+    // x and y are off by at most delta = 12 reach 2^-53, so an edge function by less than 1.5 sum
+    // delta + 2 delta^2.
     const double delta = 0x1p-49 * double(ray.reach);
     const double error = 2.0 * delta * (sum + delta);
     if (least < -error && most > error)

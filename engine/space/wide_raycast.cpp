@@ -7,7 +7,7 @@
 // Highway includes this file again for each target.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/space/wide_raycast.cpp"
-// Vectors of unknown size cannot stand in arrays.
+// Vectors of unknown size cannot be array elements.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which must choose the target first.
@@ -25,7 +25,7 @@ using BlockTag = hn::CappedTag<Real, Bvh::leaf_size>;
 using Boxes = hn::Vec<BoxTag>;
 using Triangles = hn::Vec<BlockTag>;
 
-// A lane a bit, the first lowest.
+// One bit per lane, the first lane lowest.
 template <typename Tag> unsigned bits(Tag tag, hn::Mask<Tag> mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(tag, mask, bytes);
@@ -46,7 +46,7 @@ struct BoxRay {
         }
     }
 
-    // Which children the ray meets not later than `latest`, and when.
+    // Which children the ray enters by `latest`, and when.
     HWY_INLINE unsigned meets(const Bvh::Node &node, Real latest, Real *HWY_RESTRICT enters) const {
         const BoxTag tag;
         unsigned met = 0;
@@ -83,15 +83,15 @@ struct BlockRay {
         for (std::size_t i = 0; i < 2; ++i)
             side_direction[i] = hn::Set(tag, static_cast<Real>(ray.direction[axes[i]]));
         main_direction = hn::Set(tag, static_cast<Real>(ray.direction[axes[2]]));
-        // A corner's projection, below, is off by delta = 12 u reach at most, u = epsilon / 2. In a
-        // triangle that the line meets, of size h, no projected corner is further than 4 h from
-        // the line, so an edge function is off by 20 delta h + 7 delta^2 at most.
+        // A corner's projection, below, is off by at most delta = 12 u reach, u = epsilon / 2. In a
+        // triangle of size h that the line hits, no projected corner is farther than 4 h from the
+        // line, so an edge function is off by at most 20 delta h + 7 delta^2.
         const Real delta = Real(8) * std::numeric_limits<Real>::epsilon() * ray.reach;
         doubt = hn::Set(tag, Real(24) * delta);
         doubt_size = hn::Set(tag, delta);
     }
 
-    // Which triangles the line may meet: all that it does, and few others.
+    // Which triangles the line may hit: all that it does hit, and a few others.
     HWY_INLINE unsigned may_meet(const TriangleBlock &block) const {
         const BlockTag tag;
         unsigned met = 0;
@@ -123,7 +123,7 @@ struct BlockRay {
     }
 };
 
-// Asks for what is visited soon.
+// Prefetches a child that will be visited soon.
 HWY_INLINE void fetch(const Bvh::Node *nodes, const TriangleBlock *blocks, std::uint32_t child) {
     const bool is_leaf = (child & Bvh::leaf_bit) != 0;
     const char *const first =
@@ -152,7 +152,7 @@ bool search(const Bvh::Node *nodes, const TriangleBlock *blocks, const WideRay &
             HWY_ALIGN Real enters[Bvh::width];
             unsigned met = box_ray.meets(node, latest, enters);
             if (met != 0) {
-                // On with the nearest; the others wait, nearer ones on top.
+                // Continue with the nearest; push the others, nearer ones on top.
                 const auto lowest = [&] {
                     const auto child = static_cast<std::size_t>(std::countr_zero(met));
                     fetch(nodes, blocks, node.children[child]);

@@ -1,8 +1,7 @@
-// One ray against all boxes of a node, and all triangles of a leaf, at once.
+// Tests one ray against all boxes of a node, or all triangles of a leaf, at once.
 //
-// Compiled for each kind of vectors that the processor may have, and chosen among at run time
-// (Highway). Each lane does what plain code would do, nothing is fused: the answers are the same to
-// the last bit at every width.
+// Compiled for each SIMD instruction set and selected at run time (Highway). Each lane does what
+// scalar code would and nothing is fused, so answers are the same to the last bit at every width.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -15,8 +14,8 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// The triangles of a leaf side by side, so that a ray meets them all at once. Places that are left
-// over have size -infinity, and are met by nothing.
+// The triangles of a leaf side by side, so that a ray tests them all at once. Unused lanes have
+// size -infinity and are never hit.
 struct alignas(64) TriangleBlock {
     Real corners[3][3][Bvh::leaf_size]; // by corner, axis, triangle
     Real sizes[Bvh::leaf_size];         // the greatest extent along an axis
@@ -30,23 +29,22 @@ struct alignas(64) TriangleBlock {
     }
 };
 
-// A ray with what its tests have in common. `direction` is scaled by a power of two, so that its
-// largest component is 1 to 2; times t are along that. What wide_ray fills anyway is not
-// initialised: of a ray that soon misses, that was a fifth of the work.
+// A ray with the values its tests share. `direction` is scaled by a power of two so that its
+// largest component is 1 to 2; times are along that. Members that wide_ray fills anyway are not
+// initialised: for a ray that soon misses, that was a fifth of the work.
 struct WideRay {
     Real origin[3];
     double direction[3];
-    double time_scale = 1.0;         // the given ray's t for 1 along `direction`
-    std::array<std::size_t, 3> axes; // the last is that of the largest component
+    double time_scale = 1.0;         // the given ray's t per unit of time
+    std::array<std::size_t, 3> axes; // the last is the largest component's
 
     // How far the ray can get in the mesh, along any axis and in time.
     Real reach = Real(0);
 
-    // For boxes: (bound - origin) * inverse is never too late where the ray enters, never too early
-    // where it leaves.
+    // For boxes: (bound - origin) * inverse is never too late on entry, never too early on exit.
     Real enter_origin[3], leave_origin[3];
     Real inverse[3];
-    std::size_t enter_side[3]; // 0: enters by the lowest bound
+    std::size_t enter_side[3]; // 0: enters through the lowest bound
 
     Real max_time = Real(0);
 
@@ -58,21 +56,21 @@ struct WideHit {
     Real time = Real(0);
     const TriangleBlock *block = nullptr;
     std::size_t lane = 0;
-    // In proportion to the weights of the corners, and positive where the line leaves through the
-    // triangle's front; all zero where rounding left the signs open.
+    // Proportional to the corners' weights, and positive if the line leaves through the triangle's
+    // front; all zero if rounding left the signs undecided.
     std::array<double, 3> edges{};
 
     std::uint32_t triangle() const { return block->triangles[lane]; }
 };
 
-// A valid ray against triangles within `bounds`.
+// Prepares a valid ray for triangles within `bounds`.
 WideRay wide_ray(const Ray &ray, const Aabb &bounds);
 
-// Whether the ray, taken without end, meets the triangle: exactly, as raycast(triangle, ray) has
-// it; and when, with the edges of WideHit.
+// Whether the ray, extended to infinity, hits the triangle, decided exactly as in raycast(triangle,
+// ray); and when, with WideHit's edges.
 bool meets(const WideRay &ray, const Triangle &triangle, Real &time, std::array<double, 3> &edges);
 
-// The tree's first hit: of several at one time the lowest triangle. Returns whether there is one.
+// The tree's first hit; at equal times the lowest triangle wins. Returns whether there is one.
 bool first_hit(std::span<const Bvh::Node> nodes, const TriangleBlock *blocks, const WideRay &ray,
                WideHit &hit);
 bool any_hit(std::span<const Bvh::Node> nodes, const TriangleBlock *blocks, const WideRay &ray);

@@ -1,4 +1,4 @@
-// A world with something of all that a method can step.
+// A world with some of everything a method can step.
 #pragma once
 
 #include "engine/geometry/quickhull.h"
@@ -69,8 +69,8 @@ inline ColliderDef hull_collider(Random &random) {
     }
 }
 
-// Balls, boxes, capsules, cylinders, hulls and compounds in turn; each fourth compound bears a
-// sensor.
+// Cycles through balls, boxes, capsules, cylinders, hulls and compounds; every fourth compound has
+// a sensor.
 inline BodyDef one_of_all_sorts(Random &random, int i, const V &at) {
     const double size = random.next_in(0.15, 0.22);
     BodyDef def = dynamic_body(ball(size), random.next_in(0.5, 2), at, any_vector(random, 1));
@@ -105,7 +105,8 @@ inline BodyDef one_of_all_sorts(Random &random, int i, const V &at) {
     return with_material(def, random.next_unit(), 0.3 * random.next_unit());
 }
 
-// Between two bodies, where they are: all types in turn, with motors, limits, springs and breaks.
+// A joint between two bodies at their current poses. Cycles through all types, with motors, limits,
+// springs and breaking.
 inline JointDef joint_of_all_sorts(const World &world, int i, BodyId a, BodyId b) {
     const Transform pose_a = world.pose_of(a.index), pose_b = world.pose_of(b.index);
     const Vec3 middle = Real(0.5) * (pose_a.position + pose_b.position);
@@ -131,7 +132,7 @@ inline JointDef joint_of_all_sorts(const World &world, int i, BodyId a, BodyId b
     return def;
 }
 
-// Cloth that falls, whose springs tear, and which hangs on a body, the world and itself.
+// A falling cloth with springs that tear, attached to a body, the world and itself.
 inline void add_falling_cloth(World &world, int n, const V &corner, BodyId body) {
     const auto first = std::uint32_t(world.state().particles.size());
     constexpr double cell = 0.2;
@@ -151,9 +152,9 @@ inline void add_falling_cloth(World &world, int n, const V &corner, BodyId body)
     world.add_spring(spring(at(n - 1, 0), of_body(body, {0, 0.1, 0}), 0.3, 40, 0.1));
 }
 
-// A heap of all sorts that falls on a mesh, a height field, a plane below both and a platform that
-// turns, through a sensor; joints, a net, a cloth and a grab where the method knows them; and
-// holes that removed bodies have left.
+// A heap of mixed bodies that falls through a sensor onto a mesh, a height field, a plane below
+// both and a turning platform; with joints, a net, a cloth and a grab where the method supports
+// them, and free slots left by removed bodies.
 inline World world_of_all_sorts(const std::string &method, int bodies) {
     const MethodInfo &info = find_method(method)->info;
     Random random(17);

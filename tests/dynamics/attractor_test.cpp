@@ -1,4 +1,4 @@
-// Attractors, held to Kepler's laws: the orbit in closed form, and what the motion keeps.
+// Attractors against Kepler's laws: the orbit in closed form, and its conserved quantities.
 #include "tests/dynamics/particles.h"
 
 #include <map>
@@ -8,7 +8,7 @@ namespace {
 
 using namespace trial;
 
-// An ellipse about the origin in the xy plane, counted from the farthest place, on +x.
+// An ellipse about the origin in the xy plane; time starts at the farthest point, on +x.
 struct Orbit {
     double a = 2, e = 0.5, mu = pi * pi / 2; // a period of 8 s
 
@@ -23,7 +23,7 @@ struct Orbit {
         }
         return (low + high) / 2;
     }
-    double height() const { return a * std::sqrt(1 - e * e); } // half the lesser axis
+    double height() const { return a * std::sqrt(1 - e * e); } // semi-minor axis
     V place(double t) const {
         const double E = anomaly(t);
         return {-a * (std::cos(E) - e), -height() * std::sin(E), 0};
@@ -32,7 +32,7 @@ struct Orbit {
         const double E = anomaly(t), turning = rate() / (1 - e * std::cos(E));
         return {turning * a * std::sin(E), -turning * height() * std::cos(E), 0};
     }
-    double energy() const { return -mu / (2 * a); } // of 1 kg
+    double energy() const { return -mu / (2 * a); } // for 1 kg
 };
 
 StepSettings settings_of(const std::string &method, double dt) {
@@ -58,7 +58,7 @@ V place(const World &world, bool is_particle) {
     return is_particle ? particle_position(world, 0) : position_of(world, world.body_id(0));
 }
 
-// How far from the ellipse's place after three eighths of a turn, beyond the nearest place.
+// Distance from the closed form after five eighths of a period, past the nearest point.
 double error_after(const std::string &method, int steps, bool is_particle) {
     constexpr double end = 5;
     World world = orbiting(method, end / steps, is_particle);
@@ -69,7 +69,7 @@ double error_after(const std::string &method, int steps, bool is_particle) {
 class Attractors : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Attractors, testing::ValuesIn(all_methods()), name_of);
 
-// First order but for those that are symmetric in time, and Runge-Kutta 4.
+// First order, except for the time-symmetric methods and Runge-Kutta 4.
 TEST_P(Attractors, MethodsFollowKeplersOrbitWithTheirOrder) {
     if (!is_double)
         GTEST_SKIP() << "rounding hides it";
@@ -88,7 +88,7 @@ TEST_P(Attractors, MethodsFollowKeplersOrbitWithTheirOrder) {
     }
 }
 
-// With substeps a step, too; none of it knows the closed form.
+// With several substeps per step too; no method knows the closed form.
 TEST_P(Attractors, SubstepsAreSteps) {
     World fine = orbiting(GetParam(), 1.0 / 240);
     StepSettings settings = settings_of(GetParam(), 1.0 / 60);
@@ -107,7 +107,7 @@ TEST(Attractors, SymplecticMethodsKeepAngularMomentumAndEnergy) {
         World world = orbiting(method, 1.0 / 240);
         const V moment = glm::cross(Orbit{}.place(0), Orbit{}.velocity(0));
         EXPECT_NEAR(world.energy(), Orbit{}.energy(), 10 * epsilon);
-        for (int i = 0; i < 24000; ++i) { // twelve turns and a half
+        for (int i = 0; i < 24000; ++i) { // twelve and a half periods
             run(world, 1);
             if (i % 500 == 0) {
                 const V now =
@@ -119,7 +119,8 @@ TEST(Attractors, SymplecticMethodsKeepAngularMomentumAndEnergy) {
     }
 }
 
-// What scales gravity, or takes its axis away, does so to an attractor; what is fixed stays.
+// Whatever scales gravity, or removes an axis of it, does so to an attractor too; fixed bodies
+// stay.
 TEST(Attractors, PullAsGravityDoes) {
     World world("velocity_verlet", settings_of("velocity_verlet", 1.0 / 1024));
     world.add_attractor({Vec3{Real(0)}, Real(8)});
@@ -141,7 +142,7 @@ TEST(Attractors, PullAsGravityDoes) {
     EXPECT_EQ(particle_velocity(world, 1), V{0});
 }
 
-// A kinematic body goes on as told, where nothing moves by forces.
+// A kinematic body keeps its prescribed motion: forces do not move it.
 TEST(Attractors, LeaveAloneWhatMovesAsTold) {
     for (const std::string &method : all_methods()) {
         World world(method, settings_of(method, 1.0 / 64));
@@ -156,8 +157,8 @@ TEST(Attractors, LeaveAloneWhatMovesAsTold) {
     }
 }
 
-// Two balls let go above an attractor within a ball of stone, one on either side: they come to rest
-// on it, and stay.
+// Two balls dropped on opposite sides of an attractor inside a stone ball come to rest on it, and
+// stay.
 TEST(Attractors, BallsRestOnAPlanet) {
     for (const std::string &method : contact_methods()) {
         if (method == "naive_impulses") // nothing rests under it

@@ -1,4 +1,4 @@
-// What AVBD leaves of an error that its passes take back.
+// How much of an error AVBD's passes leave.
 #pragma once
 
 #include "engine/dynamics/world.h"
@@ -8,7 +8,7 @@
 namespace plumb::inline PLUMB_PRECISION {
 namespace trial {
 
-// As a share, of one body alone: with penalty_start at 1 a pass takes back half.
+// The remaining fraction for a single body: with penalty_start at 1, each pass halves the error.
 inline double left_by_avbd(const World &world) {
     return std::ldexp(1.0, -world.settings().iterations);
 }

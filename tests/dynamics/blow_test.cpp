@@ -1,5 +1,5 @@
-// Blows: what comes down flat stays flat, what is thin is not flung off, what is small stands and
-// falls as what is large does, what is squeezed is not shot away.
+// Impacts: a body that lands flat stays flat, thin bodies are not flung off, small ones stand and
+// fall as large ones do, and squeezed ones are not launched.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -12,7 +12,7 @@ double tilt_of(const World &world, BodyId id) {
     return std::acos(std::clamp(up.y, -1.0, 1.0));
 }
 
-// By symmetry; a single pass over the corners one after another tilts them a little.
+// By symmetry they land flat; a single Gauss-Seidel pass over the corners tilts them a little.
 TEST(SoftStepBlow, CubesLandFlat) {
     const auto most_tilt = [](int count, double drop, double side) {
         World world("soft_step", settings_for("soft_step"));
@@ -36,8 +36,8 @@ TEST(SoftStepBlow, CubesLandFlat) {
         }
 }
 
-// A stack that is dropped lands as one, and stays down: what it strikes, each corner of each cube
-// bears alike, and what pushes the cubes apart is no speed of theirs.
+// A dropped stack lands as one and stays down: the impact is shared equally by all corners of all
+// cubes, and pushing overlapping cubes apart adds no velocity.
 TEST(SoftStepBlow, StacksLandUpright) {
     for (const int count : {3, 4, 6, 10})
         for (const double drop : {0.01, 0.04, 0.1, 0.2, 0.5, 2.0}) {
@@ -58,11 +58,11 @@ TEST(SoftStepBlow, StacksLandUpright) {
         }
 }
 
-// However tall, and however small the cubes.
+// For any height and cube size.
 TEST(SoftStepBlow, TallStacksStayDown) {
     for (const double side : {0.05, 0.2, 1.0})
         for (const int count : {5, 20, 30})
-            for (const double drop : {1.0, 5.0, 10.0}) { // in sides
+            for (const double drop : {1.0, 5.0, 10.0}) { // in cube sides
                 World world("soft_step", settings_for("soft_step"));
                 world.add_body(ground(0.5, 0));
                 BodyId top;
@@ -82,7 +82,7 @@ TEST(SoftStepBlow, TallStacksStayDown) {
             }
 }
 
-// A slab up to eleven times as heavy as what it lands on.
+// A slab up to eleven times as heavy as the pile it lands on.
 TEST(SoftStepBlow, AHeavySlabStaysDown) {
     for (const double mass : {10.0, 100.0, 300.0}) {
         World world("soft_step", settings_for("soft_step"));
@@ -98,13 +98,13 @@ TEST(SoftStepBlow, AHeavySlabStaysDown) {
             world.step(nullptr);
             up = std::max(up, velocity_of(world, slab).y);
         }
-        EXPECT_LT(up, mass < 200 ? 0.5 : 1) << mass; // it came at 3.1 m/s
+        EXPECT_LT(up, mass < 200 ? 0.5 : 1) << mass; // it hit at 3.1 m/s
         EXPECT_LT(tilt_of(world, slab), 0.02) << mass;
         EXPECT_NEAR(position_of(world, slab).y, 0.7, 2e-3) << mass;
     }
 }
 
-// However thin, and however it spins: a needle, a match, a blade, a pole.
+// However thin and fast spinning: a needle, a match, a blade, a pole.
 TEST(SoftStepBlow, WhatIsThinAndSpinsGainsNoEnergy) {
     for (const double restitution : {0.0, 0.5})
         for (const V &half : {V{0.0002, 0.05, 0.0002}, V{0.001, 0.0225, 0.001}, V{0.002, 0.3, 0.02},
@@ -132,7 +132,7 @@ TEST(SoftStepBlow, WhatIsThinAndSpinsGainsNoEnergy) {
                 }
 }
 
-// Inelastic: each angle of a stick that falls on its end.
+// Inelastic impacts of a stick that falls on its end, over a range of angles.
 TEST(SoftStepBlow, SticksGainNoEnergy) {
     for (const V &half : {V{0.001, 0.0225, 0.001}, V{0.002, 0.05, 0.002}, V{0.02, 0.4, 0.02}})
         for (const double drop : {1.0, 5.0})
@@ -155,8 +155,8 @@ TEST(SoftStepBlow, SticksGainNoEnergy) {
             }
 }
 
-// Nothing that touches them does work on them: capsules and cylinders that spin about their axes as
-// well as about the vertical, nearly on their sides.
+// Contacts do no work on them: capsules and cylinders that spin about their own axes and about the
+// vertical, nearly on their sides.
 TEST(SoftStepBlow, WhatSpinsOnAFloorGainsNoEnergy) {
     const std::vector<Shape> shapes{
         upright_capsule(0.15, 0.05),
@@ -183,7 +183,7 @@ TEST(SoftStepBlow, WhatSpinsOnAFloorGainsNoEnergy) {
                 }
 }
 
-// Froude's law: a domino hit near its top falls, or does not, at any size.
+// Froude scaling: whether a domino hit near its top falls does not depend on its size.
 TEST(SoftStepBlow, SmallDominoesFallAsLargeOnes) {
     for (const double height : {0.02, 0.04, 0.1, 0.4, 1.0}) {
         World world("soft_step", settings_for("soft_step"));
@@ -199,8 +199,8 @@ TEST(SoftStepBlow, SmallDominoesFallAsLargeOnes) {
     }
 }
 
-// What is struck at one end turns, and its other end comes down where nothing touched when the step
-// began.
+// A body hit at one end turns, and its other end comes down where nothing touched at the start of
+// the step.
 TEST(SoftStepBlow, WhatSpinsIsStruckAtBothEnds) {
     Random random(11);
     double deepest = 0;
@@ -223,12 +223,12 @@ TEST(SoftStepBlow, WhatSpinsIsStruckAtBothEnds) {
             deepest = std::max(deepest, world.measure().max_penetration);
         }
     }
-    EXPECT_LT(deepest, 0.06); // 0.18 by the first manifold alone
+    EXPECT_LT(deepest, 0.06); // 0.18 with the first manifold alone
 }
 
-// What a plate that nothing stops presses on the ground has no place to go: it slips out or gives
-// way, and its loads stay those of springs. Were they rigid, eight cubes would leave at thousands
-// of m/s.
+// Cubes under an unstoppable plate have nowhere to go: they slip out or penetrate, and their loads
+// stay those of the contact springs. With rigid contacts, eight cubes would leave at thousands of
+// m/s.
 TEST(SoftStepBlow, WhatIsSqueezedIsNotShotAway) {
     constexpr double side = 0.3;
     for (const double speed : {0.5, 2.0})

@@ -1,4 +1,4 @@
-// What a body is made from: colliders, mass frame, locks, damping.
+// What makes up a body: colliders, mass frame, locks, damping.
 #include "engine/dynamics/bodies/mass_frame.h"
 #include "engine/geometry/quickhull.h"
 #include "tests/dynamics/worlds.h"
@@ -30,7 +30,7 @@ Mat3 tensor_of(const MassFrame &mass) {
     return r * moments * glm::transpose(r);
 }
 
-// A box in eight unequal pieces weighs and turns as the box.
+// A box made of eight unequal pieces has the box's mass and inertia.
 TEST(MassFrame, PiecesOfABoxAreTheBox) {
     Random random(1);
     for (int trial = 0; trial < 200; ++trial) {
@@ -102,7 +102,7 @@ TEST(MassFrame, SensorsWeighNothing) {
     EXPECT_NEAR(double(mass_frame(def).mass), 1000 * 4.0 / 3 * pi / 8, 1e-3);
 }
 
-// A hammer thrown: its centre of mass flies the parabola, wherever the handle's frame goes.
+// A thrown hammer: its centre of mass flies the parabola, wherever the handle's frame goes.
 TEST(Colliders, ACompoundFliesAboutItsCentreOfMass) {
     for (const std::string &method : all_methods()) {
         StepSettings settings = settings_for(method);
@@ -124,7 +124,7 @@ TEST(Colliders, ACompoundFliesAboutItsCentreOfMass) {
         const V expected = center + V{2, 5, 0} + 0.5 * V{0, -gravity, 0};
         EXPECT_LE(glm::distance(position_of(world, id), expected), 0.5 * gravity * h + 1e-4)
             << method;
-        // The frame keeps its distance from the centre of mass.
+        // The frame stays at a fixed distance from the centre of mass.
         const Transform now = world.pose_of(id.index);
         EXPECT_NEAR(glm::distance(wide(now.position), position_of(world, id)),
                     glm::distance(wide(start.position), center), 1e-5);
@@ -158,7 +158,7 @@ TEST(Colliders, FiltersAndSensors) {
             BodyDef def = dynamic_body(ball(0.5), 1, V{0, 0.5, 0});
             def.colliders.front().sensor = sensor;
             def.colliders.front().filter.ignores = ignores ? 1U << 3 : 1U << 4;
-            if (sensor) { // something must weigh
+            if (sensor) { // something must have mass
                 def.colliders.push_back(def.colliders.front());
                 def.colliders.back().sensor = false;
                 def.colliders.back().filter.ignores = ~0U;
@@ -172,8 +172,8 @@ TEST(Colliders, FiltersAndSensors) {
         }
 }
 
-// What ignores every layer that there is goes as it would by itself, bit for bit; and no longer
-// when one comes that it does not ignore.
+// A body that ignores every layer in use moves bit for bit as if it were alone, until a body on a
+// layer it does not ignore arrives.
 TEST(Colliders, WhatIgnoresAllGoesAsByItself) {
     const auto ball_at = [](double x, double speed) {
         BodyDef def = dynamic_body(ball(0.5), 1, V{x, 2, 0}, V{speed, 0, 0});
@@ -246,7 +246,7 @@ TEST(GravityScale, ScalesTheFall) {
         EXPECT_NEAR(position_of(world, ids[i]).y, -0.5 * gravity * scales[i], 1e-4);
 }
 
-// Whatever pushes, a locked axis does not move by a bit.
+// Whatever pushes it, a locked axis does not move by a bit.
 TEST(Locks, HoldToTheBit) {
     for (const std::string &method : contact_methods())
         for (int axis = 0; axis < 6; ++axis) {
@@ -271,7 +271,7 @@ TEST(Locks, HoldToTheBit) {
         }
 }
 
-// A box that can only slide down is stopped by the floor as any other.
+// A box that can only slide down is stopped by the floor like any other.
 TEST(Locks, ALockedBoxStillRestsOnTheFloor) {
     World world("soft_step", settings_for("soft_step"));
     world.add_body(ground(0.5, 0));

@@ -1,4 +1,4 @@
-// Where the simple methods fail that books teach, and the engine's do not: side by side.
+// Where simple textbook methods fail and the engine's do not, side by side.
 #include "engine/dynamics/bodies/motion.h"
 #include "tests/dynamics/rigid_spin.h"
 #include "tests/dynamics/worlds.h"
@@ -10,8 +10,8 @@ namespace {
 
 using namespace trial;
 
-// A ball of 0.2 m moves a metre in a step, at a wall of 2 cm: known only by what overlaps as a step
-// begins, it is never met.
+// A ball of 0.2 m moves a metre per step towards a wall of 2 cm: with only the overlaps at the
+// start of a step, it never hits.
 double farthest_behind_a_wall(const std::string &method) {
     World world(method, weightless(settings_for(method)));
     world.add_body(static_body(block(V{0.01, 1, 1})));
@@ -29,7 +29,7 @@ TEST(BookFailings, AFastBallPassesAThinWall) {
     EXPECT_NEAR(farthest_behind_a_wall("soft_step"), -0.11, 1e-3);
 }
 
-// How far a cube of 1000 kg is from its place upon one of 1 kg after 4 s.
+// How far a 1000 kg cube on a 1 kg cube moves in 4 s.
 double heavy_sinks(const std::string &method) {
     World world(method, settings_for(method));
     world.add_body(ground(0.5, 0));
@@ -45,14 +45,14 @@ TEST(BookFailings, HeavyFallsThroughLight) {
     EXPECT_LT(heavy_sinks("soft_step"), 2e-3);
 }
 
-// Two storeys of cards of 1 m that lean on each other at 20 degrees to the vertical: how far any of
-// them is from its place after 5 s.
+// Two storeys of 1 m cards that lean on each other at 20 degrees to the vertical: how far any of
+// them moves in 5 s.
 double card_house_gives(const std::string &method) {
     World world(method, settings_for(method));
     world.add_body(ground(0.7, 0));
     constexpr double half = 0.5, thin = 0.01, wide = 0.35, lean = pi / 9;
     const double rise = 2 * half * std::cos(lean) + 2 * thin * std::sin(lean);
-    // From the middle of a tent to that of a card, so that the cards just touch at their tops.
+    // From the middle of a tent to that of a card, so that the cards just touch at the top.
     const double aside = half * std::sin(lean) + thin * std::cos(lean);
     const double across = 2 * (2 * aside + 0.02);
     std::vector<V> places;
@@ -84,7 +84,7 @@ TEST(BookFailings, CardHousesFall) {
     EXPECT_LT(card_house_gives("soft_step"), 1e-3);
 }
 
-// How far any stone of an arch is from its place after 20 s.
+// How far any stone of an arch moves in 20 s.
 double arch_gives(const std::string &method) {
     World world(method, settings_for(method));
     add_arch(world);
@@ -103,8 +103,7 @@ TEST(BookFailings, ArchesFall) {
     EXPECT_LT(arch_gives("soft_step"), 1e-3);
 }
 
-// In how many of 20 cases a rod of 2 m that is spun a quarter turn a step is behind a post after
-// it.
+// In how many of 20 cases a 2 m rod spinning a quarter turn per step passes through a post.
 int rods_behind_a_post(const std::string &method) {
     constexpr double quarter = pi / 2;
     int behind = 0;
@@ -130,7 +129,7 @@ TEST(BookFailings, ASpunRodPassesAPost) {
     EXPECT_EQ(rods_behind_a_post("soft_step"), 0);
 }
 
-// The speed that is left after a second, of 1 m/s.
+// The remaining speed after a second, starting from 1 m/s.
 double left_by_factor(double per_step, int steps) {
     double speed = 1;
     for (int i = 0; i < steps; ++i)
@@ -148,7 +147,7 @@ double left_by_rate(double rate, int steps) {
     return velocity_of(world, id).x;
 }
 
-// Damping of 2 % a step is one thing at 60 Hz and another at 240; as a rate it is the same.
+// Damping of 2 % per step differs between 60 and 240 Hz; a damping rate does not.
 TEST(BookFailings, DampingByAFactorDependsOnTheStep) {
     const double coarse = left_by_factor(0.98, 60);
     EXPECT_GT(coarse, 30 * left_by_factor(0.98, 240));
@@ -157,8 +156,8 @@ TEST(BookFailings, DampingByAFactorDependsOnTheStep) {
         EXPECT_NEAR(left_by_rate(rate, steps), coarse, 4000 * epsilon);
 }
 
-// A body that turns at a constant spin about no axis of its own, for 2 s: three angles to which
-// the spin is added are wrong at any step, quaternions right.
+// A body at constant spin about an axis that is not its own, for 2 s: adding the spin to three
+// angles is wrong at any step, quaternions are right.
 TEST(BookFailings, OrientationAsSummedEulerAngles) {
     const V spin{1, 2, 0.5};
     for (const int steps : {100, 10000}) {

@@ -1,4 +1,4 @@
-// Resting, sliding, rolling, and what is passed through.
+// Resting, sliding, rolling, and tunnelling.
 #include "tests/dynamics/rest_methods.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -9,7 +9,7 @@ using namespace trial;
 class Contacts : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Contacts, testing::ValuesIn(rest_methods()), name_of);
 
-// N, along the normal, of the contact between two bodies.
+// Normal force (N) of the contact between two bodies.
 double force_between(const World &world, BodyId a, BodyId b) {
     double sum = 0;
     for (const Contact &contact : world.contacts())
@@ -50,9 +50,9 @@ TEST(SoftStep, CarriesTheWeightOfATallStack) {
         expect_weights(stack("soft_step", settings_for("soft_step"), n), n);
 }
 
-// What pushes boxes apart is not warm started as load: five come to rest at the usual ten
-// iterations, and more of them, or shorter steps, do not wake them. Ten of them fall: that takes
-// more.
+// The push that separates overlapping boxes is not warm started as a load: five boxes come to rest
+// at the usual ten iterations, and further iterations or shorter steps do not wake them. Ten boxes
+// fall: they need more.
 TEST(SequentialImpulses, FiveCubesRest) {
     const auto expect_rest = [](const StepSettings &settings) {
         World world("sequential_impulses", settings);
@@ -79,7 +79,7 @@ TEST(SequentialImpulses, FiveCubesRest) {
     }
 }
 
-// Through the velocities the push is warm started as if it were load, and they rock.
+// If the push goes through the velocities, it is warm started like a load, and the boxes rock.
 TEST(SequentialImpulses, SixCubesRockWithBaumgartesBiasInTheirVelocities) {
     const auto kinetic_energy_after_30_s = [](int split_impulse) {
         StepSettings settings = settings_for("sequential_impulses");
@@ -95,8 +95,8 @@ TEST(SequentialImpulses, SixCubesRockWithBaumgartesBiasInTheirVelocities) {
     EXPECT_GT(kinetic_energy_after_30_s(0), 1);
 }
 
-// A pass that always took a contact's points from the first to the last would feed their sway:
-// eight cubes fell after 30 s. Twelve still ask for more than the usual ten passes.
+// Always visiting a contact's points from first to last would feed the sway: eight cubes fell after
+// 30 s. Twelve still need more than the usual ten passes.
 TEST(SequentialImpulses, TenCubesComeToRestAtTheDefaultsAndThirteenFall) {
     const auto stack = [](int count, int iterations) {
         StepSettings settings = settings_for("sequential_impulses");
@@ -126,8 +126,8 @@ TEST(SequentialImpulses, CarryTheWeightOfFive) {
     expect_weights(stack("sequential_impulses", settings, 5), 5);
 }
 
-// A box at rest does not creep, not even on a slope that friction holds. Known failing: XPBD, whose
-// static friction holds a point wholly or not at all, lets it creep down.
+// A box at rest does not creep, not even on a slope that friction holds. Known failing: with XPBD
+// it creeps down, since its static friction holds a point either fully or not at all.
 TEST_P(Contacts, ABoxAtRestDoesNotCreep) {
     for (const double slope : {0.0, 0.2, 0.4}) {
         World world(GetParam(), settings_for(GetParam()));
@@ -148,10 +148,10 @@ TEST_P(Contacts, ABoxAtRestDoesNotCreep) {
     }
 }
 
-// v^2 / (2 mu g), less the v h / 2 by which a semi-implicit step is ahead of its velocity; whatever
-// the heading: friction is a cone, not a pyramid. In a pyramid the way at 45 degrees would be
-// shorter by 0.3. Known failing: XPBD, whose friction is bounded by what took back overlap, which
-// is more or less than the load by some per cent, as the corners come in turn.
+// v^2 / (2 mu g), minus the v h / 2 by which a semi-implicit step is ahead of its velocity, in any
+// direction: friction is a cone, not a pyramid. With a pyramid the distance at 45 degrees would be
+// shorter by 0.3. Known failing: XPBD, whose friction is bounded by the overlap correction, which
+// is off from the load by some per cent, as the corners are solved in turn.
 TEST_P(Contacts, StoppingDistance) {
     const double mu = 0.3, speed = 4;
     const double exact = speed * speed / (2 * mu * gravity);
@@ -179,7 +179,7 @@ TEST_P(Contacts, StoppingDistance) {
     EXPECT_EQ(most / least <= 1.01, GetParam() != "xpbd");
 }
 
-// On a slope: g (sin a - mu cos a), or rest when tan a < mu; whichever way the slope faces.
+// On a slope of any heading: g (sin a - mu cos a), or rest if tan a < mu.
 TEST_P(Contacts, Slope) {
     const double mu = 0.4;
     for (const double slope : {0.2, 0.35, 0.45, 0.6})
@@ -203,8 +203,8 @@ TEST_P(Contacts, Slope) {
         }
 }
 
-// A ball thrown without spin slides until it rolls, at 5/7 of its speed; then it rolls on: on its
-// own radius, though it sinks in by 1e-4 of it and more.
+// A ball thrown without spin slides until it rolls, at 5/7 of its speed. Then it rolls on, on its
+// own radius, though it penetrates by 1e-4 of it and more.
 TEST_P(Contacts, SlideToRoll) {
     World world(GetParam(), settings_for(GetParam()));
     world.add_body(ground(0.4, 0));
@@ -234,7 +234,7 @@ TEST_P(Contacts, WithoutFrictionNothingSlowsDown) {
     EXPECT_LE(glm::distance(velocity_of(world, id), V{3, 0, 1}), 1e-3);
 }
 
-// Contacts are made for whatever a body may reach in a step, so a bullet stops at a thin wall.
+// Contacts are made for everything a body may reach in a step, so a bullet stops at a thin wall.
 TEST_P(Contacts, AFastBallDoesNotPassAThinWall) {
     for (const double speed : {10.0, 50.0, 300.0, 1000.0})
         for (const double start : {0.5, 1.3, 2.0, 3.7}) {
@@ -247,8 +247,8 @@ TEST_P(Contacts, AFastBallDoesNotPassAThinWall) {
         }
 }
 
-// A known failing of all that do not look ahead: a contact's plane is that of the start of the
-// step, so a body that would fly past a corner within the step is stopped by the plane that it saw.
+// Known failing of methods that do not look ahead: a contact plane is that of the start of the
+// step, so a body that would fly past a corner within the step is stopped by it.
 TEST_P(Contacts, AFastBallPassesBesideABox) {
     const auto passes = [&](double speed) {
         World world(GetParam(), weightless(settings_for(GetParam())));
@@ -261,9 +261,9 @@ TEST_P(Contacts, AFastBallPassesBesideABox) {
     EXPECT_EQ(passes(300), find_method(GetParam())->info.looks_ahead);
 }
 
-// A known failing of all that do not look ahead: how far a turning body's ends reach within a step
-// is not looked at. A rod that makes more than a quarter turn in one step does not notice the post
-// that its end has passed.
+// Known failing of methods that do not look ahead: the reach of a turning body's ends within a step
+// is ignored. A rod that makes more than a quarter turn in one step misses a post that its end has
+// passed.
 TEST_P(Contacts, ASpinningRodNoticesAPost) {
     const auto notices = [&](double spin, int steps) {
         World world(GetParam(), weightless(settings_for(GetParam())));
@@ -279,7 +279,7 @@ TEST_P(Contacts, ASpinningRodNoticesAPost) {
     if (GetParam() == "xpbd")
         return; // its spin decays by more than that in any case
     EXPECT_EQ(notices(60 * 3.0, 1),
-              find_method(GetParam())->info.looks_ahead); // turned by 2 to 3 rad
+              find_method(GetParam())->info.looks_ahead); // after turning by 2 to 3 rad
 }
 
 } // namespace

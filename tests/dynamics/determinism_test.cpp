@@ -1,4 +1,4 @@
-// The same state, the same future, to the bit.
+// The same state has the same future, bit for bit.
 #include "tests/dynamics/worlds.h"
 
 #include <cstring>
@@ -14,7 +14,7 @@ class Determinism : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::ValuesIn(all_methods()), name_of);
 
 // Some forty bodies of all shapes in a heap, a chain, a lift. With `holes`, some bodies and joints
-// are added and removed in between: they are placed far away and never touched.
+// are added far away and removed again without ever touching anything.
 World random_world(const std::string &method, std::uint64_t seed, bool holes = false) {
     Random random(seed);
     World world(method, settings_for(method));
@@ -62,13 +62,13 @@ World random_world(const std::string &method, std::uint64_t seed, bool holes = f
 }
 
 bool same_bits(const Motion &a, const Motion &b) {
-    // Motion is made of Reals alone, without padding.
+    // Motion consists only of Reals, without padding.
     static_assert(sizeof(Motion) % sizeof(Real) == 0);
     return std::memcmp(static_cast<const void *>(&a), static_cast<const void *>(&b),
                        sizeof(Motion)) == 0;
 }
 
-// The motions of the living, in order.
+// The motions of the live bodies, in order.
 std::vector<Motion> living(const World &world) {
     std::vector<Motion> motions;
     for (std::size_t i = 0; i < world.bodies().size(); ++i)
@@ -85,7 +85,7 @@ void expect_same(const World &a, const World &b, int step) {
     ASSERT_EQ(a.hash(), b.hash()) << "step " << step;
 }
 
-// A new world from what can be read of another: poses, velocities, remembered impulses, settings.
+// A new world from another's readable state: poses, velocities, accumulated impulses, settings.
 World loaded(const World &from) {
     World world(from.method().info.name, from.settings());
     std::vector<BodyId> ids(from.bodies().size());
@@ -174,8 +174,8 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBits) {
     }
 }
 
-// What follows depends on the state, not on the way that led there: the broad phase's tree and the
-// order in which slots were used count for nothing.
+// The future depends on the state, not on how it came about: the broad phase's tree and the order
+// in which slots were used do not matter.
 TEST_P(Determinism, AWorldLoadedFromItsStateContinuesTheSame) {
     for (const bool holes : {false, true})
         for (const int at : {0, 1, 30, 77, 150}) {
@@ -191,7 +191,7 @@ TEST_P(Determinism, AWorldLoadedFromItsStateContinuesTheSame) {
         }
 }
 
-// Nor is anything kept that a setting decides: here how far static bodies reach.
+// Nor is anything cached that depends on a setting: here, how far static bodies reach.
 TEST_P(Determinism, ASettingChangedOnTheWayCountsFromThen) {
     World world = random_world(GetParam(), 6);
     world.add_body(static_body(block(V{3, 0.1, 3}), V{0, -0.05, 0}));
@@ -231,7 +231,7 @@ TEST_P(Determinism, HolesDoNotCount) {
 
 TEST(Hash, ChangesWithEveryPartOfTheState) {
     World world = random_world("soft_step", 5);
-    run(world, 120); // so that contacts bear
+    run(world, 120); // so that contacts carry load
     const World before = world;
     ASSERT_EQ(before.hash(), World(before).hash());
     const auto next = [](Real &value) {
@@ -262,7 +262,7 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
         }
     }
     EXPECT_GT(parts, 500);
-    // What is remembered of contacts.
+    // Cached contact state.
     int loaded_points = 0;
     for (const ContactMemory &memory : before.state().contacts) {
         const auto first = before.state().points.begin() + memory.first_point;
@@ -309,7 +309,7 @@ TEST(Hash, ChangesWithEveryPartOfTheState) {
     EXPECT_NE(changed.hash(), before.hash());
 }
 
-// What only a method of augmented Lagrangians remembers, and forgets when another has stepped.
+// State that only augmented Lagrangian methods keep, and that is dropped when another method steps.
 TEST(Hash, ChangesWithEveryPenalty) {
     World world = random_world("avbd", 5);
     run(world, 120);
@@ -363,7 +363,7 @@ TEST(Hash, ChangesWithEverySetting) {
     }
 }
 
-// What bodies and joints are made of decides the future as well.
+// The definitions of bodies and joints decide the future as well.
 TEST(Hash, ChangesWithBodiesAndJoints) {
     BodyDef body = dynamic_body(block(V{0.1, 0.2, 0.3}), 2, V{0});
     JointDef joint;

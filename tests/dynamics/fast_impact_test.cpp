@@ -1,4 +1,4 @@
-// Impacts of what moves far in a step for its size, against the closed forms.
+// Impacts of bodies that move far in a step for their size, against closed forms.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -6,7 +6,7 @@ namespace {
 
 using namespace trial;
 
-// A spinning ball on the ground: Newton's and Coulomb's laws at one point.
+// A spinning ball on the ground: Newton's and Coulomb's laws at a single point.
 TEST(SoftStepFastImpact, ASpinningBallBouncesByTheClosedForm) {
     Random random(7);
     for (const double speed : {2.0, 5.0, 10.0, 20.0, 50.0})
@@ -40,7 +40,7 @@ TEST(SoftStepFastImpact, ASpinningBallBouncesByTheClosedForm) {
         }
 }
 
-// One ball strikes another that rests, off centre.
+// One ball hits another at rest, off centre.
 TEST(SoftStepFastImpact, BallsPartByTheClosedFormAndKeepAngularMomentum) {
     Random random(8);
     const double radius = 0.2;
@@ -75,8 +75,8 @@ TEST(SoftStepFastImpact, BallsPartByTheClosedFormAndKeepAngularMomentum) {
         }
 }
 
-// Of random bodies that strike each other in space, how much angular momentum comes or goes: the
-// mean and the worst, as shares of m v r.
+// The angular momentum error of random bodies colliding in space: mean and worst, as shares of m v
+// r.
 struct Lost {
     double mean = 0;
     double worst = 0;
@@ -105,13 +105,14 @@ Lost angular_momentum_lost(double speed, double friction, double restitution) {
     return lost;
 }
 
-// What does not bounce, and without friction slides round an edge of the other after the blow.
+// Inelastic, frictionless bodies slide around each other's edges after the impact.
 bool slides_on(double speed, double friction, double restitution) {
     return restitution == 0 && friction == 0 && speed > 1;
 }
 
-// Whatever their shapes: they are struck where the points of both are one (impact.cpp). With the
-// arms and normals of the step's start they lose some per cent, and half at worst.
+// For all shapes: impacts are applied where the contact points of both bodies coincide
+// (impact.cpp). With lever arms and normals from the start of the step they lose some per cent, and
+// half at worst.
 TEST(SoftStepFastImpact, BodiesOfAnyShapeKeepAngularMomentum) {
     for (const double speed : {1.0, 5.0, 20.0})
         for (const double friction : {0.0, 0.5})
@@ -124,7 +125,7 @@ TEST(SoftStepFastImpact, BodiesOfAnyShapeKeepAngularMomentum) {
             }
 }
 
-// Known failing: what slides on loses more, at 20 m/s a quarter at worst.
+// Known failing: bodies that slide on lose more, at 20 m/s a quarter at worst.
 TEST(SoftStepFastImpact, PlasticBlowsLoseSomeAngularMomentum) {
     for (const double speed : {5.0, 20.0}) {
         const Lost lost = angular_momentum_lost(speed, 0, 0);
@@ -134,7 +135,7 @@ TEST(SoftStepFastImpact, PlasticBlowsLoseSomeAngularMomentum) {
     }
 }
 
-// The share of its energy that a gas of 36 bodies between six walls gains in ten seconds.
+// The relative energy gain of a gas of 36 bodies between six walls in ten seconds.
 double energy_gained(const Shape &shape, std::uint32_t seed) {
     Random random(seed);
     World world("soft_step", weightless(settings_for("soft_step")));
@@ -161,8 +162,8 @@ TEST(SoftStepGas, ElasticBodiesKeepTheirEnergy) {
         std::vector<double> gains;
         for (std::uint32_t seed = 8; seed < 16; ++seed) {
             gains.push_back(std::abs(energy_gained(shape, seed)));
-            // In single precision one of 120 gases of capsules loses so much, in one blow: one that
-            // spins at 73 rad/s strikes another.
+            // In single precision one of 120 capsule gases loses this much, in a single impact: a
+            // capsule spinning at 73 rad/s hits another.
             EXPECT_LT(gains.back(), is_double ? 1e-3 : 3e-3) << shape.index() << ", " << seed;
         }
         std::ranges::sort(gains);
@@ -170,8 +171,8 @@ TEST(SoftStepGas, ElasticBodiesKeepTheirEnergy) {
     }
 }
 
-// Where one end is struck, the other comes down, mostly within the step: however slender. Of 20
-// sticks of a kind one may lose as much as a tenth, in one blow that is not seen coming.
+// A stick hit at one end comes down on the other, mostly within the same step, however slender. Of
+// 20 similar sticks, one may lose up to a tenth in an impact that is not foreseen.
 TEST(SoftStepGas, ElasticSticksBounceOnAndOn) {
     const std::vector<Shape> shapes{
         block(V{0.25, 0.06, 0.06}), block(V{0.25, 0.02, 0.02}), block(V{0.25, 0.01, 0.01}),
@@ -198,7 +199,8 @@ TEST(SoftStepGas, ElasticSticksBounceOnAndOn) {
     }
 }
 
-// A box on a turntable, friction at `share` of what holds it there, goes round with it for 10 s.
+// A box on a turntable goes round with it for 10 s; friction times `share` is what holding it
+// takes.
 TEST(SoftStepTurntable, ItsRiderStays) {
     for (const double share : {0.3, 0.5, 0.7, 0.82, 0.95}) {
         const double friction = 0.5, spin = std::sqrt(share * friction * gravity);

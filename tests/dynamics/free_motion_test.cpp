@@ -1,4 +1,4 @@
-// Every method of the registry on bodies that nothing touches.
+// Every registered method on free bodies.
 #include "tests/dynamics/rigid_spin.h"
 #include "tests/dynamics/worlds.h"
 
@@ -10,21 +10,21 @@ using namespace trial;
 class FreeMotion : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, FreeMotion, testing::ValuesIn(all_methods()), name_of);
 
-// Of the Euler methods: how much farther than x0 + v0 t + g t^2 / 2 one falls, in g h t / 2.
+// For the Euler methods: how far they fall beyond x0 + v0 t + g t^2 / 2, in units of g h t / 2.
 double lag_of(const std::string &method) {
     const bool ahead = method == "semi_implicit_euler" || method == "backward_euler" ||
                        method == "tgs_soft" || method == "xpbd" || method == "avbd" ||
                        method == "naive_impulses";
     return ahead ? 1 : method == "explicit_euler" ? -1 : 0;
 }
-// Those that take the gyroscopic torque from the spin of some moments, explicitly.
+// Methods that apply the gyroscopic torque explicitly, from the spin at some moment.
 bool has_explicit_spin(const std::string &method) {
     return !find_method(method)->info.contacts;
 }
 
-// x0 + v0 t + g t^2 / 2. A known failing: semi-implicit and backward Euler, and TGS Soft, XPBD,
-// AVBD and naive impulses, which move by the former, fall g h t / 2 further, exactly; explicit
-// Euler as much less far.
+// x0 + v0 t + g t^2 / 2. Known failing: semi-implicit and backward Euler, and the methods that move
+// by the former (TGS Soft, XPBD, AVBD and naive impulses), fall exactly g h t / 2 too far, and
+// explicit Euler as much too little.
 TEST_P(FreeMotion, FallsInClosedForm) {
     StepSettings settings = settings_for(GetParam());
     settings.gravity = V{1, -9.81, 0.25};
@@ -42,7 +42,7 @@ TEST_P(FreeMotion, FallsInClosedForm) {
             const double t = i * settings.dt;
             const V x = x0 + t * v0 + (0.5 * t * t + lag * 0.5 * h * t) * settings.gravity;
             const V v = v0 + t * settings.gravity;
-            // A rounding or two of values below 8 m and 12 m/s in each substep.
+            // One or two roundings per substep of values below 8 m and 12 m/s.
             const double roundings = 2.0 * i * substeps;
             ASSERT_LE(glm::distance(position_of(world, id), x), roundings * epsilon * 8);
             ASSERT_LE(glm::distance(velocity_of(world, id), v), roundings * epsilon * 12);
@@ -51,16 +51,16 @@ TEST_P(FreeMotion, FallsInClosedForm) {
     }
 }
 
-// The order in the substep on a brick's torque-free spin, against long double. A known failing:
-// naive spin has none, it is as wrong at any step.
+// The order in the substep for a brick's torque-free spin, against long double. Known failing:
+// naive spin has no order and is equally wrong at any step.
 TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
     const bool first = lag_of(GetParam()) != 0;
     const bool fourth = GetParam() == "rk4";
     const double order = first ? 1 : fourth ? 4 : 2;
     const V half{0.1, 0.2, 0.4};
     const V spin{1, 2, 0.5};
-    // Fine enough for the order to show, coarse enough for the error to stand out of single
-    // precision: rk4 begins at |w| h = 0.57.
+    // Fine enough to show the order, coarse enough for the error to exceed single-precision
+    // rounding: rk4 begins at |w| h = 0.57.
     const int coarsest = first ? 256 : fourth ? 8 : 16;
     std::vector<double> errors;
     for (const int substeps : {coarsest, 2 * coarsest, 4 * coarsest}) {
@@ -91,10 +91,10 @@ TEST_P(FreeMotion, OrderOfConvergenceOnTorqueFreeSpin) {
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), order, fourth ? 0.5 : 0.1) << errors[1];
 }
 
-// A brick spun about its middle axis, 20 s: it must tumble, at constant energy. Known failing: the
-// Euler methods take the gyroscopic torque at the start of a step, which feeds the spin with
-// energy. The Verlets are second order there, and gain little. Runge-Kutta is bound by its order:
-// (|w| h)^5 a substep. Naive spin never turns over.
+// A brick spun about its middle axis for 20 s must tumble at constant energy. Known failing: the
+// Euler methods take the gyroscopic torque at the start of a step, which adds energy. The Verlet
+// methods are second order there and gain little. Runge-Kutta is limited by its order: (|w| h)^5
+// per substep. Naive spin never turns over.
 TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
     World world(GetParam(), weightless(settings_for(GetParam())));
     BodyDef def = dynamic_body(block(V{0.1, 0.2, 0.4}), 2, V{0});
@@ -130,25 +130,25 @@ TEST_P(FreeMotion, TumblesAboutTheMiddleAxis) {
         EXPECT_NEAR(gain, 0, 0.02);
         return;
     }
-    // rk4 at |w| h = 0.05: 0.05^5 for 1200 steps is below 4e-4; roundings for the rest, a tenth of
-    // the worst sum of some 10 each in 4800 substeps. TGS Soft and AVBD turn by the spin at the
-    // substep's end, which keeps the momentum to first order only.
+    // rk4 at |w| h = 0.05: 0.05^5 over 1200 steps is below 4e-4; the rest is rounding, a tenth of
+    // the worst sum of some 10 roundings in each of 4800 substeps. TGS Soft and AVBD turn by the
+    // spin at the substep's end, which conserves momentum only to first order.
     const double tolerance = (GetParam() == "rk4" ? 4e-4 : 0) + 0.1 * 4800 * 10 * epsilon;
-    if (GetParam() == "xpbd") { // turns by less than its spin, and takes that for its spin
+    if (GetParam() == "xpbd") { // turns by less than its spin, then takes that as its spin
         EXPECT_LT(gain, -1e-4);
         EXPECT_GT(gain, -0.06);
         return;
     }
     EXPECT_NEAR(gain, 0, tolerance);
     if (GetParam() == "tgs_soft" || GetParam() == "avbd" || GetParam() == "naive_impulses") {
-        EXPECT_LE(momentum_error, GetParam() == "naive_impulses" ? 0.05 : 0.01); // by the substep
+        EXPECT_LE(momentum_error, GetParam() == "naive_impulses" ? 0.05 : 0.01); // O(h)
         return;
     }
     EXPECT_LE(momentum_error, tolerance);
 }
 
-// At a radian a substep and more, where Newton's three iterations do not reach the root any more.
-// Split spin still keeps the momentum, and with it the energy between those of the outer axes.
+// At a radian per substep and more Newton's three iterations no longer reach the root. Split spin
+// still conserves the momentum, and so keeps the energy between those of the outer axes.
 TEST_P(FreeMotion, FastSpinDoesNotExplode) {
     const bool splits = GetParam() == "split_spin";
     if (has_explicit_spin(GetParam()) && !splits)
@@ -177,7 +177,7 @@ TEST_P(FreeMotion, FastSpinDoesNotExplode) {
             EXPECT_LT(world.measure().energy(), before) << spin;
             continue;
         }
-        // 32 epsilon a step are allowed to stay.
+        // 32 epsilon per step may remain.
         EXPECT_NEAR(world.measure().energy() / before, 1, 600 * 60 * epsilon) << spin;
     }
 }
@@ -207,7 +207,7 @@ TEST_P(FreeMotion, KinematicBodiesMoveUnderNoForce) {
     EXPECT_EQ(motion_of(world, id).velocity, def.velocity);
     EXPECT_EQ(motion_of(world, id).angular_velocity, def.angular_velocity);
     EXPECT_LE(glm::distance(position_of(world, id), V{1, 0.5, 0}), 240 * epsilon);
-    // rk4 leaves out the series' next term: (h / 2)^5 / 120 of the half angle each substep.
+    // rk4 drops the series' next term: (h / 2)^5 / 120 of the half angle per substep.
     const double h = substep_of(world);
     // XPBD turns by 2 atan(h / 2) in a substep.
     const double truncation = GetParam() == "rk4"    ? std::pow(h, 4) / 1920
@@ -218,7 +218,7 @@ TEST_P(FreeMotion, KinematicBodiesMoveUnderNoForce) {
               240 * 4 * epsilon + 1.01 * truncation);
 }
 
-// What the registry says of itself.
+// What the registry reports about itself.
 TEST(Registry, RowsAreCompleteAndFound) {
     ASSERT_FALSE(methods().empty());
     EXPECT_EQ(methods().front().info.name, "soft_step");

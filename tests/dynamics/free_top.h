@@ -45,7 +45,7 @@ inline long double quarter_period(long double m) {
     return std::numbers::pi_v<long double> / (2 * a);
 }
 
-// A top of three different moments that at time zero has no spin about its middle axis and some
+// A top with three different moments that at time zero has no spin about its middle axis and some
 // about both others (Landau and Lifshitz 1976, "Mechanics", sec. 37, where the moments are sorted).
 class FreeTop {
   public:
@@ -63,12 +63,12 @@ class FreeTop {
         const long double across = moments[middle_] - moments[swings_];
         const long double of_swing = moments[swings_] * spin[swings_] * spin[swings_];
         const long double of_turn = moments[turns_] * spin[turns_] * spin[turns_];
-        // Eqs. (37.8) to (37.10), or those with the axes 1 and 3 exchanged.
+        // Eqs. (37.8) to (37.10), with axes 1 and 3 exchanged if needed.
         rate_ = std::sqrt(aside * (aside + across) * of_turn / (moments.x * moments.y * moments.z));
         parameter_ = across * of_swing / (aside * of_turn);
         const long double size =
             std::sqrt(of_swing * (aside + across) / (moments[middle_] * aside));
-        // By Euler's equation for the middle axis, where these follow each other as x, y, z.
+        // From Euler's equation for the middle axis, if the axes follow each other as x, y, z.
         is_even_ = (middle_ + 1) % 3 == turns_;
         const long double pull = (aside + across) * spin[turns_] * spin[swings_];
         middle_spin_ = std::copysign(size, is_even_ ? pull : -pull);
@@ -87,8 +87,8 @@ class FreeTop {
         return spin;
     }
 
-    // The rotation in a world whose axis `turns` is along the angular momentum; at `from` it has
-    // not turned about that yet.
+    // The rotation in a world frame whose axis `turns` is along the angular momentum. The
+    // precession about that axis is zero at `from`.
     WideQuat rotation_at(long double time, long double from) const {
         const WideVec momentum = moments_ * spin_at(time);
         const int first = is_even_ ? swings_ : middle_;
@@ -132,7 +132,7 @@ class FreeTop {
     long double momentum_ = 0;    // kg m^2/s
     long double rate_ = 0;        // 1/s
     long double parameter_ = 0;   // k^2
-    long double middle_spin_ = 0; // the greatest, rad/s
+    long double middle_spin_ = 0; // its maximum, rad/s
 };
 
 } // namespace trial

@@ -28,8 +28,8 @@ TEST(TgsSoft, BouncesToTheSquareOfItsRestitution) {
     }
 }
 
-// A ball that falls on the ground is struck once, and the impulse is what turned it round: all that
-// its momentum changed by in that step, but for gravity. By Newton's law it is m (1 + e) v.
+// A ball dropped on the ground gets one impact, whose impulse accounts for its whole momentum
+// change in that step except for gravity. By Newton's law it is m (1 + e) v.
 class Bounce : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Bounce, testing::ValuesIn(contact_methods()), name_of);
 
@@ -72,9 +72,9 @@ TEST_P(Bounce, IsRecordedWithItsImpulse) {
     EXPECT_EQ(impacts, 1);
 }
 
-// Where it is struck at several points, it is one impact. Known failing: naive impulses share it
-// out among the points, and have not handed out all of it when their passes end, so that it strikes
-// again.
+// Hit at several points, a body reports one impact. Known failing: naive impulses spread the
+// impulse over the points, and have not applied all of it when their passes end, so that the body
+// is hit again.
 TEST_P(Bounce, OfABoxIsOneForAllItsPoints) {
     World world(GetParam(), settings_for(GetParam()));
     world.add_body(ground(0, 0.5));
@@ -118,7 +118,7 @@ struct Collision {
     Measures after;
     double momentum_scale = 0;
     double spin_scale = 0;
-    double worst_gain = 0; // of energy in one step, in parts of what there was at first
+    double worst_gain = 0; // of energy in one step, relative to the initial energy
     bool met = false;
 };
 
@@ -170,8 +170,8 @@ TEST_P(Impacts, KeepsLinearMomentum) {
     EXPECT_GT(met, 150); // they do collide
 }
 
-// Balls that meet off centre and rub. With one substep the two arms of an impulse end in one point,
-// so angular momentum is kept to rounding as well.
+// Balls that collide off centre with friction. With one substep both lever arms of an impulse end
+// in the same point, so angular momentum is conserved to rounding as well.
 TEST_P(Impacts, BallsKeepAngularMomentumInOneSubstep) {
     Random random(2);
     for (int trial = 0; trial < 200; ++trial) {
@@ -229,7 +229,7 @@ TEST_P(Impacts, AngularMomentumConvergesWithTheSubstep) {
     EXPECT_LT(losses[2], losses[1] / 3);
 }
 
-// Newton's law cannot gain energy for restitution up to 1, and balls keep to it.
+// Newton's law cannot add energy for restitution up to 1, and balls obey that.
 TEST_P(Impacts, BallsNeverGainEnergy) {
     Random random(4);
     for (int trial = 0; trial < 300; ++trial) {
@@ -403,9 +403,9 @@ TEST_P(Impacts, ABoxBouncesFlat) {
     EXPECT_LE(glm::length(spin_of(world, id)), 1e-3);
 }
 
-// What comes down on several supports at once, level, leaves level: legs of one body on the ground,
-// and a board on posts that are bodies of their own. One leg after the other it would be turned by
-// the first, come down on the next the faster, and lose most of its way up.
+// A body that lands level on several supports leaves level: legs of one body on the ground, and a
+// board on posts that are separate bodies. Solved leg by leg, the first would turn it, it would hit
+// the next one faster, and lose most of its rebound.
 TEST_P(Impacts, WhatFallsOnSeveralSupportsLeavesAsItCame) {
     for (const double restitution : {0.5, 1.0})
         for (const bool has_legs : {true, false})
@@ -474,7 +474,8 @@ TEST_P(Impacts, ABallStrikesSeveralAtOnce) {
         }
 }
 
-// A dozen that meet in one place, all but at once: whatever they do, none of it is from nothing.
+// A dozen bodies that meet in one place almost simultaneously: whatever they do, they create no
+// energy.
 TEST_P(Impacts, AHuddleGainsNothing) {
     Random random(11);
     for (int trial = 0; trial < 60; ++trial) {
@@ -501,7 +502,7 @@ TEST_P(Impacts, AHuddleGainsNothing) {
     }
 }
 
-// Slower than the threshold: no bounce, so that things come to rest.
+// Below the threshold there is no bounce, so that things come to rest.
 TEST_P(Impacts, SlowImpactsDoNotBounce) {
     World world(GetParam(), weightless(settings_for(GetParam())));
     world.add_body(ground(0, 1));

@@ -1,4 +1,4 @@
-// Each island takes as many substeps as its own loads ask for.
+// Each island takes as many substeps as its own loads need.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -66,7 +66,7 @@ TEST(Islands, ALightBoxBearsAHeavyOne) {
         World world = bare_floor();
         const BodyId heavy = add_stack(world, std::array{1.0, ratio}, 0);
         run(world, 60 * 30);
-        // Where the most substeps are too few, the depth grows with the load.
+        // Where even the maximum is too few, the depth grows with the load.
         const double depth =
             world.settings().substep_tolerance * cube_side * std::max(1.0, ratio / 400);
         EXPECT_LT(world.measure().max_penetration, depth) << ratio;
@@ -74,11 +74,11 @@ TEST(Islands, ALightBoxBearsAHeavyOne) {
     }
 }
 
-// Only those pay who need it, and no longer than they need it.
+// Only islands that need substeps pay for them, and only while they need them.
 TEST(Islands, TakeTheirOwnSubsteps) {
     World world = bare_floor();
     StepSettings settings = world.settings();
-    settings.sleep_after = 0; // what sleeps keeps its number
+    settings.sleep_after = 0; // sleeping bodies keep their number
     world.set_settings(settings);
     const BodyId alone = add_box(world, 1, V{-5, 0.5, 0});
     const BodyId flying = add_box(world, 1, V{-10, 50, 0});
@@ -91,16 +91,16 @@ TEST(Islands, TakeTheirOwnSubsteps) {
     EXPECT_EQ(world.substeps_of(heavy.index), world.substeps_of(heavy.index - 1));
     world.remove_body(heavy);
     run(world, 120);
-    EXPECT_LE(world.substeps_of(heavy.index - 1), least + 1); // what goes down keeps some spare
+    EXPECT_LE(world.substeps_of(heavy.index - 1), least + 1); // a falling count keeps some spare
 }
 
-// The budget bounds what islands may cost together, and takes none below the least. The smaller one
-// gets what it asks for first.
+// The budget bounds the total cost of all islands, but takes none below the minimum. The smaller
+// island gets what it needs first.
 TEST(Islands, KeepToTheBudget) {
     World alone = bare_floor();
     World world = bare_floor();
     StepSettings settings = world.settings();
-    settings.sleep_after = 0; // what sleeps takes no substeps
+    settings.sleep_after = 0; // sleeping bodies take no substeps
     const BodyId only = add_stack(alone, std::vector<double>(10, 1.0), 0);
     const BodyId top = add_stack(world, std::vector<double>(10, 1.0), 0);
     const BodyId heavy = add_stack(world, std::array{1.0, 1000.0}, 5);
@@ -123,8 +123,8 @@ TEST(Islands, KeepToTheBudget) {
     EXPECT_GE(last, 48);
 }
 
-// A chain that hangs at rest with a heavy end stays at rest: no step begins so coarsely that the
-// joints are stretched first.
+// A chain hanging at rest with a heavy end stays at rest: no step starts so coarsely that it
+// stretches the joints first.
 TEST(Islands, AHangingChainWithAHeavyEndStaysAtRest) {
     for (const double ratio : {1.0, 10.0, 100.0, 300.0, 1000.0}) {
         World world("soft_step", settings_for("soft_step"));
@@ -154,7 +154,7 @@ TEST(Islands, AHangingChainWithAHeavyEndStaysAtRest) {
 }
 
 // Cubes of 0.2 m in a row along x, 8 kg each and `tip` times that at the end, joined to each other
-// and to a wall. Of hinges and sliders x is the free axis, turned by `frame`.
+// and to a wall. For hinges and sliders x is the free axis, turned by `frame`.
 void expect_beam_holds(JointType type, const glm::dquat &frame, int count, double tip) {
     constexpr double half = 0.1;
     World world("soft_step", settings_for("soft_step"));
@@ -171,7 +171,7 @@ void expect_beam_holds(JointType type, const glm::dquat &frame, int count, doubl
         joint.anchor_a_local = narrow(V{half, 0, 0});
     }
     const double length = 2 * half * count;
-    // While the first steps find out what the joints bear, they are softer.
+    // The joints are softer while the first steps find out their loads.
     constexpr double most_share = 4e-3;
     const auto sag = [&] { return glm::length(position_of(world, last) - V{length - half, 0, 0}); };
     for (int step = 0; step < 180; ++step) {
@@ -181,7 +181,7 @@ void expect_beam_holds(JointType type, const glm::dquat &frame, int count, doubl
     const double turn = world.settings().substep_tolerance;
     for (int i = 0; i < count; ++i)
         EXPECT_LT(double(world.joint_errors(std::uint32_t(i)).angular), turn) << count << ' ' << i;
-    // The first joint bears most: with weight alone, angles fall with the square of the distance
+    // The first joint carries most: with weight alone, angles fall with the square of the distance
     // from the tip.
     EXPECT_LT(sag(), (tip > 1 ? 0.5 : 0.25) * count * turn * length) << count << ' ' << tip;
 }
@@ -199,8 +199,8 @@ TEST(Islands, BeamsOfHingesAndSlidersHoldTheirWeight) {
     expect_beam_holds(JointType::slider, glm::angleAxis(-pi / 2, V{0, 1, 0}), 12, 1);
 }
 
-// What spins fast around a joint with its whole arm turns far in a substep, and loses its energy at
-// four of them: more than nine tenths within 5 s at 200 rad/s.
+// A body spinning fast about a joint with a long lever arm turns far in a substep, and with four of
+// them loses its energy: more than nine tenths within 5 s at 200 rad/s.
 TEST(Islands, WhatSpinsOnAJointKeepsItsEnergy) {
     for (const double spin : {20.0, 50.0, 100.0, 200.0})
         for (const double arm : {0.25, 0.5, 1.0}) {

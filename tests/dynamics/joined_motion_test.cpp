@@ -1,5 +1,4 @@
-// soft_step's joints against what no joint may change: energy, angular momentum, and a world that
-// stays finite.
+// soft_step's joints must not change energy or angular momentum, and the world must stay finite.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -86,7 +85,7 @@ TEST(FreeJoinedBodies, KeepEnergyAndAngularMomentum) {
     }
 }
 
-// A body that turns about a pin outside of it; what carries it round does no work.
+// A body that turns about a pin outside it; the force that carries it round does no work.
 double spinning_loss(const Shape &shape, double arm, double spin, int substeps, double seconds) {
     World world = world_of(substeps, false);
     BodyDef def = dynamic_body(shape, 1, {arm, 0, 0}, {0, 0, -arm * spin});
@@ -106,7 +105,7 @@ TEST(SpinningOnAJoint, KeepsItsEnergyWhereTheSubstepFollows) {
     EXPECT_LT(spinning_loss(ball(0.2), 0.5, 200, 16, 1), 1e-2);
 }
 
-// However fast it spins, it loses what the substep cannot follow, and gains nothing.
+// However fast it spins, it loses the energy the substep cannot follow, and gains none.
 TEST(SpinningOnAJoint, NeverExplodes) {
     for (const double spin : {100.0, 200.0, 400.0, 1000.0})
         for (const int substeps : {1, 2, 4, 8})
@@ -140,8 +139,8 @@ TEST(Pendulum, KeepsItsEnergyForAMinute) {
         }
 }
 
-// Balls on arms let go level: their joints' forces turn them faster than any of these substeps
-// follows.
+// Balls on arms released level: the joints' forces turn them faster than any of these substeps can
+// follow.
 TEST(ChainsOfSmallBalls, StayFiniteAndGainNothing) {
     for (const int count : {2, 5, 20})
         for (const double radius : {0.02, 0.05, 0.1})
@@ -186,7 +185,7 @@ TEST(Nets, HangFromTwoCornersAndStayFinite) {
     }
 }
 
-// What cannot hold, since one end leaves, is stretched, not blown up.
+// A joint that cannot hold, as one end moves away, is stretched but does not explode.
 TEST(AChainOutOfReach, StaysFinite) {
     for (const int links : {1, 2, 5})
         for (const double speed : {0.1, 0.5, 5.0})
@@ -269,7 +268,8 @@ double first_rise(int count, int raised, double gap, int substeps) {
     return most;
 }
 
-// An impact knows of the joints of what it strikes: without, each loses I / (m l^2) of its speed.
+// Impacts account for the joints of the bodies they hit: otherwise each would lose I / (m l^2) of
+// its speed.
 TEST(Cradles, HandOnTheirSpeedAtAnySubsteps) {
     for (const int count : {5, 9})
         for (const int raised : {1, 2, 3})

@@ -1,4 +1,4 @@
-// Ball joints in columns come to the bits of the functions for single joints, in the same order.
+// Ball joints in columns match the functions for single joints bit for bit, in the same order.
 #include "engine/dynamics/joints/joint_columns.h"
 
 #include "engine/dynamics/method.h"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace trial;
 
-// What a method is given of a world's bodies and joints.
+// A method's view of a world's bodies and joints.
 struct Solved {
     StepSettings settings;
     std::vector<SolverBody> bodies;
@@ -105,8 +105,8 @@ struct Solved {
     }
 };
 
-// Some spin too fast for the series of a chord, some are very heavy or light, some cannot go or
-// turn along an axis, and some ends are the world's or driven.
+// Some bodies spin too fast for the chord's series, some are very heavy or light, some cannot move
+// or turn along an axis, and some joint ends are the world's or kinematic.
 World net(Random &random) {
     World world("soft_step", settings_for("soft_step"));
     add_joined_net(world, 8, V{0});

@@ -1,4 +1,4 @@
-// Limits, motors and springs of bodies that hang together: what each does, the others know of.
+// Limits, motors and springs of jointed bodies: each must account for what the others do.
 #include "tests/dynamics/worlds.h"
 
 #include <utility>
@@ -44,7 +44,8 @@ JointDef hinge() {
     return def;
 }
 
-// Two limits that hold at once, of one hinge or of several in a row, each see what the others did.
+// Two limits active at the same time, of one hinge or of several in a row, each see the other's
+// impulses.
 TEST(JointGroup, LimitsOfARowDoNoWork) {
     for (const int count : {1, 2, 3, 5})
         for (const double reach : {0.0, 0.1, 0.5})
@@ -86,8 +87,8 @@ TEST(JointGroup, BrakesAndMotorsAgainstLimitsDoNoWork) {
                 if (speed != 0)
                     def.limits = JointLimits{Real(-0.3), Real(0.3)};
                 Row row = row_of(count, def, weightless(settings_for("soft_step")), 0.1);
-                // All that turns at the motors' speed: the outermost goes as fast as all of them
-                // make it.
+                // Everything turns at the motors' speed: the outermost body goes as fast as all of
+                // them together make it.
                 const double fastest = 0.1 + speed * count * count * spacing;
                 const double most = 0.5 * 8 * count * fastest * fastest * 2;
                 for (int step = 0; step < 240; ++step) {
@@ -99,7 +100,7 @@ TEST(JointGroup, BrakesAndMotorsAgainstLimitsDoNoWork) {
             }
 }
 
-// However stiff, and however many: a push is never more than it was.
+// For any stiffness and number: a push never grows beyond its initial size.
 TEST(JointGroup, StiffSpringsInARowGainNothing) {
     for (const JointType type :
          {JointType::ball, JointType::hinge, JointType::slider, JointType::fixed})
@@ -112,8 +113,8 @@ TEST(JointGroup, StiffSpringsInARowGainNothing) {
                     def.damping_ratio = Real(damping);
                     Row row = row_of(count, def, weightless(settings_for("soft_step")), 0.01);
                     const double before = row.kinetic();
-                    // A known failing: of undamped ones at the edge of what the most substeps
-                    // follow, one pass gains a little.
+                    // Known failing: with undamped springs at the edge of what the most substeps
+                    // can follow, one pass gains a little.
                     const double most = damping > 0 ? 1.1 : 10;
                     for (int step = 0; step < 120; ++step) {
                         row.world.step(nullptr);
@@ -124,8 +125,8 @@ TEST(JointGroup, StiffSpringsInARowGainNothing) {
                 }
 }
 
-// Four weights, each on a soft joint below the one before: k = m w^2 with m the mass that moves,
-// and each bears all below it.
+// Four weights, each on a soft joint below the previous one: k = m w^2 with m the moving mass, and
+// each joint carries everything below it.
 TEST(JointGroup, ARowOfSpringsSagsByTheSumOfThem) {
     constexpr int count = 4;
     constexpr double mass = 8, frequency = 3;
@@ -153,8 +154,8 @@ TEST(JointGroup, ARowOfSpringsSagsByTheSumOfThem) {
     }
 }
 
-// Links of 1 kg in a row along x, the last as heavy as told, each on a joint like `def` at its near
-// end, the first on the world; let go level. They pass through each other.
+// Links of 1 kg in a row along x, the last one's mass given, each on a joint like `def` at its near
+// end, the first on the world; released level. They pass through each other.
 struct LevelChain {
     LevelChain(int count, double end, double half_length, JointDef def)
         : world("soft_step", settings_for("soft_step")) {
@@ -194,8 +195,8 @@ TEST(JointGroup, AChainOfRodsGainsNothing) {
     }
 }
 
-// Ends up to 700 times as heavy as a link: what snaps gives no energy back that it has not taken,
-// and hardly comes apart.
+// Ends up to 700 times as heavy as a link: a chain that snaps taut returns no more energy than it
+// took, and hardly comes apart.
 TEST(JointGroup, AChainThatWhipsGainsNothing) {
     for (const auto &[count, end] :
          {std::pair{5, 20.0}, std::pair{5, 70.0}, std::pair{5, 130.0}, std::pair{5, 170.0},
@@ -214,8 +215,8 @@ TEST(JointGroup, AChainThatWhipsGainsNothing) {
     }
 }
 
-// Blocks in a row, the first welded to the world, each other on a hinge that lets it fold up, but
-// whose limit bears all beyond it.
+// Blocks in a row, the first welded to the world, each other one on a hinge that can fold up and
+// whose limit carries everything beyond it.
 struct BeamDef {
     int count = 6;
     V half{0.1, 0.1, 0.1};
@@ -267,7 +268,7 @@ Beam add_beam(World &world, const BeamDef &of) {
     return beam;
 }
 
-// As a beam of one piece is held, but for what joints that are solved together give way.
+// It holds like a solid beam, except for the give of jointly solved joints.
 void expect_a_level_beam(const BeamDef &of, const StepSettings &settings, double seconds) {
     World world("soft_step", settings);
     const Beam beam = add_beam(world, of);
@@ -284,7 +285,7 @@ void expect_a_level_beam(const BeamDef &of, const StepSettings &settings, double
     }
     EXPECT_NEAR(beam.end_at(world).y, 0, 1.5e-3 * beam.length) << name();
     EXPECT_LT(world.measure().kinetic_energy, 1e-9 * beam.fall) << name();
-    // Each bears the moment of all beyond it.
+    // Each joint carries the moment of everything beyond it.
     const double mass = double(world.bodies()[beam.blocks[0].index].mass);
     for (int i = 1; i < of.count; ++i) {
         const double beyond = of.count - i, length = 2 * of.half.x;
@@ -315,7 +316,7 @@ TEST(JointGroup, PressedLimitsHoldABeam) {
     }
 }
 
-// However it is folded: what comes down on its limits gives back no more than it had.
+// However it is folded, a beam that comes down on its limits returns no more energy than it had.
 TEST(JointGroup, AFoldedBeamFallsOntoItsLimits) {
     for (const int count : {2, 4, 7, 13})
         for (const double fold : {0.02, 0.1, 0.3, 1.0}) {
@@ -341,7 +342,7 @@ struct BridgeDef {
     double height = 0; // that it falls from (m)
 };
 
-// Of hinges between two fixed ends. Returns how much energy would be gained by all of the fall.
+// A bridge of hinged planks between two fixed ends. Returns the energy of the whole fall.
 double add_bridge(World &world, const BridgeDef &def) {
     constexpr double plank_mass = 360;
     std::vector<V> ends{V{0}};
@@ -381,8 +382,8 @@ double add_bridge(World &world, const BridgeDef &def) {
     return 9.81 * (mass * def.height + 0.1 * plank_mass * def.planks);
 }
 
-// It could hardly bear anything, and gives way instead. Where the joints' stretch came back as
-// speed in finer substeps, these threw up what fell on them with 0.4 to 72 times its energy.
+// The bridge can hardly carry a load, and gives way instead. When the joints' stretch came back as
+// velocity in finer substeps, these threw up what fell on them with 0.4 to 72 times its energy.
 TEST(JointGroup, WhatIsPulledStraightThrowsNothingUp) {
     for (const BridgeDef &def : {BridgeDef{.planks = 30},
                                  {.planks = 15},
@@ -405,8 +406,8 @@ TEST(JointGroup, WhatIsPulledStraightThrowsNothingUp) {
     }
 }
 
-// Links that were pressed on their limits, and then turn off them, the farther out the faster:
-// against the same links without limits, as long as those fold up.
+// Links pressed on their limits that then turn off them, faster the farther out: compared with the
+// same links without limits, while those fold up.
 TEST(JointGroup, LimitsLetGoAtOnce) {
     for (const int count : {2, 3, 4}) {
         StepSettings settings = settings_for("soft_step");
@@ -446,8 +447,8 @@ TEST(JointGroup, LimitsLetGoAtOnce) {
     }
 }
 
-// Gravity turns round, and pulls the innermost hinge off its limit, but presses the others on
-// theirs: an arm against the equation of its motion, by Runge and Kutta's rule.
+// Gravity reverses and pulls the innermost hinge off its limit, but presses the others onto theirs:
+// an arm, compared with Runge-Kutta on its equation of motion.
 TEST(JointGroup, AnArmLeavesItsLimitAsAPendulum) {
     for (const auto &[count, dt] :
          {std::pair{2, 1.0 / 30}, std::pair{2, 1.0 / 60}, std::pair{2, 1.0 / 240},
@@ -483,7 +484,7 @@ TEST(JointGroup, AnArmLeavesItsLimitAsAPendulum) {
     }
 }
 
-// A ball that strikes an arm from below, which its limit has just borne, turns it as a free one.
+// A ball that hits an arm from below, which its limit has just carried, turns it like a free one.
 TEST(JointGroup, WhatIsStruckOffItsLimitTurnsFreely) {
     StepSettings settings = settings_for("soft_step");
     World world("soft_step", settings);
@@ -503,7 +504,7 @@ TEST(JointGroup, WhatIsStruckOffItsLimitTurnsFreely) {
     EXPECT_NEAR(spin_of(world, beam.blocks.back()).z, wanted, 0.02 * wanted);
 }
 
-// A telescope: each hangs on the limit of the slider above, and that bears all below.
+// A telescope: each slider hangs on the limit of the one above, which carries everything below.
 TEST(JointGroup, LimitsOfSlidersBearWhatHangsOnThem) {
     for (const int count : {1, 4, 12}) {
         StepSettings settings = settings_for("soft_step");
@@ -538,8 +539,8 @@ TEST(JointGroup, LimitsOfSlidersBearWhatHangsOnThem) {
     }
 }
 
-// Rows that swing into their limits and out again, of many at once: the same by any number of
-// threads, and from where they were saved.
+// Many rows that swing into their limits and out again: the same with any number of threads, and
+// from a save.
 TEST(JointGroup, LimitsThatOpenAndCloseAreOfTheState) {
     World alone("soft_step", settings_for("soft_step"));
     for (int i = 0; i < 24; ++i)
@@ -566,7 +567,7 @@ TEST(JointGroup, LimitsThatOpenAndCloseAreOfTheState) {
     }
 }
 
-// What cannot move as its joint asks stays finite, and where it is.
+// A body that cannot move as its joint asks stays finite and in place.
 TEST(JointGroup, WhatIsLockedAndPulledStays) {
     for (const JointType type :
          {JointType::ball, JointType::hinge, JointType::slider, JointType::fixed}) {

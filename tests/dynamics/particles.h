@@ -1,4 +1,4 @@
-// What tests of particles and springs share.
+// Helpers shared by the particle and spring tests.
 #pragma once
 
 #include "tests/dynamics/worlds.h"
@@ -39,12 +39,12 @@ inline SpringDef spring(const SpringEnd &a, const SpringEnd &b, double rest_leng
     return def;
 }
 
-// n by n particles in a level square, those at its edge pinned, and springs between neighbours.
+// n by n particles in a level square with a pinned edge, and springs between neighbours.
 struct NetOf {
     int n = 2;
     double side = 1;
     V middle{0};
-    double mass = 1; // of all
+    double mass = 1; // total
     double stiffness = 0;
     double damping = 0;
 };

@@ -1,4 +1,4 @@
-// What passes without touching is let pass; what is in the way is not passed through.
+// Bodies that pass without touching are let through; obstacles are not tunnelled through.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -23,7 +23,7 @@ World weightless_world(const std::string &method) {
     return World(method, weightless(settings_for(method)));
 }
 
-// The speed that a body at rest has after another came past it along x, `above` its centre.
+// The speed of a body initially at rest after another has passed along x, `above` its centre.
 double speed_after_passing(const std::string &method, const Shape &moving, const Shape &resting,
                            double speed, double above, double start) {
     World world = weightless_world(method);
@@ -34,7 +34,7 @@ double speed_after_passing(const std::string &method, const Shape &moving, const
     return glm::length(velocity_of(world, id));
 }
 
-// In every phase of the step, from a millimetre at 2 m/s to 20 cm at 50 m/s.
+// At every phase of the step, with gaps from a millimetre at 2 m/s to 20 cm at 50 m/s.
 TEST_P(Passing, ABallThatPassesAnotherDoesNotTouchIt) {
     for (const double speed : {2.0, 5.0, 10.0, 20.0, 50.0})
         for (const double gap : {0.001, 0.005, 0.02, 0.05, 0.1, 0.2})
@@ -73,7 +73,7 @@ TEST_P(Passing, BoxesThatPassDoNotTouch) {
     }
 }
 
-// A ball at rest a little before a wall, struck by one ten times as heavy.
+// A ball at rest close to a wall, hit by one ten times as heavy.
 TEST(SoftStepPassing, NothingIsStruckThroughAWall) {
     for (const double speed : {8.0, 20.0, 40.0, 100.0})
         for (const double gap : {0.02, 0.05, 0.1, 0.3})
@@ -96,7 +96,7 @@ TEST(SoftStepPassing, NothingIsStruckThroughAWall) {
             }
 }
 
-// Small boxes against a wall thinner than they are, by any corner, edge or face.
+// Small boxes against a wall thinner than they are, hitting with any corner, edge or face.
 TEST(SoftStepPassing, ABoxDoesNotPassAThinWall) {
     Random random(5);
     for (const double speed : {10.0, 30.0})
@@ -120,7 +120,7 @@ TEST(SoftStepPassing, ABoxDoesNotPassAThinWall) {
             }
 }
 
-// Of twelve planks, that turns about z.
+// A drum of twelve planks, turning about z.
 BodyDef drum(double spin, bool is_closed) {
     constexpr double half_angle = pi / 12, thick = 0.05;
     BodyDef def;
@@ -142,8 +142,8 @@ BodyDef drum(double spin, bool is_closed) {
     return with_material(def, 0.5, 0);
 }
 
-// In a step the drum turns by up to a quarter of a radian: the plane of a plank is then elsewhere,
-// and what rides on it would be pressed through.
+// The drum turns by up to a quarter of a radian per step: a plank's plane is then elsewhere, and
+// would push its riders through.
 TEST(SoftStepPassing, WhatIsInATurningDrumStaysInIt) {
     for (const auto &[spin, rate] :
          {std::pair{10.0, 60.0}, std::pair{15.0, 60.0}, std::pair{20.0, 120.0}})
@@ -168,9 +168,9 @@ TEST(SoftStepPassing, WhatIsInATurningDrumStaysInIt) {
         }
 }
 
-// Far away, in each of 40 steps, a ball strikes another that stands before a wall: what nobody
-// could foresee, so that the step is tried again. Passes over all that needs as many substeps are
-// more then, and what rides in the drum may differ by what little they change.
+// Far away, in each of 40 steps, a ball hits another standing before a wall. That cannot be
+// foreseen, so the step is retried. The retry adds passes over everything with the same number of
+// substeps, so the riders in the drum may differ by the little those change.
 TEST(SoftStepPassing, WhatIsTriedAgainForOthersGoesItsOwnWay) {
     for (const double spin : {6.0, 9.0})
         for (const Shape &shape : {Shape{ball(0.1)}, Shape{block(V{0.1})}}) {
@@ -204,7 +204,7 @@ TEST(SoftStepPassing, WhatIsTriedAgainForOthersGoesItsOwnWay) {
         }
 }
 
-// On a fixed axle, from less than a twentieth of a turn in a step to half of one.
+// On a fixed axle, from less than a twentieth of a turn per step to half a turn.
 TEST(SoftStepPassing, ASpinningRodDoesNotPassAPost) {
     for (const double spin : {10.0, 30.0, 94.0, 180.0})
         for (int phase = 0; phase < 20; ++phase) {

@@ -1,4 +1,4 @@
-// Methods under which what rests can be asked for.
+// The methods under which bodies can be expected to rest.
 #pragma once
 
 #include "tests/dynamics/worlds.h"
@@ -6,8 +6,8 @@
 namespace plumb::inline PLUMB_PRECISION {
 namespace trial {
 
-// All that hold bodies apart but naive_impulses, under which nothing rests: what it does is in
-// known_answers_test.cpp.
+// All contact methods except naive_impulses, under which nothing rests; known_answers_test.cpp
+// measures that.
 inline std::vector<std::string> rest_methods() {
     std::vector<std::string> names = contact_methods();
     std::erase(names, "naive_impulses");

@@ -1,4 +1,4 @@
-// What stands comes to rest and stays there: long, and at every width of the processor's vectors.
+// Standing bodies come to rest and stay at rest: for long, and at every SIMD width.
 #include "tests/dynamics/particles.h"
 
 #include <hwy/highway.h>
@@ -34,7 +34,7 @@ double height_of(const World &world, std::uint32_t body) {
     return double(world.motions()[body].position.y);
 }
 
-// How far any body's up leans from the world's (rad), and any has gone from where it was (m).
+// The largest tilt of any body's up axis (rad), and the farthest any has moved (m).
 struct Strayed {
     double tilt = 0;
     double way = 0;
@@ -56,8 +56,7 @@ bool all_sleep(const World &world) {
     return true;
 }
 
-// With one pass over their contacts all of these sway, and a cylinder of h / d = 10 falls within
-// two minutes.
+// With one solver pass all of these sway, and a cylinder of h / d = 10 falls within two minutes.
 TEST(Rest, WhatIsTallAndThinStands) {
     for (const double sleep_after : {0.0, 0.5})
         for (const double slenderness : {3, 10, 20})
@@ -80,7 +79,7 @@ TEST(Rest, WhatIsTallAndThinStands) {
             }
 }
 
-// With one pass they creep by 2 cm in a minute.
+// With one solver pass they creep by 2 cm in a minute.
 TEST(Rest, TablesOnTablesStand) {
     for (const int tables : {2, 4, 8})
         for (const double size : {0.3, 1.0}) {
@@ -107,8 +106,9 @@ TEST(Rest, TablesOnTablesStand) {
         }
 }
 
-// Found anew in each step, a column of soft contacts buckles under its own weight once it is taller
-// than N^3 = 7.8 k / (m g): at four substeps some 15 boxes. Kept, it does not.
+// If contacts are found again in each step, a column of soft contacts buckles under its own weight
+// once it is taller than N^3 = 7.8 k / (m g): some 15 boxes at four substeps. With kept contacts it
+// does not.
 TEST(Rest, ATallStackStandsOnKeptContacts) {
     StepSettings settings = settings_for("soft_step");
     settings.substeps = 8;
@@ -128,9 +128,9 @@ TEST(Rest, ATallStackStandsOnKeptContacts) {
     EXPECT_LT(height_of(fallen, 30), 10) << "found anew in each step it falls";
 }
 
-// A substep's soft pass brings half of a load's impulse back, and rests where the spring makes up
-// for it: m g h / 2 = m_eff h omega^2 depth. Two boxes give way to each other as half of one's mass
-// does; against the ground omega is twice as high as omega h = pi / 4 between them.
+// A substep's soft pass restores half of a load's impulse, and rests where the spring makes up for
+// it: m g h / 2 = m_eff h omega^2 depth. Between two boxes the effective mass is half of one's
+// mass; against the ground omega is twice the omega h = pi / 4 between them.
 TEST(Rest, AStackSinksAsItsSpringsSay) {
     StepSettings settings = settings_for("soft_step");
     settings.max_substeps = 1;
@@ -148,8 +148,8 @@ TEST(Rest, AStackSinksAsItsSpringsSay) {
     }
 }
 
-// As large heaps are, which would take more than their budget: a lean that contacts found anew let
-// grow doubles every second, and cubes that stand a centimetre aside in turns fall after 12 s.
+// Like large heaps that exceed their substep budget. With contacts found again in each step, a lean
+// doubles every second, and cubes alternately offset by a centimetre fall after 12 s.
 TEST(Rest, WhatGetsTooFewSubstepsStandsOnContactsKeptLonger) {
     constexpr int count = 60;
     StepSettings settings = settings_for("soft_step");
@@ -163,7 +163,8 @@ TEST(Rest, WhatGetsTooFewSubstepsStandsOnContactsKeptLonger) {
     EXPECT_LT(world.measure().kinetic_energy, 1e-6 * world.measure().potential_energy);
 }
 
-// What bears many times its own weight is pushed by the order in which its corners are solved.
+// A body carrying many times its own weight is pushed about by the order in which its corners are
+// solved.
 TEST(Rest, HeavyOnLightDoesNotWalk) {
     struct Pair {
         V light, heavy; // half extents
@@ -202,8 +203,8 @@ TEST(Rest, APyramidComesToRest) {
     }
 }
 
-// Where points of a contact slide before others hold, those have more to bear than friction's first
-// sweep knew.
+// When some points of a contact slide before others hold, the latter must carry more than
+// friction's first sweep knew.
 TEST(Rest, WhatFrictionHoldsDoesNotCreepDownASlope) {
     for (const double ratio : {0.3, 0.5, 0.7, 0.9}) {
         const double angle = std::atan(0.5 * ratio);
@@ -214,12 +215,12 @@ TEST(Rest, WhatFrictionHoldsDoesNotCreepDownASlope) {
         BodyDef box = dynamic_body(block(V{0.5}), 10, V{0, 0.5, 0});
         world.add_body(with_material(box, 0.5, 0));
         run(world, 300);
-        // Known failing: the aim, 1e-5, is met up to nearly a half of what friction holds.
+        // Known failing: the goal of 1e-5 is only met up to nearly half of what friction holds.
         EXPECT_LT(std::abs(double(world.motions()[1].position.x)), 2.1e-5 * ratio) << ratio;
     }
 }
 
-// In many substeps each turn is less than a quaternion's rounding.
+// With this many substeps each rotation is less than a quaternion's rounding.
 TEST(Rest, AnArchDoesNotCreepHoweverFineItsSubsteps) {
     StepSettings settings = settings_for("soft_step");
     settings.substeps = 64;
@@ -235,8 +236,8 @@ TEST(Rest, AnArchDoesNotCreepHoweverFineItsSubsteps) {
             << i;
 }
 
-// A box a little steeper than friction holds picks up speed at once; none of it is lost to corners
-// that have not yet shared out the load.
+// On a slope a little steeper than friction holds, a box accelerates immediately; nothing is lost
+// to corners that have not yet shared out the load.
 TEST(Rest, ASlopeJustTooSteepGivesTheClosedFormsWay) {
     for (const double ratio : {1.05, 1.1, 1.5}) {
         const double angle = std::atan(0.5 * ratio);
@@ -252,8 +253,8 @@ TEST(Rest, ASlopeJustTooSteepGivesTheClosedFormsWay) {
     }
 }
 
-// The contacts of one colour share no body, as the joints of one level, and its springs no
-// particle: their order, and how many the processor works on at once, does not matter.
+// The contacts of one colour share no body, nor do the joints of one level, and springs of one
+// level share no particle: so neither their order nor the SIMD width matters.
 TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
     const auto hash_at = [](std::int64_t target) {
         hwy::SetSupportedTargetsForTest(target);
@@ -265,7 +266,7 @@ TEST(Rest, EveryWidthOfVectorsGivesTheSameBits) {
             const V at{0.7 * (i % 5), 0.4 + 0.8 * (i / 25), 0.7 * (i / 5 % 5)};
             world.add_body(dynamic_body(any_shape(random), random.next_in(0.5, 5), at));
         }
-        // One that a substep follows, and one that is too stiff for that.
+        // One net that a substep can follow, and one too stiff for it.
         for (const double stiffness : {300.0, 3e5})
             add_net(world, {.n = 8,
                             .side = 3,

@@ -40,7 +40,7 @@ inline WideVec turn(const WideQuat &q, const WideVec &v) {
 inline WideVec turn_back(const WideQuat &q, const WideVec &v) {
     return turn({q.w, -q.x, -q.y, -q.z}, v);
 }
-// The angle of the turn from one to the other (rad).
+// The angle of the rotation from one to the other (rad).
 inline double angle_between(const WideQuat &a, const WideQuat &b) {
     const WideQuat d = product({a.w, -a.x, -a.y, -a.z}, b);
     const long double sine = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
@@ -52,7 +52,7 @@ struct SpinState {
     WideVec spin{0}; // body axes
 };
 
-// From body-frame `spin`, after `time` seconds.
+// The state after `time` seconds, starting from body-frame `spin`.
 inline SpinState spin_reference(const glm::dvec3 &inertia, const WideVec &spin,
                                 const WideQuat &rotation, long double time, int steps) {
     const WideVec moments{inertia.x, inertia.y, inertia.z};

@@ -1,5 +1,5 @@
-// What rolls or rocks gains no energy: the place where it touches goes along within the step, and
-// so do the arms to it and the face's normal.
+// Rolling and rocking bodies gain no energy: the contact point moves along within the step, and so
+// do its lever arms and the face's normal.
 #include "tests/dynamics/worlds.h"
 #include "tests/trials.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 using namespace trial;
 
-// How far the energy of a world comes above that of its start within a time (J).
+// The largest rise of a world's energy above its start within a time (J).
 double gain_of(World &world, double seconds) {
     const double before = world.energy();
     double most = before;
@@ -19,10 +19,10 @@ double gain_of(World &world, double seconds) {
     return most - before;
 }
 
-// A capsule or cylinder on its side rolls on, as a ball does.
+// A capsule or cylinder on its side keeps rolling, like a ball.
 TEST(Rolling, WhatIsRoundRollsOnAtAnySpeed) {
     for (const double radius : {0.002, 0.02, 0.3})
-        for (const double turn : {0.1, 0.3, 0.5, 1.0, 2.0, 3.0}) // a step
+        for (const double turn : {0.1, 0.3, 0.5, 1.0, 2.0, 3.0}) // rad per step
             for (const Shape &shape :
                  {Shape{upright_capsule(2 * radius, radius)},
                   Shape{Cylinder{narrow(V{0, -2 * radius, 0}), narrow(V{0, 2 * radius, 0}),
@@ -42,12 +42,12 @@ TEST(Rolling, WhatIsRoundRollsOnAtAnySpeed) {
             }
 }
 
-// A cylinder that is let go on a rim rocks and rolls round on it; what holds it up comes along.
+// A cylinder released on a rim rocks and rolls around on it; the support point moves along.
 TEST(Rolling, CylindersLetGoOnARimComeToStandUpright) {
     for (const bool on_block : {false, true})
         for (const double radius : {0.02, 0.2, 1.0})
             for (const double height : {1.0, 3.0, 6.0})          // in radii
-                for (const double share : {0.05, 0.2, 0.5, 0.8}) // of where it falls over
+                for (const double share : {0.05, 0.2, 0.5, 0.8}) // of the tipping angle
                     for (const double friction : {0.3, 0.6, 1.0}) {
                         World world("soft_step", settings_for("soft_step"));
                         world.add_body(
@@ -77,8 +77,8 @@ TEST(Rolling, CylindersLetGoOnARimComeToStandUpright) {
                     }
 }
 
-// Any cylinder, let go on its rim or spun on it: its energy comes above what it was down to by more
-// than a hundredth of what it began with in fewer than one case of eight.
+// Random cylinders, released on a rim or spun on it: in fewer than one case of eight the energy
+// rises above its previous minimum by more than a hundredth of the initial energy.
 TEST(Rolling, CylindersSpunOnARimGainLittleEnergy) {
     Random random(5);
     int more = 0;
@@ -111,9 +111,9 @@ TEST(Rolling, CylindersSpunOnARimGainLittleEnergy) {
     EXPECT_LT(more, count / 8);
 }
 
-// A prism of 8 to 27 sides rolls from corner to corner, of which its contact has four.
+// A prism of 8 to 27 sides rolls from corner to corner; its contact has only four of them.
 TEST(Rolling, PrismsOnACornerGainLittleEnergy) {
-    for (const double spin : {0.0, 1.0}) { // roots of g / radius
+    for (const double spin : {0.0, 1.0}) { // times sqrt(g / radius)
         Random random(11);
         int more = 0;
         constexpr int count = 300;
@@ -149,8 +149,8 @@ TEST(Rolling, PrismsOnACornerGainLittleEnergy) {
     }
 }
 
-// A cylinder on its rim that leans over and rolls, at so many times the speed at which it turns as
-// fast as gravity tips it. Thin ones are coins.
+// A cylinder on its rim that leans and rolls, at `froude` times the speed at which it turns as fast
+// as gravity tips it. Thin ones are coins.
 BodyDef leaning_roller(double radius, double thickness, double lean, double froude) {
     const double half = 0.5 * thickness * radius;
     const double speed = froude * std::sqrt(gravity * radius);
@@ -162,7 +162,7 @@ BodyDef leaning_roller(double radius, double thickness, double lean, double frou
     return roller;
 }
 
-// How far its energy comes above that of the start, in kinetic energies of then.
+// The largest rise of its energy above the start, in units of its initial kinetic energy.
 double gain_of_roller(const BodyDef &roller, const StepSettings &settings, double friction,
                       double restitution, double seconds) {
     World world("soft_step", settings);
@@ -172,8 +172,8 @@ double gain_of_roller(const BodyDef &roller, const StepSettings &settings, doubl
     return gain_of(world, seconds) / moving;
 }
 
-// It rolls in a circle; friction may slow it down alone. Slow ones turn fastest, and what holds
-// arms for a step gained twice the energy there.
+// It rolls in a circle; only friction may slow it down. Slow coins turn fastest: with lever arms
+// frozen for the step they gained twice their energy.
 TEST(Rolling, ALeaningCoinRollsWithoutGainingEnergy) {
     const StepSettings settings = settings_for("soft_step");
     for (const double radius : {0.01, 0.1})
@@ -219,8 +219,8 @@ TEST(Rolling, ALeaningCoinGainsNoEnergyAtOtherStepsEither) {
         }
 }
 
-// Known failing: thrown ones that spin by up to a radian a step come down on rims where no point of
-// a contact is. As measured: 2 of 200 gain more than a twentieth, at worst 0.42.
+// Known failing: thrown coins that spin by up to a radian per step land on parts of the rim without
+// contact points. Measured: 2 of 200 gain more than a twentieth, at worst 0.42.
 TEST(Rolling, ThrownCoinsHardlyGainEnergy) {
     Random random(5);
     const int tried = trials(200);
@@ -247,12 +247,12 @@ TEST(Rolling, ThrownCoinsHardlyGainEnergy) {
         EXPECT_LE(gain, 0.45 * scale) << trial;
         gained += gain > 0.05 * scale ? 1 : 0;
     }
-    // One in fifteen, by up to 1.2, with four points of a rim alone.
+    // With only four points on the rim: one in fifteen, by up to 1.2.
     EXPECT_LE(gained, 1 + tried / 66);
 }
 
-// A tumbler: its weight hangs below the middle of what it rolls on. Let go at an angle, it swings;
-// with arms held for the step it swung ever wider, and turned over.
+// A roly-poly: its centre of mass is below the middle of the round shape. Released at an angle, it
+// swings; with lever arms frozen for the step it swung ever wider, and turned over.
 TEST(Rolling, WhatIsHeavyOnOneSideSwingsNoWider) {
     for (const double radius : {0.01, 0.1, 0.5})
         for (const double low : {0.2, 0.6}) // of the radius
@@ -271,13 +271,13 @@ TEST(Rolling, WhatIsHeavyOnOneSideSwingsNoWider) {
                     tumbler.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
                     world.add_body(with_material(tumbler, friction, 0));
                     const double swing = gravity * low * radius * (1 - std::cos(angle));
-                    // The smallest swing by half a radian a step.
+                    // The smallest swing by half a radian per step.
                     EXPECT_LE(gain_of(world, 10), (radius < 0.05 ? 0.1 : 1e-4) * swing)
                         << radius << ", " << low << ", " << angle << ", " << is_ball;
                 }
 }
 
-// A plank that rocks on a barrel: stable as long as it is thinner than the barrel's diameter.
+// A plank rocking on a barrel: stable while it is thinner than the barrel's diameter.
 TEST(Rolling, APlankOnABarrelSwingsNoWider) {
     for (const double radius : {0.3, 1.0, 5.0})
         for (const double angle : {0.01, 0.05})
@@ -287,7 +287,7 @@ TEST(Rolling, APlankOnABarrelSwingsNoWider) {
                 world.add_body(with_material(
                     static_body(Cylinder{narrow(V{0, 0, -1}), narrow(V{0, 0, 1}), Real(radius)}),
                     friction, 0));
-                // Rolled to the angle from level on top.
+                // Rolled to the angle from level on top of the barrel.
                 const V out{-std::sin(angle), std::cos(angle), 0};
                 const V along{std::cos(angle), std::sin(angle), 0};
                 BodyDef plank = dynamic_body(block(V{1.5, half, 0.3}), 1,
@@ -300,7 +300,7 @@ TEST(Rolling, APlankOnABarrelSwingsNoWider) {
             }
 }
 
-// A ring hangs in a ring, and swings with a weight.
+// A ring hanging in another ring swings with a weight.
 TEST(Rolling, ALinkThatHangsInALinkSwingsNoWider) {
     const auto add_ring = [](World &world, BodyKind kind, const V &at, bool across) {
         BodyDef ring;

@@ -1,5 +1,5 @@
-// What rests sleeps and costs nothing; what touches, moves or removes it wakes it; and nothing that
-// still moves is put to sleep.
+// Resting bodies fall asleep and cost nothing; touching, moving or removing them wakes them; and
+// nothing that still moves is put to sleep.
 #include "tests/dynamics/worlds.h"
 
 #include <functional>
@@ -21,7 +21,7 @@ BodyId add_box(World &world, const V &position, double mass = 1) {
     return world.add_body(with_material(dynamic_body(block(V{0.5}), mass, position), 0.6, 0));
 }
 
-// Boxes on each other; the lowest first.
+// A stack of boxes, lowest first.
 std::vector<BodyId> add_stack(World &world, int boxes, double x) {
     std::vector<BodyId> ids;
     for (int i = 0; i < boxes; ++i)
@@ -63,14 +63,14 @@ TEST(Sleep, WhatRestsIsNotSteppedAnyMore) {
         EXPECT_EQ(position_of(world, id), wide(before[id.index].position));
         EXPECT_EQ(velocity_of(world, id), V{0});
     }
-    // But it is all there, for those who ask.
+    // But everything can still be queried.
     EXPECT_EQ(world.contacts().size(), 6U);
     EXPECT_GT(world.measure().max_penetration, 0);
     EXPECT_LT(world.measure().max_penetration, world.settings().substep_tolerance);
     EXPECT_EQ(world.measure().kinetic_energy, 0);
 }
 
-// Tall ones too: what sways is stopped by its contacts, though one pass does not balance all loads.
+// Tall ones too: contacts stop the swaying, although one pass does not balance all loads.
 TEST(Sleep, TallStacksAndPyramidsComeToRest) {
     for (const int boxes : {5, 10, 15, 20, 25, 40, 60}) {
         World world = floor_world();
@@ -87,8 +87,7 @@ TEST(Sleep, TallStacksAndPyramidsComeToRest) {
     }
 }
 
-// Of any size, under any gravity, at any dt: what rounding leaves of speeds grows with places and
-// rates.
+// At any size, gravity and dt: the rounding left in velocities grows with positions and rates.
 TEST(Sleep, StacksOfAnySizeComeToRestAtAnyDt) {
     for (const double side : {0.05, 1.0, 20.0})
         for (const double pull : {0.5, 9.81, 100.0})
@@ -105,7 +104,7 @@ TEST(Sleep, StacksOfAnySizeComeToRestAtAnyDt) {
             }
 }
 
-// Nobody loses a tenth of a millimetre by sleeping.
+// Sleeping moves nothing by more than 0.1 mm.
 TEST(Sleep, ChangesNothingThatCanBeSeen) {
     StepSettings settings = settings_for("soft_step");
     World sleeping = floor_world(settings);
@@ -128,7 +127,7 @@ TEST(Sleep, ChangesNothingThatCanBeSeen) {
             << i;
 }
 
-// Each of these wakes the stack that it concerns, in the same step, and no other.
+// Each of these wakes the stack it concerns, in the same step, and no other.
 TEST(Sleep, WhatTouchesMovesOrLeavesAnIslandWakesIt) {
     struct Waking {
         const char *name;
@@ -221,7 +220,7 @@ TEST(Sleep, OtherLawsWakeAll) {
     EXPECT_NEAR(velocity_of(world, boxes[1]).x, 5, 0.2);
 }
 
-// The same blow on a stack that slept and on one that never did.
+// The same impact on a stack that slept and on one that never did.
 TEST(Sleep, WhatWakesGoesOnAsIfItHadNotSlept) {
     StepSettings settings = settings_for("soft_step");
     for (const double speed : {2.0, 10.0, 40.0}) {
@@ -244,15 +243,15 @@ TEST(Sleep, WhatWakesGoesOnAsIfItHadNotSlept) {
     }
 }
 
-// All of these move, if slowly, and would be stopped by a coarser eye.
+// All of these move, slowly; a coarser threshold would stop them.
 TEST(Sleep, WhatMovesSlowlyStaysAwake) {
-    { // Where there is no gravity everything drifts on for ever.
+    { // Without gravity everything drifts on forever.
         World world("soft_step", weightless(settings_for("soft_step")));
         const BodyId id = world.add_body(dynamic_body(block(V{0.5}), 1, V{0}, V{1e-5, 0, 0}));
         run(world, 600);
         EXPECT_NEAR(position_of(world, id).x, 1e-4, 1e-8);
     }
-    { // A slope 0.05 degrees above the angle of friction.
+    { // A slope 0.05 degrees steeper than the friction angle.
         const double angle = std::atan(0.5) + 0.05 * pi / 180;
         const double a = gravity * (std::sin(angle) - 0.5 * std::cos(angle));
         const V normal{-std::sin(angle), std::cos(angle), 0};
@@ -275,7 +274,7 @@ TEST(Sleep, WhatMovesSlowlyStaysAwake) {
                 << rate;
         }
     }
-    { // A pendulum that swings by a hundredth of a degree.
+    { // A pendulum swinging by a hundredth of a degree.
         World world("soft_step", settings_for("soft_step"));
         const double swing = 0.01 * pi / 180;
         JointDef joint;
@@ -305,7 +304,7 @@ struct Figure {
     std::size_t add(const Shape &shape, double mass, const V &at) {
         BodyDef def = with_material(dynamic_body(shape, mass, feet + turn * at), 0.6, 0);
         def.pose.rotation = narrow(turn);
-        // A round head would spin for ever between its neck and the floor: nothing brakes it.
+        // A round head would spin forever between its neck and the floor: nothing brakes it.
         def.angular_damping = Real(is_round(shape) ? 5 : 0);
         parts.push_back(world.add_body(def));
         return parts.size() - 1;
@@ -345,8 +344,8 @@ struct Figure {
     }
 };
 
-// What lies on the ground and is jointed, light parts below heavy ones: joints and contacts do not
-// undo what the other did.
+// A jointed figure on the ground, with light parts below heavy ones: joints and contacts do not
+// undo each other's work.
 TEST(Sleep, AFigureThatFallsStaysWholeAndSleeps) {
     for (const double turn : {-0.5 * pi, 0.5 * pi, 0.4 * pi}) {
         Figure figure(turn, 0.6);
@@ -362,9 +361,7 @@ TEST(Sleep, AFigureThatFallsStaysWholeAndSleeps) {
     }
 }
 
-// It is state: a world that was saved asleep, or built anew from what is known of it, goes on with
-// the same bits.
-// A ball's spin moves no surface that anything could touch; it is kept all the same.
+// A ball's spin moves no surface that anything could touch, but must still be kept.
 TEST(Sleep, ABallThatSpinsStaysAwake) {
     for (const double radius : {0.01, 0.5, 10.0})
         for (const double speed : {0.1, 20.0}) { // of its surface, in radii
@@ -377,6 +374,8 @@ TEST(Sleep, ABallThatSpinsStaysAwake) {
         }
 }
 
+// Sleep is part of the state: a world saved asleep, or rebuilt from its readable state, continues
+// bit for bit.
 TEST(Sleep, IsSaved) {
     World world = floor_world();
     const std::vector<BodyId> boxes = add_stack(world, 4, 0);
@@ -399,13 +398,13 @@ TEST(Sleep, IsSaved) {
         for (std::size_t i = 20 * k; i < std::min<std::size_t>(20 * k + 45, hashes.size()); ++i) {
             world.step(nullptr);
             if (i % 3 == 0)
-                world.measure(); // looks at what sleeps, and must leave no trace
+                world.measure(); // reads sleeping bodies, and must have no side effects
             ASSERT_EQ(world.hash(), hashes[i]) << k << ' ' << i;
         }
     }
 }
 
-// What a motor still drives does not sleep, however slowly that goes.
+// A body driven by a motor does not sleep, however slow it is.
 TEST(Sleep, AMotorKeepsAwake) {
     World world("soft_step", settings_for("soft_step"));
     JointDef joint;

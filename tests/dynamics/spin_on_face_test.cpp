@@ -1,5 +1,5 @@
-// What spins on a face is slowed as by an even pressure over all of the face, whether it slides
-// meanwhile or not. The oracle adds up friction over thousands of places of the face.
+// A body spinning on a face slows as under an even pressure over the whole face, whether or not it
+// slides at the same time. The reference sums friction over thousands of points of the face.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -10,7 +10,7 @@ using namespace trial;
 constexpr double kilograms = 10;
 constexpr double coefficient = 0.3;
 
-// A body that lies on a face, and that face: places on it, in (x, z) of the body, that bear alike.
+// A body lying on a face, and points of that face, in (x, z) of the body, that carry equal loads.
 struct Puck {
     const char *name;
     BodyDef body;
@@ -70,7 +70,7 @@ struct Course {
     double turn = 0;
 };
 
-// Coulomb's law at each place, by explicit Euler in short steps.
+// Coulomb's law at each point, by explicit Euler in short steps.
 void rub(Course &course, const Puck &puck, double inertia, double seconds) {
     constexpr int steps = 32;
     const double h = seconds / steps;
@@ -92,8 +92,8 @@ void rub(Course &course, const Puck &puck, double inertia, double seconds) {
     }
 }
 
-// How wrong speed and spin are at most until the oracle stands still, in parts of those at first,
-// and how much longer it takes (s).
+// The largest errors of speed and spin until the reference stops, relative to the initial values,
+// and how much longer the body takes (s).
 struct Wrong {
     double speed = 0;
     double spin = 0;
@@ -152,7 +152,7 @@ TEST(SpinOnFace, IsSlowedAsByAnEvenPressure) {
             }
 }
 
-// The four points of a contact are not the whole face: a spinning box is held back less.
+// The four points of a contact are not the whole face: a spinning box is slowed less.
 TEST(SpinOnFace, IsSlowedTheSameWhileItSlides) {
     for (const double radius : {0.05, 0.5})
         for (const Puck &puck : pucks_of(radius))
@@ -167,8 +167,8 @@ TEST(SpinOnFace, IsSlowedTheSameWhileItSlides) {
                 }
 }
 
-// A box spins on a slab that lies on ice: what one loses of angular momentum, the other gains,
-// until they turn as one.
+// A box spins on a slab lying on ice: the angular momentum one loses the other gains, until they
+// turn as one.
 TEST(SpinOnFace, OfTwoBodiesKeepsAngularMomentum) {
     for (const double spin : {1.0, 10.0, 40.0})
         for (const double aside : {0.0, 0.1}) {

@@ -81,8 +81,8 @@ TEST_P(Springs, TwoMassesHaveTheirModes) {
     }
 }
 
-// A ball on a rope of springs that is put where they hold it, each stretched by g / k times what
-// hangs below it, stays there: soft or stiff, damped or not, light or heavy, at any step.
+// A ball placed in equilibrium on a rope of springs, each stretched by g / k times the mass below
+// it, stays there: soft or stiff, damped or not, light or heavy, at any step.
 TEST(SoftStepSprings, HoldWhatHangsWhereTheyShould) {
     struct Rope {
         double stiffness, damping, particle, ball, dt;
@@ -190,13 +190,13 @@ TEST_P(StretchedSprings, KeepTheirEnergy) {
             }
             ASSERT_TRUE(world.report().finite);
             EXPECT_LT(most, 1.03 * before) << turn << ' ' << i;
-            if (turn < 6) { // what is faster may be damped
+            if (turn < 6) { // faster ones may be damped
                 EXPECT_GT(world.energy(), 0.97 * before) << turn << ' ' << i;
             }
         }
 }
 
-// Particles and bodies that springs tie together, and nothing else holds.
+// Free particles and bodies tied together only by springs.
 World floating(const std::string &method) {
     World world(method, weightless(settings_for(method)));
     const BodyId first = world.add_body(dynamic_body(ball(0.2), 2, V{0, 0, 0}, V{0.2, 0, -0.1}));
@@ -214,8 +214,8 @@ World floating(const std::string &method) {
     return world;
 }
 
-// Both momenta to rounding; the angular one not by those that take force and place of different
-// moments, which are off by their order.
+// Both momenta are conserved to rounding, except the angular one by methods that take force and
+// position from different times: they are off by their order.
 TEST_P(Springs, KeepMomenta) {
     World world = floating(GetParam());
     const Measures before = world.measure();
@@ -224,7 +224,7 @@ TEST_P(Springs, KeepMomenta) {
     EXPECT_LT(glm::distance(after.linear_momentum, before.linear_momentum), 3000 * epsilon);
     const double turned = glm::distance(after.angular_momentum, before.angular_momentum);
     if (GetParam() == "explicit_euler" || GetParam() == "backward_euler" || GetParam() == "xpbd" ||
-        GetParam() == "avbd") // whose forces are not along the lines as they are
+        GetParam() == "avbd") // its forces are not along the current lines
         EXPECT_GT(turned, 1e-3);
     else
         EXPECT_LT(turned, GetParam() == "rk4" ? 1e-4 : 6000 * epsilon);
@@ -262,7 +262,7 @@ double sag_of_chain(const std::string &method, int substeps) {
         world.add_particle(particle_at(V{1.6 * i / links, 0, 0}, mass, i == 0 || i == links));
     for (std::uint32_t i = 0; i < links; ++i)
         world.add_spring(spring(of_particle(i), of_particle(i + 1), link, stiffness, 4));
-    // It swings to rest in a syrup that changes nothing of where it rests.
+    // It settles in a viscous medium that does not change where it rests.
     for (int step = 0; step < 1500; ++step) {
         run(world, 1);
         for (std::uint32_t i = 1; i < links; ++i)
@@ -281,8 +281,8 @@ TEST_P(Springs, AHangingChainIsACatenary) {
     EXPECT_NEAR(sag_of_chain(GetParam(), substeps), 1, 0.005);
 }
 
-// A known failing: where the substep is too long to follow stiff springs, the passes do not hold
-// them to the end, and the chain hangs too low. soft_step takes as many substeps as it needs.
+// Known failing: if the substep is too long to follow stiff springs, the passes do not converge,
+// and the chain hangs too low. soft_step takes as many substeps as it needs.
 TEST(StiffSprings, StretchWhereTheSubstepIsTooLong) {
     EXPECT_GT(sag_of_chain("tgs_soft", 0), 1.05);
     EXPECT_GT(sag_of_chain("sequential_impulses", 0), 1.1);
@@ -345,7 +345,7 @@ TEST(SpringEdits, RefuseWhatMakesNoSense) {
     EXPECT_EQ(world.state().torn.size(), 0U);
 }
 
-// Pinned particles stay to the bit; so do those without forces.
+// Pinned particles stay put bit for bit; so do those without forces.
 TEST_P(Springs, PinnedParticlesStay) {
     World world(GetParam(), settings_for(GetParam()));
     world.add_particle(particle_at(V{1, 2, 3}, 1, true));
@@ -357,9 +357,9 @@ TEST_P(Springs, PinnedParticlesStay) {
     EXPECT_NEAR(world.measure().energy(), energy, 1e-12);
 }
 
-// A hand lifts a rope of 1 kg by one of its particles, of 50 g. The hand's spring alone would sag
-// by g / omega^2 = 1 cm; a known failing, it sags by 5, as the substep's implicit pull is that on
-// so light a particle.
+// A hand lifts a rope of 1 kg by one of its 50 g particles. The hand's spring alone would sag by g
+// / omega^2 = 1 cm. Known failing: it sags by 5, as the substep's implicit pull is that on so light
+// a particle.
 TEST(ParticleGrab, LiftsWhatHangsOnIt) {
     World world("soft_step", settings_for("soft_step"));
     world.add_body(ground(0.5, 0));

@@ -1,4 +1,4 @@
-// What the dynamics tests share: short ways to say bodies, worlds and random numbers.
+// Helpers shared by the dynamics tests: short ways to make bodies, worlds and random numbers.
 #pragma once
 
 #include "engine/core/random.h"
@@ -23,7 +23,7 @@ using V = glm::dvec3;
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double gravity = 9.81;
-// Of the precision under test.
+// Machine epsilon of the precision under test.
 inline constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 inline constexpr bool is_double = sizeof(Real) == sizeof(double);
 
@@ -65,7 +65,7 @@ inline Capsule upright_capsule(double half_length, double radius) {
     return {Vec3{0, Real(-half_length), 0}, Vec3{0, Real(half_length), 0}, Real(radius)};
 }
 
-// A ball, box or capsule of 0.1 to 0.8 m.
+// A random ball, box or capsule, 0.1 to 0.8 m in size.
 inline Shape any_shape(Random &random) {
     const std::uint32_t kind = random.next_index(3);
     const double a = random.next_in(0.1, 0.3), b = random.next_in(0.1, 0.3);
@@ -98,18 +98,19 @@ inline BodyDef static_body(const Shape &shape, const V &position = V{0}) {
     def.pose.position = narrow(position);
     return def;
 }
-// The solid below the plane through the origin with the given normal.
+// The half space below the plane through the origin with this normal.
 inline BodyDef ground(double friction, double restitution, const V &normal = V{0, 1, 0}) {
     return with_material(static_body(HalfSpace{narrow(normal), Real(0)}), friction, restitution);
 }
 
-// A rod or rope of one length.
+// Gives a distance joint a fixed length.
 inline void set_length(JointDef &joint, Real length) {
     joint.min_length = joint.max_length = length;
 }
 
-// Balls of 1 kg on ball joints, level, n by n, half a metre apart, which meet nothing of each
-// other; held by two corners. The joints in four turns, of which none shares a ball.
+// A level net of n by n balls of 1 kg, half a metre apart, on ball joints and not colliding with
+// each other, held by two corners. The joints come in four groups, within each of which no two
+// share a ball.
 inline void add_joined_net(World &world, int n, const V &corner) {
     const auto first = static_cast<std::uint32_t>(world.bodies().size());
     for (int i = 0; i < n * n; ++i) {
@@ -143,8 +144,8 @@ inline void add_joined_net(World &world, int n, const V &corner) {
     }
 }
 
-// A half circle of wedges of 100 kg, from 2 to 2.6 m, upon the ground, that bear each other by
-// their shape alone.
+// A semicircular arch of 100 kg wedges, from 2 to 2.6 m in radius, standing on the ground and
+// supporting each other by shape alone.
 inline void add_arch(World &world) {
     constexpr int stones = 13;
     constexpr double inner = 2, outer = 2.6, deep = 0.3;
@@ -166,13 +167,13 @@ inline void add_arch(World &world) {
     }
 }
 
-// What the solver remembers of the first rows of a joint (N s).
+// The accumulated impulses of a joint's first rows (N s).
 inline V impulse_of(const World &world, std::size_t joint) {
     const auto &impulses = world.state().joints[joint].impulses;
     return {double(impulses[0]), double(impulses[1]), double(impulses[2])};
 }
 
-// Settings with the method's own substeps and iterations.
+// The method's default settings.
 inline StepSettings settings_for(const std::string &method) {
     return find_method(method)->info.defaults;
 }
@@ -180,14 +181,14 @@ inline StepSettings weightless(StepSettings settings) {
     settings.gravity = V{0};
     return settings;
 }
-// The time that one solver pass covers.
+// The duration of a substep.
 inline double substep_of(const World &world) {
     return world.settings().dt / world.settings().substeps;
 }
 
-// How much of a spin XPBD loses in a time over which `cubed` is the integral of its cube: it turns
-// by a quaternion's first order and takes the spin from the imaginary part (Mueller et al. 2020,
-// alg. 2), and that is (w h)^2 / 8 short of it in each substep h.
+// The spin XPBD loses over a time in which the integral of its cube is `cubed`. XPBD rotates by a
+// quaternion's first order and recovers the spin from the imaginary part (Mueller et al. 2020, alg.
+// 2), which falls (w h)^2 / 8 short of it in each substep h.
 inline double spin_lost_by_xpbd(const World &world, double cubed) {
     return cubed * substep_of(world) / 8;
 }
@@ -196,7 +197,7 @@ inline void run(World &world, int steps) {
     for (int i = 0; i < steps; ++i)
         world.step(nullptr);
 }
-// The most by which a world's energy comes above what it was down to before (J).
+// The largest rise of a world's energy above its previous minimum (J).
 inline double regained_energy(World &world, int steps) {
     double low = world.energy();
     double most = 0;
@@ -220,7 +221,7 @@ inline V spin_of(const World &world, BodyId id) {
     return wide(motion_of(world, id).angular_velocity);
 }
 
-// The names of the registry's methods that can do what is asked, for parameterised tests.
+// Names of the registered methods with a given ability, for parameterised tests.
 inline std::vector<std::string> all_methods() {
     std::vector<std::string> names;
     for (const Method &method : methods())
@@ -241,7 +242,7 @@ inline std::vector<std::string> joint_methods() {
             names.emplace_back(method.info.name);
     return names;
 }
-// Those that resolve each impact by itself, and know free flight in closed form.
+// Methods that resolve each impact separately and integrate free flight in closed form.
 inline std::vector<std::string> impact_methods() {
     std::vector<std::string> names;
     for (const Method &method : methods())

@@ -1,9 +1,10 @@
-// Another engine that runs our scenes, judged by the same measures: from its poses and velocities.
+// Adapter for another engine that runs our scenes, judged by the same measures from its poses and
+// velocities.
 //
-// To add one (an afternoon): a file here that derives Engine (engine_bullet.cpp is the pattern), a
-// declaration of its function below, a line in other_engines.cpp, and its library in
-// app/CMakeLists.txt. What it is asked for is its state, and what it did in a step; nothing that it
-// says of its own errors counts.
+// To add one (an afternoon): a file here that derives from Engine (follow engine_bullet.cpp), a
+// declaration of its factory below, a line in other_engines.cpp, and its library in
+// app/CMakeLists.txt. It reports its state and the work of a step; its own error figures are
+// ignored.
 #pragma once
 
 #include "engine/scene/simulation.h"
@@ -18,19 +19,19 @@
 namespace plumb {
 
 struct BodyMass {
-    double mass = 0;       // kg; 0 for what is not dynamic
+    double mass = 0;       // kg; 0 if not dynamic
     glm::dvec3 inertia{0}; // kg m^2, about the body's own axes, through its centre
 };
 
-// A scene with what every engine must be told alike. The body's frame lies at its centre of mass,
-// along its principal axes; joints are balls or hinges. Friction of a pair is the geometric mean,
-// restitution the larger, as in the scene's file.
+// A scene and the values that every engine must be given alike. Each body's frame is at its centre
+// of mass, along its principal axes; joints are balls or hinges. A pair's friction is the geometric
+// mean, its restitution the larger, as in the scene file.
 struct EngineScene {
     SceneDesc desc;
-    std::vector<BodyMass> masses; // as many as bodies
+    std::vector<BodyMass> masses; // one per body
 
-    // As the options have it; each of its steps in so many for the engine, which solves with so
-    // many iterations (0: its own default).
+    // With `options`; each step is split into `substeps` engine steps, solved with `iterations` (0:
+    // the engine's default).
     explicit EngineScene(SceneDesc scene, const RunOptions &options = {}, int substeps = 1,
                          int iterations = 0);
     [[nodiscard]] double dt() const { return dt_; } // s, of the engine's step
@@ -46,15 +47,15 @@ struct EngineScene {
     glm::dvec3 gravity_{0};
 };
 
-// What adaptors are not told of and a scene has: "particles", "a joint with a motor"; empty when
-// there is none.
+// A feature of the scene that the adapters do not support: "particles", "a joint with a motor";
+// empty if there is none.
 [[nodiscard]] std::string beyond_engines(const SceneDesc &scene);
 
-// Of the last step.
+// Work of the last step.
 struct StepWork {
-    double collide = 0;       // share of the step's time that went into finding pairs and contacts
-    std::size_t contacts = 0; // pairs of bodies that touch, or nearly
-    // Contacts and joints that were solved, each as often as it was.
+    double collide = 0;       // share of the step's time spent finding pairs and contacts
+    std::size_t contacts = 0; // body pairs that touch, or nearly
+    // Contacts and joints solved, counted once per solve.
     std::size_t passes = 0;
 };
 
@@ -66,19 +67,20 @@ class Engine {
     Engine &operator=(const Engine &) = delete;
 
     virtual void step() = 0; // by the scene's dt
-    // Counted outside of what is timed.
+    // Called outside the timed section.
     [[nodiscard]] virtual StepWork work() const = 0;
     // In the order of the scene's bodies. Velocities of bodies that are not dynamic may be
     // anything.
     [[nodiscard]] virtual std::vector<BodyState> states() const = 0;
-    // Puts each dynamic body so, in the scene's order; what it remembers of the step before stays.
-    // Only charts of single steps ask for it; throws std::invalid_argument where it cannot.
+    // Sets the state of each dynamic body, in the scene's order; keeps the engine's memory of the
+    // last step. Only single-step charts call it; throws std::invalid_argument if unsupported.
     virtual void put(const std::vector<BodyState> &) {
         throw std::invalid_argument("an engine that cannot be put anywhere");
     }
 };
 
-// Bullet and ODE; null where the scene has what they are not given. The scene outlives the engine.
+// Bullet and ODE; null if the scene has features the adapters do not support. The scene must
+// outlive the engine.
 [[nodiscard]] std::unique_ptr<Engine> bullet_engine(const EngineScene &scene);
 [[nodiscard]] std::unique_ptr<Engine> ode_engine(const EngineScene &scene);
 

@@ -1,4 +1,4 @@
-// Another engine as a simulation: what is measured of it, is measured of ours.
+// Another engine wrapped as a Simulation, so that it is measured exactly as ours is.
 #pragma once
 
 #include "app/lab/engines/other_engines.h"
@@ -8,15 +8,16 @@
 
 namespace plumb {
 
-// Steps the engine so many substeps at a time. Energies and momenta are computed from its poses and
-// velocities, penetration and joint drift from its poses alone, by our geometry in double. Its
-// `restore` runs the engine anew from the start, as it cannot be put anywhere else. It obeys no
-// command. Throws std::invalid_argument where why_not is not empty.
+// Each step runs the engine for the given number of substeps. Energies and momenta come from its
+// poses and velocities, penetration and joint drift from its poses alone, by our geometry in
+// double. `restore` reruns the engine from the start, as its internal state cannot be restored.
+// Commands are not supported. Throws std::invalid_argument if why_not is not empty.
 [[nodiscard]] std::unique_ptr<Simulation>
 engine_simulation(const OtherEngine &engine, const SceneDesc &scene, const ResolvedRun &run);
 
-// Puts the engine's dynamic bodies as the scene has them, which differs from its own in their poses
-// and velocities alone; what the engine remembers stays. Requires one that engine_simulation made.
+// Sets the engine's dynamic bodies to the poses and velocities in `scene`, which may differ from
+// the original in nothing else; the engine keeps what it remembers. Requires a simulation made by
+// engine_simulation.
 void put(Simulation &of_engine, const SceneDesc &scene);
 
 } // namespace plumb

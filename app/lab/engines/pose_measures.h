@@ -1,4 +1,4 @@
-// What can be said of a run from its poses alone, the same for every engine, in double.
+// Measures computed from poses alone, in double, the same for every engine.
 #pragma once
 
 #include "app/lab/engines/engine.h"
@@ -12,11 +12,11 @@ namespace plumb {
 [[nodiscard]] bool is_finite(std::span<const BodyState> states);
 
 struct Depth {
-    double deepest = 0; // m, over all points of contact; 0 when nothing penetrates
-    double mean = 0;    // m, over those that penetrate
+    double deepest = 0; // m, over all contact points; 0 if nothing penetrates
+    double mean = 0;    // m, over the penetrating points
 };
 
-// The scene outlives it.
+// The scene must outlive this.
 class PoseMeasures {
   public:
     explicit PoseMeasures(const EngineScene &scene);
@@ -24,15 +24,15 @@ class PoseMeasures {
     PoseMeasures(const PoseMeasures &) = delete;
     PoseMeasures &operator=(const PoseMeasures &) = delete;
 
-    // By Plumb's own geometry, of all pairs that may collide. States are finite.
+    // Penetration by Plumb's own geometry, over all pairs that may collide. States must be finite.
     [[nodiscard]] Depth depth(std::span<const BodyState> states) const;
-    // The largest distance of a joint's two anchors (m); 0 without joints.
+    // The largest distance between a joint's two anchors (m); 0 without joints.
     [[nodiscard]] double joint_drift(std::span<const BodyState> states) const;
-    // Of all dynamic bodies (J), from two poses that are `dt` apart: how they do move, whatever an
-    // engine says of their velocities.
+    // Kinetic energy of all dynamic bodies (J) from two sets of poses `dt` apart: their actual
+    // motion, whatever velocities the engine reports.
     [[nodiscard]] double kinetic_energy(std::span<const BodyState> before,
                                         std::span<const BodyState> after, double dt) const;
-    // How far the body that was highest at the start is from where it was (m).
+    // Distance of the initially highest dynamic body from its starting position (m).
     [[nodiscard]] double top_displacement(std::span<const BodyState> states) const;
 
   private:

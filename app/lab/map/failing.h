@@ -30,20 +30,21 @@ struct FailingInfo {
     std::string_view meaning; // for people
 };
 
-// All of them; where a run failed in several ways, the first counts.
+// All of them; if a run failed in several ways, the first in this order counts.
 [[nodiscard]] std::span<const FailingInfo> failings();
 [[nodiscard]] const FailingInfo &info_of(Failing failing);
 [[nodiscard]] std::optional<Failing> find_failing(std::string_view name);
 
-// How far a run may go that expects nothing of itself in that.
+// Limits for runs whose scene has no expectation of that kind.
 inline constexpr double tolerated_energy_gain = 0.1; // of K0 + |U0|
-inline constexpr double tolerated_depth = 0.25;      // of the smallest width of a moving body
+inline constexpr double tolerated_depth = 0.25;      // of the smallest width of any moving body
 
-// By a motor, a spring's joint or a moving kinematic body: then more of it is no failing.
+// Whether a motor, a spring joint or a moving kinematic body adds energy: then gaining energy is no
+// failure.
 [[nodiscard]] bool brings_energy_in(const SceneDesc &scene);
 
-// How deep contacts may be and how far joints may drift (m), in a run that comes to rest so;
-// infinite where the scene says itself how far, and drift of springs.
+// Largest penetration and joint drift (m) tolerated at the end of a run; infinite if the scene has
+// its own expectation, and for drift if it has spring joints.
 struct ToleratedDepths {
     double penetration = 0, drift = 0;
 };
@@ -55,14 +56,13 @@ struct RunFailing {
     friend bool operator==(const RunFailing &, const RunFailing &) = default;
 };
 
-// Why the run failed. It must have followed its errors; `passage` is what PassageWatch says of it.
+// Why the run failed. Requires JudgeOptions::follow_errors; `passage` is PassageWatch::first().
 //
-// What a scene expects comes before what is asked of all: of a scene that has an expectation on its
-// penetration only that counts, and so for drift and energy. Energy is not asked of a scene that
-// brings some in: by a motor, a spring, a moving kinematic body. Missed expectations go by their
-// quantity: on energy as energy_grew when there is too much of it, on penetration and joint_drift
-// as these; a body that is to stay above or upright and does not fell; one that is to be slower
-// than it is never rests; all others are missed.
+// A scene's own expectations replace the general limits: if it has one on penetration, only that
+// counts; the same goes for drift and energy. The general energy limit does not apply if
+// brings_energy_in. Missed expectations are classified by quantity: too much energy is energy_grew;
+// penetration and joint_drift map to their namesakes; a body that does not stay above a height or
+// upright fell; one that is faster than allowed never rests; all others are missed.
 [[nodiscard]] RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run,
                                     const std::string &passage);
 

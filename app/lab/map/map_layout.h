@@ -1,4 +1,4 @@
-// Where everything on a stability map goes: values in, pixels out, nothing drawn.
+// Layout of a stability map: values in, pixels out, nothing drawn.
 #pragma once
 
 #include "app/lab/chart/chart_layout.h"
@@ -10,7 +10,7 @@
 
 namespace plumb {
 
-// What theory says is the limit of some methods.
+// A theoretical limit of some methods.
 struct TheoryCurve {
     std::string name; // "v dt = thickness + size"
     std::vector<const MethodInfo *> methods;
@@ -25,18 +25,18 @@ struct MapText {
 struct MapCellBox {
     PixelBox box;
     Failing failing = Failing::none;
-    std::optional<MapText> mark; // where there is room: the failing's letter, and the expectation's
+    std::optional<MapText> mark; // if there is room: the failing's letter, and the expectation's
 };
 
-inline constexpr float limit_radius = 4.7f; // of a dot, with its outline
+inline constexpr float limit_radius = 4.7f; // radius of a dot, including its outline
 
 struct MapPanel {
     MapText title;
     PixelBox plot;
     std::vector<MapCellBox> cells;
     std::vector<glm::vec2> limits;
-    std::vector<std::vector<glm::vec2>> curves; // the parts of them within the plot
-    std::vector<MapText> x_labels, y_labels;    // these alone where there is room
+    std::vector<std::vector<glm::vec2>> curves; // clipped to the plot
+    std::vector<MapText> x_labels, y_labels;    // only as many as there is room for
 };
 
 struct MapLegendEntry {
@@ -44,7 +44,7 @@ struct MapLegendEntry {
     Kind kind = Kind::failing;
     Failing failing = Failing::none;
     PixelBox sample;
-    std::string letter; // in the sample
+    std::string letter; // inside the sample
     MapText text;
 };
 
@@ -56,8 +56,8 @@ struct MapLayout {
     std::vector<MapText> footer;
 };
 
-// No two texts overlap, and none leaves the picture: numbers along the axes and marks are left out
-// where there is no room for them, titles cut, `footer` (small print) broken into lines.
+// No two texts overlap, and none leaves the picture: axis numbers and marks without room are
+// dropped, titles are cut, and `footer` (small print) is wrapped.
 [[nodiscard]] MapLayout lay_out(const StabilityMap &map, const std::vector<TheoryCurve> &theory,
                                 const std::vector<std::string> &footer, const TextSize &text_size);
 

@@ -7,7 +7,7 @@ namespace plumb {
 
 class ChartPen;
 
-// A map with what stands beside it.
+// A map with its theory curves and footer.
 struct MapPicture {
     StabilityMap map;
     std::vector<TheoryCurve> theory;

@@ -1,4 +1,4 @@
-// What is left of a map that was interrupted, to go on from.
+// Resuming an interrupted map.
 #pragma once
 
 #include "app/lab/map/stability_map.h"
@@ -9,16 +9,16 @@
 
 namespace plumb {
 
-// Of all that decides what is in a row of the table, but for the row's own method and place: the
-// scene's text, the axes' names and scales, the options, the program. Rows of another are of no
-// use.
+// Fingerprint of everything that decides a table row's contents except the row's own method and
+// place: the scene's text, the axes' names and scales, the options, the program. Rows with another
+// fingerprint are useless.
 [[nodiscard]] std::string map_fingerprint(const SceneText &scene, const MapAxis &x,
                                           const MapAxis &y, const MapOptions &options);
 
-// The columns by which rows of maps with these axes are told apart.
+// The columns that identify a row of a map with these axes.
 [[nodiscard]] std::vector<std::string> map_key_columns(const StabilityMap &map);
 
-// The rows of a table of write_map_csv that have this fingerprint.
+// The rows of a write_map_csv table that have this fingerprint.
 [[nodiscard]] KnownRows read_map_csv(std::istream &in, const std::string &fingerprint);
 
 } // namespace plumb

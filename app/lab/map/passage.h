@@ -1,4 +1,4 @@
-// Bodies that pass through static ones.
+// Detects bodies that pass through static ones.
 #pragma once
 
 #include "engine/scene/simulation.h"
@@ -8,28 +8,28 @@
 
 namespace plumb {
 
-// Follows the centres of mass of a running scene's dynamic bodies. One has passed through a static
-// body when its centre went in on one side and came out facing another way, in one step or in many;
-// through a plane, when its centre is below; through a mesh or a height field, when its centre
-// crossed it, from the front where only that is solid. A body that is all sensors, or whose layers
-// ignore each other, is let pass. Bodies that need not hold their centre (of several shapes, or
-// with a given centre of mass) are not followed: a ring may go over a pole.
+// Tracks the centres of mass of a running scene's dynamic bodies. A body has passed through a
+// static body if its centre went in on one side and came out on an opposite one, in one step or
+// many; through a plane, if its centre is below it; through a mesh or height field, if its centre
+// crossed it, from the front if only that is solid. Sensors, and pairs whose layers ignore each
+// other, may pass. Bodies that need not contain their centre (several shapes, or a given centre of
+// mass) are not tracked: a ring may go over a pole.
 class PassageWatch {
   public:
-    // At the start of the run.
+    // Create at the start of the run.
     PassageWatch(const SceneDesc &scene, const Simulation &simulation);
     ~PassageWatch();
     PassageWatch(const PassageWatch &) = delete;
     PassageWatch &operator=(const PassageWatch &) = delete;
 
-    // The simulation was restored to another state: whoever is in the middle of something is no
-    // longer followed through it, and no passage has been.
+    // The simulation was restored to another state: forgets bodies that are part way through an
+    // obstacle, and any passage so far.
     void begin_again(const Simulation &simulation);
 
-    // After each step that ended in a finite state.
+    // Call after each step that ended in a finite state.
     void sample(const Simulation &simulation);
 
-    // The first passage: "ball through wall"; empty when there was none.
+    // The first passage: "ball through wall"; empty if there was none.
     [[nodiscard]] const std::string &first() const;
 
   private:

@@ -1,4 +1,4 @@
-// Where a method holds a scene and where it fails, over two numbers of the scene.
+// Where a method holds a scene and where it fails, over two of the scene's numbers.
 #pragma once
 
 #include "app/lab/exit_code.h"
@@ -24,33 +24,33 @@ namespace plumb {
 
 struct MapRun {
     RunFailing failing;
-    double time = 0; // s, at the end of the run
-    // Of the run; see JudgedRun.
+    double time = 0; // s, when the run ended
+    // Over the run; see JudgedRun.
     double max_penetration = 0, max_joint_drift = 0; // m
     double max_energy_gain = 0;
 };
 
-// Between two neighbouring cells of a row, one held and one not.
+// The limit between two neighbouring cells of a row, one that held and one that failed.
 struct MapLimit {
     double y = 0;
-    double low = 0, high = 0; // x: one of them held, the other did not
-    bool held_below = false;  // at low
-    RunFailing failing;       // at the other end
+    double low = 0, high = 0; // x: the scene held at one and failed at the other
+    bool held_below = false;  // held at low
+    RunFailing failing;       // at the failing end
 };
 
 struct MethodMap {
     const MethodInfo *method = nullptr;
     std::vector<std::optional<MapRun>> cells; // row by row, the lowest y first; empty: not run
     std::vector<MapLimit> limits;             // row by row, then along x
-    StepSettings settings{};                  // but for those on an axis
+    StepSettings settings{};                  // except those on an axis
 };
 
 struct StabilityMap {
-    SceneDesc scene; // as the file has it
+    SceneDesc scene; // as in the file
     MapAxis x, y;
     std::vector<MethodMap> methods;
-    std::vector<std::string> left_out; // why, of each method that cannot run the scene
-    std::vector<std::string> unjudged; // what is expected of bodies that some cells do not have
+    std::vector<std::string> left_out; // why each of these methods cannot run the scene
+    std::vector<std::string> unjudged; // expectations on bodies that some cells do not have
     Precision precision = Precision::f32;
     std::string fingerprint; // see map_resume.h; may be empty
     bool interrupted = false;
@@ -61,11 +61,10 @@ struct StabilityMap {
     }
 };
 
-// A limit is found to this fraction of the distance between its two cells; of whole numbers, to the
-// number.
+// Bisections of the gap between a limit's two cells; whole numbers are resolved exactly.
 inline constexpr int limit_halvings = 5;
 
-// What an earlier run of the same map came to, by method and place.
+// Results of an earlier run of the same map, by method and place.
 struct KnownRows {
     std::map<std::tuple<std::string, double, double>, MapRun> cells;        // method, x, y
     std::map<std::pair<std::string, double>, std::vector<MapLimit>> limits; // method, y
@@ -73,39 +72,39 @@ struct KnownRows {
 
 struct MapOptions {
     std::vector<std::string> methods; // empty: all that can run the scene
-    RunOptions base;                  // what is not on an axis; its method is not read
-    std::optional<double> duration;   // s, of scenes that expect nothing (5)
-    std::function<bool()> stop;       // asked often, on any thread; true ends early
+    RunOptions base;                  // settings not on an axis; its method is not read
+    std::optional<double> duration;   // s, for scenes without expectations (default 5)
+    std::function<bool()> stop;       // called often, on any thread; true ends early
     Progress progress;                // called on any thread
     TaskPool *tasks = nullptr;        // null: one thread
-    // After each cell, where there is one thread. May be empty.
+    // Called after each cell if there is one thread. May be empty.
     std::function<void(const StabilityMap &)> changed;
     KnownRows known; // not run again
 };
 
-// Each cell is a run from the start on one thread, so that the map is the same for any number of
-// them. Throws std::invalid_argument for axes that the scene has not, values that it refuses, and
-// options that make no sense.
+// Each cell is a run from the start on one thread, so the map does not depend on the thread count.
+// Throws std::invalid_argument for axes the scene does not have, values it refuses, and invalid
+// options.
 [[nodiscard]] StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &y,
                                      const MapOptions &options);
 
-// One row a cell, and one a limit.
+// One row per cell and one per limit.
 void write_map_csv(std::ostream &out, const StabilityMap &map);
 
-// The maps in letters, for people.
+// Prints the maps as letters.
 void print(std::ostream &out, const StabilityMap &map);
 
 struct MapCommand {
     std::filesystem::path scene;
     MapAxis x, y;
-    MapOptions options;               // its stop and progress are set here
+    MapOptions options;               // stop and progress are set by the command
     std::filesystem::path image, csv; // empty: none
     std::filesystem::path shader_dir;
     std::string command; // for the footer
 };
 
-// Prints to `out`, and everything else to `err`. On Ctrl-C the rows so far stay in CSV.partial,
-// from which the same command goes on.
+// Prints to `out`, and everything else to `err`. On Ctrl-C the rows so far stay in CSV.partial, and
+// the same command resumes from there.
 [[nodiscard]] ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &err);
 
 } // namespace plumb

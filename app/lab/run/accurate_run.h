@@ -5,8 +5,8 @@
 
 namespace plumb {
 
-// In double, with that dt and so many substeps for all, awake to the end: by rk4 if it can run the
-// scene, else by soft_step. What else `base` gives holds.
+// In double, with the given dt, the same number of substeps for every island and no sleeping: by
+// rk4 if it can run the scene, else by soft_step. Otherwise as `base`.
 [[nodiscard]] RunOptions accurate_run(const SceneDesc &scene, const RunOptions &base, double dt,
                                       int substeps);
 

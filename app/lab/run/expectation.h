@@ -1,4 +1,4 @@
-// What a scene expects, against what was measured.
+// A scene's expectations compared with the measurements.
 #pragma once
 
 #include "engine/scene/scene_desc.h"
@@ -10,11 +10,11 @@
 namespace plumb {
 
 enum class Verdict {
-    pending, // its window of time has not ended, and it may still be met
+    pending, // its time window has not ended, and it may still be met
     met,
     missed,
-    // The run began later than its window, or than the moment its quantity counts from: a run that
-    // goes on from a saved state. Nothing can be said.
+    // The run, continued from a saved state, began after the window did, or after the moment its
+    // quantity counts from. No verdict is possible.
     unseen,
 };
 
@@ -22,23 +22,23 @@ enum class Verdict {
 
 struct ExpectOutcome {
     ExpectDesc desc;
-    std::string unit; // of measured, error and limit; "1" where there is none
+    std::string unit; // of measured, error and limit; "1" if dimensionless
     Verdict verdict = Verdict::pending;
-    // Over the window, or as much of it as there was; NaN when that gives no number.
+    // Over the window, or the part of it that was run; NaN if that gives no number.
     double measured = std::numeric_limits<double>::quiet_NaN();
-    // How wrong, >= 0, infinite when nothing could be measured (a period that never came, say); it
-    // holds as long as this is at most `limit`.
+    // How far off, >= 0; infinite if nothing could be measured (say, a period that never came). The
+    // expectation holds while this is at most `limit`.
     //   equals    |measured - value|, or what was measured of a curve: how far it was missed; the
     //             limit is the tolerance
-    //   at_most   of a bound above zero: what was measured, or 0 if that is negative; the limit is
+    //   at_most for a bound above zero: the measured value, or 0 if negative; the limit is
     //             the bound, so that a chart shows how much better than asked. Of any other bound:
     //             the excess over it; the limit is 0
     //   at_least  what is lacking; the limit is 0
     double error = std::numeric_limits<double>::infinity();
     double limit = 0;
-    // The error in units of its tolerance: what errors of different quantities are compared by. At
-    // most 1 if it holds and above 1 if not, always. It is error / limit; where the limit is 0, it
-    // is 0 or, if there is an error, 1 + error / |value| (or / 1 in the quantity's own unit where
+    // The error in units of its tolerance, to compare errors of different quantities. Always at
+    // most 1 if the expectation holds and above 1 if not. It is error / limit; if the limit is 0,
+    // it is 0 or, with an error, 1 + error / |value| (divided by 1 in the quantity's own unit if
     // the value is 0).
     double scaled_error = std::numeric_limits<double>::infinity();
 

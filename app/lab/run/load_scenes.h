@@ -14,8 +14,7 @@ struct LoadedScenes {
     bool all_fine = true;
 };
 
-// Prints what there is to say about each file. A folder stands for all scene files below it, in the
-// order of their paths.
+// Prints the diagnostics of each file. A folder stands for all scene files below it, in path order.
 [[nodiscard]] LoadedScenes load_scenes(const std::vector<std::filesystem::path> &paths,
                                        std::ostream &err);
 

@@ -18,7 +18,7 @@ class TaskPool;
 
 struct MeasureOptions {
     std::uint64_t steps = 600;
-    std::function<bool()> stop;           // asked before each step; may be empty
+    std::function<bool()> stop;           // called before each step; may be empty
     std::function<void(double)> progress; // fraction done; may be empty
 };
 
@@ -30,7 +30,7 @@ struct MeasureSummary {
     double max_energy_error = 0;                          // |E - E0| / (K0 + |U0|)
     double max_penetration = 0, max_penetration_time = 0; // m, s
     double max_joint_drift = 0, max_joint_drift_time = 0; // m, s
-    // Wall time (s) of all steps together, as the steps report it.
+    // Wall time (s) over all steps, as the steps report it.
     double find_pairs = 0, collide = 0, advance = 0, finish = 0;
     std::uint32_t most_contacts = 0, most_particle_contacts = 0;
     std::uint64_t impacts = 0, unresolved_impacts = 0;
@@ -38,14 +38,14 @@ struct MeasureSummary {
     bool stopped = false;
 };
 
-// Steps and writes a table with a header, one row a step, the start first (its counts and times are
-// zero). Ends early when the world is no longer finite: its row is the last.
+// Steps and writes a table with a header and one row per step, the start first (its counts and
+// times are zero). Ends early once the world is no longer finite, with that row the last.
 [[nodiscard]] MeasureSummary measure_run(Simulation &simulation, const MeasureOptions &options,
                                          std::ostream &csv);
 
 void print(std::ostream &out, const MeasureSummary &summary);
 
-// A table of what probes are answered: the probe, the value's name, the number (yes is 1, no 0).
+// A table of probe results: the probe, the value's name, the number (yes is 1, no 0).
 void measure_probes(std::span<const ProbeDesc> probes, Precision precision, std::ostream &csv);
 
 struct MeasureCommand {

@@ -1,4 +1,4 @@
-// Which methods run a scene.
+// Which methods can run a scene.
 #pragma once
 
 #include "engine/dynamics/method_info.h"
@@ -9,13 +9,13 @@
 
 namespace plumb {
 
-// Those of these names, each once, or all of them without names; less those that cannot run the
-// scene, of which `left_out` gets why. Throws std::invalid_argument for a name that is unknown.
+// The named methods, each once, or all methods if `names` is empty; those that cannot run the scene
+// are left out, with the reasons in `left_out`. Throws std::invalid_argument for an unknown name.
 [[nodiscard]] std::vector<const MethodInfo *> methods_for(const SceneDesc &scene,
                                                           const std::vector<std::string> &names,
                                                           std::vector<std::string> &left_out);
 
-// For people: methods with the same reason in one sentence.
+// For display: methods with the same reason share one sentence.
 [[nodiscard]] std::vector<std::string> grouped_reasons(const std::vector<std::string> &left_out);
 
 // "no method can run this scene: a and c do not support joints; ..."

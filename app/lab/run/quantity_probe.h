@@ -10,14 +10,14 @@
 
 namespace plumb {
 
-// One quantity, of one body, particle or spring where it needs one.
+// A quantity, and the body, particle or spring it belongs to, if it needs one.
 struct QuantityName {
     std::string quantity;
     std::string body;
     friend bool operator==(const QuantityName &, const QuantityName &) = default;
 };
 
-// A run's start: what displacement, tilt and the relative errors count from.
+// A run's start: the reference for displacement, tilt and the relative errors.
 struct RunStart {
     Frame frame; // bodies and particles
     SceneStart scene;
@@ -26,13 +26,13 @@ struct RunStart {
 
 class QuantityProbe {
   public:
-    // The run starts now. Throws std::invalid_argument for a quantity or body that there is not.
+    // The run starts now. Throws std::invalid_argument for an unknown quantity or body.
     QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names);
-    // It started earlier. What is new since then counts from now.
+    // The run started earlier. Anything added since then counts from now.
     QuantityProbe(const Simulation &simulation, const std::vector<QuantityName> &names,
                   const RunStart &start);
 
-    // One value a name, in the same order. Calls measure() once, and only when a quantity needs it.
+    // One value per name, in the same order. Calls measure() once, and only if a quantity needs it.
     [[nodiscard]] std::vector<double> sample(const Simulation &simulation);
 
     // Whether sample() calls measure().
@@ -43,7 +43,7 @@ class QuantityProbe {
         const QuantityInfo *quantity;
         enum class Of { scene, body, particle, spring } of = Of::scene;
         std::size_t index = 0; // of that body, particle or spring
-        BodyState start;       // of a body, or of a particle as if it were one
+        BodyState start;       // of the body, or of the particle treated as one
     };
     Item item_of(const Simulation &simulation, const QuantityInfo &quantity,
                  const std::string &name, const RunStart *start) const;

@@ -1,4 +1,4 @@
-// `plumb reference`: truths for which there is no closed form, by refinement.
+// `plumb reference`: truths without a closed form, found by refinement.
 #pragma once
 
 #include "app/lab/exit_code.h"
@@ -17,29 +17,30 @@ struct RefinedTruth {
     ExpectDesc desc;
     std::string unit; // "1" where there is none
     double value = std::numeric_limits<double>::quiet_NaN();
-    // Where the file has a curve, `value` is how far the run was from that, and this is the run's
-    // own: about as few values as are off by less than a twentieth of the tolerance at any step.
-    // Empty where it would take more values than there were steps.
+    // If the file has a curve, `value` is the run's distance from it, and this is the run's own
+    // curve: about the fewest values that stay within a twentieth of the tolerance at every step.
+    // Empty if that would take more values than there were steps.
     std::vector<double> curve;
-    // By how much halving dt changed it last, of a curve at most at any step, rounded up to two
-    // digits; infinite where that gave no number.
+    // How much the last halving of dt changed it (a curve: its largest change at any step), rounded
+    // up to two digits; infinite if that gave no number.
     double estimate = std::numeric_limits<double>::infinity();
     ResolvedRun run; // the last
     [[nodiscard]] bool settled() const { return estimate < desc.tolerance / 10; }
-    // The file's is this, to a tenth of the tolerance; of a curve, as it is reduced.
+    // Whether the file's truth matches to a tenth of the tolerance; a curve is compared as reduced.
     [[nodiscard]] bool agrees() const;
 };
 
 struct RefineOptions {
-    bool only_estimated = false; // those that have an estimate in the file, which refinement found
-    int halvings = 6;            // of dt, at most
-    std::function<bool()> stop;  // asked often; true ends early; may be empty
-    std::function<void(double dt, double fraction)> progress; // of each run; may be empty
+    bool only_estimated =
+        false;        // only expectations with an estimate in the file, found by refinement
+    int halvings = 6; // of dt, at most
+    std::function<bool()> stop; // called often; true ends early; may be empty
+    std::function<void(double dt, double fraction)> progress; // during each run; may be empty
 };
 
-// Of each expectation with a truth: by accurate_run with 16 substeps, from the scene's dt on, which
-// is halved until each is settled, or as often as it may be. Those of a run that diverged have no
-// number. Ended early it is empty.
+// The truth of each expectation that has one, by accurate_run with 16 substeps, starting at the
+// scene's dt and halving it until all are settled or `halvings` is reached. Truths of a run that
+// diverged have no number. Empty if ended early.
 [[nodiscard]] std::vector<RefinedTruth> refine(const SceneDesc &scene,
                                                const RefineOptions &options = {});
 
@@ -48,8 +49,8 @@ struct ReferenceCommand {
     bool write = false;
 };
 
-// Prints the truths to `out`, and everything else to `err`. Exit code 1 when one that has an
-// estimate in the file did not settle, or is another than in the file and is not written.
+// Prints the truths to `out`, and everything else to `err`. Exit code 1 if a truth with an estimate
+// in the file did not settle, or differs from the file and is not written.
 [[nodiscard]] ExitCode refine_scene(const ReferenceCommand &command, std::ostream &out,
                                     std::ostream &err);
 

@@ -1,4 +1,4 @@
-// How runs and numbers are put into words.
+// Runs and numbers as text.
 #pragma once
 
 #include "engine/scene/simulation.h"
@@ -12,7 +12,7 @@ namespace plumb {
 // "soft_step substeps=4 iterations=1 dt=1/60 s float"
 [[nodiscard]] std::string run_text(const ResolvedRun &run);
 
-// "4", or "4..64" where islands may take more of their own.
+// "4", or "4..64" if islands may take more substeps of their own.
 [[nodiscard]] std::string substeps_text(const ResolvedRun &run);
 
 [[nodiscard]] std::string with_digits(double value, int digits); // significant ones, at most 17

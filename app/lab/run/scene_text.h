@@ -1,4 +1,4 @@
-// A scene file as text, which its numbers are changed in.
+// A scene file as text, so that its numbers can be changed in place.
 #pragma once
 
 #include "engine/scene/file/change.h"
@@ -14,16 +14,16 @@ namespace plumb {
 struct SceneText {
     std::filesystem::path path;
     std::string text;
-    std::vector<ChangedNumber> changed{}; // in this order, in place of the text's
+    std::vector<ChangedNumber> changed{}; // applied in this order over the text's numbers
 };
 
-// The text of a scene without errors; what there is to say about it is printed. It is read once,
-// for it may come through a pipe.
+// Reads a scene's text and prints its diagnostics; nullopt if it has errors. Reads once, as the
+// file may be a pipe.
 [[nodiscard]] std::optional<SceneText> read_scene(const std::filesystem::path &path,
                                                   std::ostream &err);
 
-// Puts another text in its place, and says so. Throws std::invalid_argument when the file is no
-// longer as it was read, or none that can be written to.
+// Replaces the file's text, and says so. Throws std::invalid_argument if the file has changed since
+// it was read or cannot be written to.
 void write_back(const SceneText &scene, const std::string &text, std::ostream &err);
 
 } // namespace plumb

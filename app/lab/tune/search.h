@@ -1,4 +1,4 @@
-// Which combinations of settings are tried.
+// Chooses the combinations of settings to try.
 #pragma once
 
 #include "app/lab/tune/trial.h"
@@ -12,31 +12,31 @@ namespace plumb {
 // All settings but the substeps.
 struct TuneRow {
     RunOptions options;
-    bool fixed_substeps = true; // else each island's own, from those given
+    bool fixed_substeps = true; // else each island's own, starting from those given
 };
 
-// The fewest substeps of each row that meet the scene, as far as they may be the cheapest of all:
-// of a method's first row by doubling them, of the others, which are seldom cheaper, beginning with
-// the most that may be.
+// Finds the fewest substeps with which each row meets the scene, as long as the row can still be
+// the cheapest: a method's first row by doubling, its later rows, which are seldom cheaper, from
+// the highest count that could still win.
 class SubstepSearch {
   public:
-    // Adds to `runs`, of which some may be there already.
+    // Appends to `runs`, which may already hold some.
     SubstepSearch(const Trial &trial, std::vector<TunedRun> &runs, std::function<bool()> stopped,
                   Progress progress);
 
     void search(const TuneRow &row);
 
-    // The run with these options, made unless it was before.
+    // Index of the run with these options; runs it if it is new.
     std::size_t run(const RunOptions &options);
 
   private:
     struct Guess {
         double work, cost;
     };
-    // What a row's work and cost will be with so many substeps, from the run of its method that is
-    // most like it; never far above what it turns out to be.
+    // Predicts the work and cost of a run from the most similar run of its method; never far above
+    // the actual values.
     [[nodiscard]] std::optional<Guess> guess(const RunOptions &options) const;
-    // Whether a setting that met the scene is sure to be cheaper, or very much so.
+    // Whether some setting that met the scene is certainly cheaper, or far cheaper.
     [[nodiscard]] bool is_beaten(const ResolvedRun &run, const Guess &guess) const;
     [[nodiscard]] bool is_beaten(const RunOptions &options) const;
     [[nodiscard]] bool any_like(const ResolvedRun &run) const;

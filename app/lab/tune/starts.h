@@ -1,4 +1,4 @@
-// The same scene begun several times, a hair apart: what holds for one start only is luck.
+// The same scene from several slightly different starts: a result that holds for only one is luck.
 #pragma once
 
 #include "app/lab/run/scene_text.h"
@@ -8,16 +8,15 @@
 
 namespace plumb {
 
-// How far a body or particle is shifted at most along each axis, as a share of the largest of its
-// coordinates and its least width: some roundings of a float, which nothing that is expected of a
-// scene should hang on.
+// Largest shift of a body or particle along each axis, as a fraction of its largest coordinate or
+// its smallest width, whichever is greater: a few float roundings, on which no expectation should
+// depend.
 inline constexpr double start_shift = 1e-6;
 
-// The scene as it stands first, then `others` with each dynamic body shifted at random along the
-// axes that it is free to move along, and each particle, those of cloth among them, that is not
-// pinned. In these all that the file draws at random (scatter) is drawn
-// from another seed too, where it has a [world]. `text` must be of a scene without errors; an
-// other seed under which it has some is passed over.
+// First the scene as it stands, then `others` copies in which each dynamic body is shifted at
+// random along its unlocked axes, as is each unpinned particle, including cloth particles. If the
+// file has a [world], the copies also use another seed for everything it draws at random (scatter).
+// `text` must be of a scene without errors; a seed that causes errors is not used.
 [[nodiscard]] std::vector<SceneDesc> starts_of(const SceneText &text, int others);
 
 } // namespace plumb

@@ -14,14 +14,14 @@ class Trial {
     // Keeps both by reference.
     Trial(const std::vector<SceneDesc> &starts, const TuneOptions &options);
 
-    // From start to start, until one misses. `progress` is called with the fraction done.
+    // Runs each start in turn until one misses. `progress` is called with the fraction done.
     [[nodiscard]] TunedRun run(const RunOptions &options, const Progress &progress) const;
 
-    // Of that run from start to end: what comes to rest sleeps, and costs next to nothing at the
-    // end.
+    // Times that run from start to end: bodies that come to rest sleep, and cost next to nothing at
+    // the end.
     [[nodiscard]] RunTimer timer(const TunedRun &run) const;
 
-    // The scene as it is held to be: with so much of each tolerance.
+    // The scene with tightened tolerances, as it is judged.
     [[nodiscard]] const SceneDesc &scene() const { return tightened_.front(); }
 
   private:
@@ -36,15 +36,15 @@ class Trial {
 
 struct TimedRun {
     const Trial *trial;
-    TunedRun *run; // of that trial
+    TunedRun *run; // made by that trial
 };
 
-// Times runs against each other, in turns. Sets their timings and cost, or leaves them all as they
-// are when it is interrupted.
+// Times runs against each other, interleaved. Sets their timings and cost, or leaves them all
+// unchanged if interrupted.
 void time_in_turns(const std::vector<TimedRun> &runs, const TuneOptions &options,
                    const Progress &progress);
 
-// Whether it cost more than the other in each round, by same_cost: of a few, or of very short ones,
+// Whether `run` cost more than `other` by same_cost in every round: with few or very short timings
 // the median would be noise.
 [[nodiscard]] bool is_always_dearer(const TunedRun &run, const TunedRun &other);
 

@@ -17,10 +17,10 @@ namespace {
 
 constexpr float widest_view = 16.0f / 9;
 constexpr float air_around = 1.1f;
-// A shape that reaches this many camera distances from its centre is a floor or a wall.
+// A shape whose bounding radius exceeds this many camera distances is a floor or a wall.
 constexpr float wide = 0.8f;
 
-// Whether something holds particles up.
+// Whether anything holds particles up.
 bool is_pinned(const SceneDesc &scene) {
     return std::ranges::any_of(scene.particles, &ParticleDesc::pinned) ||
            std::ranges::any_of(scene.cloths,
@@ -34,7 +34,7 @@ bool is_pinned(const SceneDesc &scene) {
 
 float aspect_needed(const DrawList &list) {
     const Camera &camera = list.camera;
-    float half_width = 0; // of the picture, in halves of its height
+    float half_width = 0; // of the picture, relative to half its height
     const auto add = [&](const glm::vec3 &place, float radius) {
         const glm::vec3 d = place - camera.eye();
         const float depth = glm::dot(d, camera.forward());
@@ -59,7 +59,7 @@ float aspect_needed(const DrawList &list) {
 }
 
 glm::vec3 shift_to_see(const Camera &camera, float aspect, std::span<const glm::vec3> places) {
-    const float up = std::tan(0.5f * camera.fov) / air_around; // half a picture, at unit depth
+    const float up = std::tan(0.5f * camera.fov) / air_around; // half the height, at unit depth
     const float aside = up * aspect;
     glm::vec3 least(0);
     float least_length = std::numeric_limits<float>::max();
@@ -70,8 +70,8 @@ glm::vec3 shift_to_see(const Camera &camera, float aspect, std::span<const glm::
         const float z = glm::dot(d, camera.forward());
         const float x = std::abs(glm::dot(d, camera.right()));
         const float y = std::abs(glm::dot(d, camera.up()));
-        // At the share s of d from the target it is seen if s x <= aside (distance + s z), likewise
-        // y, and s z <= distance.
+        // At target + s d the place is visible if s x <= aside (distance + s z), the same for y,
+        // and s z <= distance.
         float s = 1;
         for (const float limit : {aside / (x - aside * z), up / (y - up * z), 1 / z})
             if (limit > 0)

@@ -17,7 +17,7 @@ namespace plumb {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
-constexpr double wire_share = 0.006; // a wire's radius, of its length
+constexpr double wire_share = 0.006; // wire radius / length
 
 void add_line(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, float width = 2,
               const glm::vec3 &colour = colours::joint) {
@@ -31,13 +31,14 @@ void add_dot(DrawList &list, const glm::dvec3 &at, const glm::vec3 &colour = col
     list.points.push_back(point);
 }
 
-// The shortest turn from +y to a unit direction that does not point down. One that does is near the
-// turn of pi, where this would cancel; a piece of rod looks the same from either end.
+// The shortest rotation from +y to a unit direction that does not point down. Near -y the angle
+// approaches pi and this formula cancels; callers flip the direction, as a rod looks the same from
+// either end.
 glm::dquat turn_from_up(const glm::dvec3 &direction) {
     return glm::normalize(glm::dquat(1 + direction.y, direction.z, 0, -direction.x));
 }
 
-// A piece of rod, rope or wire.
+// A segment of a rod, rope or wire.
 void add_capsule(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, double radius) {
     const double length = glm::distance(a, b);
     if (!(length > 0) || !std::isfinite(length))
@@ -52,7 +53,7 @@ void add_capsule(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, doubl
     list.shapes.push_back(piece);
 }
 
-// Two directions at right angles to a unit one and to each other.
+// A tangent basis of a unit vector.
 std::pair<glm::dvec3, glm::dvec3> across(const glm::dvec3 &axis) {
     const glm::dvec3 other = std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
     const glm::dvec3 first = glm::normalize(glm::cross(axis, other));
@@ -78,8 +79,8 @@ glm::dvec3 turned(const glm::dvec3 &v, const glm::dvec3 &axis, double angle) {
 
 // ---- rods, ropes, springs ----
 
-// Points of a rope of that length between two ends that hangs down as a parabola, which a shallow
-// catenary nearly is; straight where it is taut or nothing pulls it down.
+// Points of a rope of that length hanging between two ends, as a parabola, which a shallow catenary
+// nearly is. Straight if the rope is taut or there is no gravity.
 std::vector<glm::dvec3> hanging(const glm::dvec3 &a, const glm::dvec3 &b, double length,
                                 const glm::dvec3 &gravity) {
     constexpr int pieces = 16;
@@ -103,7 +104,7 @@ std::vector<glm::dvec3> hanging(const glm::dvec3 &a, const glm::dvec3 &b, double
     if (!(pull > 0) || glm::distance(a, b) >= length)
         return {a, b};
     double low = 0;
-    double high = length; // a rope longer than twice its sag cannot be
+    double high = length; // a rope is at least twice as long as its sag
     for (int i = 0; i < 40; ++i) {
         const double middle = 0.5 * (low + high);
         (length_of(middle) < length ? low : high) = middle;
@@ -111,10 +112,10 @@ std::vector<glm::dvec3> hanging(const glm::dvec3 &a, const glm::dvec3 &b, double
     return points(low);
 }
 
-// A wire wound around the way from a to b, whose turns part as it is drawn out.
+// A wire coiled around the line from a to b, whose turns spread as it stretches.
 std::vector<glm::dvec3> coil(const glm::dvec3 &a, const glm::dvec3 &b, double rest_length) {
     constexpr int turns = 7;
-    constexpr int pieces = 10; // of a turn
+    constexpr int pieces = 10; // per turn
     const double length = glm::distance(a, b);
     if (!(length > 0) || !std::isfinite(length))
         return {};
@@ -154,8 +155,7 @@ void add_link(DrawList &list, const JointView &joint, const glm::dvec3 &gravity)
 
 // ---- signs ----
 
-// A joint as one sees it from the body that holds the other: from a, or from b when a moves
-// against the world.
+// A joint seen from the body that holds the other: from a, or from b if a moves against the world.
 struct Seen {
     const JointView &joint;
     const JointSurroundings &around;
@@ -183,7 +183,7 @@ struct Seen {
         const auto [lower, upper] = *joint.limits;
         return from_b ? std::array{-upper, -lower} : std::array{lower, upper};
     }
-    // m, to be seen beside the smaller body
+    // symbol size (m), visible beside the smaller body
     double size() const {
         double smallest = 0;
         for (const std::optional<std::size_t> &body : {joint.body_a, joint.body_b})
@@ -210,7 +210,7 @@ void add_arc_and_hand(DrawList &list, const Seen &seen) {
     const glm::dvec3 axis = seen.axis();
     const double radius = seen.size();
     add_line(list, centre - radius * axis, centre + radius * axis, 4);
-    // The hand points to the body that turns, if it can.
+    // The hand points at the turning body, if it can.
     glm::dvec3 hand = seen.moving_y();
     if (seen.moving() && *seen.moving() < seen.around.poses.size()) {
         const glm::dvec3 to = seen.around.poses[*seen.moving()].position - centre;
@@ -229,7 +229,7 @@ void add_arc_and_hand(DrawList &list, const Seen &seen) {
         add_arc(list, centre, axis, zero, 0, turn, 1.5f);
     }
     if (seen.joint.motor_speed) {
-        // An arrow of a sixth of a turn, the way it drives.
+        // An arrow over a sixth of a turn, the way the motor drives.
         const double way = std::copysign(turn / 6, seen.sign() * *seen.joint.motor_speed);
         const glm::dvec3 outer = 1.25 * hand;
         add_arc(list, centre, axis, outer, std::min(0.0, way), std::max(0.0, way), 2);
@@ -271,7 +271,7 @@ void add_cross(DrawList &list, const Seen &seen) {
     }
 }
 
-// As long as contact forces are drawn.
+// Scaled like contact forces.
 void add_force(DrawList &list, const Seen &seen) {
     const double weight = seen.around.weight;
     const double force = glm::length(seen.joint.force);
@@ -282,7 +282,7 @@ void add_force(DrawList &list, const Seen &seen) {
                         colours::contact);
 }
 
-// What the fields of a type show; the anchors' dots are there anyway.
+// What the joint type adds; the anchors' dots are drawn anyway.
 void add_sign(DrawList &list, const JointTypeInfo &type, const Seen &seen) {
     using Frames = JointTypeInfo::Frames;
     if (type.frames == Frames::whole)
@@ -360,7 +360,7 @@ void draw_joints(DrawList &list, std::span<const JointView> joints,
             add_dot(list, anchor, colour);
         }
         if (joint.broken)
-            continue; // its ends alone, in the colour of what is wrong
+            continue; // only its ends, in the error colour
         const JointTypeInfo &type = joint_type(joint.type);
         if (type.anchors != JointTypeInfo::Anchors::on_axis)
             add_line(list, joint.anchor_a, joint.anchor_b, 3);

@@ -1,4 +1,4 @@
-// Poses between two steps, for display.
+// Interpolates poses between two steps, for display.
 #pragma once
 
 #include "engine/scene/frame.h"
@@ -7,13 +7,13 @@
 
 namespace plumb {
 
-// Positions linearly, orientations by normalised linear interpolation along the shorter way; exact
-// at alpha 0 and 1. Bodies that only `present` has appear at once. All else is as
-// `present` has it.
+// Interpolates positions linearly and orientations by nlerp along the shorter way; exact at alpha 0
+// and 1. Bodies that only `present` has appear immediately. Everything else is taken from
+// `present`.
 [[nodiscard]] std::vector<BodyState> blend(const std::vector<BodyState> &previous,
                                            const std::vector<BodyState> &present, double alpha);
 
-// Positions linearly, likewise.
+// The same for particle positions.
 [[nodiscard]] std::vector<ParticleState> blend(const std::vector<ParticleState> &previous,
                                                const std::vector<ParticleState> &present,
                                                double alpha);

@@ -19,7 +19,7 @@ namespace {
 glm::vec3 colour_of(ProbeTone tone, std::size_t number) {
     switch (tone) {
     case ProbeTone::plain: {
-        // Those of the palette that are not green: green says yes.
+        // The palette without its greens: green means yes.
         constexpr std::array<std::size_t, 6> plain{0, 1, 5, 4, 7, 3};
         return palette_colour(plain[number % plain.size()]);
     }
@@ -75,7 +75,7 @@ void add_line(DrawList &list, const ProbeLine &line) {
         add(line.b, line.b - size * along + 0.45 * size * barb);
 }
 
-// The length of a normal's stalk, metres.
+// Length of a normal's stalk, m.
 constexpr double stalk = 0.6;
 
 void add_answer(DrawList &list, const ProbeAnswer &answer) {
@@ -136,7 +136,7 @@ void draw_probes(DrawList &list, std::span<const ProbeDesc> probes,
         list.points.push_back({glm::vec3(place), glm::vec3(0), colour, radius});
     };
     bool all_flat = true;
-    // The answers' own points lie over the handles: they say more.
+    // Answer points go on top of the handles: they say more.
     for (std::size_t p = 0; p < probes.size(); ++p) {
         for (const glm::dvec3 &handle : probe_handles(probes[p]))
             add_handle(handle, colours::probe_handle, 4);

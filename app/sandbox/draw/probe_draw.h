@@ -13,23 +13,22 @@
 
 namespace plumb {
 
-// Adds what the probes are answered, and their handles, the hovered one larger. `answers` are those
-// to the probes, one for each. With `floor`, the level grid y = 0 under them, unless all lies in
-// the xy plane.
+// Draws the probes' answers and handles, the hovered handle larger. `answers` has one entry per
+// probe. `floor` adds the level grid y = 0 below them, unless everything lies in the xy plane.
 void draw_probes(DrawList &list, std::span<const ProbeDesc> probes,
                  std::span<const ProbeAnswer> answers,
                  const std::optional<ProbeHandle> &hovered = {}, bool floor = false);
 
-// A point of an answer, with its normal.
+// One answer point, with its normal.
 void draw_point(DrawList &list, const ProbePoint &point);
 
-// The handle that is drawn within `handle_reach` pixels of a pixel; the nearest to it.
+// The nearest handle drawn within `handle_reach` pixels of a pixel.
 inline constexpr float handle_reach = 10;
 [[nodiscard]] std::optional<ProbeHandle> handle_at(std::span<const ProbeDesc> probes,
                                                    const Camera &camera, const glm::vec2 &pixel,
                                                    const glm::vec2 &viewport);
 
-// A sphere around all that the answers show.
+// A sphere around everything the answers show.
 [[nodiscard]] Around around(std::span<const ProbeAnswer> answers);
 
 } // namespace plumb

@@ -41,7 +41,7 @@ Corners corners_of(const MeshDesc &mesh) {
     return corners;
 }
 
-// Each cell cut from its least row and column to its greatest, as the geometry cuts it.
+// Each cell is split from its least row and column to its greatest, as in the geometry code.
 Corners corners_of(const HeightFieldDesc &field) {
     Corners corners;
     for (int row = 0; row + 1 < field.rows; ++row)
@@ -55,13 +55,13 @@ Corners corners_of(const HeightFieldDesc &field) {
     return corners;
 }
 
-// The triangles of whatever is made from those data.
+// The cached triangles of all shapes made from `data`.
 template <typename Shape> Surface surface_of(const Shape &shape, std::shared_ptr<const void> data) {
     struct Kept {
         std::weak_ptr<const void> data;
         Surface surface;
     };
-    static std::map<const void *, Kept> all; // of one thread: that which draws
+    static std::map<const void *, Kept> all; // not thread-safe: only the drawing thread uses it
     const auto found = all.find(data.get());
     if (found != all.end() && found->second.data.lock() == data)
         return found->second.surface;

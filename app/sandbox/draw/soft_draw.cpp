@@ -32,13 +32,13 @@ const glm::dvec3 &corner_of(const ClothInfo::Triangle &triangle, std::size_t k,
     return view.particles[triangle.corners[k]].position;
 }
 
-// Twice the triangle's area long.
+// Not normalised: its length is twice the triangle's area.
 glm::dvec3 normal_of(const ClothInfo::Triangle &triangle, const SoftView &view) {
     const glm::dvec3 &a = corner_of(triangle, 0, view);
     return glm::cross(corner_of(triangle, 1, view) - a, corner_of(triangle, 2, view) - a);
 }
 
-// Whether it is so short beside its particles that a coil would not be seen.
+// Whether the spring is too short compared with its particles for a coil to show.
 bool is_short(const SpringInfo &spring, const SoftView &view) {
     double radius = 0;
     for (const SpringEndInfo *end : {&spring.a, &spring.b})
@@ -47,7 +47,7 @@ bool is_short(const SpringInfo &spring, const SoftView &view) {
     return spring.rest_length < 8 * radius;
 }
 
-// Of a straight spring: half as thick as its thinner particle.
+// Wire radius of a straight spring: half its thinner particle's radius.
 double wire_radius(const SpringInfo &spring, const SoftView &view) {
     double radius = spring.rest_length;
     for (const SpringEndInfo *end : {&spring.a, &spring.b})
@@ -91,7 +91,7 @@ void draw_particles(DrawList &list, const SoftView &view,
     }
 }
 
-// The share of the ray at which it meets the triangle, from either side.
+// Ray parameter where the ray hits the triangle, from either side.
 std::optional<double> meet(const std::array<glm::dvec3, 3> &corners, const glm::dvec3 &origin,
                            const glm::dvec3 &direction) {
     // Moeller and Trumbore 1997.
@@ -125,7 +125,7 @@ ClothSurface cloth_surface(const ClothInfo &cloth, const SoftView &view) {
             continue;
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec3 &sum = sums[triangle.corners[k] - cloth.first_particle];
-            // Where folds cancel each other, its own.
+            // Where folds cancel each other, use the triangle's own normal.
             const glm::dvec3 normal = glm::dot(sum, own) > 0 ? sum : own;
             corners->emplace_back(corner_of(triangle, k, view));
             normals->emplace_back(glm::normalize(normal));

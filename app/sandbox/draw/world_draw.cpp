@@ -19,7 +19,7 @@ namespace plumb {
 
 namespace {
 
-// Of a sphere about the body's origin that holds its shapes; 0 for a plane.
+// Radius of a bounding sphere about the body's origin; 0 for a plane.
 double reach(const BodyInfo &body) {
     double far = 0;
     for (const ColliderDesc &collider : body.colliders)
@@ -61,7 +61,7 @@ void add_line(DrawList &list, const glm::dvec3 &a, const glm::dvec3 &b, const gl
     list.lines.push_back({glm::vec3(a), glm::vec3(b), colour, width});
 }
 
-// With a small head, as long as an eighth of the arrow.
+// The arrow's head takes an eighth of its length.
 void add_arrow(DrawList &list, const glm::dvec3 &from, const glm::dvec3 &vector,
                const glm::vec3 &colour) {
     const double length = glm::length(vector);
@@ -77,8 +77,8 @@ void add_arrow(DrawList &list, const glm::dvec3 &from, const glm::dvec3 &vector,
     add_line(list, to, back - aside, colour);
 }
 
-// A contact goes along with the bodies that move, but does not turn with them: under a ball that
-// rolls it stays below.
+// A contact moves with its bodies but does not turn with them: under a rolling ball it stays at the
+// bottom.
 glm::dvec3 contact_place(const Simulation &simulation, const Frame &frame,
                          const std::vector<BodyState> &poses, const ContactView &contact) {
     glm::dvec3 shift(0);
@@ -96,8 +96,8 @@ void add_contacts(DrawList &list, const Simulation &simulation, const Frame &fra
                   const std::vector<BodyState> &poses, double weight) {
     for (const ContactView &contact : frame.contacts) {
         const glm::dvec3 place = contact_place(simulation, frame, poses, contact);
-        // The stalk is half a metre for the weight of a middling body, and grows with the square
-        // root of the force, so that light and heavy contacts are both seen.
+        // The stalk is 0.38 m long for the weight of the median body. It grows with the square root
+        // of the force, so that light and heavy contacts both show.
         const double force = weight > 0 ? std::max(0.0, contact.normal_force) / weight : 0;
         const double length = std::min(2.0, 0.08 + 0.3 * std::sqrt(force));
         DrawPoint point;
@@ -115,8 +115,8 @@ void add_contacts(DrawList &list, const Simulation &simulation, const Frame &fra
     }
 }
 
-// A ring around the place, across the normal, that fades by shrinking. Its radius grows with the
-// square root of the speed that the impulse would give the middling body: 20 cm for 1 m/s.
+// A ring at the impact, normal to it, that shrinks with age. Its radius grows with the square root
+// of the speed change the impulse would give the median body: 20 cm for 1 m/s.
 void add_impacts(DrawList &list, const std::vector<SeenImpact> &impacts, double mass) {
     constexpr int corners = 16;
     for (const SeenImpact &seen : impacts) {
@@ -166,7 +166,7 @@ void add_bounds(DrawList &list, const BodyInfo &body, const BodyState &pose) {
     }
 }
 
-// Of the median dynamic body, kg; 0 when there is none.
+// Mass of the median dynamic body, kg; 0 if there is none.
 double typical_mass(const Simulation &simulation) {
     std::vector<double> masses;
     for (std::size_t body = 0; body < simulation.body_count(); ++body) {
@@ -181,7 +181,7 @@ double typical_mass(const Simulation &simulation) {
     return *middle;
 }
 
-// Where the grab has hold of what it holds; none of what is not there.
+// The grabbed point; nullopt if the grabbed body or particle does not exist.
 std::optional<glm::dvec3> held_place(const GrabView &grab, const std::vector<BodyState> &bodies,
                                      const std::vector<ParticleState> &particles) {
     if (grab.particle)
@@ -259,7 +259,7 @@ DrawList draw_world(const Simulation &simulation, const Camera &camera,
         for (std::size_t body = 0; body < shown.size(); ++body)
             if (simulation.body_info(body).alive &&
                 simulation.body_info(body).kind != BodyKind::static_body)
-                // As far as the body goes in a quarter of a second.
+                // The distance travelled in a quarter of a second.
                 add_arrow(list, shown[body].position, frame.bodies[body].velocity * 0.25,
                           colours::ink);
     const auto held = options.grab ? held_place(*options.grab, shown, shown_particles)
@@ -309,7 +309,8 @@ Around around(const Simulation &simulation, std::optional<std::size_t> body) {
         return {glm::vec3(frame.bodies[*body].position),
                 radius > 0 ? static_cast<float>(radius) : 5.0f};
     }
-    // A floor may be far larger than what stands on it, so what never moves counts only alone.
+    // A floor may be far larger than what stands on it, so static bodies only count if nothing
+    // moves.
     for (const bool static_too : {false, true}) {
         glm::dvec3 low(std::numeric_limits<double>::max());
         glm::dvec3 high(std::numeric_limits<double>::lowest());

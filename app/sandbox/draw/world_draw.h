@@ -13,9 +13,9 @@ namespace plumb {
 
 // What is drawn besides the bodies.
 struct WorldDrawOptions {
-    bool contacts = false; // points, with normals and normal forces; and impacts
-    bool joints = false;   // anchors, and what lies between them
-    bool bounds = false;   // the axis-aligned boxes around bodies
+    bool contacts = false; // points with normals and normal forces; also impacts
+    bool joints = false;   // anchors, and whatever connects them
+    bool bounds = false;   // the bodies' AABBs
     bool velocities = false;
     bool wireframe = false;
     bool shadows = true;
@@ -31,20 +31,20 @@ struct WorldDrawOptions {
 // The camera that the scene asks for.
 [[nodiscard]] Camera camera_of(const CameraDesc &camera);
 
-// `poses` and `particles` are those to show, one for each body and each particle, or empty for the
-// present ones. Contacts and joints
-// are those of the last step, moved along with the bodies that are shown; velocities too are its.
+// `poses` and `particles` are the ones to show, one per body and particle, or empty for the current
+// ones. Contacts and joints are those of the last step, moved along with the bodies shown;
+// velocities are those of the last step.
 [[nodiscard]] DrawList draw_world(const Simulation &simulation, const Camera &camera,
                                   const WorldDrawOptions &options = {},
                                   const std::vector<BodyState> &poses = {},
                                   const std::vector<ParticleState> &particles = {});
 
-// What moves of another simulation, translucent and pale, over what is there.
+// Draws the moving parts of another simulation, translucent and pale, on top of the list.
 void add_ghost(DrawList &list, const Simulation &simulation, const std::vector<BodyState> &poses,
                const std::vector<ParticleState> &particles);
 
-// A sphere around a body, or around all that can move (particles and cloth too), else around all
-// but planes; half a metre at the origin if there is nothing.
+// A sphere around one body; without one, around everything that can move (particles and cloth too),
+// else around everything but planes. Half a metre at the origin if there is nothing.
 struct Around {
     glm::vec3 centre{0};
     float radius = 0.5f;

@@ -9,17 +9,17 @@ namespace plumb {
 
 namespace {
 
-// At a scale of 1.
+// Pixels at a scale of 1.
 constexpr float margin = 8;
 constexpr float transport_width = 520;
 constexpr float least_transport_width = 380;
 constexpr glm::vec2 roomy{860, 600};
-constexpr float lab_share = 0.5f; // of the middle's height, at most
+constexpr float lab_share = 0.5f; // of the middle column's height, at most
 
-// A picture less high than this share of the window is no picture.
+// Below this share of the window's height a picture is useless.
 constexpr float least_picture = 0.2f;
 
-// Panels one below the other. If they do not fit, the highest are cut, all to one height.
+// Stacks panels one below the other. If they do not fit, the tallest are cut to a common height.
 void stack(PerPanel<Rect> &rects, const PerPanel<float> &wished, PanelSpot side, const Rect &column,
            float gap) {
     std::vector<PanelId> panels;
@@ -72,7 +72,7 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
     const float middle = std::max(right_x - gap - middle_x, 1.0f);
 
     PerPanel<Rect> rects{};
-    // Where the bar does not fit between the columns, they end above it.
+    // If the bar does not fit between the columns, they end above it.
     const float bar_height = std::min(std::ceil(wished[PanelId::transport]), 0.4f * height);
     const float bar_y = window.y - gap - bar_height;
     const bool fits = middle >= least_transport_width * scale;
@@ -95,7 +95,7 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
     if (said > 0)
         rects[PanelId::messages] = {{over_x, gap}, {over, said}};
     const float below_said = said > 0 ? 2 * gap + said : gap;
-    // The lab has the lower part of the middle; in a small window it stands alone above the bar.
+    // The lab takes the lower part of the middle; in a small window it is alone above the bar.
     const float lab_room = is_small ? above - (below_said - gap) : lab_share * above;
     const float lab = std::min(std::ceil(wished[PanelId::lab]), std::max(lab_room, 1.0f));
     if (lab > 0)
@@ -112,7 +112,7 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
 }
 
 Rect free_part(glm::vec2 window, std::span<const Rect> taken, float aspect) {
-    // The sides of the largest are sides of the window or of what is taken.
+    // The best rectangle's sides lie on sides of the window or of `taken`.
     std::vector<float> xs{0, window.x};
     std::vector<float> ys{0, window.y};
     for (const Rect &rect : taken) {

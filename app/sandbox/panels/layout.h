@@ -1,4 +1,4 @@
-// Where the panels stand: pure geometry, so that a test can see that nothing overlaps.
+// Panel layout: pure geometry, so that a test can check that nothing overlaps.
 #pragma once
 
 #include "app/sandbox/panels/panels.h"
@@ -15,23 +15,23 @@ struct Rect {
     [[nodiscard]] glm::vec2 max() const { return min + size; }
 };
 
-// Pixels. `wished` is how high each panel's contents are, 0 where there is none; a panel that does
-// not fit is lower, and scrolls. `scale` is 1 on an ordinary monitor. Nothing overlaps in windows
-// of smallest_window and above, but for help and the lab in one that is not roomy: there help
-// stands alone, and the lab with the transport bar.
+// In pixels. `wished` is the height of each panel's contents, 0 for no panel; a panel that does not
+// fit is made lower, and scrolls. `scale` is 1 on an ordinary monitor. Nothing overlaps in windows
+// of at least smallest_window, except help and the lab in a window that is not roomy: there help is
+// shown alone, and the lab with only the transport bar.
 inline constexpr glm::vec2 smallest_window{640, 400};
 [[nodiscard]] PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wished);
 
-// The scale of panels in a window where so large a one was asked for: above 1 no larger than leaves
-// it as much room as smallest_window has at 1, in whole tenths, so that all of them are in reach.
+// The panel scale for a window if `wished` was asked for. Above 1 it is limited, in whole tenths,
+// so that the window has at least the room that smallest_window has at 1 and every panel stays
+// reachable.
 [[nodiscard]] float scale_that_fits(float wished, glm::vec2 window);
 
-// Whether all panels can be open and leave room for the scene. In other windows they are closed
-// until somebody opens them.
+// Whether all panels can be open and leave room for the scene. In other windows they start closed.
 [[nodiscard]] bool is_roomy(glm::vec2 window, float scale);
 
-// The rectangle beside those given in which a picture of this aspect (width over height) is
-// largest, and of those the largest rectangle; the whole window where hardly any is left.
+// The rectangle clear of `taken` in which a picture of this aspect (width over height) is largest;
+// among equals, the largest rectangle. The whole window if hardly any room is left.
 [[nodiscard]] Rect free_part(glm::vec2 window, std::span<const Rect> taken, float aspect);
 
 } // namespace plumb

@@ -1,4 +1,4 @@
-// What a panel is given, and what several share. The panels themselves: panels.h.
+// The data a panel is given, and parts several panels share. The panels themselves are in panels.h.
 #pragma once
 
 #include "app/sandbox/keys.h"
@@ -28,10 +28,10 @@ struct PanelContext {
     ChartStudy &chart;
     MapStudy &map;
     const Fonts &fonts;
-    bool frozen = false; // no text or graph that differs from run to run
-    // How much higher the panel would be if it scrolled nothing inside itself, pixels.
+    bool frozen = false; // leave out text and graphs that differ from run to run
+    // How much higher the panel would be if nothing inside it scrolled, pixels.
     float scrolled_height = 0;
-    // What the person asked for.
+    // The user's requests.
     std::vector<Action> actions;
     std::optional<std::filesystem::path> open_scene;
     std::optional<double> speed;
@@ -40,27 +40,27 @@ struct PanelContext {
     std::optional<RunChoice> run;
 };
 
-// A panel's title, with a sign that opens and closes the panel, and some text at the right end.
-// Whether the panel is open, and so has more than its title.
+// A panel's title with a fold arrow, and some text at the right end. Returns whether the panel is
+// open, and so shows more than its title.
 [[nodiscard]] bool title_bar(PanelContext &context, PanelId panel, std::string_view title,
                              std::string_view at_right = {});
-// The sign alone, to go on in the same line.
+// The fold arrow alone; the caller continues on the same line.
 [[nodiscard]] bool title_sign(PanelContext &context, PanelId panel);
 
 // Parts of panels.
-void inspector_panel(PanelContext &context);    // of the selected body
-void expectations_panel(PanelContext &context); // of the scene, with its title and description
+void inspector_panel(PanelContext &context);    // the selected body
+void expectations_panel(PanelContext &context); // the scene's expectations, title and description
 void probes_panel(PanelContext &context);
-void probe_labels(const PanelContext &context); // over the scene, under the panels
+void probe_labels(const PanelContext &context); // drawn over the scene, under the panels
 void measures_panel(PanelContext &context);     // the lower part of the diagnostics
-// Of the lab.
+// The lab's tabs.
 void plots_tab(PanelContext &context);
 void tradeoff_tab(PanelContext &context);
 void map_tab(PanelContext &context);
 void ghost_tab(PanelContext &context);
 
-// The scenes whose path or title contains every word of `search`, in any case; indices. Those whose
-// name has them all come first, then those whose name and title have.
+// Indices of the scenes whose path or title contains every word of `search`, ignoring case. Matches
+// in the name alone come first, then matches in name and title.
 [[nodiscard]] std::vector<std::size_t> matching(std::span<const SceneEntry> scenes,
                                                 const std::string &search);
 

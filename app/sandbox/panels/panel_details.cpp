@@ -1,4 +1,4 @@
-// The title bar that all panels share, and the panel of the scene and of the body selected.
+// The title bar all panels share, and the details panel of the scene and the selected body.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -23,7 +23,7 @@ bool title_bar(PanelContext &context, PanelId panel, std::string_view title,
 }
 
 void details_panel(PanelContext &context) {
-    // What has just been selected brings its tab to the front, and what is let go the scene's.
+    // A new selection brings its tab to the front, and deselecting the scene's.
     ViewState &view = context.view;
     const bool changed =
         view.detailed_body != view.selected || view.detailed_particle != view.selected_particle;
@@ -34,7 +34,7 @@ void details_panel(PanelContext &context) {
         return changed && wanted ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None;
     };
     const Simulation *simulation = context.session.simulation();
-    if (simulation && !simulation->has_world()) { // no bodies either
+    if (simulation && !simulation->has_world()) { // and so no bodies
         if (title_bar(context, PanelId::details, "Scene"))
             expectations_panel(context);
         return;

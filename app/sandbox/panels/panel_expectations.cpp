@@ -1,4 +1,4 @@
-// The scene's title, its description, what it can be held to, and whether it holds.
+// The scene's title, description and expectations, and whether they hold.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 #include "engine/scene/expect.h"
@@ -22,7 +22,7 @@ std::string measured(const ExpectDesc &expect) {
     const std::string at = " at " + unbroken(number(expect.to, "s"));
     const std::string over = ", " + unbroken(number(expect.from) + " to " + number(expect.to, "s"));
     const ReductionInfo *reduction = find_reduction(expect.reduce);
-    if (!reduction) // the scene has been read, so that there is one
+    if (!reduction) // the scene was validated, so there is one
         return quantity + of;
     const bool is_mean = reduction->reduction == Reduction::mean;
     if (!expect.curve.empty())
@@ -96,8 +96,8 @@ Colour colour_of(Verdict verdict) {
     return theme::dim;
 }
 
-// The name, wrapped beside the verdict at the right end. What was pending when the run stopped for
-// good stays without a verdict.
+// The name, wrapped beside the verdict at the right end. Expectations still pending when the run
+// stopped for good get no verdict.
 void verdict_row(const ExpectOutcome &outcome, bool stopped) {
     const bool cut_short = stopped && outcome.verdict == Verdict::pending;
     const std::string verdict(cut_short ? "stopped" : verdict_name(outcome.verdict));
@@ -111,7 +111,7 @@ void verdict_row(const ExpectOutcome &outcome, bool stopped) {
     wrapped(outcome.desc.name, at - ImGui::GetStyle().ItemSpacing.x - start.x);
 }
 
-// A light and what it means.
+// A light with its meaning.
 void warn(const Fonts &fonts, const Colour &colour, const std::string &text) {
     light(colour);
     ImGui::SameLine();

@@ -1,4 +1,4 @@
-// Another method beside the running one: which, and how far it is from it.
+// The ghost: which method runs beside the current one, and how far apart they are.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -45,7 +45,7 @@ void method_box(PanelContext &context, const Ghost *ghost) {
 
 void ghost_tab(PanelContext &context) {
     method_box(context, context.session.ghost());
-    const Ghost *ghost = context.session.ghost(); // after the choice
+    const Ghost *ghost = context.session.ghost(); // read after the choice
     if (!ghost) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("Runs the scene by another method as well, from now on, and draws it "

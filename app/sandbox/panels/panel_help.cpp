@@ -1,4 +1,4 @@
-// All keys and what the mouse does, from the one list of actions.
+// All keys and mouse gestures, from the one list of actions.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 

@@ -65,7 +65,7 @@ std::string place(const JointView &joint, double value, const char *rate = "") {
                                         : number(value, std::string("m") + rate);
 }
 
-// What the joint is held to and how it stands, a row each.
+// The joint's limits, motor and current state, one row each.
 void joint_rows(const JointView &joint) {
     const JointTypeInfo &type = joint_type(joint.type);
     if (joint.broken) {
@@ -97,7 +97,7 @@ void joint_rows(const JointView &joint) {
         value_row("Torque", number(glm::length(joint.torque), "N m"));
 }
 
-// Those that hold the body, each under its name and type.
+// The joints that hold the body, each under its name and type.
 void joints_of(const Simulation &simulation, const Frame &frame, std::size_t body) {
     constexpr std::size_t shown_at_most = 8;
     std::size_t count = 0;
@@ -115,7 +115,7 @@ void joints_of(const Simulation &simulation, const Frame &frame, std::size_t bod
         value_row("More joints", std::to_string(count - shown_at_most));
 }
 
-// Of all springs that pull at a particle, or of a whole cloth.
+// Rows for all springs attached to a particle, or for a whole cloth.
 template <typename Counts>
 void spring_rows(const Simulation &simulation, const Frame &frame, const Counts &counts) {
     const SoftParts &parts = simulation.soft_parts();

@@ -1,4 +1,4 @@
-// What the lab tells of the running scene.
+// The lab's view of the running scene.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 

@@ -1,4 +1,5 @@
-// Where the running method holds the running scene, over two numbers: a click on a cell applies it.
+// Where the running method is stable on the running scene, over two numbers. Clicking a cell
+// applies it.
 #include "app/lab/run/run_text.h"
 #include "app/sandbox/panels/lab_draw.h"
 #include "app/sandbox/panels/panel.h"
@@ -15,7 +16,7 @@ namespace plumb {
 
 namespace {
 
-constexpr float usual_map_height = 14; // of the map, heights of the text
+constexpr float usual_map_height = 14; // map height, in text heights
 constexpr float least_map_height = 7;
 
 Colour colour_of(Failing failing) {
@@ -28,13 +29,13 @@ struct Grid {
 
     [[nodiscard]] std::size_t columns() const { return map.x.values.size(); }
     [[nodiscard]] std::size_t rows() const { return map.y.values.size(); }
-    // The lowest row at the bottom.
+    // The lowest row is at the bottom.
     [[nodiscard]] ImVec2 corner(std::size_t column, std::size_t row) const {
         return {min.x +
                     (max.x - min.x) * static_cast<float>(column) / static_cast<float>(columns()),
                 max.y - (max.y - min.y) * static_cast<float>(row) / static_cast<float>(rows())};
     }
-    // Of a place in units of cells, see cell_position.
+    // Pixel position of a place given in cells, see cell_position.
     [[nodiscard]] ImVec2 at(double x, double y) const {
         const ImVec2 cell = corner(1, 1);
         return {min.x + (static_cast<float>(x) + 0.5f) * (cell.x - min.x),
@@ -42,7 +43,7 @@ struct Grid {
     }
 };
 
-// Black or white, whichever is read better on it.
+// Black or white, whichever reads better on `ground`.
 ImU32 ink_on(const Colour &ground) {
     const float light = 0.3f * ground.red + 0.6f * ground.green + 0.1f * ground.blue;
     return light > 0.45f ? IM_COL32(20, 22, 26, 255) : IM_COL32(235, 238, 242, 255);
@@ -80,7 +81,7 @@ void draw_cells(const PanelContext &context, const Grid &grid) {
     }
 }
 
-// The running settings, where they lie within the map.
+// Marks the current settings, if they lie within the map.
 void draw_running(const Grid &grid, const Simulation &simulation) {
     const auto place = [&](const MapAxis &axis) -> std::optional<double> {
         if (!axis.setting)
@@ -125,7 +126,7 @@ void draw_numbers(const PanelContext &context, const Grid &grid) {
     }
 }
 
-// Only what is there.
+// Lists only the outcomes that occur.
 void legend(const PanelContext &context, const StabilityMap &map) {
     const float em = context.fonts.small->FontSize;
     const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;

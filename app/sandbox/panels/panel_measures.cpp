@@ -1,4 +1,4 @@
-// What can be measured of the world as it is.
+// Measurements of the world as it is.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 

@@ -1,4 +1,4 @@
-// What the program has to say.
+// Messages to the user.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -7,7 +7,7 @@
 namespace plumb {
 
 void messages_panel(PanelContext &context) {
-    // The newest on top, where it is seen even if there are many.
+    // Newest on top, visible even if there are many.
     const std::vector<Message> &messages = context.session.messages().all();
     for (auto at = messages.rbegin(); at != messages.rend(); ++at) {
         const Message &message = *at;

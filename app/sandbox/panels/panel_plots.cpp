@@ -1,4 +1,4 @@
-// Which quantities of the running scene are plotted, and the plots.
+// The choice of plotted quantities, and the plots.
 #include "app/sandbox/panels/lab_draw.h"
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/plot_draw.h"
@@ -12,13 +12,13 @@ namespace plumb {
 
 namespace {
 
-constexpr float least_plot = 5; // heights of the text
+constexpr float least_plot = 5; // in text heights
 constexpr float usual_plot = 8;
 
 void subject_box(PanelContext &context, float width) {
     ViewState &view = context.view;
     const Simulation &simulation = *context.session.simulation();
-    // What is selected is likely to be meant.
+    // The user probably means the selection.
     if (view.offered_body != view.selected || view.offered_particle != view.selected_particle) {
         view.offered_body = view.selected;
         view.offered_particle = view.selected_particle;
@@ -89,7 +89,7 @@ void span_box(ViewState &view, float width) {
     tooltip("How much time is shown, up to now.");
 }
 
-// A name, its value now, and a cross that takes it away; as many to a line as fit.
+// Per curve its name, current value and a cross to remove it; as many to a line as fit.
 void legend(PanelContext &context) {
     const auto curves = context.session.plots().curves();
     const float em = ImGui::GetFontSize();

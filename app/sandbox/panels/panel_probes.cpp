@@ -1,4 +1,4 @@
-// What the scene's probes are asked and answered, and their labels over the scene.
+// The probes' questions and answers, and their labels over the scene.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -25,7 +25,7 @@ std::string value_text(const ProbeValue &value) {
     return number(value.value, {}, 5);
 }
 
-// Green when all that is expected of them came true, red when not, plain when nothing is expected.
+// Green if all expectations on these values hold, red if not, plain if there are none.
 Colour colour_of(const ProbeDesc &probe, std::span<const ProbeValue> values) {
     bool is_any_expected = false;
     for (const ProbeValue &value : values) {
@@ -64,7 +64,7 @@ void probes_panel(PanelContext &context) {
         }
         std::span<const ProbeValue> left = found.values;
         while (!left.empty()) {
-            // A row of a matrix in one, under the name of the row: "minor_1" for "minor_11".
+            // Show a matrix row as one line, under the row's name: "minor_1" for "minor_11".
             const bool is_row = left.front().form == ProbeValue::Form::entry;
             const auto values = left.first(is_row ? 3 : 1);
             left = left.subspan(values.size());
@@ -94,7 +94,7 @@ void probe_labels(const PanelContext &context) {
             if (!(seen.z >= 0 && seen.z <= 1))
                 continue;
             const ImVec2 text = font->CalcTextSizeA(font->FontSize, 1e9f, 0, label.text.c_str());
-            // Beside the place and over it.
+            // Above and to the right of the point.
             const ImVec2 at(std::round(seen.x + 9), std::round(seen.y - text.y - 5));
             list.AddRectFilled({at.x - 4, at.y - 1}, {at.x + text.x + 4, at.y + text.y + 1},
                                packed(theme::text, 0.85f), 4);

@@ -1,4 +1,4 @@
-// The list of scenes, grouped by folder, with a search.
+// The list of scenes, grouped by folder, with a search box.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -28,7 +28,7 @@ void scene_row(PanelContext &context, const SceneEntry &entry) {
         context.open_scene = entry.path;
     if (!entry.title.empty())
         tooltip(entry.title);
-    // The open scene is brought into sight once, when it has changed or the whole list is back.
+    // Scroll to the open scene once, when it changes or the search is cleared.
     if (open && context.view.search.empty() && context.view.scene_in_sight != entry.path) {
         ImGui::SetScrollHereY();
         context.view.scene_in_sight = entry.path;
@@ -47,7 +47,7 @@ std::vector<std::size_t> matching(std::span<const SceneEntry> scenes, const std:
             return text.find(word) != std::string::npos;
         });
     };
-    std::array<std::vector<std::size_t>, 3> found; // the nearest first
+    std::array<std::vector<std::size_t>, 3> found; // best matches first
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const SceneEntry &entry = scenes[i];
         const std::string about = entry.name + " " + entry.title;
@@ -103,7 +103,7 @@ void scenes_panel(PanelContext &context) {
         scene_row(context, entry);
         ImGui::Unindent();
     }
-    // The list is as high as the panel allows.
+    // The list takes all the height the panel allows.
     context.scrolled_height =
         ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y - ImGui::GetWindowHeight();
     ImGui::EndChild();

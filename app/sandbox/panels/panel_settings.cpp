@@ -1,4 +1,4 @@
-// Method and settings of the running scene.
+// The running scene's method and settings.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -16,7 +16,7 @@ namespace plumb {
 
 namespace {
 
-// "1/240 s", or in milliseconds where that is no whole fraction.
+// "1/240 s", or milliseconds if it is not 1 over a whole number.
 std::string step_text(double dt) {
     const double rate = 1 / dt;
     std::array<char, 32> text{};
@@ -27,9 +27,9 @@ std::string step_text(double dt) {
     return text.data();
 }
 
-// The label at the left, the control at the right.
+// Label on the left, control on the right.
 struct Columns {
-    float label, control; // em; of the control, -1 is all that is left
+    float label, control; // em; control -1 takes the rest of the line
 };
 constexpr Columns panel_columns{5.4f, -1}, popup_columns{12, 8};
 constexpr float least_vector_width = 9; // em
@@ -71,7 +71,7 @@ void method_row(PanelContext &context, const Simulation &simulation) {
     action_tooltip(Action::next_method);
 }
 
-// Each row is true when the setting was changed.
+// Rows return true when the setting changed.
 bool step_row(const SettingRow &row, StepSettings &settings, const Columns &columns) {
     label("Step", columns);
     bool changed = false;
@@ -110,7 +110,7 @@ bool setting_row(const SettingRow &row, StepSettings &settings, const Columns &c
                                    static_cast<int>(row.max), "%d",
                                    ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
     } else if (const auto *vector = std::get_if<glm::dvec3 StepSettings::*>(&row.member)) {
-        // Where three numbers do not fit beside the label, they stand below it.
+        // If three numbers do not fit beside the label, they go below it.
         if (ImGui::GetContentRegionAvail().x < least_vector_width * ImGui::GetFontSize()) {
             ImGui::NewLine();
             ImGui::SetNextItemWidth(-1);
@@ -128,7 +128,7 @@ bool setting_row(const SettingRow &row, StepSettings &settings, const Columns &c
     return changed;
 }
 
-// Those that stand in the panel; the others open from a button.
+// Settings shown in the panel itself; the others are behind a button.
 bool is_in_panel(const SettingRow &row) {
     return row.group == SettingGroup::world || row.group == SettingGroup::step ||
            row.member == SettingMember(&StepSettings::iterations);

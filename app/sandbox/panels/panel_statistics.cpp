@@ -1,4 +1,4 @@
-// What a step costs, phase by phase, how the energy goes, and what there is to do.
+// The cost of a step by phase, the energy over time, and the amount of work.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -32,7 +32,7 @@ constexpr std::array phases{
 struct Plot {
     ImVec2 min, max;
     [[nodiscard]] float x(std::size_t i, std::size_t count) const {
-        // The newest value is at the right border, whatever there is before it.
+        // The newest value is at the right border, however few there are.
         const auto behind = static_cast<float>(count - 1 - i);
         return max.x - behind * (max.x - min.x) / static_cast<float>(Graph::capacity - 1);
     }
@@ -50,7 +50,7 @@ Plot begin_plot(float height) {
     return plot;
 }
 
-// The next 1, 2 or 5 times a power of ten, so that the scale jumps rarely.
+// Rounds up to 1, 2 or 5 times a power of ten, so that the scale rarely jumps.
 double round_up(double value) {
     if (!(value > 0) || !std::isfinite(value))
         return 1;
@@ -65,7 +65,7 @@ void label(const Fonts &fonts, const Plot &plot, bool top, const std::string &te
     const float size = fonts.small->FontSize;
     const ImVec2 at(plot.min.x + 4, top ? plot.min.y + 1 : plot.max.y - size - 1);
     const float width = fonts.small->CalcTextSizeA(size, 1e9f, 0, text.c_str()).x;
-    // Legible where the graph runs through it.
+    // A background keeps it legible over the graph.
     ImGui::GetWindowDrawList()->AddRectFilled({at.x - 2, at.y}, {at.x + width + 2, at.y + size},
                                               packed(theme::panel, 0.75f), 2);
     ImGui::GetWindowDrawList()->AddText(fonts.small, size, at, packed(theme::dim), text.c_str());
@@ -80,7 +80,8 @@ void time_graph(const PanelContext &context, float height) {
     for (std::size_t i = 0; i < count; ++i)
         for (const Phase &phase : phases)
             totals[i] += (graphs.*phase.graph).at(i);
-    // A few steps that the machine has held up run off the top, and the others are still seen.
+    // Scale to the 90th percentile: a few steps delayed by the machine run off the top, and the
+    // others stay visible.
     double usual = 0;
     if (count > 0) {
         const auto at = totals.begin() + static_cast<std::ptrdiff_t>(count * 9 / 10);
@@ -90,7 +91,7 @@ void time_graph(const PanelContext &context, float height) {
     const double scale = round_up(1.25 * usual);
     ImDrawList &list = *ImGui::GetWindowDrawList();
     list.PushClipRect(plot.min, plot.max, true);
-    // The soft border of a phase too short to see would hide those below it.
+    // The antialiased edge of a phase too short to see would hide those below it.
     const ImDrawListFlags flags = list.Flags;
     list.Flags &= ~ImDrawListFlags_AntiAliasedFill;
     for (std::size_t i = 0; i + 1 < count; ++i) {
@@ -129,7 +130,7 @@ void energy_graph(const PanelContext &context, float height) {
         label(context.fonts, plot, true, "-");
         return;
     }
-    // What rounding alone does to the energy is drawn flat, in the middle.
+    // Changes from rounding alone are drawn flat, in the middle.
     const double middle = (low + high) / 2;
     const double span = std::max((high - low) * 1.1, std::max(std::abs(middle) * 1e-5, 1e-9));
     ImDrawList &list = *ImGui::GetWindowDrawList();
@@ -142,7 +143,7 @@ void energy_graph(const PanelContext &context, float height) {
                      packed(theme::accent), 1.5f);
     }
     list.PopClipRect();
-    // As many digits as tell the two apart.
+    // Enough digits to tell `low` and `high` apart.
     const double ratio = std::abs(middle) / std::max(high - low, std::abs(middle) * 1e-9);
     const int digits = std::clamp(2 + static_cast<int>(std::ceil(std::log10(ratio + 1))), 4, 9);
     label(context.fonts, plot, true, number(high, "J", digits));
@@ -150,8 +151,8 @@ void energy_graph(const PanelContext &context, float height) {
 }
 
 void legend(const PanelContext &context, const std::optional<StepTimes> &times) {
-    // In two columns, or in one where a name and its time would not fit into half of the width.
-    constexpr float least_column = 9; // heights of its text
+    // Two columns, or one if a name and its time would not fit into half the width.
+    constexpr float least_column = 9; // in heights of its text
     const float width = ImGui::GetContentRegionAvail().x;
     const std::size_t columns = width / 2 < least_column * context.fonts.small->FontSize ? 1 : 2;
     const float column = width / static_cast<float>(columns);

@@ -1,4 +1,4 @@
-// Cost against error of the running scene, method by method: a click on a point applies it.
+// Cost against error of the running scene, by method. Clicking a point applies it.
 #include "app/lab/run/run_text.h"
 #include "app/sandbox/panels/lab_draw.h"
 #include "app/sandbox/panels/panel.h"
@@ -15,10 +15,10 @@ namespace plumb {
 
 namespace {
 
-constexpr float usual_height = 17; // of the chart with its titles, heights of the text
+constexpr float usual_height = 17; // chart height including titles, in text heights
 constexpr float least_height = 9;
 constexpr float mark_radius = 4.5f; // pixels at a scale of 1
-constexpr float pointer_reach = 12; // of the pointer
+constexpr float pointer_reach = 12; // picking distance, pixels at a scale of 1
 
 Colour series_colour(const ChartSeries &series) {
     return curve_colour(series.style);
@@ -33,12 +33,12 @@ bool is_shown(const ChartRun &run) {
     return run.status != ChartStatus::unfinished && run.cost > 0;
 }
 
-// What the lab's picture has, in a frame of this window's.
+// The lab's chart, mapped into this window.
 struct Placed {
     ChartContent content;
     ChartLayout layout;
     ImVec2 min, max;
-    std::vector<std::size_t> runs; // of the marks
+    std::vector<std::size_t> runs; // the run of each mark
 
     [[nodiscard]] float x(float pixel) const {
         const PixelBox &from = layout.plot;
@@ -55,7 +55,7 @@ Placed place(const SceneChart &chart) {
     Placed placed;
     placed.content = chart_content(chart, "");
     for (ChartMark &mark : placed.content.marks)
-        mark.label.clear(); // the pointer tells them
+        mark.label.clear(); // shown by hovering instead
     placed.layout = lay_out(placed.content, [](std::string_view, float) { return glm::vec2(0); });
     for (std::size_t i = 0; i < chart.runs.size(); ++i)
         if (is_shown(chart.runs[i]))
@@ -148,7 +148,7 @@ void draw_marks(const Placed &placed, const SceneChart &chart, const Simulation 
     }
 }
 
-// Names of methods with their colours, as many to a line as fit.
+// Method names in their colours, as many to a line as fit.
 void legend(const PanelContext &context, const ChartContent &content) {
     const float em = context.fonts.small->FontSize;
     const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
@@ -214,7 +214,7 @@ void draw_chart(PanelContext &context, const SceneChart &chart) {
     float left = small_width(context.fonts, "exactly 0");
     for (const PlacedTick &tick : placed.layout.error_ticks)
         left = std::max(left, small_width(context.fonts, without_raised(tick.label)));
-    // The titles have lines of their own, above and below, so that they hide no mark.
+    // The titles have lines of their own above and below, so that they hide no mark.
     placed.min = {at.x + left + 8, at.y + em + 4};
     placed.max = {at.x + room.x - 2, at.y + height - 2 * em - 7};
     draw_axes(context, placed);

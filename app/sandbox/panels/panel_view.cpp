@@ -1,4 +1,4 @@
-// What is drawn besides the bodies, and the camera.
+// What to draw besides the bodies, and the camera.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
 
@@ -22,7 +22,7 @@ struct BoxRow {
     std::optional<Box> right;
 };
 
-// In two columns, without their keys where those do not fit; in one where the titles do not either.
+// Two columns, without keys if those do not fit; one column if even the titles do not.
 void check_boxes(PanelContext &context, const std::vector<BoxRow> &rows) {
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
     const float width = ImGui::GetContentRegionAvail().x;
@@ -40,7 +40,8 @@ void check_boxes(PanelContext &context, const std::vector<BoxRow> &rows) {
     const auto width_of = [&](const Box &box) {
         return check_box_width(context.fonts, box.action, with_key);
     };
-    // Where the right column begins; in a narrow panel a long title on the left moves its own row.
+    // Where the right column begins; in a narrow panel a long title on the left shifts only its
+    // row.
     float column = (width + spacing) / 2;
     for (const BoxRow &row : rows)
         column = std::max(column, width_of(row.left) + spacing);
@@ -77,7 +78,7 @@ void view_panel(PanelContext &context) {
     const Simulation *simulation = context.session.simulation();
     const bool has_world = simulation != nullptr && simulation->has_world();
     const Box wireframe{Action::toggle_wireframe, view.wireframe};
-    if (has_world) // the longer titles on the left
+    if (has_world) // longer titles on the left
         check_boxes(
             context,
             {{{Action::toggle_contacts, view.contacts}, Box{Action::toggle_joints, view.joints}},
@@ -92,7 +93,7 @@ void view_panel(PanelContext &context) {
     ImGui::SameLine(0, spacing);
     if (action_button(context.fonts, Action::home, half))
         context.actions.push_back(Action::home);
-    // Without the transport bar, which has it otherwise.
+    // Normally the transport bar has the restart button; without it, show it here.
     if (!has_world && action_button(context.fonts, Action::restart, width + spacing))
         context.actions.push_back(Action::restart);
 }

@@ -1,5 +1,5 @@
-// The only list of panels. A panel is a row here and a function NAME_panel(PanelContext &), in a
-// file of its own.
+// The only list of panels. A panel is a row here and a function NAME_panel(PanelContext &) in its
+// own file.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace plumb {
 
-// Left: scenes, settings, view. Right: details of body or scene, diagnostics. In the middle the
-// scene, with the transport bar under it, the lab above that, messages above it, and help over it:
-// those have their own rules in lay_out.
+// Left: scenes, settings, view. Right: details of body or scene, diagnostics. The scene is in the
+// middle, with the transport bar below it, the lab above that, messages at the top, and help over
+// the scene; those have their own rules in lay_out.
 enum class PanelSpot { left, right, by_itself };
 
-// What there must be for a panel to be seen.
+// What must exist for the panel to show.
 enum class PanelNeeds { nothing, scene, world, diagnostics, lab, messages, help };
 
-// A row's name, spot, needs, and whether it is clicked: rows that are only read may stand closer
-// than those that are clicked. Panels of one side stand in this order, from the top.
+// Name, spot, needs, and whether it is clicked: rows that are only read may be spaced closer than
+// rows that are clicked. Panels on one side appear in this order from the top.
 #define PLUMB_PANELS(PANEL)                                                                        \
     PANEL(scenes, left, nothing, true)                                                             \
     PANEL(settings, left, world, true)                                                             \
@@ -58,7 +58,7 @@ inline constexpr std::array panel_rows{
 };
 inline constexpr std::size_t panel_count = panel_rows.size();
 
-// One for each panel, by its id.
+// One value per panel, indexed by its id.
 template <typename T> struct PerPanel : std::array<T, panel_count> {
     using std::array<T, panel_count>::operator[];
     T &operator[](PanelId panel) { return (*this)[static_cast<std::size_t>(panel)]; }

@@ -9,7 +9,7 @@ namespace plumb {
 
 namespace {
 
-// The least of 1, 2 and 5 times a power of ten that goes into the span at most `most` - 1 times.
+// The smallest 1, 2 or 5 times a power of ten that fits into the span at most `most` - 1 times.
 double tick_distance(double span, int most) {
     const double least = span / (most - 1);
     const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -53,7 +53,7 @@ PlotAxis tight_axis(double low, double high, int most) {
 
 PlotAxis plot_axis(double low, double high, int most) {
     constexpr double rounding = 1e-5;
-    constexpr double air = 0.06; // of the span, on either side
+    constexpr double air = 0.06; // margin on either side, of the span
     const double middle = low / 2 + high / 2;
     const double size = std::max(std::abs(low), std::abs(high));
     const double least = std::max(rounding * size, 1e-12);

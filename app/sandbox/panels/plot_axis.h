@@ -1,4 +1,4 @@
-// The numbers along a plot's axis.
+// The ticks and numbers along a plot's axis.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace plumb {
 
 struct PlotTick {
     double value = 0;
-    std::string label; // as many digits as tell it from its neighbours
+    std::string label; // enough digits to tell it from its neighbours
 };
 
 struct PlotAxis {
@@ -18,16 +18,15 @@ struct PlotAxis {
     [[nodiscard]] double fraction(double value) const { return (value - low) / (high - low); }
 };
 
-// Where a label begins that is as long as `extent` and has its middle at `at`, or as near as it can
-// be within the axis from `low` to `high`: so that it touches no label of another axis.
+// Where a label of length `extent` starts so that it is centred at `at`, or as near as it can be
+// within the axis from `low` to `high`: so it touches no label of another axis.
 [[nodiscard]] float label_begin(float at, float extent, float low, float high);
 
-// An axis that holds both values, finite and low <= high, with air around them and at most `most`
-// (>= 2) ticks. What differs by less than a hundred-thousandth of its size is rounding, and drawn
-// flat.
+// An axis over both values (finite, low <= high), with some margin and at most `most` (>= 2) ticks.
+// Values that differ by less than 1e-5 of their size are taken as rounding and drawn flat.
 [[nodiscard]] PlotAxis plot_axis(double low, double high, int most);
 
-// The same from end to end, without air: of time.
+// The same without margin, for time.
 [[nodiscard]] PlotAxis tight_axis(double low, double high, int most);
 
 } // namespace plumb

@@ -29,14 +29,14 @@ Span shown_time(const Session &session, const std::optional<double> &seconds) {
     return span;
 }
 
-// The samples in the span, and the one before, from which a line leads in.
+// The first sample to draw: the one before the span, so that a line leads in.
 std::size_t first_in(const PlotCurve &curve, const Span &span) {
     const auto first = std::ranges::lower_bound(curve.samples, span.from, {}, &PlotSample::time);
     const auto index = static_cast<std::size_t>(first - curve.samples.begin());
     return index > 0 ? index - 1 : 0;
 }
 
-// Curves of one unit, as indices.
+// Curves of one unit, by index.
 struct Group {
     std::string_view unit;
     std::vector<std::size_t> curves;
@@ -80,8 +80,8 @@ float y_of(const Group &group, double value) {
            static_cast<float>(group.axis.fraction(value)) * (group.max.y - group.min.y);
 }
 
-// Of the samples that fall on one column of pixels the first, least, greatest and last are drawn:
-// what the eye would see of them all.
+// Of the samples in one pixel column, only the first, least, greatest and last are drawn: that
+// looks the same as drawing all.
 void draw_curve(const Group &group, const PlotCurve &curve, const PlotAxis &time, const Span &span,
                 const Colour &colour) {
     std::vector<ImVec2> line;
@@ -100,8 +100,8 @@ void draw_curve(const Group &group, const PlotCurve &curve, const PlotAxis &time
     const auto close = [&] {
         if (!column)
             return;
-        // In the order in which they came; each of them once, for a line that turns on the spot is
-        // drawn thinner or thicker than it is.
+        // In order of time, and each point once: a polyline that turns on the spot gets the wrong
+        // thickness.
         const bool rises = column->low.x < column->high.x;
         for (const ImVec2 &point : {column->first, rises ? column->low : column->high,
                                     rises ? column->high : column->low, column->last})
@@ -159,7 +159,7 @@ void draw_grid(const PanelContext &context, const Group &group, const PlotAxis &
     }
 }
 
-// Over the curves, but legible.
+// Drawn over the curves, but legible.
 void draw_unit(const PanelContext &context, const Group &group) {
     if (group.unit == "1")
         return;
@@ -167,7 +167,7 @@ void draw_unit(const PanelContext &context, const Group &group) {
     small_on_ground(context.fonts, group.min.x + 6, group.min.y + 3, text);
 }
 
-// A line at the pointer, and what each curve was then.
+// A line at the pointer, with each curve's value at that time.
 void tell_at_pointer(const PanelContext &context, const std::vector<Group> &groups,
                      const PlotAxis &time) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -220,7 +220,7 @@ void draw_plots(const PanelContext &context, ImVec2 size) {
     ImGui::Dummy(size);
     std::vector<Group> groups = groups_of(curves);
     const Span span = shown_time(context.session, context.view.plot_seconds);
-    const float below = em + 5; // for the numbers of time
+    const float below = em + 5; // room for the time labels
     const float gap = std::round(0.6f * em);
     const auto count = static_cast<float>(groups.size());
     const float height = std::floor((size.y - below - gap * (count - 1)) / count);

@@ -1,4 +1,4 @@
-// Curves over time in the current ImGui window: those of one unit in one plot, with axes.
+// Draws curves over time in the current ImGui window: one plot per unit, with axes.
 #pragma once
 
 #include "app/sandbox/panels/panel.h"
@@ -7,11 +7,12 @@
 
 namespace plumb {
 
-// How many plots there are, one below the other.
+// The number of plots, stacked vertically.
 [[nodiscard]] std::size_t plot_count(const Plots &plots);
 [[nodiscard]] std::string_view shown_unit(const QuantityInfo &quantity); // empty for a ratio
 
-// All of them in this size, pixels, over the time that the view asks for; there is one at least.
+// Draws all plots within this size (pixels), over the time the view asks for. There must be at
+// least one.
 void draw_plots(const PanelContext &context, ImVec2 size);
 
 } // namespace plumb

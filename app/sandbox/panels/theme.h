@@ -1,4 +1,4 @@
-// How the panels look.
+// The look of the panels.
 #pragma once
 
 #include <imgui/imgui.h>
@@ -10,7 +10,7 @@ struct Fonts {
     ImFont *small = nullptr; // 13 px: keys, units, axes
 };
 
-// ImVec4, but known at compile time. sRGB, 0..1.
+// ImVec4, but constexpr. sRGB, 0..1.
 struct Colour {
     float red, green, blue, alpha;
     // NOLINTNEXTLINE(google-explicit-constructor): stands wherever ImGui wants its own type
@@ -32,7 +32,7 @@ inline constexpr Colour warning{0.940f, 0.760f, 0.380f, 1.00f};
 inline constexpr Colour error{0.940f, 0.470f, 0.430f, 1.00f};
 } // namespace theme
 
-// Sets the current ImGui context's style.
+// Sets the style of the current ImGui context.
 void apply_theme(float scale);
 
 // Adds both fonts to the current context's atlas.

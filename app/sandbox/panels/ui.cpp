@@ -9,7 +9,7 @@ namespace plumb {
 
 namespace {
 
-// Before a panel has been drawn, its height is not known: as much as there is.
+// A panel's height is unknown before it is first drawn: give it all there is.
 constexpr float unknown_height = 1e6f;
 
 bool has_world(const PanelContext &context) {
@@ -19,7 +19,7 @@ bool has_world(const PanelContext &context) {
 
 bool is_shown(const PanelRow &row, const PanelContext &context) {
     const ViewState &view = context.view;
-    // In a small window the help stands alone, and the lab with the transport bar.
+    // In a small window help is shown alone, and the lab with only the transport bar.
     const bool beside_help = view.panels && (view.is_roomy || !view.help);
     const bool is_lab = view.lab && !view.help && has_world(context);
     const bool beside_lab = view.is_roomy || !is_lab || row.id == PanelId::transport;
@@ -34,7 +34,7 @@ bool is_shown(const PanelRow &row, const PanelContext &context) {
         return beside_help && beside_lab && has_world(context) && view.diagnostics;
     case PanelNeeds::lab:
         return view.panels && is_lab;
-    // Errors and help are seen even when the panels are hidden.
+    // Errors and help show even when the panels are hidden.
     case PanelNeeds::messages:
         return !context.session.messages().empty();
     case PanelNeeds::help:
@@ -48,7 +48,7 @@ bool is_shown(const PanelRow &row, const PanelContext &context) {
 Ui::Ui(float scale) : imgui_(ImGui::CreateContext()) {
     ImGui::SetCurrentContext(imgui_);
     ImGuiIO &io = ImGui::GetIO();
-    io.IniFilename = nullptr; // the layout is computed, so there is nothing to remember
+    io.IniFilename = nullptr; // the layout is computed: nothing to save
     io.LogFilename = nullptr;
     set_scale(scale);
 }
@@ -94,7 +94,7 @@ const ImDrawData &Ui::draw(PanelContext &context) {
         if (wished[row.id] > 0)
             panel(context, row, rects[row.id]);
 
-    // What comes and goes over the scene must not move it.
+    // Messages and help come and go, and must not move the scene.
     std::vector<Rect> taken;
     for (const Panel &panel : panels_)
         if (panel.id != PanelId::messages && panel.id != PanelId::help)
@@ -119,7 +119,7 @@ void Ui::panel(PanelContext &context, const PanelRow &row, const Rect &rect) {
     context.scrolled_height = 0;
     row.contents(context);
     const ImGuiStyle &style = ImGui::GetStyle();
-    // From the last item, whatever it is, to the border.
+    // Down to the border below the last item.
     heights_[row.id] = ImGui::GetCursorPosY() - style.ItemSpacing.y + style.WindowPadding.y +
                        context.scrolled_height;
     if (!row.is_clicked)
@@ -141,7 +141,7 @@ bool Ui::wants_text() const {
 bool Ui::close_list() {
     ImGui::SetCurrentContext(imgui_);
     const int open = imgui_->OpenPopupStack.Size;
-    if (open == 0 || wants_text()) // in one of its fields
+    if (open == 0 || wants_text()) // typing in one of its fields
         return false;
     ImGui::ClosePopupToLevel(open - 1, true);
     return true;

@@ -1,4 +1,4 @@
-// All panels together, in an ImGui context of their own: in a window, or off screen.
+// All panels in their own ImGui context, in a window or off screen.
 #pragma once
 
 #include "app/sandbox/panels/layout.h"
@@ -15,10 +15,11 @@ struct ImGuiContext;
 
 namespace plumb {
 
-struct PanelRow; // what there is to know of a panel
+struct PanelRow; // a row of the panel list
 
-// Use: Ui ui(scale); ImguiRenderer renderer(shader_dir); then each frame, after ImGui's input is
-// filled in (by its GLFW back end, or by fill_input), `draw`, and hand the data to the renderer.
+// Usage: Ui ui(scale); ImguiRenderer renderer(shader_dir); then each frame fill ImGui's input (from
+// its GLFW back end or with fill_input), call begin_frame and `draw`, and pass the data to the
+// renderer.
 class Ui {
   public:
     explicit Ui(float scale = 1); // makes the context current
@@ -26,33 +27,33 @@ class Ui {
     Ui(const Ui &) = delete;
     Ui &operator=(const Ui &) = delete;
 
-    // Text and all sizes anew; whoever draws the panels must upload the fonts again.
+    // Rebuilds text and all sizes; the caller must upload the fonts again.
     void set_scale(float scale);
 
-    // Off screen: a display of this many pixels and a frame of this many seconds, with no mouse.
+    // For off-screen use: a display of this many pixels, a frame of this many seconds, no mouse.
     void fill_input(glm::vec2 size, float seconds);
 
-    // Begins a frame, after which over_panel() speaks of the present mouse position.
+    // Begins a frame; from here on over_panel() refers to the current mouse position.
     void begin_frame();
-    // Draws the panels, and ends the frame. What the person asked for is left in `context`, and its
-    // camera looks through what the panels leave free.
+    // Draws the panels and ends the frame. Leaves the user's requests in `context`, and points its
+    // camera through the part the panels leave free.
     [[nodiscard]] const ImDrawData &draw(PanelContext &context);
 
-    // A panel has the mouse; the keyboard goes into a text field.
+    // Whether a panel has the mouse; whether a text field has the keyboard.
     [[nodiscard]] bool over_panel() const;
     [[nodiscard]] bool wants_text() const;
-    // Takes the keyboard out of a text field.
+    // Takes the keyboard away from a text field.
     void release_keyboard();
-    // The list or popup that was opened last; false if none is open, or one of its fields is typed
-    // in.
+    // Closes the list or popup opened last. False if none is open, or one of its fields is being
+    // typed in.
     bool close_list();
 
     struct Panel {
         PanelId id;
         std::string name;
-        Rect rect; // as ImGui has it
+        Rect rect; // as laid out by ImGui
     };
-    // Of the last frame.
+    // From the last frame.
     [[nodiscard]] const std::vector<Panel> &panels() const { return panels_; }
     [[nodiscard]] const Fonts &fonts() const { return fonts_; }
 
@@ -63,7 +64,7 @@ class Ui {
     float scale_ = 1;
     Fonts fonts_;
     std::vector<Panel> panels_;
-    PerPanel<float> heights_{}; // of their contents, in the last frame that had them
+    PerPanel<float> heights_{}; // content heights, from the last frame in which each was shown
 };
 
 } // namespace plumb

@@ -48,10 +48,10 @@ void bar(ImDrawList &list, float x, float y, float half_width, float half_height
                        1);
 }
 
-// Of the sign's place, in heights of the text.
+// Width reserved for the arrow, in text heights.
 constexpr float fold_width = 0.95f;
 
-// Bright when the last item, which it belongs to, is pointed at.
+// Bright while the last item, which it belongs to, is hovered.
 void draw_fold_sign(ImVec2 at, bool open) {
     const ImU32 colour = packed(ImGui::IsItemHovered() ? theme::text : theme::dim);
     const float side = ImGui::GetFontSize();
@@ -106,7 +106,7 @@ std::string with_spaces(std::string_view text, std::string_view old, std::string
     return result;
 }
 
-// Takes words one by one and breaks them into lines.
+// Breaks words into lines, one word at a time.
 class Lines {
   public:
     explicit Lines(float width) : width_(width) {}
@@ -202,7 +202,7 @@ void tooltip(std::string_view text) {
 
 void wrapped(std::string_view text, std::optional<float> width) {
     const float room = width.value_or(ImGui::GetContentRegionAvail().x);
-    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room); // words that are too long for a line
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + room); // for words too long for a line
     ImGui::TextUnformatted(broken(text, room).c_str());
     ImGui::PopTextWrapPos();
 }
@@ -225,7 +225,7 @@ bool icon_button(const Fonts &fonts, Icon icon, Action action, float width) {
     action_tooltip(action);
     draw_icon(*ImGui::GetWindowDrawList(), icon, {at.x + width / 2, at.y + height / 2},
               height * 0.24f, ImGui::GetColorU32(theme::text));
-    // A comma or a full stop would be lost in the small font.
+    // The small font would make a comma or full stop unreadable.
     const std::string key = shortcut(action);
     const ImFont &font = key.size() == 1 ? *fonts.text : *fonts.small;
     const ImVec2 size = size_of(font, key);
@@ -310,8 +310,8 @@ void value_row(std::string_view what, const std::string &value, const Colour &co
     ImGui::PushStyleColor(ImGuiCol_Text, theme::dim);
     ImGui::TextUnformatted(begin(what), end(what));
     ImGui::PopStyleColor();
-    // What once did not fit beside its label in a panel of this width stands below it from then on:
-    // rows must not jump with the digits of their values.
+    // Once a value did not fit beside its label at this width, it stays below it: rows must not
+    // jump as digits change.
     const float value_left = right - size_of(value).x;
     const ImGuiID row = ImGui::GetID(begin(what), end(what)) + static_cast<ImGuiID>(right);
     bool &is_below = *ImGui::GetStateStorage()->GetBoolRef(row);

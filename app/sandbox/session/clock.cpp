@@ -30,7 +30,7 @@ void StepClock::set_speed(double speed) {
 void StepClock::set_paused(bool paused) {
     if (paused == paused_)
         return;
-    give_up(); // going on, the next step is a whole one away
+    give_up(); // after resuming, the next step is a whole one away
     paused_ = paused;
 }
 

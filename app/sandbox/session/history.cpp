@@ -9,7 +9,7 @@ void History::clear() {
     bytes_ = 0;
 }
 
-// What the next one shares with it stays.
+// Data shared with the next state stays.
 std::unique_ptr<Simulation::Saved> History::forget_oldest() {
     std::unique_ptr<Simulation::Saved> oldest = std::move(states_.front());
     states_.pop_front();
@@ -18,7 +18,7 @@ std::unique_ptr<Simulation::Saved> History::forget_oldest() {
 }
 
 void History::remember(const Simulation &simulation) {
-    // The oldest one's memory is used again.
+    // Reuse the oldest state's memory.
     std::unique_ptr<Simulation::Saved> oldest;
     if (states_.size() == most_states || bytes_ >= memory_limit)
         oldest = forget_oldest();

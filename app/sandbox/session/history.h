@@ -1,4 +1,4 @@
-// The states to step back to.
+// States to step back to.
 #pragma once
 
 #include "engine/scene/simulation.h"
@@ -9,12 +9,12 @@
 
 namespace plumb {
 
-// The states before the last steps, the oldest forgotten first. Of what does not change from one to
-// the next there is one copy: a world at rest takes next to nothing.
+// The states before the last steps; the oldest is dropped first. Data that does not change between
+// consecutive states is stored once: a world at rest takes next to nothing.
 class History {
   public:
-    // The most memory that one history takes, if it holds more than one state, and the most steps
-    // that it remembers.
+    // Limits on the memory of one history (exceeded only by a single state) and on the number of
+    // states.
     static constexpr std::size_t memory_limit = 256u << 20; // bytes
     static constexpr std::size_t most_states = 3600;        // a minute at 60 steps a second
 
@@ -22,14 +22,14 @@ class History {
     [[nodiscard]] std::size_t size() const { return states_.size(); }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
     void remember(const Simulation &simulation);
-    // Takes the simulation one remembered state back. False, and nothing happens, if there is none.
+    // Restores the last remembered state. Returns false and does nothing if there is none.
     bool recall(Simulation &simulation);
 
   private:
     std::unique_ptr<Simulation::Saved> forget_oldest();
 
-    std::deque<std::unique_ptr<Simulation::Saved>> states_; // the newest last
-    std::size_t bytes_ = 0;                                 // of them all
+    std::deque<std::unique_ptr<Simulation::Saved>> states_; // newest last
+    std::size_t bytes_ = 0;                                 // in total
 };
 
 } // namespace plumb

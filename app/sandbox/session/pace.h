@@ -1,14 +1,14 @@
-// How fast pictures come and the world goes, against real time.
+// Frame rate, and simulated time against real time.
 #pragma once
 
 namespace plumb {
 
-// The means over the last whole half second, so that they can be read.
+// Averages over the last whole half second, so that the numbers stay readable.
 class Pace {
   public:
     static constexpr double interval = 0.5; // s of real time
 
-    // A frame took so much real time, and brought the world on by so much; s.
+    // A frame took `real` seconds and advanced the world by `simulated`.
     void add(double real, double simulated) {
         ++frames_;
         real_ += real;

@@ -26,7 +26,7 @@ std::string moment(const Simulation &simulation) {
                      simulation.time());
 }
 
-// "; the fastest is body "ball", at (1, 2, 3)"; empty where nothing moves by itself.
+// "; the fastest is body "ball", at (1, 2, 3)"; empty if nothing moves freely.
 std::string fastest(const Simulation &simulation) {
     const Frame frame = simulation.read();
     const SoftParts &soft = simulation.soft_parts();
@@ -56,7 +56,7 @@ std::size_t pairs_to_follow(const SceneDesc &scene) {
     return count(BodyKind::dynamic) * count(BodyKind::static_body);
 }
 
-// Which contact is the deepest: "; body "box" and body "ground", at (1, 0, 2)".
+// The deepest contact: "; body "box" and body "ground", at (1, 0, 2)".
 std::string deepest(const Simulation &simulation) {
     Frame frame;
     simulation.read(frame, {.contacts = true});
@@ -67,7 +67,7 @@ std::string deepest(const Simulation &simulation) {
            simulation.body_info(found->body_b).name + "\", at " + place(found->position);
 }
 
-// Likewise of joints.
+// The same for joints.
 std::string worst_joint(const Simulation &simulation) {
     Frame frame;
     simulation.read(frame, {.joints = true});
@@ -97,7 +97,7 @@ void TroubleWatch::look_at_energy(const Simulation &simulation) {
     const double energy = simulation.energy();
     if (!(energy > allowed_energy()))
         return;
-    // Of what began near the world's origin, at rest, the scale at the start says little.
+    // For a scene that starts at rest near the origin, the energy scale at the start means little.
     const double excess = energy - allowed_energy();
     if (excess <= tolerated_energy_gain * simulation.measure().kinetic_energy)
         return;

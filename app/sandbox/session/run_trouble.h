@@ -1,4 +1,4 @@
-// Whether the run that is going on has failed, as a stability map would say.
+// Detects whether the current run has failed, by the criteria of a stability map.
 #pragma once
 
 #include "app/lab/map/failing.h"
@@ -19,34 +19,34 @@ struct Trouble {
     std::uint64_t step = 0;
 };
 
-// Looks at each step for what can be seen at hardly any cost: a state that is not finite, energy
-// that grew by more than tolerated_energy_gain, a body that passed through a static body; and
-// now and then for contacts and joints beyond tolerated_depths that stay so.
+// Checks each step for failures that are nearly free to detect (a non-finite state, energy growth
+// beyond tolerated_energy_gain, a body that passed through a static body), and every few steps for
+// contacts and joints that stay beyond tolerated_depths.
 class TroubleWatch {
   public:
-    // Bodies are followed for passages only where so few pairs of one that moves and one that does
-    // not are looked at each step.
+    // Passages are checked each step, and only if there are at most this many pairs of a moving and
+    // a static body.
     static constexpr std::size_t most_pairs = 4096;
-    // After how many steps depths are looked at: that costs about as much as a part of a step. An
-    // impact may be deep for once; what is no less deep two looks later stays so.
+    // Steps between depth checks, each of which costs a fraction of a step. An impact may be deep
+    // for a moment; a depth that is still there two checks later counts as lasting.
     static constexpr std::uint64_t steps_a_look = 16;
     static constexpr std::uint64_t lasting = 2 * steps_a_look;
 
-    // At the start of the run.
+    // Construct at the start of the run.
     TroubleWatch(const SceneDesc &scene, const Simulation &simulation);
 
-    // Before and after each step of that scene; `before`: the state before it; `held`: a person
-    // pulls at a body, perhaps into another.
+    // Call before and after each step of that scene. `before`: the state before it. `held`: the
+    // user is pulling a body, perhaps into another.
     void begin_step(const SceneDesc &scene, const Simulation &simulation);
     void sample(const Simulation &simulation, const Frame &before, bool held);
-    // The step after the present state failed, saying so.
+    // The step after the current state failed, with this message.
     void failed(const Simulation &simulation, const std::string &message);
     // The simulation was restored to an earlier state of this run.
     void go_back(const Simulation &simulation);
-    // Energy that something other than the method has just brought in (J): a shot, a pull.
+    // Energy (J) just added by something other than the method: a shot, a pull.
     void brought_in(const Simulation &simulation, double energy);
 
-    // A state that is not finite, or else the first of the others; gone when the run is taken back
+    // A non-finite state, else the first of the other failures; cleared when the run is taken back
     // to before it.
     [[nodiscard]] const std::optional<Trouble> &trouble() const {
         return divergence_ ? divergence_ : trouble_;
@@ -62,12 +62,12 @@ class TroubleWatch {
     double start_energy_ = 0, energy_scale_ = 0; // J
     struct Brought {
         std::uint64_t step;
-        double energy; // all since the start, J
+        double energy; // total since the start, J
     };
     std::vector<Brought> brought_;
     std::unique_ptr<PassageWatch> passages_;
     ToleratedDepths tolerated_;
-    std::optional<std::uint64_t> deep_from_, adrift_from_; // steps at which that was seen first
+    std::optional<std::uint64_t> deep_from_, adrift_from_; // steps since which that has been so
 };
 
 } // namespace plumb

@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The title's line alone: a list of scenes need not parse them all.
+// Reads only the title line: listing scenes need not parse them all.
 std::string read_title(const fs::path &path) {
-    constexpr std::size_t head_bytes = 1U << 16U; // where a title stands
+    constexpr std::size_t head_bytes = 1U << 16U; // the title must be within these
     std::string head(head_bytes, '\0');
     std::ifstream whole(path, std::ios::binary);
     whole.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -35,7 +35,7 @@ std::string read_title(const fs::path &path) {
     return path.stem().string();
 }
 
-// Whoever names a folder means that one.
+// An explicitly named folder has no fallback.
 fs::path data_dir_from_environment(const fs::path &dir) {
     std::error_code error;
     if (!fs::is_directory(dir / "shaders", error) || !fs::is_directory(dir / "scenes", error))
@@ -84,7 +84,7 @@ std::vector<SceneEntry> find_scenes(const fs::path &scene_dir) {
 
 fs::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &scenes) {
     std::error_code error;
-    // A bare name is a scene's, whatever else is called so in the working directory.
+    // A bare name means a scene, even if the working directory has a file of that name.
     fs::path path(name);
     if ((path.has_parent_path() || path.has_extension()) && fs::exists(path, error))
         return path;

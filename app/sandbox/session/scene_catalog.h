@@ -1,4 +1,4 @@
-// Where the program's data lies, and which scenes there are.
+// Where the program's data is, and which scenes there are.
 #pragma once
 
 #include <filesystem>
@@ -15,15 +15,15 @@ struct SceneEntry {
 };
 
 // The folder that holds `shaders` and `scenes`: PLUMB_DATA from the environment if set, else the
-// installed share/plumb beside the program, else the source tree that it was built from. Throws
-// std::runtime_error, naming all places tried, when there is none.
+// installed share/plumb next to the program, else the source tree it was built from. If there is
+// none, throws std::runtime_error naming all places tried.
 std::filesystem::path find_data_dir();
 
-// All scene files below a folder, by subject and name.
+// All scene files below a folder, sorted by subject and name.
 std::vector<SceneEntry> find_scenes(const std::filesystem::path &scene_dir);
 
-// A scene as a person names it: a path to a file, else a name in the catalogue ("pendulum" or
-// "joints/pendulum"). Throws std::invalid_argument, with the nearest names, when there is neither.
+// Resolves a scene given as a path to a file, else as a name in the catalogue ("pendulum" or
+// "joints/pendulum"). If there is neither, throws std::invalid_argument with the nearest names.
 std::filesystem::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &scenes);
 
 } // namespace plumb

@@ -29,7 +29,7 @@ bool Session::play(const Recording &recording, const std::filesystem::path &path
     recording_ = std::move(kept);
     text_.reset();
     replay_.emplace(*recording_);
-    path_ = std::filesystem::path(path); // it may be path_ itself
+    path_ = std::filesystem::path(path); // `path` may alias path_
     return true;
 }
 
@@ -63,7 +63,7 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
             watch.emplace(*simulation, scene.expects);
         answers_ = std::move(answers);
         watch_ = std::move(watch);
-        history_.clear(); // before the simulation that made it
+        history_.clear(); // its states must go before the simulation that made them
         simulation_ = std::move(simulation);
         replay_.reset();
         replay_outcome_ = ExitCode::fine;
@@ -107,7 +107,7 @@ bool Session::step() {
             return false;
         pull_grabbed();
         is_held = simulation_->grab().has_value();
-        if (is_held) // which may bring energy in
+        if (is_held) // a grab may add energy
             energy_before = simulation_->energy();
         troubles_->begin_step(scene_, *simulation_);
         if (ghost_)
@@ -153,7 +153,7 @@ bool Session::step() {
     return true;
 }
 
-// False at the end, and where the run is not the recorded one.
+// False at the end, or if the run differs from the recording.
 bool Session::obey_replay() {
     const std::string file = path_.filename().string();
     const std::size_t given = replay_->given();
@@ -194,12 +194,12 @@ void Session::leave_recording() {
     messages_.note("From step " + std::to_string(simulation_->step_count()) +
                    " on, this is no longer the recorded run.");
     replay_.reset();
-    has_grabbed_ = true;     // or the recording has
-    if (simulation_->grab()) // nobody will release it
+    has_grabbed_ = true;     // the recording may have
+    if (simulation_->grab()) // nothing else will release it
         apply(ReleaseGrab{});
 }
 
-// The restored state may hold a grab that no pointer holds any more: it is released.
+// The restored state may contain a grab that the pointer no longer holds: release it.
 void Session::let_go_of_all() {
     grab_.reset();
     pulled_to_.reset();
@@ -216,7 +216,7 @@ bool Session::step_back() {
     try {
         if (!history_.recall(*simulation_))
             return false;
-        // Before anything is done to both.
+        // Before commands are applied to both.
         ghost_is_back = !ghost_ || ghost_->go_back();
         if (recorder_)
             recorder_->went_back(*simulation_);
@@ -225,7 +225,7 @@ bool Session::step_back() {
         troubles_->go_back(*simulation_);
         if (disturbed_from_ && simulation_->step_count() < *disturbed_from_)
             disturbed_from_.reset();
-        if (replay_) { // it knows what was chosen then
+        if (replay_) { // the replay knows what was chosen then
             replay_->went_back(*simulation_);
         } else {
             choose_again(method, settings);
@@ -261,7 +261,7 @@ bool Session::set_method(std::string_view name) {
         RunOptions options = options_;
         options.method = std::string(name);
         options.settings.erase_if([](const SettingRow &row) {
-            return row.group != SettingGroup::world; // meant for the method of the command line
+            return row.group != SettingGroup::world; // for the command line's method
         });
         const ResolvedRun run = resolve_run(scene_, options);
         if (const std::string why = why_not(*run.method, scene_); !why.empty())
@@ -428,7 +428,8 @@ void Session::disturb(std::uint64_t first_step) {
     disturbed_from_ = std::min(disturbed_from_.value_or(first_step), first_step);
 }
 
-// New settings stay when steps are taken back: only at its very start is the run all theirs.
+// New settings survive stepping back, so the run is entirely theirs only if changed at its very
+// start.
 void Session::settings_changed() {
     if (simulation_->step_count() > first_step_)
         disturb(first_step_ + 1);

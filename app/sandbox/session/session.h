@@ -1,4 +1,4 @@
-// The scene that is running: opened, stepped, taken back, changed and saved.
+// The running scene: opened, stepped, taken back, changed and saved.
 #pragma once
 
 #include "app/files/output_file.h"
@@ -29,146 +29,144 @@
 
 namespace plumb {
 
-// One value a step.
+// One value per step.
 struct SessionGraphs {
     Graph find_pairs, collide, advance, finish; // s of wall time
     Graph energy;                               // J
 };
 
-// An impact that has just been.
+// A recent impact.
 struct SeenImpact {
     ImpactView impact;
     double age = 0; // s, since the end of its step
 };
 
-// Nothing here throws because of a scene, a file or a setting: what is wrong is said in messages(),
-// and what was running before goes on.
+// Nothing here throws because of a scene, a file or a setting: errors go to messages(), and
+// whatever was running goes on.
 class Session {
   public:
     using Make = std::function<std::unique_ptr<Simulation>(const SceneDesc &, const RunOptions &,
                                                            TaskPool *)>;
-    // `options` hold for every scene that is opened. `tasks` may be null and must outlive the
-    // session.
+    // `options` apply to every scene opened. `tasks` may be null and must outlive the session.
     explicit Session(RunOptions options = {}, TaskPool *tasks = nullptr,
                      Make make = &Simulation::create);
 
-    // False, with the reasons in messages(), if the file is not a scene that can run.
+    // False, with the reasons in messages(), if the file is not a runnable scene.
     bool open(const std::filesystem::path &path);
-    // A scene from elsewhere; `path` is where reload would look, and may be empty. `text` is its
-    // file's, if it is of one.
+    // A scene from elsewhere. `path` is where reload looks, and may be empty. `text` is the scene
+    // file's text, if there is one.
     bool open(const SceneDesc &scene, const std::filesystem::path &path = {},
               std::optional<SceneText> text = {});
-    // A recording's file: the steps that follow do what was done in it, and each state is compared.
-    // There is no step beyond its end, until something else is done to the world: from there on the
+    // Plays a recording: the following steps repeat what was done in it and compare each state. It
+    // cannot be stepped beyond its end unless something else is done to the world; from then on the
     // run is no longer the recorded one.
     bool open_recording(const std::filesystem::path &path);
-    // outside_tolerance when a state was not the recorded one, bad_input when a command could not
-    // be obeyed; a message says where.
+    // outside_tolerance if a state differed from the recording, bad_input if a command could not be
+    // carried out; a message says where.
     [[nodiscard]] ExitCode replay_outcome() const { return replay_outcome_; }
-    // The file again, as it is now. A file that is broken leaves the running scene as it is.
+    // Reads the file again. If it is broken, the running scene stays.
     bool reload();
-    // From the start, with the method and settings now chosen.
+    // Restarts with the current method and settings.
     bool restart();
-    // From the start, with the method and settings of the scene and the command line.
+    // Restarts with the method and settings of the scene and the command line.
     bool restart_as_written();
 
     [[nodiscard]] bool running() const { return simulation_ != nullptr; }
-    // Null if there is no scene.
+    // Null without a scene.
     [[nodiscard]] Simulation *simulation() { return simulation_.get(); }
     [[nodiscard]] const Simulation *simulation() const { return simulation_.get(); }
     [[nodiscard]] const SceneDesc &scene() const { return scene_; }
     [[nodiscard]] const std::filesystem::path &path() const { return path_; }
     [[nodiscard]] const RunOptions &options() const { return options_; }
 
-    // One step. False if there is nothing to step, or if the step failed: a message says what and
+    // One step. False if there is nothing to step or the step failed; then a message says what and
     // where, and the session is stopped.
     bool step();
-    // Back by one remembered step: the state is, bit for bit, what it was, but method and settings
-    // stay as now chosen. False when no more is remembered.
+    // Goes back one remembered step. The state is bit for bit what it was, but the current method
+    // and settings stay. False if no more is remembered.
     bool step_back();
     [[nodiscard]] std::size_t steps_remembered() const { return history_.size(); }
-    // The last step failed; only going back or starting again helps.
+    // The last step failed; only stepping back or restarting helps.
     [[nodiscard]] bool stopped() const { return stopped_; }
 
-    // What has come so far of each of the scene's expectations, in its order: as `check` judges the
-    // run from its start to the present step. Empty for a scene that has only probes.
+    // Outcomes so far of the scene's expectations, in its order, judged as `check` would from the
+    // start of the run to the current step. Empty for a scene with only probes.
     [[nodiscard]] std::vector<ExpectOutcome> expectations() const;
-    // Since when the run has been outside the tolerance of one of them (s); nothing while none is
-    // missed.
+    // Since when (s) the run has missed this expectation; nullopt if it has not.
     [[nodiscard]] std::optional<double> missed_since(std::size_t expectation) const;
-    // How the run has failed: see TroubleWatch.
+    // How the run failed, see TroubleWatch.
     [[nodiscard]] std::optional<Trouble> trouble() const;
-    // Something other than steps has changed the run after its start (another method or setting, a
-    // shot, a grab): the expectations tell of what happened, not of what `check` would say.
+    // Something other than stepping changed the run after its start (another method or setting, a
+    // shot, a grab): the expectations then tell what happened, not what `check` would say.
     [[nodiscard]] bool disturbed() const { return disturbed_from_.has_value(); }
 
-    // The method, with the settings that the scene or else the method has for it.
+    // Switches the method, with the scene's settings for it or else its own defaults.
     bool set_method(std::string_view name);
     bool set_settings(const StepSettings &settings);
 
-    // Of the running scene, to change numbers in: the file's as it was opened, or where there is
-    // none (a recording is none) the scene as it began.
+    // Text of the running scene, to change numbers in: its file as opened, or, if there is none (a
+    // recording counts as none), the scene as it began.
     [[nodiscard]] SceneText scene_text() const;
 
-    // A second simulation by this method beside the first, from the present state; it begins anew
-    // when the run does, and where it is taken back to before it was there. Empty: none. False,
-    // with a message, for a method that cannot run the scene.
+    // Runs a second simulation with this method beside the first, from the current state. It starts
+    // over when the run does, and when the run is taken back to before the ghost existed. Empty: no
+    // ghost. False, with a message, if the method cannot run the scene.
     bool set_ghost(const std::string &method);
-    // Lets a ghost that lags come nearer while nothing is stepped.
+    // Lets a lagging ghost catch up while nothing is stepped.
     void let_ghost_go_on();
     [[nodiscard]] const Ghost *ghost() const { return ghost_ ? &*ghost_ : nullptr; }
 
-    // From the next step on; of a grab that goes on, only the target may change. Nothing: lets go.
+    // Takes effect with the next step. During a grab only the target may change. nullopt releases.
     void grab(const std::optional<GrabView> &grab);
     [[nodiscard]] const std::optional<GrabView> &grabbed() const { return grab_; }
-    // What is held: by that, by the scene as it was saved, or by the recording.
+    // The grab in effect: from grab(), the scene as saved, or the recording.
     [[nodiscard]] std::optional<GrabView> held() const;
-    // False if nothing is held, or as the recording has it.
+    // False if nothing is held, or if the grab belongs to the recording.
     bool let_go();
-    // Adds a ball, kg and m/s, in SI units; its index, or nothing with a message.
+    // Adds a ball (SI units). Returns its index, or nullopt with a message.
     std::optional<std::size_t> shoot(const glm::dvec3 &from, const glm::dvec3 &velocity,
                                      double radius);
 
-    // The scene's probes as they have been moved, and what they are answered.
+    // The scene's probes as moved by the user, and their answers.
     [[nodiscard]] const std::vector<ProbeDesc> &probes() const { return probes_; }
     [[nodiscard]] const std::vector<ProbeAnswer> &answers() const { return answers_; }
-    // See probe_handles. What was expected of the probe at its old place is expected no more; a
-    // restart brings the scene's own places back, and what is expected there.
+    // See probe_handles. Expectations on a moved probe are dropped; a restart restores the scene's
+    // own places and expectations.
     void move_probe(std::size_t probe, std::size_t handle, const glm::dvec3 &place);
 
-    // From the next scene that is opened on, the run that is going on is recorded, from its start
-    // to its present state: what is stepped back over is forgotten, and a restart begins anew.
+    // Starting with the next scene opened, records the current run from its start to its current
+    // state: steps taken back are dropped, and a restart starts the recording over.
     void record() { records_ = true; }
-    // Writes it, and the meshes' files beside it. Throws as OutputFile does, and
-    // std::runtime_error when there is nothing to record.
+    // Writes the recording, and the mesh files beside it. Throws as OutputFile does, and
+    // std::runtime_error if there is nothing to record.
     void write_recording(OutputFile &file) const;
 
-    // Writes the present state as a scene file, as an OutputFile. Makes the folder, and copies the
-    // meshes' files into it; one that has another file of a mesh's name is an error.
+    // Writes the current state as a scene file through OutputFile. Creates the folder and copies
+    // the mesh files into it; a different file of the same name there is an error.
     bool save_scene(const std::filesystem::path &path);
 
-    // Before and after the last step; the same after anything but a step.
+    // States before and after the last step; equal after anything but a step.
     [[nodiscard]] const std::vector<BodyState> &previous_bodies() const { return previous_.bodies; }
     [[nodiscard]] const std::vector<BodyState> &present_bodies() const { return present_.bodies; }
     [[nodiscard]] const std::vector<ParticleState> &previous_particles() const {
         return previous_.particles;
     }
-    [[nodiscard]] const Frame &present() const { return present_; } // joints, contacts left out
-    // Of the last impact_shown seconds, as long as nothing but steps came in between.
+    [[nodiscard]] const Frame &present() const { return present_; } // without joints and contacts
+    // From the last impact_shown seconds; cleared by anything but a step.
     static constexpr double impact_shown = 0.25;
     [[nodiscard]] const std::vector<SeenImpact> &impacts() const { return impacts_; }
     [[nodiscard]] const SessionGraphs &graphs() const { return graphs_; }
-    // Quantities over time, from when they were chosen or the run began, to the present step.
-    // False, with a message, for what there is not.
+    // Quantities over time, from when they were chosen or the run began to the current step. False,
+    // with a message, if the quantity does not exist.
     bool plot(const QuantityName &name);
     void unplot(std::size_t curve);
     [[nodiscard]] const Plots &plots() const { return plots_; }
-    // As a table, as an OutputFile. Makes the folder.
+    // Writes the plots as a table through OutputFile. Creates the folder.
     bool save_plots(const std::filesystem::path &path);
-    // Of the phases of the step that led to the present state; nothing where none did, at a run's
-    // start or after going back: then the simulation's report is empty, too.
+    // Phase times of the step that led to the current state; nullopt at the start of a run or after
+    // going back, when the simulation's report is empty too.
     [[nodiscard]] const std::optional<StepTimes> &times() const { return times_; }
-    // Whether that is why something in messages() failed, once at least.
+    // Whether running out of memory ever caused one of the messages().
     [[nodiscard]] bool memory_ran_out() const { return memory_ran_out_; }
     [[nodiscard]] Messages &messages() { return messages_; }
     [[nodiscard]] const Messages &messages() const { return messages_; }
@@ -197,33 +195,33 @@ class Session {
     Make make_;
     SceneDesc scene_;
     std::filesystem::path path_;
-    std::optional<SceneText> text_; // of scene_
+    std::optional<SceneText> text_; // text of scene_
     std::unique_ptr<Simulation> simulation_;
-    History history_; // saved by simulation_
+    History history_; // states saved by simulation_
     std::optional<ExpectationWatch> watch_;
     std::optional<TroubleWatch> troubles_;
-    std::uint64_t first_step_ = 0;                // of the run
-    std::optional<std::uint64_t> disturbed_from_; // states from this step on
+    std::uint64_t first_step_ = 0;                // first step of the run
+    std::optional<std::uint64_t> disturbed_from_; // states are disturbed from this step on
     std::optional<GrabView> grab_;
-    std::optional<glm::dvec3> pulled_to_; // what the simulation knows of the grab
-    bool has_grabbed_ = false; // in this run, so that an earlier state may hold something
+    std::optional<glm::dvec3> pulled_to_; // grab target the simulation has
+    bool has_grabbed_ = false;            // in this run, so an earlier state may hold something
     bool records_ = false;
-    std::optional<Recorder> recorder_; // of the run that is going on
+    std::optional<Recorder> recorder_; // records the current run
     std::vector<ProbeDesc> probes_;
     std::vector<ProbeAnswer> answers_;
     bool stopped_ = false;
     bool memory_ran_out_ = false;
     Frame previous_;
-    Frame present_; // bodies and impacts
+    Frame present_; // bodies, particles and impacts
     std::vector<SeenImpact> impacts_;
     std::optional<Ghost> ghost_;
-    std::string ghost_method_; // empty: none is wanted
+    std::string ghost_method_; // empty: no ghost
     SessionGraphs graphs_;
     Plots plots_;
     std::optional<StepTimes> times_;
     Messages messages_;
-    std::unique_ptr<const Recording> recording_; // that was opened
-    std::optional<Replay> replay_;               // of it, until something else is done
+    std::unique_ptr<const Recording> recording_; // the one opened
+    std::optional<Replay> replay_;               // replays recording_, until something else is done
     ExitCode replay_outcome_ = ExitCode::fine;
 };
 

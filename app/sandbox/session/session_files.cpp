@@ -1,4 +1,4 @@
-// A session's files: scenes and recordings opened, read again and written.
+// A session's file handling: opening, reloading and writing scenes and recordings.
 #include "app/sandbox/session/session.h"
 
 #include "engine/scene/scene_file.h"
@@ -34,7 +34,7 @@ bool Session::open(const std::filesystem::path &path) {
     SceneFileResult file;
     std::optional<SceneText> text;
     try {
-        if (std::filesystem::is_regular_file(path)) // a pipe can be read but once
+        if (std::filesystem::is_regular_file(path)) // a pipe can only be read once
             text = SceneText{path, text_of(path)};
         file = load_scene(path);
     } catch (const std::bad_alloc &failure) {
@@ -73,14 +73,14 @@ bool Session::reload() {
         messages_.note("This scene has no file to reload.");
         return false;
     }
-    const std::filesystem::path path = path_; // open() assigns it
+    const std::filesystem::path path = path_; // copy: open() assigns path_
     if (!(recording_ ? open_recording(path) : open(path)))
         return false;
     messages_.note("Reloaded " + path.filename().string() + ".");
     return true;
 }
 
-// Brings the files that the scene names along, as it looks for them beside itself.
+// Copies the files the scene refers to: it looks for them in its own folder.
 void Session::save_mesh_files(const std::filesystem::path &folder) const {
     std::set<std::string> names;
     const auto add = [&](const auto &of) {

@@ -7,7 +7,7 @@ namespace plumb {
 
 void give_way_to_others() {
     const sched_param none{};
-    // Where it is refused, the work is done all the same.
+    // If this is refused, the work is done all the same.
     static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_IDLE, &none));
 }
 

@@ -1,4 +1,4 @@
-// Work beside the play, on a thread of its own that gives way to all others.
+// Work on a background thread that yields to all others.
 #pragma once
 
 #include <atomic>
@@ -16,15 +16,16 @@
 
 namespace plumb {
 
-// From now on the calling thread runs only where a processor would be idle.
+// From now on the calling thread only runs when a processor would be idle.
 void give_way_to_others();
-// That thread runs as all do: what is waited for must not wait for others. A system may refuse it.
+// Back to normal scheduling: a thread being waited for must not wait for others. The system may
+// refuse.
 void hurry(std::jthread::native_handle_type thread);
 
-// What is found is published piece by piece, and can be looked at at any time; one work at a time.
+// One job at a time. It publishes results as it goes; they can be read at any time.
 template <typename Result> class Background {
     struct State {
-        std::mutex mutex; // of the two below
+        std::mutex mutex; // guards the two below
         std::shared_ptr<const Result> result;
         std::string failure;
         std::atomic<double> done = 0; // 0..1
@@ -33,17 +34,17 @@ template <typename Result> class Background {
 
   public:
     Background() = default;
-    ~Background() { stop(); } // and waits, also for what was stopped before
+    ~Background() { stop(); } // also waits for earlier, stopped jobs
     Background(Background &&) noexcept = default;
     Background &operator=(Background &&) noexcept = default;
     Background(const Background &) = delete;
     Background &operator=(const Background &) = delete;
 
-    // What the work is given.
+    // The job's interface to its Background.
     class Desk {
       public:
         Desk(State &state, std::stop_token stop) : state_(state), stop_(std::move(stop)) {}
-        // It is to end soon, with what there is.
+        // The job should end soon, with the results it has.
         [[nodiscard]] bool stopped() const { return stop_.stop_requested(); }
         void publish(Result result) {
             auto shared = std::make_shared<const Result>(std::move(result));
@@ -57,7 +58,7 @@ template <typename Result> class Background {
         std::stop_token stop_;
     };
 
-    // What ran before is asked to end, and not waited for. A work that throws has failed, and its
+    // Asks the previous job to end, without waiting for it. A job that throws has failed; the
     // exception's text is kept.
     void start(std::function<void(Desk &)> work) {
         stop();
@@ -66,7 +67,7 @@ template <typename Result> class Background {
         threads_.push_back(
             {state_, std::jthread([work = std::move(work), state = state_](std::stop_token stop) {
                  give_way_to_others();
-                 if (stop.stop_requested()) // meanwhile
+                 if (stop.stop_requested()) // stopped before the thread got this far
                      hurry(pthread_self());
                  Desk desk(*state, std::move(stop));
                  try {
@@ -78,7 +79,7 @@ template <typename Result> class Background {
                  state->running = false;
              })});
     }
-    // Asks it to end, and keeps what it found.
+    // Asks the job to end; its results stay.
     void stop() {
         if (threads_.empty())
             return;
@@ -86,7 +87,7 @@ template <typename Result> class Background {
         if (threads_.back().state->running)
             hurry(threads_.back().thread.native_handle());
     }
-    // And forgets it.
+    // Stops the job and drops its results.
     void clear() {
         stop();
         state_.reset();
@@ -94,7 +95,7 @@ template <typename Result> class Background {
 
     [[nodiscard]] bool running() const { return state_ && state_->running; }
     [[nodiscard]] double done() const { return state_ ? state_->done.load() : 0; }
-    // Of the last that was published; null before.
+    // The latest published result; null before the first.
     [[nodiscard]] std::shared_ptr<const Result> result() const {
         if (!state_)
             return nullptr;
@@ -109,10 +110,10 @@ template <typename Result> class Background {
     }
 
   private:
-    std::shared_ptr<State> state_; // of the last
+    std::shared_ptr<State> state_; // of the latest job
     struct Running {
         std::shared_ptr<State> state;
-        std::jthread thread; // asks and waits when it goes
+        std::jthread thread; // its destructor asks to stop and joins
     };
     std::vector<Running> threads_;
 };

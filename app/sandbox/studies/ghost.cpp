@@ -14,10 +14,10 @@ namespace plumb {
 
 namespace {
 
-// A ghost with a shorter step takes so many for one of the other's, and no more: it must not
-// stall the play.
+// A ghost with a shorter dt takes several steps per step of `beside`, but no more than this: it
+// must not stall the sandbox.
 constexpr int most_steps = 64;
-constexpr double reference_allowance = 8e-3; // s, half of a picture at 60 Hz
+constexpr double reference_allowance = 8e-3; // s, half a frame at 60 Hz
 
 double reference_dt(const Simulation &beside) {
     return beside.settings().dt / 4;

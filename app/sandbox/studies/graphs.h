@@ -1,4 +1,4 @@
-// The last values of a quantity, one for each step, for the graphs.
+// The last values of a quantity, one per step, for the graphs.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace plumb {
 
-// The newest `capacity` values; the oldest is forgotten.
+// Keeps the newest `capacity` values.
 class Graph {
   public:
     static constexpr std::size_t capacity = 240;
@@ -17,7 +17,7 @@ class Graph {
         if (values_.size() > capacity)
             values_.pop_front();
     }
-    // Takes back the newest value; nothing happens if there is none.
+    // Removes the newest value, if any.
     void take_back() {
         if (!values_.empty())
             values_.pop_back();

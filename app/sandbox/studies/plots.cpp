@@ -42,7 +42,7 @@ void Plots::go_back(const Simulation &simulation) {
     for (PlotCurve &curve : curves_)
         while (!curve.samples.empty() && curve.samples.back().step > simulation.step_count())
             curve.samples.pop_back();
-    probe_anew(simulation); // a body may not have been there yet
+    probe_anew(simulation); // a body may not have existed yet
 }
 
 void Plots::add(const Simulation &simulation, const QuantityName &name) {

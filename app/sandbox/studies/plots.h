@@ -1,4 +1,4 @@
-// Quantities of the running scene over time, for the plots: as the lab reads them.
+// Quantities of the running scene over time, for the plots, read as the lab reads them.
 #pragma once
 
 #include "app/lab/run/quantity_probe.h"
@@ -23,31 +23,31 @@ struct PlotSample {
 struct PlotCurve {
     QuantityName name;
     const QuantityInfo *quantity = nullptr;
-    std::deque<PlotSample> samples; // one a step, from when it was chosen or the run began
+    std::deque<PlotSample> samples; // one per step, from when it was chosen or the run began
 };
 
 // The chosen quantities, sampled step by step.
 class Plots {
   public:
-    // Of a curve; its oldest samples are forgotten first. An hour at 60 steps a second.
+    // Per curve; the oldest samples are dropped first. An hour at 60 steps a second.
     static constexpr std::size_t most_samples = 216'000;
 
-    // A run begins, of the same scene or of another: curves begin anew, and those of what there is
-    // not are gone.
+    // A run begins, of the same scene or another: curves start over, and those of quantities that
+    // no longer exist are dropped.
     void start(const Simulation &simulation);
-    // After each step that ended in a finite state.
+    // Call after each step that ended in a finite state.
     void sample(const Simulation &simulation);
     // The simulation was restored to an earlier state of this run.
     void go_back(const Simulation &simulation);
 
-    // What is there already stays as it is. Throws std::invalid_argument for a quantity or body
-    // that there is not.
+    // Does nothing if the curve exists. Throws std::invalid_argument for an unknown quantity or
+    // body.
     void add(const Simulation &simulation, const QuantityName &name);
     void remove(const Simulation &simulation, std::size_t curve);
 
     [[nodiscard]] std::span<const PlotCurve> curves() const { return curves_; }
 
-    // A row for each step that any curve has, a column for each curve, empty where it has none.
+    // One row per step that any curve has, one column per curve; empty where a curve has no sample.
     void write_csv(std::ostream &out) const;
 
   private:
@@ -55,15 +55,15 @@ class Plots {
 
     RunStart start_;
     std::vector<PlotCurve> curves_;
-    std::optional<QuantityProbe> probe_; // of all curves
+    std::optional<QuantityProbe> probe_; // reads all curves
 };
 
-// The quantities that something of this name has: a body, a particle, a spring; without a name,
-// those of the whole scene.
+// The quantities of the body, particle or spring of this name; without a name, those of the whole
+// scene.
 [[nodiscard]] std::vector<const QuantityInfo *> quantities_of(const Simulation &simulation,
                                                               const std::string &name);
 
-// All names that quantities_of knows, in the order of bodies, particles and springs.
+// All names quantities_of knows: bodies, then particles, then springs.
 [[nodiscard]] std::vector<std::string> plot_subjects(const Simulation &simulation);
 
 // "energy", "position.y of ball"

@@ -12,7 +12,7 @@ namespace plumb {
 
 namespace {
 
-// Few enough that a first answer is there soon; the command line takes more.
+// Few, so that a first answer comes soon; the command line takes more.
 constexpr int repeats = 3;
 
 template <typename Wanted>
@@ -88,7 +88,7 @@ RunChoice choice_of(const MethodStudy &study, double x, double y) {
             choice.text.changed.push_back({axis->name, value});
             any_changed = true;
         }
-    if (any_changed) // the map was made of it, so that it is a scene
+    if (any_changed) // the map ran it, so it is a valid scene
         choice.scene =
             parse_scene(choice.text.text, choice.text.path.string(), {}, choice.text.changed).scene;
     return choice;

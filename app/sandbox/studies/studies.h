@@ -1,4 +1,4 @@
-// The chart and the stability map of the running scene, made beside the play.
+// The chart and the stability map of the running scene, made in the background.
 #pragma once
 
 #include "app/lab/chart/chart.h"
@@ -12,7 +12,7 @@
 namespace plumb {
 
 using ChartStudy = Background<SceneChart>;
-// A map of one method, and what its cells ran with but for what is on the axes.
+// A map of one method, and what its cells ran with apart from the values on the axes.
 struct MethodStudy {
     StabilityMap map;
     StepSettings settings;
@@ -20,26 +20,26 @@ struct MethodStudy {
 };
 using MapStudy = Background<MethodStudy>;
 
-// Of all methods that can run the scene, over these sweeps ("substeps=1..16 dt=1/240..1/60"), with
-// the gravity, step and precision of the session's run. Throws std::invalid_argument for sweeps
-// that say nothing.
+// Charts all methods that can run the scene, over these sweeps ("substeps=1..16 dt=1/240..1/60"),
+// with the gravity, step and precision of the session's run. Throws std::invalid_argument for
+// meaningless sweeps.
 void start_chart(ChartStudy &study, const Session &session, const std::string &sweeps);
 
-// Of the running method with the running settings, over two axes as parse_map_axis reads them.
-// Throws std::invalid_argument likewise.
+// Maps the current method with the current settings, over two axes in the syntax of parse_map_axis.
+// Throws std::invalid_argument the same way.
 void start_map(MapStudy &study, const Session &session, const std::string &x, const std::string &y);
 
-// How the running scene is to go on.
+// How to continue the running scene.
 struct RunChoice {
     std::string method;
     StepSettings settings;
-    std::optional<SceneDesc> scene; // begin with this one, in place of the running one
-    SceneText text;                 // of that scene
+    std::optional<SceneDesc> scene; // restart with this scene instead of the running one
+    SceneText text;                 // text of that scene
 };
 
 [[nodiscard]] RunChoice choice_of(const ChartRun &run);
-// The cell's values; numbers of the scene's file take effect from the start of a scene that has
-// them.
+// The cell's values. Values that are numbers in the scene's file take effect by restarting with a
+// scene that has them.
 [[nodiscard]] RunChoice choice_of(const MethodStudy &study, double x, double y);
 
 } // namespace plumb

@@ -1,4 +1,4 @@
-// Bodies: what they are made from, what stays the same while they live, and how they move.
+// Bodies: their definitions, their constant properties, and how they move.
 #pragma once
 
 #include "engine/dynamics/islands/islands.h"
@@ -49,11 +49,11 @@ struct ColliderDef {
     Material material;
     Filter filter;
     bool sensor = false;    // is touched, pushes nothing
-    Real density = Real(0); // kg/m^3; 0: as heavy for its volume as the others
+    Real density = Real(0); // kg/m^3; 0: the default density
 };
 
-// What a body is made from. A dynamic body's mass is `mass`; without one it is that of its
-// colliders' densities. Centre of mass and moments are those of the colliders unless given.
+// What a body is made from. A dynamic body without `mass` gets it from its colliders' densities.
+// Centre of mass and moments come from the colliders unless given.
 struct BodyDef {
     BodyKind kind = BodyKind::dynamic;
     std::vector<ColliderDef> colliders; // at least one; at most 65,535
@@ -61,18 +61,18 @@ struct BodyDef {
     std::optional<Vec3> center_of_mass; // in the body's frame
     std::optional<Vec3> inertia; // kg m^2, about the body's axes through the centre of mass; > 0
     Transform pose;              // of the body's frame
-    std::optional<Transform> mass_pose; // instead of `pose`, to the last bit: centre of mass and
-                                        // principal axes, as of a world that is continued
+    std::optional<Transform> mass_pose; // centre of mass and principal axes, bit-exact, instead of
+                                        // `pose`; for continuing a saved world
     Vec3 velocity{Real(0)};             // of the centre of mass, m/s
     Vec3 angular_velocity{Real(0)};     // rad/s, world
-    // Of the world's axes: which translations, then which rotations, never change.
+    // Which translations, then which rotations, are locked, about the world axes.
     std::array<bool, 6> locked{};
     Real gravity_scale = Real(1);
     Real linear_damping = Real(0);  // 1/s, >= 0: v' = -c v
-    Real angular_damping = Real(0); // 1/s, likewise
+    Real angular_damping = Real(0); // 1/s, >= 0
 };
 
-// One collider as it is in the model: its shape placed in the body's mass frame.
+// A collider in the model: its shape placed in the body's mass frame.
 struct Collider {
     Shape shape;
     std::shared_ptr<const HullMesh> hull;
@@ -81,12 +81,12 @@ struct Collider {
     Material material;
     Filter filter;
     bool sensor = false;
-    // The part of the surface's distance that turning the body does not change: the radius of a
-    // sphere or capsule.
+    // The rounding radius of a sphere or capsule: the part of the surface's distance that turning
+    // the body does not change.
     Real rounding = Real(0);
-    Real extent = Real(0);     // how far turning the body moves its surface at most, a radian (m)
-    Real half_width = Real(0); // half of its least width (m); infinite for surfaces
-    std::uint32_t body = UINT32_MAX; // none: a hole
+    Real extent = Real(0);     // the farthest its surface moves per radian that the body turns (m)
+    Real half_width = Real(0); // half its least width (m); infinite for surfaces
+    std::uint32_t body = UINT32_MAX; // none: an unused slot
     std::uint16_t child = 0;         // which of the body's colliders
 
     bool is_half_space() const { return !surface && std::holds_alternative<HalfSpace>(shape); }
@@ -94,18 +94,19 @@ struct Collider {
 
 inline constexpr std::uint32_t no_body = UINT32_MAX;
 
-// What stays the same while a body lives.
+// What does not change while a body lives.
 struct Body {
     BodyKind kind = BodyKind::static_body;
     bool alive = false;
     std::uint32_t generation = 0;
     std::uint32_t first_collider = 0;
     std::uint32_t collider_count = 0;
-    std::uint32_t collider_room = 0; // of holes behind the first that a successor may use
-    // The centre of mass and the principal axes, in the body's frame. At identity for bodies that
+    std::uint32_t collider_room =
+        0; // including unused slots behind the first that a successor may take
+    // The centre of mass and the principal axes, in the body's frame. The identity for bodies that
     // are not dynamic.
     Transform mass_frame;
-    bool has_mass_frame = false; // it is not the identity
+    bool has_mass_frame = false; // not the identity
     Real mass = Real(0);         // kg; 0 for static and kinematic
     Vec3 inertia{Real(0)};       // kg m^2, principal; 0 for static and kinematic
     Vec3 inv_inertia{Real(0)};   // 1 / inertia, or 0
@@ -116,35 +117,35 @@ struct Body {
     Real angular_damping = Real(0);
 };
 
-// How a body moves: the state of the world, one for each body, in the same order.
+// How a body moves: the world's state, one per body in the same order.
 struct Motion {
     Vec3 position{Real(0)};            // of the centre of mass
     Quat rotation = identity_rotation; // of the principal axes
     Vec3 velocity{Real(0)};            // of the centre of mass
     Vec3 angular_velocity{Real(0)};    // world
 
-    // Of a point at r from the centre of mass (world).
+    // Velocity of a point at r from the centre of mass (world).
     Vec3 velocity_at(const Vec3 &r) const { return velocity + glm::cross(angular_velocity, r); }
 };
 
-// Of the centre of mass and the principal axes.
+// Pose of the centre of mass and the principal axes.
 inline Transform mass_pose(const Motion &motion) {
     return {motion.position, motion.rotation};
 }
 
-// Where a collider's surface is in the world.
+// World pose of a collider's surface.
 inline Transform surface_pose(const Collider &collider, const Motion &motion) {
     return {motion.position + motion.rotation * collider.surface_pose.position,
             motion.rotation * collider.surface_pose.rotation};
 }
 
-// A body as the methods work on it: its motion, and what follows from it. In single precision two
-// cache lines.
+// A body as the methods see it: its motion and what derives from it. Two cache lines in single
+// precision.
 struct alignas(64) SolverBody : Motion {
-    Vec3 inv_mass{Real(0)};    // along the world's axes, which differ where one is locked
+    Vec3 inv_mass{Real(0)};    // along the world axes; they differ where one is locked
     Mat3 inv_inertia{Real(0)}; // world; follows the rotation
     Vec3 moved{Real(0)};       // since the step began (m)
-    Vec3 turned{Real(0)};      // likewise, as a rotation vector (rad, world)
+    Vec3 turned{Real(0)};      // since the step began, as a rotation vector (rad, world)
     bool has_locked_translation = false;
 
     // `impulse` (N s) acts at `r` from the centre of mass, all in world axes.
@@ -159,15 +160,15 @@ struct alignas(64) SolverBody : Motion {
     }
 };
 
-// What moved and turned a body since its step began and its pose, too coarse for it, has not (Kahan
-// 1965): far from the origin, or in many substeps, it would else stand still at a speed that its
-// contacts see, and creep or never rest.
+// Motion since the step began that was rounded off the pose (Kahan 1965). Without it a body far
+// from the origin, or in many substeps, would stand still at a speed that its contacts see, and
+// creep or never come to rest.
 struct RoundedOff {
     Vec3 position{Real(0)};
     Quat rotation{Real(0), Real(0), Real(0), Real(0)};
 };
 
-// Such a body is nowhere, and collides with nothing.
+// A diverged body has no pose and collides with nothing.
 inline bool has_diverged(const Motion &motion) {
     return !is_finite(motion.position) || !is_unit(glm::dot(motion.rotation, motion.rotation));
 }

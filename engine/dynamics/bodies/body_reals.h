@@ -1,4 +1,4 @@
-// Where kernels find what they need of a body.
+// Offsets of a body's values, for the kernels.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -8,12 +8,12 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// `bodies` is the first Real of an array of SolverBody; the others are offsets from where one of
-// them begins, in Reals.
+// `bodies` is the first Real of an array of SolverBody; the rest are offsets in Reals from the
+// start of a SolverBody.
 struct BodyReals {
     Real *bodies = nullptr;
     int position = 0;
-    int rotation = 0; // of its x; w is rotation_w
+    int rotation = 0; // its x; w is at rotation_w
     int rotation_w = 0;
     int velocity = 0;
     int angular_velocity = 0;

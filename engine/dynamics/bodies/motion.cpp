@@ -15,17 +15,17 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The Cayley map of the turn h * spin: the unit quaternion along (1, h spin / 2). Of all maps it is
-// the one under which the midpoint rule keeps the world angular momentum exactly (Austin,
+// The Cayley map of the turn h * spin: the unit quaternion along (1, h spin / 2). It is the only
+// map under which the midpoint rule keeps the world angular momentum exactly (Austin,
 // Krishnaprasad, Wang 1993, "Almost Poisson Integration of Rigid Body Systems", sec. 4).
 Quat cayley(const Vec3 &spin, Real h) {
     const Vec3 v = (Real(0.5) * h) * spin;
     return glm::normalize(Quat{Real(1), v.x, v.y, v.z});
 }
 
-// `v` turned by a quaternion that rounding has left not quite unit, in wide arithmetic: there and
-// back again a vector keeps its length, but for roundings that go either way. Otherwise free spin
-// gains or loses with every substep.
+// Rotates `v` by a quaternion that round-off has left not quite unit, in double precision, so that
+// a round trip keeps the vector's length up to unbiased rounding. Otherwise free spin gains or
+// loses energy with every substep.
 Vec3 turned_to_rounding(const Quat &rotation, const Vec3 &v) {
     const glm::dquat q{rotation};
     const glm::dvec3 axis{q.x, q.y, q.z};
@@ -61,17 +61,17 @@ Vec3 rotation_vector(const Quat &rotation) {
 
 namespace {
 
-// The unit quaternion of a turn: `v`, and by how much its scalar part is less than one.
+// The unit quaternion of a turn: `v`, and one minus its scalar part.
 struct Turn {
     Vec3 v{Real(0)};
     Real less = Real(0);
 };
 
 inline Turn turn_in(const Vec3 &angular_velocity, Real h, Real squared_angle) {
-    // Of half of the angle: its sine by the whole of it.
+    // The sine of half the angle over the angle.
     Real sine = Real(0);
     Real less = Real(0);
-    // Up to here what the series leave out is below rounding.
+    // Below this the terms left out of the series are below rounding.
     constexpr Real near = std::numeric_limits<Real>::digits > 24 ? Real(1e-5) : Real(1e-2);
     if (squared_angle < near) {
         const Real x = Real(0.25) * squared_angle;
@@ -116,8 +116,8 @@ void turn(Motion &motion, RoundedOff &rounded_off, Real h) {
 
 namespace {
 
-// With the same moment about the axes i and j, in that order about k: the spin about k stays, and
-// the midpoint rule turns the rest by Cayley's map.
+// With equal moments about axes i and j (i, j, k in cyclic order): the spin about k stays, and the
+// midpoint rule turns the rest by the Cayley map.
 Vec3 symmetric_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int i, int j, int k) {
     const Real c = Real(0.5) * h * (inertia[i] - inertia[k]) / inertia[i] * spin[k];
     const Real turn = Real(2) * c / (Real(1) + c * c);
@@ -136,15 +136,15 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
     const Vec3 torque =
         h * Vec3{inertia.z - inertia.y, inertia.x - inertia.z, inertia.y - inertia.x};
     const Vec3 half = Real(0.5) * torque;
-    // What is left after a change so small is below rounding: Newton squares it.
+    // After a step this small the error is below rounding: Newton squares it.
     const Real enough = std::numeric_limits<Real>::epsilon() / Real(8) * glm::dot(spin, spin);
-    // The unknown is the small change, so that rounding is small, too.
+    // Solve for the change, which is small and so are its rounding errors.
     Vec3 change{Real(0)};
     for (int i = 0; i < iterations; ++i) {
         const Vec3 mid = spin + Real(0.5) * change;
         const Vec3 residual =
             inertia * change + torque * Vec3{mid.y * mid.z, mid.z * mid.x, mid.x * mid.y};
-        // Rows of d(residual)/d(change); mid depends on the change by one half.
+        // Rows of d(residual)/d(change); mid changes by half the change.
         const Vec3 x{inertia.x, half.x * mid.z, half.x * mid.y};
         const Vec3 y{half.y * mid.z, inertia.y, half.y * mid.x};
         const Vec3 z{half.z * mid.y, half.z * mid.x, inertia.z};
@@ -156,8 +156,8 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
         if (glm::dot(step, step) <= enough)
             break;
     }
-    // Turns of more than a radian need more iterations, and from two on Newton's method may run
-    // away from its root; the energy is kept all the same.
+    // Turns of more than a radian need more iterations, and from two radians on Newton may diverge;
+    // the energy is kept all the same.
     const Vec3 end = spin + change;
     const Real before = glm::dot(inertia * spin, spin);
     const Real after = glm::dot(inertia * end, end);
@@ -168,8 +168,8 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
     return std::isfinite(after) && after > Real(0) ? std::sqrt(before / after) * end : spin;
 }
 
-// With some rotations locked the others turn against the inertia's block of their own axes alone:
-// its inverse, and zeros elsewhere.
+// With some rotations locked, the others turn against the inertia's block for their own axes: the
+// inverse of that block, zeros elsewhere.
 Mat3 solver_inverse_inertia(const Body &body, const Vec3 &inv_inertia, const Quat &rotation) {
     const Mat3 free = world_inverse_inertia(rotation, inv_inertia);
     if (!body.has_locks)
@@ -196,8 +196,8 @@ bool has_gyroscopic_spin(const Body &body) {
 
 namespace {
 
-// v' = g - c v over h, in closed form: what is left of v at the end, and the mean over h of v and
-// of what g adds (with c h -> 0: 1, 1, h / 2 and h).
+// v' = g - c v over h, in closed form: how much of v is left at the end and in the mean over h, and
+// how much g adds to each (with c h -> 0: 1, 1, h / 2 and h).
 struct Damped {
     Real kept = Real(1);        // e^(-c h)
     Real mean_kept = Real(1);   // (1 - e^(-c h)) / (c h)
@@ -209,7 +209,7 @@ Damped strongly_damped(Real rate, Real h) {
     const double x = static_cast<double>(rate) * static_cast<double>(h);
     const double lost = -std::expm1(-x);
     const double mean = lost / x;
-    // (1 - mean) / x for small x by its series, where the difference would cancel.
+    // (1 - mean) / x by its series for small x, where the difference would cancel.
     const double rest = x > 1e-3 ? (1.0 - mean) / x : 0.5 - x / 6.0 + x * x / 24.0;
     return {static_cast<Real>(1.0 - lost), static_cast<Real>(mean),
             static_cast<Real>(mean * static_cast<double>(h)),
@@ -221,15 +221,15 @@ inline Damped damped(Real rate, Real h) {
     return rate == Real(0) ? Damped{Real(1), Real(1), h, Real(0.5) * h} : strongly_damped(rate, h);
 }
 
-// What moves a body on which nothing else acts: the same in each substep of a step. The velocity is
-// on average `mean_kept` of what it was and `mean_gain`; `late_kept` and `late_gain` more at the
-// end.
+// What moves a body on which nothing else acts, the same in each substep of a step. The mean
+// velocity is `mean_kept` times the initial one plus `mean_gain`; by the end `late_kept` and
+// `late_gain` are added.
 struct Drive {
     Real mean_kept = Real(1);
     Real late_kept = Real(0);
     Vec3 mean_gain{Real(0)}; // m/s, by gravity
     Vec3 late_gain{Real(0)};
-    Vec3 gain{Real(0)}; // all of it at once
+    Vec3 gain{Real(0)}; // the whole gain
     Real kept = Real(1);
     Damped angular;
     bool is_dynamic = false;
@@ -323,18 +323,19 @@ inline void move_along(SolverBody &motion, RoundedOff &rounded_off, const Body &
         motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
 }
 
-// Whether the turn is so far that it matters when in a substep impulses act (rad): what lies still
-// is spared the work.
+// Whether a turn (rad) is far enough for the timing of impulses within the substep to matter; saves
+// the work for bodies that barely turn.
 bool turns_far(const Vec3 &spin, Real h) {
     constexpr Real far = Real(1e-3);
     return glm::dot(spin, spin) * (h * h) > far * far;
 }
 
-// Between two halves of a kick the gyroscopic torque is that of the spin that the solver left
+// Between the two half kicks the gyroscopic torque is that of the spin that the solver left
 // (`kick`): the first half of its impulses comes before the torque-free turn, as in RATTLE, and the
-// turn keeps their energy. Added to the mean spin of a turn without them they do work: a top whose
-// foot a joint holds (`is_held`) sinks, and a capsule that spins on a floor gains energy without
-// end. Not of a blow: that comes at once, and half of it there would be as wrong.
+// turn keeps their energy. If added to the mean spin of a turn without them, they would do work: a
+// top whose foot is held by a joint (`is_held`) sinks, and a capsule spinning on a floor gains
+// energy without end. Impacts are excluded: they act in an instant, and half of one there would be
+// just as wrong.
 void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
                Real h, Kick kick, int gyroscopic_iterations, bool is_held) {
     flight.free =
@@ -379,7 +380,7 @@ void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, 
 
 namespace {
 
-// Some microseconds of work.
+// A few microseconds of work.
 constexpr std::size_t bodies_a_part = 64;
 
 } // namespace
@@ -416,7 +417,7 @@ void end_flights(StepContext &context, Real h, Kick kick) {
             move_held(motion, context.scratch.rounded_off[body], context.model.bodies[body],
                       flights[i], h, kick, context.settings.gyroscopic_iterations,
                       !stiffness.empty() && stiffness[body].most > Real(0));
-            if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts off
+            if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts
                 motion.turned = rotation_vector(motion.rotation *
                                                 glm::conjugate(context.starts[body].rotation));
             end_flight(motion, context.model.bodies[body], flights[i], kick);
@@ -430,8 +431,7 @@ void end_flights(StepContext &context, Real h, Kick kick) {
 
 namespace {
 
-// How far a body comes that nothing holds or touches, and how fast it is then: closed forms, for
-// any time.
+// Position and velocity after any time of a body that nothing holds or touches: closed form.
 void fly_along(SolverBody &motion, RoundedOff &rounded_off, const Drive &drive, Real time) {
     const Vec3 mean = drive.mean_kept * motion.velocity + drive.mean_gain;
     const Vec3 way = time * mean;
@@ -439,7 +439,7 @@ void fly_along(SolverBody &motion, RoundedOff &rounded_off, const Drive &drive, 
     go(motion, rounded_off, way);
 }
 
-// What attractors do is half before each substep and half after it. Returns passes over the body.
+// Half of the attractors' pull before each substep, half after. Returns passes over the body.
 int fly_attracted(SolverBody &motion, const Body &body, const Vec3 &gravity,
                   const StepContext &context) {
     const Real h = context.substep();
@@ -453,8 +453,8 @@ int fly_attracted(SolverBody &motion, const Body &body, const Vec3 &gravity,
     return 3 * context.settings.substeps;
 }
 
-// Its turn: about an axis that stays, by closed forms as well; else substep by substep, its spin
-// kept in its own axes meanwhile. Returns passes over the body.
+// Its rotation: closed form about a constant axis, otherwise substep by substep with the spin kept
+// in body axes. Returns passes over the body.
 int turn_alone(SolverBody &motion, const Body &body, const Drive &drive,
                const StepContext &context) {
     const Real h = context.substep();
@@ -495,7 +495,7 @@ void fly_freely(StepContext &context, const Vec3 &gravity) {
             const Body &body = context.model.bodies[moving[i]];
             SolverBody &motion = context.bodies[moving[i]];
             const Drive drive = drive_of(body, gravity, dt);
-            RoundedOff rounded_off; // of one way: dropped
+            RoundedOff rounded_off; // for a single move: dropped
             int own = 1;
             if (is_attracted)
                 own = fly_attracted(motion, body, gravity, context);

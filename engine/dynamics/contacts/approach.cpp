@@ -17,8 +17,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// How far apart two solids are, and along which unit normal from A to B; a
-// distance of 0 has none.
+// The distance between two solids and the unit normal from A to B; there is none at a distance of
+// 0.
 struct Gap {
     Real distance = Real(0);
     Vec3 normal{Real(0)};
@@ -66,8 +66,7 @@ Gap gap_between(const Shape &a, const Shape &b, const Vec3 &guess) {
         b);
 }
 
-// How far the core of a shape reaches along a vector of any length, from the
-// origin of its frame.
+// How far a shape's core reaches along a vector of any length, from the origin of its frame.
 Real core_reach(const Shape &local, const Vec3 &along) {
     return std::visit(
         [&]<typename Solid>(const Solid &solid) -> Real {
@@ -111,14 +110,13 @@ Real rounding_of(const Triangle & /*triangle*/) {
     return Real(0);
 }
 
-// How far a turning solid reaches along a unit vector n, to first order in its
-// turn, and what that leaves out at the most: a point p of its core comes to n
-// . (p + t w x p) = (n + t n x w) . p, and at most (w t)^2 / 2 of its distance
-// from the middle farther.
+// How far a turning solid reaches along a unit vector n, to first order in its turn, plus a bound
+// on what that leaves out: a core point p moves to n . (p + t w x p) = (n + t n x w) . p, and at
+// most (w t)^2 / 2 of its distance from the middle farther.
 template <typename Solid> struct TurningReach {
     const Solid &solid;
     Vec3 along;   // n, in the solid's frame
-    Vec3 turning; // n x w, likewise
+    Vec3 turning; // n x w, in the solid's frame
     Real rounding;
     Real bend;
 
@@ -134,10 +132,9 @@ template <typename Solid> struct TurningReach {
     }
 };
 
-// For how long two solids stay apart along the normal of their gap at t, at the
-// least: what the bound above leaves of their distance is concave in time, so a
-// chord of it never says too much. `left` when they do not come as near as
-// `least` until then; `stays` is set when they stay `enough` apart as well.
+// A lower bound on how long two solids stay apart along the normal of their gap at t: their
+// distance less the reaches above is concave in time, so its chord never says too much. `left` if
+// they do not come as near as `least` until then; `stays` is set if they also stay `enough` apart.
 template <typename B>
 Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real extent_a,
                 const B &b, const Motion &motion_b, Real extent_b, Real t, Real left, Real least,
@@ -163,17 +160,15 @@ Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real
     return time;
 }
 
-// The pair on its way. `gap_after(t, guess)` gives the gap after t seconds, looked for along the
-// guess first;
-// `apart_for(n, t, left, least, stays)` is time_apart.
+// The pair on its way. `gap_after(t, guess)` gives the gap after t seconds, looking along the guess
+// first; `apart_for(n, t, left, least, enough, stays)` is time_apart.
 template <typename GapAfter, typename ApartFor>
 Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Motion &a,
                  Real extent_a, const Motion &b, Real extent_b, Real duration, Real margin,
                  Vec3 guess) {
     const Vec3 velocity = b.velocity - a.velocity;
     const auto straight = [&](const Gap &gap) { return -glm::dot(velocity, gap.normal); };
-    // A point of a turning body at distance r moves along n with at most |n x w|
-    // r.
+    // A point of a turning body at distance r moves along n with at most |n x w| r.
     const auto turning = [&](const Gap &gap) {
         return glm::length(glm::cross(gap.normal, a.angular_velocity)) * extent_a +
                glm::length(glm::cross(gap.normal, b.angular_velocity)) * extent_b;
@@ -184,15 +179,15 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
     Real gap_before = Real(0);
     Approach best{Real(0), std::numeric_limits<Real>::infinity()};
     Real t = Real(0);
-    Real before = Real(0);        // the time of the step before,
-    bool was_approaching = false; // and whether they came nearer then
+    Real before = Real(0);        // time of the previous iteration,
+    bool was_approaching = false; // and whether they were approaching then
     for (int step = 0; step < step_limit; ++step) {
         const Gap gap = gap_after(t, guess);
         guess = gap.normal;
         if (gap.distance <= near * margin)
             return {t, Real(0)};
-        // Hardly nearer than a step ago: they slide or roll along each other, and the bounds, which
-        // know of the whole body's turn, would creep to the touch.
+        // Hardly nearer than an iteration ago: they slide or roll along each other, and the bounds,
+        // which include the whole body's turn, would creep to the touch.
         if (step > 0 && gap.distance <= close * margin && gap.distance > Real(0.5) * gap_before)
             return {t, Real(0)};
         gap_before = gap.distance;
@@ -203,8 +198,7 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
             // The closest point lies between: there the distance stops falling.
             Real low = before;
             Real high = t;
-            // So near that what is left of the approach does not count over the whole
-            // time.
+            // Bisect until what is left of the approach no longer matters over the whole time.
             constexpr int most_cuts = 30;
             for (int cut = 0; cut < most_cuts; ++cut) {
                 const Real middle = Real(0.5) * (low + high);
@@ -226,8 +220,8 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
         was_approaching = closing > Real(0);
         before = t;
         bool stays = false;
-        // Out of the margin, or about as far apart as they are now all along this normal: nothing
-        // that is made of it would push.
+        // Outside the margin, or about as far apart as now all along this normal: a contact made
+        // from it would not push.
         const Real enough = std::min(margin, Real(0.5) * gap.distance);
         const Real apart = apart_for(gap.normal, t, left, Real(0.5) * near * margin, enough, stays);
         if (stays)
@@ -309,7 +303,7 @@ Real half_width(const Shape &local) {
             else if constexpr (std::same_as<Solid, Cylinder>)
                 return std::min(solid.radius, Real(0.5) * glm::distance(solid.a, solid.b));
             else if constexpr (std::same_as<Solid, ConvexHull>) {
-                // From the face planes: the least distance across one of them.
+                // The least distance across the hull from one of its face planes.
                 Real least = std::numeric_limits<Real>::infinity();
                 for (const Plane &plane : solid.mesh->planes) {
                     Real lowest = plane.offset;

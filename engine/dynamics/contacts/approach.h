@@ -1,4 +1,4 @@
-// When two solids that move will touch, or where they come closest.
+// When two moving solids will touch, or where they come closest.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -8,11 +8,11 @@ namespace plumb::inline PLUMB_PRECISION {
 // Where a body is after `t` seconds at its present velocities.
 Motion ahead(const Motion &motion, Real t);
 
-// A solid that goes along with its body: its shape in the body's mass frame.
+// A solid that moves with its body; the shape is in the body's mass frame.
 struct MovingSolid {
     const Shape *shape = nullptr;
-    Motion motion;         // at the start; the velocity is the mean over the time that is asked for
-    Real extent = Real(0); // of the farthest point of its core from the centre of mass (m)
+    Motion motion;         // at the start; the velocity is the mean over the interval
+    Real extent = Real(0); // from the centre of mass to the farthest point of its core (m)
 };
 
 struct Approach {
@@ -21,21 +21,23 @@ struct Approach {
 };
 
 // The first touch of two solids within `duration` (s), both going on at their present velocities,
-// spin included; when they do not touch, where they are closest or, along the normal there, come
-// no nearer than half of their distance; and when they are farther apart than `margin` (m) all the
-// time, some place where they are. Solids that overlap at the start touch at time 0, and those that
-// slide or roll along each other within a twentieth of the margin touch.
+// spin included. If they do not touch: where they are closest or, along the normal there, come no
+// nearer than half of their distance. If they are farther apart than `margin` (m) all the time:
+// some place where they are. Solids that overlap at the start touch at time 0, and solids that
+// slide or roll along each other within a twentieth of the margin count as touching.
 //
-// By conservative advancement (shape_cast.h), with what the spins may add to the speed of approach
-// (Mirtich 1996, 2.3), so nothing is passed through. Two half-spaces are never near each other.
-// `guess`: where b is from a at the start, as far as it is known; it only saves time.
+// By conservative advancement (shape_cast.h), with a bound on what the spins add to the approach
+// speed (Mirtich 1996, 2.3), so nothing is passed through. Two half-spaces are never near each
+// other. `guess`: the direction from a to b at the start, as far as it is known; it only saves
+// time.
 Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
                   const Vec3 &guess = Vec3{Real(0)});
 // The same with a triangle (in the mass frame of its body) in place of the second solid.
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
                   Real duration, Real margin, const Vec3 &guess = Vec3{Real(0)});
 
-// The distance of the farthest point of a shape's core from the origin: of what turning moves.
+// The distance from the origin to the farthest point of a shape's core, the part that turning moves
+// (m).
 Real core_extent(const Shape &local);
 // Half of the least width of a shape (m); infinite for a half-space.
 Real half_width(const Shape &local);

@@ -13,14 +13,14 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Of the width of the smaller body: the farthest that speculative_distance and kept_travel go: a
-// margin that is small for a crate may be more than the thickness of a match.
+// The farthest that speculative_distance and kept_travel go, as shares of the smaller body's width:
+// a margin that is small for a crate may be more than the thickness of a match.
 constexpr Real speculative_share = Real(0.2);
 constexpr Real kept_share = Real(0.05);
 
-// What the solver remembered, point by point of the same features. What points bore that are gone
-// is shared out among those that are new, so that a rocking box keeps its load while its corners
-// pass from one edge to the next.
+// Carries the solver's impulses over to the points with the same feature ids. Those of lost points
+// are shared among the new ones, so that a rocking box keeps its load while its corners pass from
+// one edge to the next.
 void carry_over(std::span<const PointMemory> from, Contact &to) {
     std::array<bool, 4> found{};
     Vec3 lost{Real(0)};
@@ -69,7 +69,7 @@ bool touches(const Manifold &manifold) {
     return false;
 }
 
-// What rolls on a rim stands on it where it will in the middle of the step; `half_turn`: of a
+// A body that rolls on a rim stands where it will in the middle of the step; `half_turn`: of a
 // against b.
 void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn,
                Manifold &manifold) {
@@ -80,7 +80,7 @@ void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn
         lead_along_rim(manifold, *solid, a, -normal, -half_turn);
 }
 
-// Those in the middle of the step and at its end.
+// The corners for the middle of the step and for its end.
 void add_next_corners(const Shape &a, const Shape &b, const Vec3 &half_turn, Manifold &manifold) {
     const Vec3 normal = manifold.normal;
     for (const Real share : {Real(1), Real(2)}) {
@@ -91,15 +91,15 @@ void add_next_corners(const Shape &a, const Shape &b, const Vec3 &half_turn, Man
     }
 }
 
-// How far two solids go against each other in a step before it matters that they turn around each
-// other on the way: their distance then changes by way^2 / (2 width).
+// How far two solids move against each other in a step before their turning around each other on
+// the way matters: their distance then changes by way^2 / (2 width).
 Real predicted_from(const Collider &a, const Collider &b) {
     return Real(0.02) * std::min(a.half_width, b.half_width);
 }
 
 } // namespace
 
-// How far apart the two may be and still meet within the step although they do not move: what
+// How far apart two colliders may be and still meet within the step although they do not move: what
 // gravity adds, and a little. Two bodies that feel the same gravity fall together.
 Real World::contact_reach(const Candidate &candidate) const {
     const auto dt = static_cast<Real>(settings_.dt);
@@ -110,7 +110,7 @@ Real World::contact_reach(const Candidate &candidate) const {
            glm::length(falling) * dt * dt;
 }
 
-// The least width of what moves by forces of the two.
+// The least width of the pair's colliders on dynamic bodies.
 Real World::moving_width(const Candidate &candidate) const {
     Real width = std::numeric_limits<Real>::infinity();
     for (const auto &[body, collider] : {std::pair{candidate.key.a, candidate.collider_a},
@@ -120,7 +120,8 @@ Real World::moving_width(const Candidate &candidate) const {
     return width;
 }
 
-// How far apart the two may be and still meet within the step; NaN when they are about to diverge.
+// How far apart the two colliders may be and still meet within the step; NaN if they are about to
+// diverge.
 Real World::contact_margin(const Candidate &candidate) const {
     const ColliderReach &a = scratch_.reach[candidate.collider_a];
     const ColliderReach &b = scratch_.reach[candidate.collider_b];
@@ -129,9 +130,9 @@ Real World::contact_margin(const Candidate &candidate) const {
            b.turning;
 }
 
-// Where between the two surfaces a contact acts: -1 on a's, 1 on b's, 0 midway. On that of a body
-// which moves by forces, where the other does not, so that a ball rolls on its own radius though
-// it sinks in a little.
+// Where between the two surfaces a contact acts: -1 on a's, 1 on b's, 0 midway. On the dynamic
+// body's if the other is not dynamic, so that a ball rolls on its own radius even if it sinks in a
+// little.
 Real World::acting_side(const ContactKey &key) const {
     const bool a_moves = model_->bodies[key.a].kind == BodyKind::dynamic;
     const bool b_moves = model_->bodies[key.b].kind == BodyKind::dynamic;
@@ -140,11 +141,11 @@ Real World::acting_side(const ContactKey &key) const {
 
 namespace {
 
-// The part of a surface's distance along a normal that rolling on it does not change: the radius of
-// a ball or capsule. Of a cylinder on its side, or on a rim up to 53 degrees from that: from its
-// axis, along the normal. What is left of the way to the middle lies on the axis then, and rolling
-// does not move it; a coin that leans would else sink in as it rolls, be pushed out, and gain
-// energy.
+// The part of a surface's distance along a normal that rolling does not change: the radius of a
+// ball or capsule. For a cylinder on its side, or on a rim up to 53 degrees from that, it is the
+// distance from its axis along the normal. The rest of the way to the middle then lies on the axis,
+// and rolling does not move it; otherwise a leaning coin would sink in as it rolls, be pushed out,
+// and gain energy.
 Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal) {
     const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
     if (cylinder == nullptr || collider.surface)
@@ -154,7 +155,7 @@ Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &
                                             : Real(0);
 }
 
-// Once its origin is known.
+// Needs the contact's origin.
 void set_rounding(Contact &contact, const Model &model) {
     const ContactOrigin &origin = contact.origin;
     contact.rounding_a =
@@ -181,7 +182,7 @@ Contact &World::begin_contact(const Candidate &candidate, std::uint32_t triangle
     return contact;
 }
 
-// Of a point of the manifold, which was found with the bodies so.
+// Sets the anchor of a manifold point, which was found with the bodies at `a` and `b`.
 void World::set_anchor(Contact &contact, std::size_t k, const Motion &a, const Motion &b) const {
     const Vec3 &normal = contact.manifold.normal;
     const ManifoldPoint &point = contact.manifold.points[k];
@@ -199,9 +200,10 @@ void World::set_anchor(Contact &contact, std::size_t k, const Motion &a, const M
     anchor.arm_b += side * half * normal;
 }
 
-// Whether its island takes the fewest substeps and asks for more: it is too large for its budget.
+// Whether the body's island takes the fewest substeps and asks for more: it is too large for its
+// budget.
 bool World::is_crowded(std::uint32_t body) const {
-    const Pace &pace = state_.paces[body]; // no substeps: nothing is chosen
+    const Pace &pace = state_.paces[body]; // no substeps: none are chosen
     return pace.substeps == settings_.substeps && pace.wanted > pace.substeps;
 }
 
@@ -218,10 +220,10 @@ Real Contact::way_round(bool of_a, const Vec3 &turn) const {
 }
 
 // A coin that leans, a ball with a heavy side, a plank on a barrel: with arms and normal held for
-// the step they would be driven apart along the tangents, and swing ever wider. In a crowd that
+// the step they would be driven apart along the tangents and swing ever wider. In a crowd that
 // costs more than it is worth.
 Rolling World::rolling_of(const Contact &contact) const {
-    constexpr Real much = Real(0.1); // of an arm, in a step: too far to say beforehand
+    constexpr Real much = Real(0.1); // of an arm, in a step: too far to predict
     const bool is_a = contact.rounding_a > Real(0);
     const bool is_b = contact.rounding_b > Real(0);
     const auto is_alone = [&](std::uint32_t body) {
@@ -230,7 +232,8 @@ Rolling World::rolling_of(const Contact &contact) const {
     if ((!is_a && !is_b) || !method_->info.looks_ahead ||
         (!is_alone(contact.key.a) && !is_alone(contact.key.b)))
         return Rolling::straight;
-    // What strikes another in space and slides past does not roll, nor what bounces off a wall.
+    // Frictionless bodies that hit in space and slide past each other do not roll, nor do those
+    // that bounce off a wall.
     if (contact.friction == Real(0) &&
         (contact.restitution > Real(0) || (is_alone(contact.key.a) && is_alone(contact.key.b))))
         return Rolling::straight;
@@ -294,7 +297,7 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
                    contact);
 }
 
-// A step that is tried again begins as it began before: with what the last step left.
+// A step that is tried again begins as before, with the impulses that the last step left.
 void World::recall_impulses() {
     Scratch &s = scratch_;
     constexpr std::size_t contacts_a_part = 256;
@@ -310,7 +313,7 @@ void World::recall_impulses() {
     });
 }
 
-// Whether a body's loads ask for more substeps than its island has: its contacts are softer then
+// Whether a body's loads ask for more substeps than its island has: its contacts are then softer
 // than they should be. With far too few it sinks in and does not stand at all.
 bool World::gets_too_few_substeps(std::uint32_t body) const {
     constexpr int far_too_few = 10; // times: contacts are 100 times as deep as they should be
@@ -318,12 +321,12 @@ bool World::gets_too_few_substeps(std::uint32_t body) const {
     return pace.wanted > pace.substeps && pace.wanted < far_too_few * pace.substeps;
 }
 
-// While two bodies have hardly moved against each other since their manifold was found, it stays:
-// normal and lever arms as they were, separations following the poses. That saves finding it again,
-// and it makes the contact linear about the poses where it was found: without it a column of
-// contacts, each as soft as the step lets it be, buckles under its own weight. After Box3D (Catto),
-// which names PhysX's persistent manifolds as the source. Contacts that are softer than they should
-// be buckle sooner, and are kept longer: a pyramid of base 100 falls after 10 s without that.
+// While two bodies have hardly moved against each other since their manifold was found, it is kept:
+// normal and lever arms stay, separations follow the poses. That saves finding it again, and makes
+// the contact linear about the poses where it was found: otherwise a column of contacts, each as
+// soft as the step lets it be, buckles under its own weight. After Box3D (Catto), which names
+// PhysX's persistent manifolds as the source. Contacts that are softer than they should be buckle
+// sooner, and are kept longer: without that a pyramid of base 100 falls after 10 s.
 bool World::keep_contact(const Candidate &candidate, const ContactMemory *before,
                          std::vector<Contact> &out) const {
     if (before == nullptr || before->point_count < 2)
@@ -342,7 +345,7 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
                         std::sqrt(arm_a) * turn_between(origin.rotation_a, motion_a.rotation) +
                         std::sqrt(arm_b) * turn_between(origin.rotation_b, motion_b.rotation);
     const auto usual = static_cast<Real>(settings_.kept_travel);
-    // A full face has no corners that were left out and could come to touch.
+    // A full face has no omitted corners that could come to touch.
     const bool stays_longer =
         before->point_count == 4 && way_of(candidate) <= usual &&
         (gets_too_few_substeps(candidate.key.a) || gets_too_few_substeps(candidate.key.b));
@@ -392,13 +395,13 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
     return false;
 }
 
-// How far one of two bodies turns against the other in half a step.
+// How far a turns against b in half a step.
 Vec3 World::half_turn_of(const Candidate &candidate) const {
     return (Real(0.5) * static_cast<Real>(settings_.dt)) *
            (going(candidate.key.a).angular_velocity - going(candidate.key.b).angular_velocity);
 }
 
-// Whether one of the two rolls on a rim, on which it will be lower than where it stood.
+// Whether either body rolls on a rim and will get lower there than where it stood.
 bool World::rolls_off(const Candidate &candidate, const ContactOrigin &origin) const {
     constexpr Real much = Real(1e-6); // of its width
     const Collider &a = model_->colliders[candidate.collider_a];
@@ -412,7 +415,7 @@ bool World::rolls_off(const Candidate &candidate, const ContactOrigin &origin) c
                         -origin.normal, -half_turn) > much * b.half_width;
 }
 
-// Whether a hull rolls off the points of its contact, onto corners that this does not have.
+// Whether a hull rolls off its contact's points onto corners that the contact does not have.
 bool World::misses_corner(const Candidate &candidate, const Manifold &manifold) const {
     constexpr Real much = Real(1e-6); // of its width
     const auto misses = [&](std::uint32_t collider, const Vec3 &out, const Vec3 &turn) {
@@ -505,7 +508,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         });
 }
 
-// Manifolds of all candidates, with the impulses of those that were contacts before.
+// Manifolds of all candidates, with the impulses of known contacts.
 void World::collide() const {
     Scratch &s = scratch_;
     // About 20 microseconds of work in a part: enough to pay for handing it out.

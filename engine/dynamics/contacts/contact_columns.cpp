@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t colours = 64;
 constexpr std::uint32_t most_points = 4;
-// What finds no colour is solved alone.
+// Contacts that find no free colour are solved one by one.
 constexpr std::uint32_t alone = colours * most_points;
 
 bool is_dynamic(const StepContext &context, std::uint32_t body) {
@@ -33,15 +33,15 @@ void set(ColumnsSymmetric &columns, std::size_t lane, const Mat3 &m) {
     columns.yz.lanes[lane] = m[2][1];
 }
 
-// The first colour that neither body has a contact of. The order is that of the contacts' keys, so
-// the colours depend on nothing but the state.
+// Gives each contact the first colour that neither body has a contact of. The order is that of the
+// contacts' keys, so the colours depend only on the state.
 void colour(StepContext &context) {
     ContactSchedule &schedule = context.scratch.schedule;
     schedule.lanes.clear();
     schedule.bucket_sizes.assign(alone + 1, 0);
     schedule.colours_of_body.assign(context.bodies.size(), 0);
-    // Those with what cannot be pushed take later colours than all others: then nothing is left
-    // going into a wall by what pushes it there.
+    // Contacts with immovable bodies take later colours than all others, so that nothing is left
+    // moving into a wall by the contacts that push it there.
     std::uint64_t of_others = 0;
     std::uint64_t used = 0;
     const std::vector<std::uint32_t> &active = context.active.contacts;
@@ -73,16 +73,16 @@ void colour(StepContext &context) {
     }
 }
 
-// Whether it is one point of a pair that touches nothing else and does not bounce: it is found anew
-// in each substep (find_again). What bounces has been answered where it struck; balls, of whose
-// blows the parts before and after the touch balance, are turned by friction alone.
+// Whether it is the single point of a pair that touches nothing else and does not bounce: such a
+// contact is found again in each substep (find_again). Bouncing contacts were resolved at impact.
+// Between balls the impulses before and after the touch cancel, so only friction turns them.
 bool is_found_again(const StepContext &context, const Contact &contact) {
     return contact.manifold.count == 1 && contact.restitution == Real(0) &&
            are_lone(context, contact) && !are_balls(context, contact);
 }
 
 // Whether two bodies spin flat on each other: about the contact normal, and too fast for friction
-// to stop within a step or so. While a body tips, the load moves to other points from one substep
+// to stop within a step or so. While a body tips, its load moves to other points from one substep
 // to the next.
 bool spin_flat(const StepContext &context, const Contact &contact) {
     constexpr Real slow = Real(0.25), flat = Real(0.125);
@@ -104,12 +104,12 @@ bool spin_flat(const StepContext &context, const Contact &contact) {
     return along * along * squared > speed * speed;
 }
 
-// By how much the lever arms of friction are shortened where bodies spin on each other. Contact
-// points lie on the outline of the contact patch; under an even pressure friction acts closer to
-// the centre and slows a spin less. The ratio is the mean distance of the patch from its centre
-// over that of the outline's corners: 1/2 for a line, 2/3 for a disc, and (sqrt(2) + ln(1 +
-// sqrt(2))) / (3 sqrt(2)) = 0.541 for a square. For rectangles of aspect ratio x it grows from 1/2
-// to that roughly as x (2 - x). 1 without spin, when friction does not slide.
+// How much friction's lever arms are shortened where bodies spin on each other. Contact points lie
+// on the outline of the contact patch; under even pressure friction acts closer to the centre and
+// slows a spin less. The ratio is the mean distance of the patch from its centre over that of the
+// outline's corners: 1/2 for a line, 2/3 for a disc, and (sqrt(2) + ln(1 + sqrt(2))) / (3 sqrt(2))
+// = 0.541 for a square. For rectangles of aspect ratio x it grows from 1/2 to that roughly as x (2
+// - x). 1 without spin, when friction does not slide.
 Real spread_of(const StepContext &context, const Contact &contact) {
     constexpr Real line = Real(0.5), square = Real(0.541), disc = Real(2) / Real(3);
     const auto count = static_cast<std::size_t>(contact.manifold.count);
@@ -219,8 +219,8 @@ template <class Use> void for_colours(StepContext &context, Use &&use) {
     for_colours(context.tasks, std::span(schedule.blocks), schedule.colour_ends, use);
 }
 
-// The separation of a point along the present normal when the step began, on top of which comes
-// what the bodies moved since.
+// Sets a point's separation along the present normal at the start of the step; the bodies' motion
+// since then is added to it.
 void set_start_separation(const StepContext &context, ContactBlock &block, std::size_t lane,
                           std::size_t k) {
     const Contact &contact = context.contacts[block.contacts[lane]];
@@ -233,8 +233,8 @@ void set_start_separation(const StepContext &context, ContactBlock &block, std::
         (block.rounding_a.lanes[lane] + block.rounding_b.lanes[lane]);
 }
 
-// Normal, tangents and arms of one contact as they are t seconds from now; and its separation along
-// that normal when the step began, on top of which comes what the bodies moved since.
+// Normal, tangents and arms of one contact as they are t seconds from now, and its separation along
+// that normal at the start of the step; the bodies' motion since then is added to it.
 void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
     const Contact &contact = context.contacts[block.contacts[lane]];
     const Motion a = ahead(context.bodies[contact.key.a], t);
@@ -254,7 +254,7 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
         Vec3 arm_a = on_a + (Real(1) + side) * half;
         Vec3 arm_b = on_b - (Real(1) - side) * half;
         if (contact.rolling == Rolling::on_face &&
-            contact.turns_with_b) // what rolls takes the point along
+            contact.turns_with_b) // the rolling body takes the point along
             arm_b = arm_a + (a.position - b.position);
         else if (contact.rolling == Rolling::on_face)
             arm_a = arm_b + (b.position - a.position);
@@ -275,7 +275,7 @@ Real remembered_share(const ContactBlock &block, std::size_t lane) {
     return sum > most ? most / sum : Real(1);
 }
 
-// As the kernels have it between substeps (warm_start_impl).
+// The same as in the kernels between substeps (warm_start_impl).
 Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane, Real kept) {
     Vec3 impulse = get(point.impulse, lane);
     const Real relaxed = impulse.x - point.remembered.x.lanes[lane];
@@ -291,10 +291,10 @@ bool any_has_turned_far(const StepContext &context) {
     });
 }
 
-// Whether a body has turned so far since the step began that its corners are elsewhere: what a
-// substep of a fast one makes of their arms. A thin one, sooner: along an arm that has turned by t
-// against a stick, K grows by about 3 t^2 / m times its largest over its least inertia, and passes
-// with the mass of the step's start would push ever harder.
+// Whether a body has turned so far since the step began that its corners, and its lever arms, are
+// elsewhere, as a fast body does in a substep. Thin bodies get there sooner: along an arm that has
+// turned by t against a stick, K grows by about 3 t^2 / m times its largest over its least inertia,
+// and passes with the mass from the start of the step would push ever harder.
 bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces) {
     constexpr Real far = Real(0.2);
     constexpr Real share = Real(0.1);
@@ -305,15 +305,15 @@ bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces
     const Vec3 &inertia = context.model.bodies[body].inertia;
     const Real least = std::min({inertia.x, inertia.y, inertia.z});
     const Real most = std::max({inertia.x, inertia.y, inertia.z});
-    // What bounces has been answered where it struck; but a thin one cannot be left so.
+    // Bouncing contacts were resolved at impact, but thin bodies cannot be left like that.
     if (bounces && least > Real(0.25) * most)
         return false;
     return squared > std::min(far * far, share * least / most);
 }
 
-// What rolls, and whose core is not its middle: a coin that leans, a ball with a heavy side. That
-// goes around the middle, and the arms with it. Held for the step, they would drive it along the
-// tangent, outward, and it would gain energy.
+// Whether a rolling body's core is not at its middle and goes around it: a coin that leans, a ball
+// with a heavy side. The arms go around with it. Held for the step, they would drive the core along
+// the tangent, outward, and the body would gain energy.
 bool goes_round(const StepContext &context, const Contact &contact, bool of_a) {
     const std::uint32_t body = of_a ? contact.key.a : contact.key.b;
     const Real rounding = of_a ? contact.rounding_a : contact.rounding_b;
@@ -334,7 +334,7 @@ bool has_other_arms(const StepContext &context, const Contact &contact) {
            (has_other_arms(context, contact, true) || has_other_arms(context, contact, false));
 }
 
-// Where a point is on two bodies as they are now: on the surface of the one that has turned.
+// A point's arms on both bodies at the present poses: on the surface of the one that has turned.
 struct Arms {
     Vec3 a;
     Vec3 b;
@@ -353,9 +353,9 @@ Arms present_arms(const StepContext &context, const Contact &contact, std::size_
     return {arm + between, arm};
 }
 
-// The one point of a contact as it is now: what slides round an edge, or rolls on one, is borne
-// along another normal and elsewhere on both bodies, and with those of the step's start it would
-// sink in and take angular momentum from nowhere.
+// Finds a contact's one point at the present poses. A body that slides round an edge, or rolls on
+// one, is supported along another normal and elsewhere on both bodies; with those from the start of
+// the step it would sink in and take angular momentum from nowhere.
 void find_again(StepContext &context, ContactBlock &block, std::size_t lane) {
     const Contact &contact = context.contacts[block.contacts[lane]];
     const SolverBody &a = context.bodies[contact.key.a];
@@ -387,8 +387,8 @@ void find_again(StepContext &context, ContactBlock &block, std::size_t lane) {
     set_start_separation(context, block, lane, 0);
 }
 
-// Takes back what pushed the two apart, with the arms and the normal by which it was given, and
-// sets the rest aside (recall_borne): by others it would do work.
+// Takes back the impulse that pushed the bodies apart, with the arms and normal it was applied
+// with, and sets the rest aside (recall_borne): with other arms and normals it would do work.
 void take_back_push(StepContext &context, ContactBlock &block, std::size_t lane) {
     const Contact &contact = context.contacts[block.contacts[lane]];
     ContactBlock::Point &point = block.points[0];
@@ -407,7 +407,7 @@ void take_back_push(StepContext &context, ContactBlock &block, std::size_t lane)
     set(point.impulse, lane, Vec3{Real(0)});
 }
 
-// Lanes whose point is found again. Where the two have not met yet, what was found is where they
+// Lanes whose point is found again. Where the bodies have not met yet, the point stays where they
 // will.
 unsigned take_back_pushes(StepContext &context, ContactBlock &block) {
     unsigned lanes = 0;
@@ -423,7 +423,7 @@ unsigned take_back_pushes(StepContext &context, ContactBlock &block) {
     return lanes;
 }
 
-// Arms and inertias of a lane as the bodies are now.
+// Sets a lane's arms and inertias to those of the present poses.
 void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
     const Contact &contact = context.contacts[block.contacts[lane]];
     set(block.inv_inertia_a, lane, context.bodies[contact.key.a].inv_inertia);
@@ -441,8 +441,8 @@ void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
 
 } // namespace
 
-// What rides on a turntable is turned by friction all the time. With the arms of the step's start
-// it would be turned all at once, in the first substep, and friction cannot hold that.
+// Friction turns a rider on a turntable all the time. With the arms from the start of the step it
+// would be turned all at once, in the first substep, and friction cannot hold that.
 void turn_contact_columns(StepContext &context, Real t) {
     if (!context.scratch.schedule.any_turning)
         return;
@@ -497,7 +497,7 @@ void rearm_contact_columns(StepContext &context) {
             kernels::finish(std::span(&block, 1));
         }
     });
-    // And of their impacts: what these do not see coming, the passes would stop for good.
+    // Their impacts, too: the passes would stop for good whatever the impacts do not see coming.
     for (ContactConstraint &struck : context.scratch.contacts) {
         const Contact &contact = context.contacts[struck.contact];
         if (!has_other_arms(context, contact))
@@ -510,7 +510,7 @@ void rearm_contact_columns(StepContext &context) {
     }
 }
 
-// What was borne by other arms and normals is remembered with the rest.
+// Impulses applied with other arms and normals are remembered with the rest.
 void recall_borne(StepContext &context) {
     for (const ContactSchedule::Borne &one : context.scratch.schedule.borne) {
         ContactBlock::Point &point = one.block->points[0];
@@ -556,7 +556,7 @@ void prepare_contact_columns(StepContext &context) {
     if (context.active.contacts.empty())
         return;
     colour(context);
-    // A bucket's blocks come in order; the last bucket's have one lane each.
+    // Each bucket's blocks are contiguous; those of the last bucket have one lane each.
     constexpr auto width = static_cast<std::uint32_t>(column_lanes);
     std::uint32_t block_count = 0;
     std::vector<std::uint32_t> &next = schedule.bucket_sizes; // becomes: the bucket's next lane
@@ -581,7 +581,7 @@ void prepare_contact_columns(StepContext &context) {
         const std::uint32_t *contact =
             schedule.contacts.data() + (blocks.data() - schedule.blocks.data()) * width;
         for (ContactBlock &block : blocks) {
-            // Lanes that are not used, and points that a lane does not have, are zeros: of no mass.
+            // Unused lanes, and points that a lane does not have, are zeros: no mass.
             block = ContactBlock{};
             for (std::uint32_t lane = 0; lane < width; ++lane, ++contact)
                 if (*contact != none)

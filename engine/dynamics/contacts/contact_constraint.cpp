@@ -210,7 +210,7 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
             const int k = bias.backwards ? contact.count - 1 - i : i;
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];
             const Real separation = point.separation;
-            Real target = Real(0); // velocity to be added to the relative normal velocity
+            Real target = Real(0); // bias added to the relative normal velocity
             Real mass_scale = Real(1);
             Real impulse_scale = Real(0);
             if (separation > Real(0)) {
@@ -269,7 +269,7 @@ void restitute(StepContext &context, Real threshold) {
         SolverBody &a = context.bodies[contact.a];
         SolverBody &b = context.bodies[contact.b];
         bool bounced = false;
-        std::array<Real, 4> normal_impulse{}; // of all of the step
+        std::array<Real, 4> normal_impulse{}; // over the whole step
         for (int k = 0; k < contact.count; ++k) {
             const auto index = static_cast<std::size_t>(k);
             ContactPointConstraint &point = contact.points[index];

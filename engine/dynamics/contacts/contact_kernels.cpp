@@ -1,11 +1,11 @@
-// What soft_step does with a block of contacts. Compiled once for each instruction set, by
-// including itself. Nothing here is fused or reordered by width: each lane sees the same
-// operations whatever the processor.
+// What soft_step does with a block of contacts. Compiled once per instruction set, by including
+// itself. Nothing here is fused or reordered by width: each lane sees the same operations whatever
+// the processor.
 #include "engine/dynamics/contacts/contact_columns.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/dynamics/contacts/contact_kernels.cpp"
-// Vectors of unknown size cannot stand in structs.
+// Vectors of unknown size cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #include <hwy/foreach_target.h>
 #include <limits>
@@ -24,7 +24,8 @@ using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
 using Mask = hn::Mask<decltype(tag)>;
 constexpr int new_sweeps = 8;
 constexpr int most_rubs = 4;
-// Of struck_speed: contacts that close or part faster are solved as a whole before their points.
+// As a share of struck_speed: contacts that close or part faster are solved as a whole before their
+// points.
 constexpr Real even_share = Real(1) / Real(20);
 
 // 1 / x, or 0 where x is not positive.
@@ -90,7 +91,7 @@ HWY_INLINE Turns turns(const Vector &r_a, const Vector &r_b, const Vector &u) {
     return {cross(r_a, u), cross(r_b, u)};
 }
 
-// Where friction acts (ContactBlock::spread): the contact points, drawn in toward the centre of
+// Where friction acts (ContactBlock::spread): at the contact points, drawn in toward the centre of
 // pressure of the remembered impulses.
 struct Patch {
     bool is_spread;
@@ -168,7 +169,7 @@ void finish_block_impl(ContactBlock &block) {
     }
 }
 
-// The columns of a symmetric matrix of three Vec3.
+// Gathers a symmetric matrix that is stored as three Vec3 columns.
 HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, const IndexColumn &index,
                        std::size_t lane) {
     const Vector first = gather_rows(bodies.bodies, bodies.inv_inertia, index, lane);
@@ -182,10 +183,10 @@ HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, const Inde
     store(third.y, to.yz, lane);
 }
 
-// What the relaxing pass adds to a load lacks in both halves of a substep, and it was found in the
-// second one alone: the next substep begins with twice as much of it (ContactBlock::Point). Else a
-// tall stack, whose loads one pass does not balance, sways for minutes. But no more of it than a
-// share of the load: what strikes is no load of the next substep.
+// What the relaxation pass adds to a load is missing in both halves of a substep, and was found in
+// the second half alone, so the next substep begins with twice as much of it (ContactBlock::Point).
+// Without that a tall stack, whose loads one pass does not balance, sways for minutes. But no more
+// of it than a share of the load: an impact is not a load of the next substep.
 void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
                      bool remember_first) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
@@ -250,13 +251,13 @@ void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
 // How a body turned since the step began.
 struct Turned {
     Vector turn;         // the rotation vector
-    Lanes along;         // n
-    Lanes squared;       // its length, squared
+    Lanes along;         // along n
+    Lanes squared;       // squared length
     Lanes first, second; // sin(x) / x and (1 - cos(x)) / x^2 of its length
 };
 
-// Series, to rounding for turns of up to two radians; without `far` to what separations need for
-// turns that are no farther than has_turned_far says.
+// Series, accurate to rounding for turns of up to two radians; without `far`, to what separations
+// need for turns within the limit of has_turned_far.
 HWY_INLINE Turned turned_by(const Vector &turn, const Vector &n, bool far) {
     const Lanes x = dot(turn, turn);
     Turned out{turn, dot(turn, n), x, all(Real(1)), all(Real(0.5))};
@@ -274,8 +275,8 @@ HWY_INLINE Turned turned_by(const Vector &turn, const Vector &n, bool far) {
     return out;
 }
 
-// How far an arm's end comes along n when the arm turns (Rodrigues): with the core that is the arm
-// less its rounding along n, n . (first turn x r + second turn x (turn x core)).
+// How far an arm's end moves along n when the arm turns (Rodrigues): with the core, the arm less
+// its rounding along n, it is n . (first turn x r + second turn x (turn x core)).
 HWY_INLINE Lanes way_along(const Vector &n, const Turned &by, const Vector &r, Lanes rounding) {
     const Lanes core_n = hn::Sub(dot(r, n), rounding);
     const Lanes core_turn = hn::Sub(dot(r, by.turn), hn::Mul(rounding, by.along));
@@ -288,7 +289,7 @@ HWY_INLINE Mask does_not_move(const Vector &inv_mass) {
     return hn::Eq(hn::Add(inv_mass.x, hn::Add(inv_mass.y, inv_mass.z)), hn::Zero(tag));
 }
 
-// Whether one of the two goes on whatever the other does: a kinematic body.
+// Whether either body keeps moving whatever the other does: a kinematic body.
 HWY_INLINE Mask is_driven(const Pair &pair) {
     const auto drives = [](const Velocity &v, const Vector &inv_mass) HWY_ATTR {
         const Lanes squared = hn::Add(dot(v.linear, v.linear), dot(v.angular, v.angular));
@@ -297,19 +298,19 @@ HWY_INLINE Mask is_driven(const Pair &pair) {
     return hn::Or(drives(pair.a, pair.inv_mass_a), drives(pair.b, pair.inv_mass_b));
 }
 
-// Whether what it takes to stop a point is a blow, beside what it bears. What a kinematic body
-// drives and that bears far more is squeezed against what does not move either. Its loads would
-// grow in each pass without bound, and shoot it away at thousands of m/s, were they not those of
-// springs, which give way.
+// Whether the impulse needed to stop a point is an impact, compared with the load it carries. A
+// body that is driven by a kinematic one and carries far more is squeezed against something that
+// does not move either. Rigid loads would grow without bound in each pass and shoot it away at
+// thousands of m/s; those of springs give way.
 HWY_INLINE Mask is_blow(Mask driven, Lanes borne, Lanes needed) {
     constexpr Real much = Real(0.25);
     return hn::Or(hn::Not(driven), hn::Lt(hn::Mul(all(much), borne), needed));
 }
 
-// One impulse for all points of a contact together, so much that the one that needs least has what
-// it needs: of a body that lands flat the first corner would otherwise take most of the blow, and
-// tilt it. Returns which of `fast` land flat: they are stopped at once, since of corners a hair
-// deep and a hair apart some would be springs and some not.
+// One impulse for all points of a contact together, just as much as the point that needs least:
+// otherwise the first corner of a body that lands flat would take most of the impact, and tilt it.
+// Returns which of `fast` land flat. They are stopped rigidly, since of corners a hair deep and a
+// hair apart some would be springs and some not.
 template <typename SeparationAt, typename TargetOf>
 HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, const Vector &n,
                              Mask chosen, Mask fast, Mask driven, bool loaded_only, Lanes soft_mass,
@@ -336,8 +337,8 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
         count = hn::Add(count, share);
         r_a = plus(r_a, times(share, point_a));
         r_b = plus(r_b, times(share, point_b));
-        // By so much a soft point yields to an impulse (1 / kg): none is left over for the points
-        // one by one where all are alike.
+        // How much a soft point yields to an impulse (1 / kg): where all points are alike, nothing
+        // is left over for them one by one.
         const Lanes separation = separation_at(k);
         const auto is_soft = hn::And(there, hn::Le(separation, zero));
         const Lanes yielding = hn::IfThenElseZero(
@@ -367,7 +368,7 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
         hn::And(hn::And(evenly, fast),
                 hn::And(hn::Gt(least_rigid, zero), is_blow(driven, hn::Mul(count, least_load),
                                                            hn::Mul(least_rigid, inverse(k_n)))));
-    // Nothing where the points do not agree.
+    // Zero where the points disagree.
     const Lanes soft_need = max(least_need, min(most_need, zero));
     const Lanes need = hn::IfThenElse(stops, least_rigid, soft_need);
     const Lanes yielding = hn::IfThenZeroElse(stops, hn::Mul(share, softest));
@@ -384,8 +385,8 @@ HWY_INLINE Mask solve_evenly(ContactBlock &block, std::size_t lane, Pair &pair, 
     return stops;
 }
 
-// Friction at each point. Returns where some points slide while others hold: those have more to
-// bear then, of which those before them knew nothing.
+// Friction at each point. Returns where some points slide while others hold: the latter then carry
+// more, which the points before them did not know.
 HWY_INLINE Mask solve_friction(ContactBlock &block, std::size_t lane, Pair &pair,
                                const Patch &patch, const Vector &t1, const Vector &t2,
                                Lanes friction, Mask chosen, bool backwards) {
@@ -427,8 +428,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
     const Lanes least = all(-bias.push_velocity);
     const bool pushes = bias.push_velocity > Real(0);
     const Lanes one = all(Real(1));
-    // Friction tips a body that the normal impulses know nothing of yet, where nothing is
-    // remembered: without further sweeps what slides off at once would keep what it gains by that.
+    // Without remembered impulses, friction tips a body before the normal impulses respond to it;
+    // without further sweeps a body that slides off immediately would keep what it gains by that.
     const bool sweeps_all = block.is_new && !pushes;
     const Lanes struck_speed = all(-bias.struck_speed);
     const Lanes even_speed = all(even_share * bias.struck_speed);
@@ -472,13 +473,13 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                                           rounding_b);
             return hn::Add(load(point.separation, lane), hn::Add(way, hn::Sub(way_b, way_a)));
         };
-        // How fast a point is to part (m/s).
+        // The velocity added to a point's normal speed (m/s).
         const auto target_of = [&](Lanes separation) HWY_ATTR {
             const Lanes depth = min(hn::Add(separation, slop), zero);
             const Lanes push = pushes ? max(hn::Mul(rate, depth), least) : zero;
             return hn::IfThenElse(hn::Gt(separation, zero), hn::Mul(separation, all(inv_h)), push);
         };
-        // Told by one point: what lands flat is all alike.
+        // Judged by one point: when a body lands flat they are all alike.
         const Lanes first_speed = dot(
             pair.velocity_at(load(block.points[0].r_a, lane), load(block.points[0].r_b, lane)), n);
         auto struck = hn::Lt(first_speed, struck_speed);
@@ -488,8 +489,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         if (!hn::AllFalse(tag, even))
             stops = solve_evenly(block, lane, pair, n, even, struck, driven, bias.loaded_only,
                                  soft_mass, soft_impulse, separation_at, target_of, corrected);
-        // What is struck is swept again, too: of its corners, the first would take most of the
-        // blow, and tilt it. (Zeros are lanes without a point.)
+        // Struck contacts are swept again, too: otherwise the first of their corners would take
+        // most of the impact, and tilt the body. (Zeros are lanes without a point.)
         auto again = hn::FirstN(tag, sweeps_all ? column_lanes : 0);
         for (int sweep = 0; sweep < new_sweeps; ++sweep) {
             const bool is_first = sweep == 0;
@@ -509,8 +510,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
                 if (is_first)
                     struck = hn::Or(struck, hn::Lt(speed, struck_speed));
-                // What comes in faster than anything is pushed out is stopped at once: as a spring
-                // it would be through a thin wall before it turned round.
+                // A point that comes in faster than anything is pushed out is stopped immediately:
+                // as a spring it would be through a thin wall before it turned round.
                 const auto breaks_in =
                     hn::And(hn::Lt(speed, least),
                             is_blow(driven, before,
@@ -524,7 +525,7 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                             hn::Mul(impulse_scale, before));
                 Lanes total = max(hn::Add(before, change), zero);
                 if (bias.loaded_only)
-                    // What bounces and has come a hair too deep is left to the next impacts.
+                    // Bouncing points that are a hair too deep are left to the next impacts.
                     total = hn::IfThenElse(hn::And(hn::Or(apart, bounces), hn::Eq(before, zero)),
                                            before, total);
                 if (!is_first)

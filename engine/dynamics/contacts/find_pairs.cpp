@@ -24,7 +24,7 @@ bool touch(const Aabb &box, const HalfSpace &half_space) {
     return glm::dot(half_space.normal, lowest) <= half_space.offset;
 }
 
-// Whether two boxes are no farther apart than that.
+// Whether two boxes are within `distance` of each other.
 bool are_within(Real distance, const Aabb &a, const Aabb &b) {
     const Vec3 gap = glm::max(glm::max(a.min - b.max, b.min - a.max), Vec3{Real(0)});
     return glm::dot(gap, gap) <= distance * distance;
@@ -42,12 +42,12 @@ Aabb surface_bounds(const Collider &collider, const Motion &motion) {
                          pose));
 }
 
-// For how many steps the tree's boxes reach along the way that a body goes: what moves fast changes
-// its place in the tree less often then.
+// How many steps ahead the tree's boxes reach along a body's way, so that fast bodies change their
+// place in the tree less often.
 constexpr Real expected_steps = Real(2);
 
-// Far more than a pile has: a world that flies apart reaches for all that there is in one step, and
-// memory would end first. Of pairs that are only near each other little is kept.
+// Far more than any pile has. In a world that flies apart every body reaches all others in one
+// step, and memory would run out first. Little is stored for pairs that are merely near each other.
 constexpr std::size_t most_near_pairs = 100'000'000;
 constexpr std::size_t most_candidates = 6'000'000;
 
@@ -55,11 +55,11 @@ void refuse_more_than(std::size_t limit, std::size_t pairs) {
     PLUMB_CHECK(pairs <= limit, "more than " << limit << " pairs of shapes come near each other");
 }
 
-// Some microseconds of work.
+// A few microseconds of work.
 constexpr std::size_t colliders_a_part = 128;
 constexpr std::size_t pairs_a_part = 512;
 
-// By their bodies, then by the children. Of two bodies' pairs there are few.
+// By bodies, then by children. Two bodies have few pairs.
 void sort_candidates(std::vector<Candidate> &list, std::vector<Candidate> &scratch) {
     const auto bodies = [](const Candidate &candidate) {
         return std::uint64_t{candidate.key.a} << 32 | candidate.key.b;
@@ -78,15 +78,15 @@ void sort_candidates(std::vector<Candidate> &list, std::vector<Candidate> &scrat
 
 } // namespace
 
-// A world of one body, or whose bodies all ignore each other, or a method that knows no contacts,
-// pays for no collision detection.
+// A world of one body, a world whose bodies all ignore each other, and a method without contacts
+// pay for no collision detection.
 bool World::needs_contacts() const {
     return method_->info.contacts && model_->dynamic_bodies > 0 && model_->alive_bodies >= 2 &&
            (model_->layers & model_->heeded_layers) != 0;
 }
 
-// Everything that a collider of the body with these bounds may reach in this step, and half the
-// distance at which contacts are made.
+// Bounds of everything that a collider with this box may reach in this step, plus half the distance
+// at which contacts are made.
 Aabb World::swept_bounds(const Aabb &box, const ColliderReach &of) const {
     const auto dt = static_cast<Real>(settings_.dt);
     const Real reach = static_cast<Real>(settings_.speculative_distance) / 2 +
@@ -94,18 +94,18 @@ Aabb World::swept_bounds(const Aabb &box, const ColliderReach &of) const {
     return {box.min - reach, box.max + reach};
 }
 
-// Whether pairs with that body are looked for: once some were seen to go another way than expected,
-// with those alone.
+// Whether pairs with that body are looked for. Once some bodies were seen to go another way than
+// expected, only their pairs are.
 bool World::is_asked(std::uint32_t body) const {
     return scratch_.surprised.empty() || scratch_.surprised[body] != 0;
 }
 
-// Whether nothing that a collider may collide with is there. Particles collide with every layer.
+// Whether there is nothing that a collider may collide with. Particles collide with every layer.
 bool World::meets_nothing(const Collider &collider) const {
     return model_->particles.empty() && model_->ignores_all(collider.filter);
 }
 
-// Places a collider and sweeps its box; whether the tree has to know.
+// Places a collider and sweeps its box. Returns whether the tree must be updated.
 bool World::place_collider(std::uint32_t i) const {
     Scratch &s = scratch_;
     const Collider &collider = model_->colliders[i];
@@ -138,7 +138,7 @@ bool World::place_collider(std::uint32_t i) const {
     return s.leaves[i] == DynamicTree::none || !s.tree.holds(s.leaves[i], s.swept[i]);
 }
 
-// Places the colliders; notes which left their fat box, and whether any did.
+// Places the colliders and notes which left their fat box. Returns whether any did.
 bool World::place_colliders() const {
     Scratch &s = scratch_;
     const std::size_t count = model_->colliders.size();
@@ -178,8 +178,8 @@ bool World::may_touch(std::uint32_t i, std::uint32_t j) const {
            may_collide(a.filter, b.filter);
 }
 
-// Whether two colliders may be no farther apart than that: by their boxes, and by the balls around
-// their bodies' middles that hold them.
+// Whether two colliders may be within `distance` of each other: by their boxes, and by the spheres
+// around their bodies' centres of mass that enclose them.
 bool World::may_be_within(Real distance, std::uint32_t i, std::uint32_t j) const {
     const Collider &a = model_->colliders[i];
     const Collider &b = model_->colliders[j];
@@ -209,12 +209,12 @@ void World::add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidat
         return;
     Candidate candidate{{a.body, b.body, a.child, b.child}, i, j};
     candidate.margin = contact_margin(candidate);
-    // Not finite: about to diverge, with speeds whose square is infinite.
+    // Not finite: about to diverge, at speeds whose square overflows.
     if (std::isfinite(candidate.margin) && may_be_within(candidate.margin, i, j))
         out.push_back(candidate);
 }
 
-// Brings the pairs whose fat boxes touch up to date, after some left theirs.
+// Updates the pairs whose fat boxes touch, after some colliders left theirs.
 void World::find_fat_pairs() const {
     Scratch &s = scratch_;
     std::atomic<std::size_t> found = 0;
@@ -239,7 +239,7 @@ void World::find_fat_pairs() const {
     auto next = s.new_pairs.begin();
     for (const std::uint64_t pair : s.fat_pairs) {
         if (s.moved[pair >> 32] != 0 || s.moved[pair & 0xFFFFFFFFU] != 0)
-            continue; // it is among the new ones, if it still is one
+            continue; // if it still is a pair, it is among the new ones
         for (; next != s.new_pairs.end() && *next < pair; ++next)
             s.merged_pairs.push_back(*next);
         s.merged_pairs.push_back(pair);
@@ -270,8 +270,8 @@ void World::find_pairs_with_planes() const {
     }
 }
 
-// Candidates are the pairs whose swept boxes touch and that may meet as they go against each other.
-// The tree's fat boxes only save looking at all of them: which pairs come out, and in which order,
+// Candidates are the pairs whose swept boxes touch and that may meet by their relative motion. The
+// tree's fat boxes only save testing all pairs: which candidates come out, and in which order,
 // depends on the present poses alone.
 void World::find_pairs() const {
     Scratch &s = scratch_;
@@ -283,7 +283,7 @@ void World::find_pairs() const {
     }
     if (place_colliders())
         find_fat_pairs();
-    // As if all of them touched, so that nothing is allocated when some begin to.
+    // Room for all of them, so that nothing is allocated when some begin to touch.
     s.pair_candidates.reserve(s.fat_pairs.capacity());
     collect(s.tasks, s.fat_pairs.size(), pairs_a_part, s.candidate_parts, s.pair_candidates,
             [&](std::size_t begin, std::size_t end, std::size_t, std::vector<Candidate> &out) {
@@ -305,7 +305,7 @@ void World::find_pairs() const {
     note_static_neighbors();
 }
 
-// Which static colliders each other one is near: where there are several they may be flush.
+// The static colliders near each of the others: where there are several they may be flush.
 void World::note_static_neighbors() const {
     Scratch &s = scratch_;
     s.beside_static.clear();

@@ -15,10 +15,10 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The rebound speed of one contact point that approaches with `speed` < 0 at distance `gap`, under
-// a relative acceleration `pull` along the normal (negative: towards each other); empty when it is
-// not struck within h, or too slow to come back to where it is. Energy is that of a bounce at the
-// surface, whatever the gap.
+// The rebound speed of a contact point that approaches with `speed` < 0 at distance `gap`, under a
+// relative acceleration `pull` along the normal (negative: towards each other). Empty if it is not
+// struck within h, or is too slow to come back to where it is. The energy is that of a bounce at
+// the surface, whatever the gap.
 struct Rebound {
     bool struck = false;
     Real speed = Real(0);
@@ -45,11 +45,11 @@ Rebound rebound(Real gap, Real speed, Real pull, Real restitution, const StepSet
 // One contact that is struck, point by point.
 struct Blow {
     ContactConstraint *contact = nullptr;
-    std::size_t first = 0; // of those that come together with it: which
+    std::size_t first = 0; // the first blow of those resolved together with it
     Real pull = Real(0);   // see rebound
     std::array<Rebound, 4> rebounds;
     std::array<Real, 4> approaches{}; // normal speeds before
-    // Whether a point comes through the plane of the other body beside that.
+    // Whether a point crosses the other body's plane beside that body.
     std::array<bool, 4> passes_by{};
     // At the present poses: a stale one would gain or lose energy.
     std::array<Real, 4> normal_mass{};
@@ -75,7 +75,7 @@ bool is_struck(const Blow &blow) {
     return std::ranges::any_of(blow.rebounds, &Rebound::struck);
 }
 
-// How each point of the contact comes, and is to leave.
+// How each point of the contact approaches and rebounds.
 void look_at(const StepContext &context, Blow &blow, Real h) {
     const ContactConstraint &contact = *blow.contact;
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
@@ -113,10 +113,10 @@ void weigh(const StepContext &context, Blow &blow) {
     }
 }
 
-// Orders blows so that those which come together are beside each other: those of a body that moves,
-// or of bodies whose joints are solved together.
+// Sorts blows so that those resolved together are next to each other: those of a moving body, or of
+// bodies whose joints are solved together.
 void gather_together(const StepContext &context, std::vector<Blow> &blows) {
-    using Taken = std::pair<std::size_t, std::size_t>; // what moves, and the blow that it takes
+    using Taken = std::pair<std::size_t, std::size_t>; // a body or joint group, and its blow
     std::vector<Taken> taken;
     for (std::size_t i = 0; i < blows.size(); ++i)
         for (const std::uint32_t body : {blows[i].contact->a, blows[i].contact->b}) {
@@ -145,8 +145,8 @@ void gather_together(const StepContext &context, std::vector<Blow> &blows) {
     std::ranges::stable_sort(blows, {}, &Blow::first);
 }
 
-// The joints of what is struck, as far as they are solved together, answer each impulse: it is
-// then as heavy as they make it.
+// The joints of struck bodies, if they are solved together, respond to each impulse: the bodies are
+// then as heavy as the joints make them.
 class Answers {
   public:
     Answers(StepContext &context, std::span<const Blow> blows) : context_(context) {
@@ -177,7 +177,7 @@ class Answers {
         if (group_of(contact.b) != group_of(contact.a))
             answer_impact(context_, group_of(contact.b));
     }
-    // Undoes what happened to the joined bodies since this was made.
+    // Restores the joined bodies' velocities from when this was made.
     void take_back() {
         for (const Before &one : before_) {
             context_.bodies[one.body].velocity = one.velocity;
@@ -198,7 +198,7 @@ class Answers {
     std::vector<Before> before_;
 };
 
-// By a unit impulse, to see what comes of it.
+// Finds the effective masses by applying a unit impulse.
 void weigh_with_joints(StepContext &context, Blow &blow, Answers &joints) {
     const ContactConstraint &contact = *blow.contact;
     for (std::size_t k = 0; k < static_cast<std::size_t>(contact.count); ++k) {
@@ -216,7 +216,7 @@ void weigh_with_joints(StepContext &context, Blow &blow, Answers &joints) {
     }
 }
 
-// Friction with what the points bear so far.
+// Friction under the points' loads so far.
 void rub(StepContext &context, Blow &blow, Answers &joints) {
     const ContactConstraint &contact = *blow.contact;
     SolverBody &a = context.bodies[contact.a];
@@ -231,12 +231,12 @@ void rub(StepContext &context, Blow &blow, Answers &joints) {
     }
 }
 
-// Shares the impulses by Gauss-Seidel, so that no point that was struck closes faster than it is to
-// leave, and none that leaves faster bears any.
+// Shares the impulses out by Gauss-Seidel, so that no struck point leaves slower than it should,
+// and none that leaves faster carries an impulse.
 void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
     constexpr Real enough = Real(8) * std::numeric_limits<Real>::epsilon();
-    // Plastic blows are solved with their friction, for they leave no speed along the normal to
-    // spare: rubbed after that, some would gain energy.
+    // Plastic impacts are solved with their friction, since they leave no spare speed along the
+    // normal: with friction after that, some would gain energy.
     const auto is_rubbed = [](const Blow &blow) {
         return blow.is_plastic() && blow.contact->friction > Real(0);
     };
@@ -266,8 +266,8 @@ void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
     }
     if (is_one || std::ranges::all_of(blows, &Blow::is_plastic))
         return;
-    // What the passes have not shared out yet is made good as a whole, so that they leave the
-    // energy that the law leaves: half the impulses times the sums of the speeds before and after.
+    // What the passes have not shared out yet is made up as a whole, so that they leave the energy
+    // that the law leaves: half the impulses times the sums of the speeds before and after.
     Real wanted = Real(0);
     Real reached = Real(0);
     for (const Blow &blow : blows)
@@ -286,7 +286,7 @@ void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
 }
 
 // How long these bodies go on as before (s): the new velocities act from where they touch, with the
-// arms of then. Without that they would lose angular momentum. What joints hold stays with them.
+// arms there. Without that they would lose angular momentum. Bodies held by joints stay with them.
 Real time_to_touch(const StepContext &context, std::span<const Blow> blows, Real h) {
     Real time = h;
     for (const Blow &blow : blows) {
@@ -299,12 +299,12 @@ Real time_to_touch(const StepContext &context, std::span<const Blow> blows, Real
     return std::max(time, Real(0));
 }
 
-// How far the points of a contact are from each other on the two bodies.
+// The offset between a contact point's places on the two bodies.
 Vec3 between_points(const ContactPointConstraint &point, const Vec3 &between) {
     return between + point.r_b - point.r_a;
 }
 
-// Whether the points lie beside each other by more than rounding.
+// Whether the points are off to the side of each other by more than rounding.
 bool are_apart(const ContactConstraint &contact, const Vec3 &between) {
     constexpr Real enough = Real(1e-4); // of the arms
     const auto is_apart = [&](const ContactPointConstraint &point) {
@@ -316,8 +316,8 @@ bool are_apart(const ContactConstraint &contact, const Vec3 &between) {
     return std::any_of(contact.points.begin(), contact.points.begin() + contact.count, is_apart);
 }
 
-// Round surfaces meet on the line between their cores, unless those are at one place or the line is
-// far off the normal so far.
+// Round surfaces meet on the line between their cores, unless the cores coincide or the line is far
+// off the present normal.
 void meet_between_cores(ContactConstraint &contact, const Contact &found, const SolverBody &a,
                         const SolverBody &b, const Vec3 &between) {
     ContactPointConstraint &point = contact.points[0];
@@ -333,9 +333,9 @@ void meet_between_cores(ContactConstraint &contact, const Contact &found, const 
     point.r_b = core_b - (found.rounding_b + half) * contact.normal;
 }
 
-// Where the points of two bodies that are free to move will be one when they touch, so that what
-// the one loses of angular momentum the other gains: between round cores, else where the round one
-// is, or midway. Balls are left as they were found, where the blow does not turn them.
+// Where the points of two dynamic bodies will coincide when they touch, so that the angular
+// momentum one loses is what the other gains: between round cores, else on the round body, or
+// midway. Balls are left as found, since the impact does not turn them.
 void meet(StepContext &context, Blow &blow, Real time, Real h) {
     ContactConstraint &contact = *blow.contact;
     const Contact &found = context.contacts[contact.contact];
@@ -362,7 +362,7 @@ void meet(StepContext &context, Blow &blow, Real time, Real h) {
     look_at(context, blow, h);
 }
 
-// Whether the two touch `time` from now, as far as that is known: to the second order of their
+// Whether the bodies touch `time` from now, as far as that is known: to second order in their
 // turns.
 bool touch(const StepContext &context, const Contact &contact, Real time) {
     constexpr Real enough = Real(1e-4); // of the smaller one's half width
@@ -381,9 +381,9 @@ bool touch(const StepContext &context, const Contact &contact, Real time) {
                .count > 0;
 }
 
-// Whether a lone pair does touch when a point comes through the plane of the other: what passes by
-// an edge or round a ball does not. What bounces and turns is let come: the passes give back no
-// speed.
+// Whether a lone pair does touch when a point crosses the other body's plane: a body that passes by
+// an edge or round a ball does not. Bouncing bodies other than balls count as touching, since the
+// passes give back no speed.
 bool comes_to_touch(const StepContext &context, Blow &blow, Real h) {
     const Contact &contact = context.contacts[blow.contact->contact];
     if (contact.moment != Moment::touch || !are_lone(context, contact) ||
@@ -409,7 +409,7 @@ std::array<Real, 4> along_normal(const std::array<Vec3, 4> &impulses) {
     return {impulses[0].x, impulses[1].x, impulses[2].x, impulses[3].x};
 }
 
-// Newton's law for all points that are struck together.
+// Newton's impact law for all points that are struck together.
 void strike(StepContext &context, std::span<Blow> blows, Real h) {
     Answers joints(context, blows);
     const Real time = joints.are_any() ? Real(0) : time_to_touch(context, blows, h);

@@ -15,7 +15,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Directions as good as equal (rad): a thousandth lets nothing of note through.
+// Directions this close count as equal (rad): a thousandth lets nothing of note through.
 constexpr Real small_angle = Real(1e-3);
 
 bool is_along(const Vec3 &unit, const Vec3 &direction) {
@@ -28,8 +28,8 @@ template <typename Visit> auto visit_solid(const StaticPiece &piece, Visit &&vis
     return std::visit(visit, std::get<Shape>(piece));
 }
 
-// Whether the piece has points in front of the plane through `point`, as seen from there by more
-// than a small angle.
+// Whether the piece has points in front of the plane through `point`, by more than a small angle as
+// seen from there.
 bool is_in_front(const StaticPiece &piece, const Vec3 &point, const Vec3 &normal) {
     return visit_solid(piece, [&]<typename Solid>(const Solid &solid) {
         if constexpr (std::same_as<Solid, HalfSpace>) {
@@ -82,14 +82,14 @@ bool has_face(const StaticPiece &piece, const Vec3 &normal) {
     return found;
 }
 
-// Whether a neighbour lies against the face with that normal at one of its points.
+// Whether a neighbour lies against the face with that normal at `point`.
 bool is_covered(const StaticPiece &neighbor, const Vec3 &point, const Vec3 &normal, Real flush) {
     if (const auto *triangle = std::get_if<Triangle>(&neighbor))
         return is_along(-normal_of(*triangle), normal) && distance_to(neighbor, point) <= flush;
     return distance_to(neighbor, point + Real(2) * flush * normal) <= flush;
 }
 
-// Whether some of the piece's face beside the point is free of neighbours.
+// Whether part of the piece's face around the point is free of neighbours.
 bool is_free(const StaticPiece &piece, std::span<const StaticPiece> neighbors, const Vec3 &point,
              const Vec3 &normal, Real flush) {
     const TangentBasis tangents = tangent_basis(normal);

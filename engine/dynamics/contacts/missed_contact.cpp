@@ -1,5 +1,5 @@
-// What a try of the step shows to have gone deep where no contact stopped it: the impacts within it
-// had spun it as nobody could know before.
+// Bodies that a try of the step shows to have gone deep where no contact stopped them: impacts
+// within the step had given them a spin that could not be known before.
 #include "engine/dynamics/contacts/rolling_contact.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
@@ -17,15 +17,15 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Of the half width of the thinner of two bodies: how deep they may be in each other after a step
-// where none of their contact's points is, so far from all of those. To find such points is to try
+// How deep two bodies may be in each other after a step at a place that is as far from all of their
+// contact's points, as a share of the thinner one's half width. Finding such points means trying
 // the step again.
 constexpr Real missed_share = Real(0.25);
-// The same of a solid and a surface: what rolls over a ridge has a point on the one face, and comes
-// down on the other with its far end.
+// The same for a solid and a surface: a body that rolls over a ridge has a point on one face, and
+// comes down on the other with its far end.
 constexpr Real passed_share = Real(0.05);
 
-// About the same side of both, for unit normals.
+// Cosine between unit normals that face about the same way.
 constexpr Real same_side = Real(0.4);
 
 Vec3 middle_of(const Aabb &box) {
@@ -39,7 +39,7 @@ struct Passage {
     Aabb bounds_before;
     Shape solid_after;
 
-    // How far any of its points may have gone; `extent` is that of the farthest (m).
+    // How far any of its points may have gone (m); `extent`: the distance of the farthest one (m).
     Real way(Real extent) const {
         const Quat turn = glm::conjugate(before.rotation) * after.rotation;
         return glm::distance(before.position, after.position) +
@@ -47,10 +47,10 @@ struct Passage {
     }
 };
 
-// What of the solid has gone through a triangle, from the side where its middle was: of the points
-// that are deepest behind the plane those that are deeper than `deep`, and the middle, without
-// which nothing would be held any more (surface_contact.h). A point's way is taken as straight. In
-// the surface's frame; the normal points from the solid.
+// The parts of the solid that have gone through a triangle from the side where its middle was: of
+// the points deepest behind the plane those deeper than `deep`, and the middle, without which
+// nothing would hold the solid any more (surface_contact.h). A point's path is taken as straight.
+// In the surface's frame; the normal points away from the solid.
 Manifold passed_points(const Passage &passage, const Triangle &triangle, Sides sides, Real deep) {
     Manifold passed;
     const Vec3 cross = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
@@ -100,9 +100,10 @@ Manifold passed_points(const Passage &passage, const Triangle &triangle, Sides s
 
 } // namespace
 
-// Adds those points, found with the bodies as they are after the try, that the contact has no other
-// within `deep` of. Whether there were any. Of four points with a triangle, or of a rim, the one
-// that is farthest apart then gives way; those of two other solids are a face's, and stay.
+// Adds those points, found at the poses after the try, that have no other point of the contact
+// within `deep`. Returns whether there were any. If there are four points already, the one farthest
+// apart gives way in contacts with a triangle or a rim; the four of two other solids are a face's,
+// and stay.
 bool World::add_missed(const Manifold &now, Real deep, Contact &contact) const {
     const SolverBody &at_a = scratch_.bodies[contact.key.a];
     const SolverBody &at_b = scratch_.bodies[contact.key.b];
@@ -145,8 +146,7 @@ bool World::add_missed(const Manifold &now, Real deep, Contact &contact) const {
     return any;
 }
 
-// Where two solids that touch in one place have turned so far that they are deep in each other in
-// another.
+// Finds where two solids that touch in one place have turned deep into each other in another.
 bool World::find_missed_points(Contact &contact) const {
     const Collider &a = model_->colliders[contact.collider_a];
     const Collider &b = model_->colliders[contact.collider_b];
@@ -171,7 +171,7 @@ bool World::find_missed_points(Contact &contact) const {
     return add_missed(now, deep, contact);
 }
 
-// Where a solid has gone through a surface: through any triangle, whether it has a contact or not.
+// Finds where a solid has gone through a surface: through any triangle, with or without a contact.
 // New contacts go to `more`.
 bool World::find_passed_points(const Candidate &candidate) {
     Scratch &s = scratch_;
@@ -221,9 +221,9 @@ bool World::find_passed_points(const Candidate &candidate) {
     return any;
 }
 
-// After a try of the step: whether contacts got points, or new contacts were found, which may stop
-// in the next try what went too deep in this one; `of_solids`: also of two solids, not of one and a
-// surface only.
+// After a try of the step: whether contacts got points, or new contacts were found, that may stop
+// in the next try whatever went too deep in this one; `of_solids`: also between two solids, not
+// only between a solid and a surface.
 bool World::find_missed_points(bool of_solids) {
     if (!method_->info.looks_ahead)
         return false;

@@ -1,5 +1,5 @@
-// Contacts of bodies that do not touch yet: found where they will touch within the step, or come
-// closest. The nearest points of now say little about that: a ball that comes past another has the
+// Contacts of bodies that do not touch yet, found where they will touch within the step, or come
+// closest. The present nearest points say little about that: a ball that flies past another has the
 // other's side in front of it, and would be stopped by the plane through it.
 #include "engine/dynamics/contacts/approach.h"
 #include "engine/dynamics/contacts/inner_edges.h"
@@ -17,8 +17,7 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// How a body is expected to move in this step: as it does at its start, until it was seen to go
-// another way.
+// How a body is expected to move in this step: as at its start, until a try shows otherwise.
 const Motion &World::going(std::uint32_t body) const {
     return scratch_.surprised.empty() ? state_.motions[body] : scratch_.going[body];
 }
@@ -33,8 +32,8 @@ Real World::way_of(const Candidate &candidate) const {
     return (glm::length(b.velocity - a.velocity) + turning) * static_cast<Real>(settings_.dt);
 }
 
-// How far the parts of a body may go by its spin alone in a step, when that is much for its size
-// (m): no farther than to its other side.
+// How far a body's parts may go by its spin alone in a step, if that is much for its size (m): no
+// farther than to its other side.
 Real World::turning_reach(std::uint32_t index) const {
     if (!method_->info.looks_ahead)
         return Real(0);
@@ -57,7 +56,7 @@ Real World::extent_of(std::uint32_t index) const {
 
 namespace {
 
-// The middle of a solid that turning moves, if any does.
+// The middle of a solid, if turning moves the solid's surface.
 std::optional<Vec3> middle_of(const Shape &shape) {
     return std::visit(
         []<typename Solid>(const Solid &solid) -> std::optional<Vec3> {
@@ -73,17 +72,17 @@ std::optional<Vec3> middle_of(const Shape &shape) {
         shape);
 }
 
-// What strikes with a corner is spun so fast that others could pass the plane of contact within the
-// step, and the whole body with them: its middle, at least, stays before it. `normal` points from
-// the solid to what it strikes, `plane` is a point of that.
+// A body that strikes with a corner is spun so fast that other corners could pass the contact plane
+// within the step, and the whole body with them: the guard keeps at least its middle in front.
+// `normal` points from the solid to the body it strikes, `plane` is a point of that.
 ManifoldPoint guard(const Vec3 &middle, Real half_width, const Vec3 &plane, const Vec3 &normal) {
     constexpr std::uint32_t guard_feature = 0xFFFFFFFEU;
     const Real separation = glm::dot(plane - middle, normal) - half_width;
     return {middle + Real(0.5) * separation * normal, separation, guard_feature};
 }
 
-// Adds the guard of a solid to its manifold with another, if that has something beneath the middle.
-// `sign` is 1 when the manifold's normal points away from the solid.
+// Adds a solid's guard to its manifold with another solid, if that lies beneath the middle. `sign`
+// is 1 if the manifold's normal points away from the solid.
 void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Shape &other,
                Real sign) {
     const std::optional<Vec3> middle = middle_of(solid);
@@ -104,7 +103,7 @@ void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Sh
 
 } // namespace
 
-// For the one of two solids that is small for the way that they come towards each other in a step.
+// Guards the smaller of two solids, if they approach far for its size in a step.
 void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                          Manifold &manifold) const {
     const Real way = static_cast<Real>(settings_.dt) *
@@ -134,7 +133,7 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
         return {};
     const Motion at_a = ahead(motion_a, met.time);
     const Motion at_b = ahead(motion_b, met.time);
-    // What will touch goes on against each other for the rest of the step.
+    // Bodies that touch go on against each other for the rest of the step.
     const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
     const Shape solid_a = placed(a.shape, mass_pose(at_a));
     const Shape solid_b = placed(b.shape, mass_pose(at_b));
@@ -168,7 +167,8 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
     const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
     const Shape solid_then = placed(solid.shape, mass_pose(at_solid));
     const Transform pose_then = surface_pose(surface, at_surface);
-    // What another triangle is to stop passes this one's plane on, and would touch it from there.
+    // A solid that another triangle will stop has crossed this one's plane by then, and would touch
+    // it from the other side.
     const auto was_behind = is_behind(
         bounds(scratch_.placed[solid_first ? candidate.collider_a : candidate.collider_b]),
         placed(local, surface_pose(surface, state_.motions[surface_body])));
@@ -189,9 +189,8 @@ Real World::least_half_width(const Body &body) const {
     return least;
 }
 
-// After a try of the step: whether bodies that something struck went far, for their size, where
-// nothing was looked for, and met something there. Its contacts are added, and the step is to be
-// tried again.
+// After a try of the step: whether struck bodies went far, for their size, where nothing was looked
+// for, and met something there. Their contacts are added, and the step must be tried again.
 bool World::find_surprises() {
     if (!method_->info.looks_ahead)
         return false;

@@ -15,9 +15,9 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// How far points may be off a rim or a surface, as geometry finds them (m).
+// How far the geometry's points may be off a rim or a surface (m).
 constexpr Real off = Real(2e-4);
-// A point bears alone where all others are higher by so much (m).
+// A point carries the load alone if all others are higher by this much (m).
 constexpr Real clear = Real(1e-5);
 
 struct Rim {
@@ -44,7 +44,7 @@ std::optional<Rim> rim_along(const Shape &solid, const Vec3 &along) {
                           : Rim{cylinder->a, -axis, cylinder->radius};
 }
 
-// Which way from the axis is lowest, and how steep the rim's plane is.
+// The direction from the axis to the rim's lowest point, and how steep the rim's plane is.
 struct Lean {
     Vec3 way{Real(0)};
     Real slope = Real(0); // sine
@@ -54,7 +54,7 @@ Lean lean_of(const Vec3 &axis, const Vec3 &along) {
     const Real slope = glm::length(outward);
     if (!(slope > Real(8) * std::numeric_limits<Real>::epsilon()))
         return {};
-    // Once more: of a small slope rounding leaves much along the axis.
+    // Again, since at a small slope rounding leaves much along the axis.
     const Vec3 way = outward / slope;
     return {glm::normalize(way - glm::dot(axis, way) * axis), slope};
 }
@@ -62,7 +62,7 @@ Lean lean_of(const Vec3 &axis, const Vec3 &along) {
 template <typename Which> auto points_of(Which &manifold) {
     return std::span(manifold.points).first(static_cast<std::size_t>(manifold.count));
 }
-// Whether the deepest point bears alone.
+// Whether the deepest point carries the load alone.
 bool is_alone(const Manifold &manifold, const ManifoldPoint &deepest) {
     return std::ranges::none_of(points_of(manifold), [&](const ManifoldPoint &point) {
         return &point != &deepest && point.separation < deepest.separation + clear;
@@ -77,12 +77,12 @@ Vec3 on_solid(const ManifoldPoint &point, const Vec3 &out) {
     return point.position - (Real(0.5) * point.separation) * out;
 }
 
-// The normal when the solid has turned, as seen from it now.
+// The normal once the solid has turned, in the solid's present frame.
 Vec3 seen_after(const Vec3 &normal, const Vec3 &turn) {
     return turned(identity_rotation, -turn, Real(1)) * normal;
 }
 
-// Whether there are faces of which the four points of a contact leave long arcs.
+// Whether it has faces on which the four points of a contact leave long arcs.
 bool has_wide_face(const ConvexHull &hull) {
     return hull.mesh->most_corners > 6;
 }
@@ -113,7 +113,7 @@ Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const
         return Real(0);
     const Lean then = lean_of(rim->axis, glm::conjugate(before) * out);
     const Lean ahead = lean_of(rim->axis, glm::conjugate(now) * seen_after(out, half_turn));
-    // It stands flat, on all of the rim.
+    // Flat, it stands on all of the rim.
     constexpr Real between = Real(0.29); // 1 - cos of 45 degrees, to the next point of a manifold
     if (!(between * rim->radius * ahead.slope > clear))
         return Real(0);
@@ -131,7 +131,7 @@ void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &o
     const Lean lean = lean_of(rim->axis, out);
     const Lean ahead = lean_of(rim->axis, seen_after(out, half_turn));
     const Vec3 apart = ahead.way - lean.way;
-    // Of the eight points of a rim in a manifold the nearest is no farther away.
+    // The nearest of a manifold's eight points on a rim is no farther away.
     constexpr Real beside = Real(0.4);
     if (!rim->has(at) || !is_alone(manifold, deepest) ||
         glm::distance(at, rim->middle + rim->radius * lean.way) > beside * rim->radius ||

@@ -1,4 +1,4 @@
-// What lies flush beside a static body that something touches.
+// Static neighbours that lie flush with a static body in contact.
 #include "engine/dynamics/contacts/inner_edges.h"
 #include "engine/dynamics/world.h"
 #include "engine/geometry/overlap.h"
@@ -23,7 +23,7 @@ Aabb around_points(const Manifold &manifold, Real reach) {
     return box;
 }
 
-// Its pieces that the box touches.
+// Collects the collider's pieces that the box touches.
 void gather(const Collider &collider, const Shape &solid, const Motion &motion, const Aabb &box,
             std::vector<StaticPiece> &out) {
     if (!collider.surface) {

@@ -15,10 +15,10 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The one point of a solid that is deepest against a face, when the contact is the face's alone.
+// The solid's deepest point against a face, when the contact is with the face alone.
 constexpr std::uint32_t deepest_point_feature = 0xFFFFFFFFU;
 
-// The point of the solid that is farthest along a direction of unit length.
+// The solid's farthest point along a unit direction.
 Vec3 farthest(const Shape &solid, const Vec3 &direction) {
     return std::visit(
         [&]<typename Solid>(const Solid &shape) -> Vec3 {
@@ -79,8 +79,9 @@ bool may_lean(const TriangleSurface &surface, const Transform &pose, std::uint32
     return false;
 }
 
-// Whether a point so deep under a face, and so far beyond its edge, lies where a hollow opens:
-// below both faces it is beyond the edge of each. The face that it is deeper under has it, or both.
+// Whether a point at this depth under a face, and this far beyond its edge, lies where a hollow
+// opens: below both faces it is beyond the edge of each. The face that it is deeper under takes it,
+// or both do.
 bool is_in_hollow(Real bend, Real depth, Real beyond) {
     constexpr Real rounding = Real(1.01);
     return depth > Real(0) && beyond * std::sqrt(std::max(Real(1) + bend, Real(0))) <=
@@ -125,9 +126,9 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
         if (may_lean(surface, pose, index, triangle, manifold.points[0].position, out))
             return manifold;
     }
-    // The face's contact: the deepest point, when it is over this triangle. When it lies over a
-    // ridge's other side, whose own deepest point may lie over this one: where the ridge is, of
-    // which neither would know. (Over a hollow, or in the plane, the other triangle has it.)
+    // The face's contact: the deepest point, if it is over this triangle. If it lies over the far
+    // side of a ridge, whose own deepest point may lie over this triangle, neither face would have
+    // it: then the point on the ridge. (Over a hollow, or in the plane, the other triangle has it.)
     Vec3 deepest = farthest(solid, -face);
     Real separation = glm::dot(face, deepest - placed_one.a);
     if (separation > margin)
@@ -149,7 +150,7 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
         const Vec3 on_ridge = closest_point(placed_one, deepest);
         const Real depth = glm::length(box.max - box.min) + margin;
         const auto inside = ray_interval(solid, {on_ridge - depth * face, face});
-        if (!inside || inside->t_enter >= depth) // what is still above it comes down beyond
+        if (!inside || inside->t_enter >= depth) // still above the ridge: comes down beyond it
             return {};
         separation = inside->t_enter - depth;
         deepest = on_ridge + separation * face;

@@ -6,18 +6,18 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Whether the middle of a solid with those bounds is behind the triangle's plane.
+// Whether the middle of a solid with these bounds is behind the triangle's plane.
 bool is_behind(const Aabb &solid, const Triangle &triangle);
 
-// The contact of a convex solid (a) with one triangle (b), by its index, of a surface that is
-// placed by `pose`: none beyond the margin (>= 0, m), none for a flat triangle or a half-space.
+// The contact of a convex solid (a) with triangle `index` (b) of a surface placed by `pose`: none
+// beyond the margin (>= 0, m), none for a degenerate triangle or a half-space.
 //
-// A surface that is solid on its front lets what has its middle behind pass, and pushes all else to
-// the front. Where the solid meets an edge or corner over which the surface is flat or hollow, or
-// leans beyond the neighbour's normal at a ridge, the normal is the face's: so what slides or rolls
-// over a seam does not stumble (Ericson, Real-Time Collision Detection, 2005, section 5.1.5, has
-// the Voronoi regions that this decides by). What has come down on a ridge is held there, by the
-// face's normal, though its deepest point lies beyond.
+// A surface that is solid on its front lets solids pass whose middle is behind it, and pushes all
+// others to the front. Where the solid meets an edge or corner over which the surface is flat or
+// concave, or leans beyond the neighbour's normal at a ridge, the normal is the face's, so that
+// nothing stumbles as it slides or rolls over a seam (Ericson, Real-Time Collision Detection, 2005,
+// section 5.1.5, has the Voronoi regions that this decides by). A solid that has come down on a
+// ridge is held there by the face's normal, even if its deepest point lies beyond.
 Manifold collide(const Shape &solid, const TriangleSurface &surface, const Transform &pose,
                  std::uint32_t index, Real margin);
 

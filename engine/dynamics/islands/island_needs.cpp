@@ -1,5 +1,5 @@
-// How many substeps bodies ask for: from what joints and contacts bore in the last step, and from
-// how fast they move for their size.
+// How many substeps bodies ask for: from the loads of joints and contacts in the last step, and
+// from how fast the bodies move for their size.
 #include "engine/dynamics/joints/joint_impulse.h"
 #include "engine/dynamics/world.h"
 
@@ -14,30 +14,30 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Rates times substep that joints' forces may reach: of joints that are solved together, and of
-// others (joint_loads.cpp, with some to spare).
+// The rate times the substep that joints' forces may reach: for joints that are solved together,
+// and for others (joint_loads.cpp, with some to spare).
 constexpr double followed_together = 1.2;
 constexpr double followed_alone = 1.1;
 
-// Rates times substep of joints that are springs, and of what rods under tension hold back aside:
-// others at their bodies add to them.
+// The same for joints that are springs, and for the sideways stiffness of rods under tension: other
+// joints at their bodies add to it.
 constexpr double followed_swing = 0.6;
 constexpr double followed_damping = 16;
 
-// How far a body that touches another may turn in a substep (rad): with lever arms that are those
-// of another pose, impulses do work.
+// How far a body that touches another may turn in a substep (rad): with the lever arms of another
+// pose, impulses do work.
 constexpr double followed_roll = 0.4;
 
-// What joints solved together did not follow is stepped again with so many times the substeps.
+// If joints solved together did not follow, the step is repeated with this many times the substeps.
 constexpr double finer = 4;
 
-// How far a body under load may turn on its joints in a substep (rad): what it loses of its energy
-// falls with the square of that.
+// How far a loaded body may turn on its joints in a substep (rad): its energy loss falls with the
+// square of that.
 constexpr double followed_turn = 0.08;
 
 std::uint16_t count_of(double substeps) {
     constexpr double most = std::numeric_limits<std::uint16_t>::max();
-    // Not a number comes of what is about to diverge: that asks for nothing.
+    // NaN comes from bodies that are about to diverge; they ask for nothing.
     return substeps > 0 ? static_cast<std::uint16_t>(std::ceil(std::min(substeps, most))) : 0;
 }
 
@@ -49,8 +49,8 @@ double largest(const Vec3 &v) {
     return static_cast<double>(std::max({v.x, v.y, v.z}));
 }
 
-// use(body, arm) for each end of a joint; the arm of a, which bears the opposite force, turned
-// round.
+// use(body, arm) for each end of a joint; the arm of a, which carries the opposite force, is
+// negated.
 template <typename Use> void for_ends(const JointConstraint &joint, Use &&use) {
     if (joint.a != Joint::world)
         use(joint.a, -joint.rows.r_a);
@@ -63,10 +63,10 @@ bool is_loaded(const JointConstraint &joint) {
            joint.rows.bounds != RowBounds::motor && !joint.is_spring();
 }
 
-// How far moments turn the joints that bear them: such angles add up along a beam. A block that is
+// How far moments turn the joints that carry them: such angles add up along a beam. A block that is
 // solved with its group is as soft as `factor` makes it, and at rest half of its impulse turns it
-// by the half of its error that a substep takes back. What has been torn apart stays so at any
-// number of substeps, and asks for none.
+// by half of the error that a substep takes back. Joints that have been torn apart stay so at any
+// number of substeps, and ask for none.
 void note_moment_needs(Scratch &s, const StepSettings &settings, int substeps) {
     const double h = settings.dt / substeps;
     JointSystem &system = *s.solver.joint_system;
@@ -86,7 +86,7 @@ void note_moment_needs(Scratch &s, const StepSettings &settings, int substeps) {
 
 } // namespace
 
-// What joints will bear in their first step is not known: as much as if all of the island hung on
+// The loads of joints in their first step are unknown: assume the weight of the whole island on
 // each of them. Begun too coarsely they would be stretched, and give that energy back when they are
 // stiffened.
 void World::guess_needs() {
@@ -117,7 +117,7 @@ void World::guess_needs() {
         if (body.kind != BodyKind::dynamic || !is_first(i))
             continue;
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
-        // What is let go suddenly pulls twice as hard at first.
+        // A body that is let go suddenly pulls twice as hard at first.
         const double weight = 2 * needs.mass * glm::length(settings_.gravity);
         const double rate = std::sqrt(
             weight * static_cast<double>(squared_rate(s.guessed_stiffness[i], body.inertia)));
@@ -130,15 +130,15 @@ bool World::is_solved_together(std::uint32_t body) const {
     return scratch_.solver.joint_system->group_of(body) != JointSystem::none;
 }
 
-// The depth of a soft contact of frequency w under the force F is F / (2 m w^2): the warm start
-// acts in two halves, before and after the move. With w = 2 pi ratio n / dt that is the n below.
+// A soft contact of frequency w under the force F is F / (2 m w^2) deep: the warm start acts in two
+// halves, before and after the move. With w = 2 pi ratio n / dt that gives the n below.
 void World::note_contact_needs(const IslandGroup &group) {
     Scratch &s = scratch_;
     const double ratio = 2 * std::numbers::pi * settings_.contact_frequency_ratio;
     const auto wanted_of = [&](const Contact &contact) {
         const std::uint32_t a = contact.key.a;
         const std::uint32_t b = contact.key.b;
-        // What is struck is not loaded yet; but the first step knows nothing else.
+        // A new contact's impact is not a load yet; but the first step knows nothing else.
         if (contact.is_new && state_.paces[island_body(a, b)].substeps > 0)
             return 0.0;
         double load = 0;
@@ -177,7 +177,7 @@ void World::note_contact_needs(const IslandGroup &group) {
     }
 }
 
-// Depths and drifts, and springs that share bodies.
+// Needs from joint drift, and from springs that share bodies.
 void World::note_joint_needs(const IslandGroup &group) {
     Scratch &s = scratch_;
     const double ratio = 2 * std::numbers::pi * settings_.joint_frequency_ratio;
@@ -211,7 +211,7 @@ void World::note_joint_needs(const IslandGroup &group) {
             is_together = is_together || is_solved_together(body);
         });
         if (joint.rows.swing_length > Real(0)) {
-            // A rod under tension holds what is at its ends back aside, and turns with them.
+            // A rod under tension resists sideways motion of its ends, and turns with them.
             const double length = static_cast<double>(joint.rows.swing_length);
             const double tension = impulse * group.pace.substeps / settings_.dt;
             ask(joint, 4 * tension / length * inverse * square(settings_.dt / followed_swing));
@@ -226,7 +226,7 @@ void World::note_joint_needs(const IslandGroup &group) {
     note_moment_needs(s, settings_, group.pace.substeps);
 }
 
-// How fast joints' forces turn their bodies, and how fast these turn.
+// Needs from how fast joints' forces turn their bodies, and from how fast the bodies turn.
 void World::note_turn_needs(const IslandGroup &group) {
     Scratch &s = scratch_;
     for (const std::uint32_t i : group.moving) {
@@ -240,7 +240,7 @@ void World::note_turn_needs(const IslandGroup &group) {
         s.loads[i] = std::max(s.loads[i], squared * rate * rate);
     }
     const double turn = settings_.dt / followed_turn;
-    // Only about what stands still: a chain that whips would be stiffened in the midst of it.
+    // Only for joints to something at rest: a chain that whips would be stiffened mid-motion.
     for (const JointConstraint &joint : s.solver.joints)
         if (!moves(joint.a) || !moves(joint.b))
             for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
@@ -253,8 +253,8 @@ void World::note_turn_needs(const IslandGroup &group) {
             });
 }
 
-// What joints solved together did not follow is stepped again, finer. What has been torn apart is a
-// loaded spring, and is stiffened bit by bit.
+// If joints solved together did not follow, the step is repeated with finer substeps. Joints that
+// have been torn apart are loaded springs, and are stiffened bit by bit.
 void World::note_let_go(const IslandGroup &group) {
     Scratch &s = scratch_;
     const double more = square(round_substeps_up(group.pace.substeps + 1));
@@ -275,7 +275,7 @@ void World::note_let_go(const IslandGroup &group) {
     }
 }
 
-// After a group was advanced: what its loads ask of the next step.
+// After a group was advanced: the substeps that its loads ask for in the next step.
 void World::note_needs(const IslandGroup &group) {
     Scratch &s = scratch_;
     if (group.is_free()) {

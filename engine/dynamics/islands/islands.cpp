@@ -12,18 +12,18 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// An island goes down by one number in so many steps, at the most.
+// An island goes down by at most one number in this many steps.
 constexpr std::uint64_t steps_to_go_down = 4;
 
-// The part of wanted substeps by which an island must be better off before it goes down.
+// An island goes down only if this multiple of the substeps it wants is still less than it takes.
 constexpr double spare = 1.25;
-// An island that wants more than so many times the substeps that it gets takes its points in one
-// order: in pyramids of base 45 and up, of which the passes balance but a part, points taken in
+// An island that wants more than this many times the substeps it gets takes its points in one
+// order: in pyramids of base 45 and up, which the passes balance only in part, points taken in
 // turns feed waves.
 constexpr int most_wanted_in_turns = 4;
-// Slow is what is slower than such a share of what gravity adds in a step.
+// Bodies are slow below this share of what gravity adds in a step.
 constexpr double slow_share = 0.35;
-// Contacts: what hangs together of more gains nothing by one more pass.
+// Contacts: larger islands gain nothing by one more pass.
 constexpr int most_settled = 48;
 
 } // namespace
@@ -57,7 +57,7 @@ bool World::moves(std::uint32_t body) const {
     return body != Joint::world && scratch_.still[body] == 0;
 }
 
-// Whether a joint is there, whole, and between what moves.
+// Whether a joint exists, is whole, and has a body that moves.
 bool World::holds(std::uint32_t joint) const {
     const Joint &one = model_->joints[joint];
     return one.alive && !scratch_.joints[joint].broken && (moves(one.a) || moves(one.b));
@@ -121,8 +121,8 @@ void World::gather_needs() {
         gather_particle_needs();
 }
 
-// Up at once; down slowly and at rest: what stretched softly while it moved and is stiffened again
-// gains energy by it, and a tall stack would rock itself to pieces.
+// Up immediately; down slowly and at rest: bodies that stretched softly while they moved and are
+// stiffened again gain energy, and a tall stack would rock itself to pieces.
 int World::chosen_substeps(const Islands::Needs &needs, int budget) const {
     const int least = settings_.substeps;
     const int affordable = needs.work > 0 ? budget / needs.work : least;
@@ -141,7 +141,8 @@ int World::chosen_substeps(const Islands::Needs &needs, int budget) const {
     return std::clamp(may_go_down ? fewer_substeps(needs.before) : needs.before, least, most);
 }
 
-// Each island may take as much of the budget as any other; as much as keeps all of them to it.
+// Gives every island the same share of the budget, as large as keeps all of them together within
+// it.
 void World::share_budget() {
     Scratch &s = scratch_;
     std::vector<std::uint32_t> &roots = s.islands.roots;
@@ -170,9 +171,9 @@ void World::share_budget() {
     find_unsettled();
 }
 
-// One pass feeds slow sways in what is tall and thin: it would never sleep, or even fall. What is
-// slow takes another until it has been at rest for long enough to sleep, as long as all of that
-// costs no more than the budget.
+// With one pass slow sways grow in tall and thin piles, which would never sleep, or even fall. Slow
+// islands take another until they have been at rest for long enough to sleep, as long as all of
+// that costs no more than the budget.
 void World::find_unsettled() {
     Scratch &s = scratch_;
     const auto may_settle = [](const Islands::Needs &needs) {
@@ -193,8 +194,9 @@ void World::find_unsettled() {
     }
 }
 
-// Remembered impulses stay as they are, though they are of one substep: scaled to the new number of
-// substeps they changed no stack, pyramid or pile that was tried, and chains gained energy.
+// Remembered impulses are left as they are, though they belong to one substep: scaling them to the
+// new number of substeps changed no stack, pyramid or pile that was tried, and chains gained
+// energy.
 void World::choose_substeps() {
     Scratch &s = scratch_;
     if (s.contacts.empty() && model_->alive_joints == 0 && !s.grab.is_holding() &&
@@ -218,7 +220,7 @@ void World::choose_substeps() {
                 : std::uint16_t{0};
 }
 
-// All that moves in one group, where each body is by itself.
+// All moving bodies in one group, when each is by itself.
 void World::group_freely() {
     Scratch &s = scratch_;
     s.islands.needs.clear();
@@ -237,12 +239,13 @@ void World::group_freely() {
     group.has_particles = false;
 }
 
-// In the order of their substeps.
+// Groups islands of the same pace, in the order in which their bodies come.
 void World::group_islands() {
     Scratch &s = scratch_;
     s.group_count = 0;
     const auto empty = [&](IslandGroup &group) {
-        // As if all were in each, so that nothing is allocated when islands change groups.
+        // Room for everything in each group, so that nothing is allocated when islands change
+        // groups.
         group.moving.clear();
         group.moving.reserve(s.moving.size());
         group.contacts.clear();

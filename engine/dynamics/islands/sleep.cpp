@@ -1,4 +1,4 @@
-// Sleep: islands at rest are not stepped any more, until something touches, moves or leaves them.
+// Sleep: islands at rest are not stepped until something touches, moves or leaves them.
 #include "engine/dynamics/world.h"
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// At rest is what goes less far in sleep_after than substep_tolerance of its width, and no faster
-// than a share of what gravity adds in a 60th of a second or in a longer step, or than rounding of
-// places makes it: nothing that drifts where there is no gravity.
+// A body is at rest if it moves less in sleep_after than substep_tolerance of its width, and no
+// faster than a share of what gravity adds in a 60th of a second or in a longer step, or than the
+// rounding of positions makes it. Without gravity a body that drifts is never at rest.
 constexpr double rest_share = 4e-3;
 constexpr double usual_dt = 1.0 / 60;
-constexpr double roundings = 2; // a substep
+constexpr double roundings = 2; // per substep
 
 double rest_time(const StepSettings &settings) {
     constexpr double where_nothing_sleeps = 0.5; // s
@@ -35,7 +35,7 @@ bool World::sleeps() const {
            std::ranges::find(method_->info.reads, SettingGroup::sleep) != method_->info.reads.end();
 }
 
-// Which bodies do not move in this step. `asleep`: whether what sleeps is among them.
+// Notes which bodies do not move in this step. `asleep`: whether sleeping ones are among them.
 void World::note_still(bool asleep) const {
     Scratch &s = scratch_;
     s.still.resize(model_->bodies.size());
@@ -55,7 +55,7 @@ void World::note_still(bool asleep) const {
     }
 }
 
-// Joins those that sleep against each other.
+// Joins sleeping bodies that touch or share a joint.
 void World::find_sleeping_islands(const std::vector<Pace> &paces) const {
     Islands &islands = scratch_.islands;
     islands.start(model_->bodies.size());
@@ -82,7 +82,7 @@ void World::wake_marked(std::vector<Pace> &paces) const {
             paces[i].rested = 0;
 }
 
-// Whether what moves touches what sleeps; which is then awake in this step.
+// Whether a moving body touches a sleeping one; that one is then awake in this step.
 bool World::wake_touched(const std::vector<Contact> &contacts) {
     Scratch &s = scratch_;
     const auto wakes = [&](const Contact &contact) {
@@ -102,7 +102,7 @@ bool World::wake_touched(const std::vector<Contact> &contacts) {
     return true;
 }
 
-// Between steps: wakes a body, what rests against it, and what hangs on it.
+// Between steps: wakes a body, and the bodies that touch it or are jointed to it.
 void World::wake(std::uint32_t body) {
     scratch_.contacts_are_current = false;
     if (std::ranges::none_of(state_.paces, &Pace::is_asleep))
@@ -126,7 +126,8 @@ void World::wake_all() {
         pace.rested = 0;
 }
 
-// How many steps at rest are enough; where nothing sleeps, to be left alone by find_unsettled.
+// How many steps at rest are enough to sleep; where nothing sleeps, to be left alone by
+// find_unsettled.
 std::uint16_t World::steps_to_sleep() const {
     const double steps = std::ceil(rest_time(settings_) / settings_.dt);
     return static_cast<std::uint16_t>(std::clamp(steps, 1.0, Pace::asleep - 1.0));
@@ -145,8 +146,8 @@ bool World::is_at_rest(std::uint32_t index) const {
                                             roundings * rounding / substep)
                                  : 0;
     if (static_cast<double>(glm::dot(motion.velocity, motion.velocity)) > 2 * slow * slow)
-        return false;      // far from it, as most that moves
-    Real extent = Real(0); // round ones too: a spin that no eye sees is still kept
+        return false;      // far from it, as most moving bodies are
+    Real extent = Real(0); // round bodies too: a spin that cannot be seen is still kept
     for (std::uint32_t c = 0; c < body.collider_count; ++c) {
         const Collider &collider = model_->colliders[body.first_collider + c];
         extent = std::max(extent, collider.extent + collider.rounding);
@@ -157,8 +158,7 @@ bool World::is_at_rest(std::uint32_t index) const {
     return glm::length(motion.velocity) + extent * glm::length(motion.angular_velocity) <= limit;
 }
 
-// Counts for how long each body has been at rest; islands that have been for long enough fall
-// asleep.
+// Counts how long each body has been at rest; islands that have rested long enough fall asleep.
 void World::fall_asleep() {
     if (!sleeps() && !chooses_substeps())
         return;

@@ -13,7 +13,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// By the sum of lengths where that is nearer.
+// Replaces the bound by the sum of lengths where that is tighter.
 Vec3 nearer(const Vec3 &axial, Real most, const Vec3 &inertia) {
     const Vec3 alike{most};
     return squared_rate(alike, inertia) <= squared_rate(axial, inertia) ? alike : axial;
@@ -46,8 +46,8 @@ Vec3 axial_stiffness(const GeometricStiffness &stiffness, const Vec3 &inertia,
     return nearer(axial, stiffness.most, inertia);
 }
 
-// |(F r) - F_i r_i| is at most as long as what r has across the axis, |F_i r_j + F_j r_i| as what
-// it has along the two.
+// |(F r) - F_i r_i| is at most the length of r's part across axis i, |F_i r_j + F_j r_i| that of
+// its part along axes i and j.
 Vec3 greatest_axial_stiffness(const Vec3 &arm, const Vec3 &inertia) {
     if (is_isotropic(inertia))
         return Vec3{glm::length(arm)};

@@ -1,9 +1,9 @@
-// How stiffly a grab pulls, the same in either precision.
+// How stiffly a grab pulls; the same in either precision.
 #pragma once
 
 namespace plumb {
 
-// A damped spring of the mass that it holds.
+// A damped spring, tuned to the mass it holds.
 struct GrabSpring {
     double frequency = 5;     // Hz, > 0
     double damping_ratio = 1; // >= 0

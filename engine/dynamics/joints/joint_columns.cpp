@@ -11,8 +11,9 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Of fewer at once the gathering costs more than it saves: on an AMD EPYC nets with 4 joints a
-// level take 1.03 of the time, with 5 as long, with 6.5 0.8, with 10 and 20 three quarters of it.
+// With fewer joints a level the gathering costs more than it saves: on an AMD EPYC, nets with 4
+// joints a level take 1.03 times as long, with 5 the same, with 6.5 0.8, with 10 and 20 three
+// quarters.
 constexpr std::size_t least_a_level = 6;
 constexpr std::uint32_t none = UINT32_MAX;
 
@@ -30,7 +31,7 @@ bool is_alone(const StepContext &context, std::uint32_t body) {
            context.scratch.joint_system->group_of(body) == JointSystem::none;
 }
 
-// Joints that are one rigid point, between bodies that no group has.
+// Joints that are a single rigid point, between bodies that are in no group.
 bool may_be_in_columns(StepContext &context, std::size_t k) {
     const std::span<const JointConstraint> blocks = blocks_of(context, k);
     if (blocks.size() != 1)
@@ -41,7 +42,7 @@ bool may_be_in_columns(StepContext &context, std::size_t k) {
            is_alone(context, joint.a) && is_alone(context, joint.b);
 }
 
-// The level of each joint, or none; how many there are of each, in next_lanes.
+// Finds the level of each joint, or none, and counts joints per level in next_lanes.
 std::size_t find_levels(StepContext &context, JointSchedule &schedule) {
     schedule.level_of_body.assign(context.bodies.size(), 0);
     schedule.level_of_joint.assign(context.scratch.joints.size(), none);
@@ -95,13 +96,13 @@ void fill_lane(StepContext &context, JointBlock &block, std::uint32_t index) {
     set(block.impulse, lane, joint.impulse);
 }
 
-// Calls use(lane) for those that a kernel has left.
+// Calls use(lane) for lanes that a kernel left alone.
 template <typename Use> void for_left(const JointBlock &block, Use &&use) {
     for (unsigned left = block.left & ((1U << block.used) - 1); left != 0; left &= left - 1)
         use(static_cast<std::size_t>(std::countr_zero(left)));
 }
 
-// A lane as a joint by itself.
+// Writes a lane back as a single joint.
 JointConstraint &put_back(StepContext &context, const JointBlock &block, std::size_t lane) {
     JointConstraint &joint = context.scratch.joints[block.joints[lane]];
     joint.rows.r_a = get(block.a.arm, lane);

@@ -41,7 +41,7 @@ void weigh_with_groups(StepContext &context, bool changed_only) {
             weigh(context, joint);
 }
 
-// Some microseconds of work.
+// A few microseconds of work.
 constexpr std::size_t joints_a_part = 16;
 
 // Appends a joint's blocks, or writes those that it has.
@@ -81,7 +81,7 @@ bool is_in_columns(StepContext &context, std::size_t k) {
     return !blocks.empty() && blocks.front().in_columns;
 }
 
-// Factors the groups that are held, and of which `is_due` says so.
+// Factors held groups for which is_due(group).
 template <typename Due> void factor_groups(StepContext &context, Due &&is_due) {
     JointSystem &system = *context.scratch.joint_system;
     const std::span<JointGroup> groups = system.groups();
@@ -94,16 +94,16 @@ template <typename Due> void factor_groups(StepContext &context, Due &&is_due) {
     });
 }
 
-// How far a spring turns in a substep (rad), at twice the rate of the joint by itself: for others
-// at its bodies, and its own lever arms.
+// How far a spring turns its phase in a substep (rad), at twice the joint's own rate to allow for
+// other springs on its bodies and for its own lever arms.
 Real spring_turn(const RowBlock &rows, Real h) {
     return Real(4) * std::numbers::pi_v<Real> * rows.frequency * h;
 }
 
-// By the midpoint rule, a spring starts from less the stiffer it is for the substep: what one pass
-// leaves of a stiff one's impulse, of which the next is the opposite, would grow from substep to
-// substep where springs share bodies. A soft one that began anew would sag: its damper would see
-// what the pass has not come to yet.
+// The stiffer a midpoint spring is for the substep, the less it is warm started: a pass leaves a
+// residual in a stiff spring's impulse that is reversed in the next substep, and would grow where
+// springs share bodies. A soft spring without a warm start would sag: its damper would see what the
+// pass has not reached yet.
 Real spring_warm_start(const RowBlock &rows, Real h) {
     return std::max(Real(0), Real(1) - spring_turn(rows, h));
 }
@@ -190,7 +190,7 @@ void weigh_changed_joints(StepContext &context) {
         if (is_changed(context, joint))
             weigh_alone(context, joint);
     weigh_joint_columns(context, true);
-    // A group that has changed has changed all of its bodies.
+    // A changed group has changed all of its bodies.
     factor_groups(context, [&](const JointGroup &group) {
         return is_changed(context, context.scratch.joints[system.block(group.first)]);
     });
@@ -226,7 +226,7 @@ void warm_start_joints(StepContext &context, Real share, Springs springs) {
 }
 
 void foresee_turns(StepContext &context, Real h) {
-    constexpr Real most_share = Real(0.02); // of the arms: what turns 0.2 rad leaves its circle by
+    constexpr Real most_share = Real(0.02); // of the arms: a 0.2 rad turn leaves the circle by this
     for (JointConstraint &joint : context.scratch.joints) {
         const RowBlock &rows = joint.rows;
         joint.turning = Vec3{Real(0)};
@@ -260,9 +260,9 @@ void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &
         answer(context, joint, change);
 }
 
-// Groups come first, to see whether they hold, and again after other joints have changed what they
-// did, with the limits that these passes have reached: Gauss-Seidel alone finds which of them bear,
-// but what a row of limits bears it would find only in very many passes.
+// Held groups are solved first, to see whether they hold, and again after other joints changed
+// their bodies, with the limits that those passes reached: Gauss-Seidel alone finds which limits
+// are active, but would need very many passes to find the load on a row of them.
 void solve_joints(StepContext &context, const JointPass &pass) {
     const std::span<JointGroup> groups = context.scratch.joint_system->groups();
     const auto hold = [&](std::size_t begin, std::size_t end) {
@@ -302,7 +302,7 @@ void solve_joints(StepContext &context, const JointPass &pass) {
     };
     if (is_changed)
         solve([](const JointGroup &) { return true; });
-    // Limits that were reached or opened change what others of their group do.
+    // Limits that were reached or opened affect others of their group.
     constexpr int most_rounds = 4;
     for (int round = 0; round < most_rounds && any_has_changed(context); ++round) {
         weigh_again(context, [&](JointConstraint &joint) { solve_joint(context, joint, pass); });
@@ -333,7 +333,7 @@ void store_joints(StepContext &context) {
             const std::span<JointConstraint, 2> limits = limits_of(joint);
             store(limits[0], Vec3{std::max(total.z, Real(0))}, 1);
             store(limits[1], Vec3{std::min(total.z, Real(0))}, 1);
-        } else if (joint.rows.bounds == RowBounds::equal || !joint.is_held) { // no limit of those
+        } else if (joint.rows.bounds == RowBounds::equal || !joint.is_held) { // not such a limit
             store(joint, total, joint.rows.count);
         }
     }

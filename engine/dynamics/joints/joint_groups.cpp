@@ -11,15 +11,15 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Of the arms' lengths: how far ends may be from each other.
+// As a share of the arms' lengths: how far ends may be apart.
 constexpr Real solved_to = Real(1e-6);
 
-// The right-hand sides of a group's equations, its own among those of all.
+// A group's own right-hand sides among those of all groups.
 std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
     return std::span(context.scratch.sides).subspan(group.first, group.last - group.first);
 }
 
-// It bears nothing yet.
+// With no impulse yet.
 void set_bearing(JointConstraint &joint, BearingLimit bearing) {
     joint.bearing = bearing;
     joint.rows.count = 2;
@@ -35,19 +35,19 @@ void set_bearing(JointConstraint &joint, BearingLimit bearing) {
     }
 }
 
-// A limit pushes, and does not pull.
+// Limits push and never pull.
 bool pulls(BearingLimit bearing, Real impulse) {
     return (bearing == BearingLimit::lower && impulse < Real(0)) ||
            (bearing == BearingLimit::upper && impulse > Real(0));
 }
 
-// Leaves a limit to Gauss-Seidel, bearing nothing.
+// Removes a limit's impulse and leaves it to Gauss-Seidel.
 void release_limit(StepContext &context, JointConstraint &joint) {
     apply(context, joint, {Real(0), Real(0), -joint.impulse.z});
     set_bearing(joint, BearingLimit::none);
 }
 
-// Releases those that pull. Returns whether there were any.
+// Releases limits that pull. Returns whether there were any.
 bool release_limits(StepContext &context, JointGroup &group) {
     bool any = false;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
@@ -62,22 +62,22 @@ bool release_limits(StepContext &context, JointGroup &group) {
     return any;
 }
 
-// How fast rows that are solved together take their drift back. A limit may be anywhere when it
-// is reached: the others' drift is not to wait for it.
+// How fast rows in a group take their drift back. A limit may have any error when it is reached,
+// and the other rows' drift should not wait for it.
 Vec3 held_bias(const JointConstraint &joint, const JointPass &pass) {
     const Real rate = pass.held_share / pass.h;
     if (joint.bearing == BearingLimit::none)
         return pushed(rate * joint.rows.error, pass.push_velocity);
     const Vec3 &error = joint.rows.error;
     Vec3 bias = pushed(rate * Vec3{error.x, error.y, Real(0)}, pass.push_velocity);
-    const bool is_off = pulls(joint.bearing, -error.z); // comes to its limit in this substep
+    const bool is_off = pulls(joint.bearing, -error.z); // reaches its limit in this substep
     bias.z = is_off ? error.z / pass.h
                     : std::clamp(rate * error.z, -pass.push_velocity, pass.push_velocity);
     return bias;
 }
 
-// What strikes open the limits that bore less in the last substep than the blow, whose answers are
-// in the right-hand sides, would have them pull. Returns whether there were any.
+// Opens limits that an impact, whose response is in the right-hand sides, would make pull by more
+// than they carried in the last substep. Returns whether there were any.
 bool open_limits(StepContext &context, JointGroup &group) {
     JointSystem &system = *context.scratch.joint_system;
     const std::span<const Vec3> sides = sides_of(context, group);
@@ -94,12 +94,12 @@ bool open_limits(StepContext &context, JointGroup &group) {
     return any;
 }
 
-// All rows of a group at once. Where bodies turn far within the substep, the ends of their arms
-// move along circles, and it takes some of Newton's steps until they meet. Returns whether they do.
+// Solves all rows of a group together. Where bodies turn far within the substep the ends of their
+// arms move along circles, and take a few Newton steps to meet. Returns whether they do.
 bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = *context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
-    // Far more than it takes when a body turns a radian within the substep.
+    // Far more than needed when a body turns a radian within the substep.
     constexpr int most_steps = 8;
     for (int step = 0; step < (pass.at_the_end ? most_steps : 1); ++step) {
         bool holds = step > 0;
@@ -128,9 +128,9 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
     return !pass.at_the_end;
 }
 
-// What a group answers to an impulse along the rows of a joint that is not of it, such as a limit:
-// the impulses that keep the speeds of the group's rows, in its right-hand sides. Returns the sum
-// of their products with what the impulse did to those rows.
+// A group's response to an impulse along the rows of a joint outside it, such as a limit: the
+// impulses that keep the group's row speeds, left in its right-hand sides. Returns the sum of their
+// products with the impulse's effect on those rows.
 Real find_answer(StepContext &context, const JointConstraint &joint, const JointGroup &group,
                  const Vec3 &impulse) {
     const JointSystem &system = *context.scratch.joint_system;
@@ -164,7 +164,7 @@ Real find_answer(StepContext &context, const JointConstraint &joint, const Joint
     return sum;
 }
 
-// Calls use(group) for those that the joint's bodies hang on, as far as they are held.
+// Calls use(group) for the held groups of the joint's bodies.
 template <typename Use>
 void for_held_groups(StepContext &context, const JointConstraint &joint, Use &&use) {
     JointSystem &system = *context.scratch.joint_system;
@@ -240,7 +240,7 @@ bool choose_limits(StepContext &context, const JointGroup &group) {
             joint.impulse.z = load;
         any = true;
     }
-    // What has torn it apart may have been a blow at those limits, which is not to go on.
+    // An impact at those limits may have torn it apart, and must not be repeated.
     for (std::uint32_t place = group.first; any && !group.is_held && place < group.last; ++place)
         context.scratch.joints[context.scratch.joint_system->block(place)].impulse = Vec3{Real(0)};
     return any;
@@ -261,8 +261,8 @@ bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass)
 
 namespace {
 
-// Where bodies turn far in a substep, their loads point elsewhere than those that they have given
-// way to: that is no drift. 1 where they do not.
+// Where bodies turn far in a substep, their loads no longer point along the stretch they built up:
+// that difference is not drift. 1 where they do not turn far.
 Real unturned_share(StepContext &context, const JointConstraint &joint, Real h) {
     constexpr Real little = Real(0.01); // rad
     const Real turn = h * std::max(glm::length(context.body(joint.a).angular_velocity),
@@ -270,9 +270,9 @@ Real unturned_share(StepContext &context, const JointConstraint &joint, Real h) 
     return std::clamp(Real(2) - turn / little, Real(0), Real(1));
 }
 
-// Rows that are solved together reach J v + closing + softening * impulse = 0, closing = bias for
-// drift taken back in full. The load so far has given way by softening * impulse: of the rest of
-// the bias, push_share is taken back, and by the push, not by the load.
+// Rows in a group reach J v + closing + softening * impulse = 0, where closing = bias corrects the
+// drift in full. The load so far has stretched the rows by softening * impulse; push_share of the
+// rest of the bias is corrected, by the push and not by the load.
 void push(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = *context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
@@ -284,7 +284,7 @@ void push(StepContext &context, const JointGroup &group, const JointPass &pass) 
         const Real share = unturned_share(context, joint, pass.h);
         Vec3 side = share * pass.push_share * (bias + given_way);
         joint.closing = side - share * given_way + (Real(1) - share) * bias;
-        if (joint.bearing != BearingLimit::none) { // may be on the way to it
+        if (joint.bearing != BearingLimit::none) { // may still be approaching it
             joint.closing.z = bias.z;
             side.z = Real(0);
         }

@@ -1,5 +1,5 @@
-// Joints that are solved together in groups (JointSystem), the limits among them, and what is
-// weighed with them.
+// Joints that are solved together in groups (JointSystem), with their limits, and the other joints
+// whose effective mass depends on a group.
 #pragma once
 
 #include "engine/dynamics/joints/joint_constraint.h"
@@ -11,54 +11,56 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-inline constexpr std::size_t groups_a_part = 1; // for a thread
-// Of joints that are solved together, as a share of what their own blocks give way: enough for
-// joints that say the same twice, too little to be seen.
+inline constexpr std::size_t groups_a_part = 1; // per thread
+// Compliance of joints solved in groups, as a share of their own blocks' K: enough to solve
+// redundant joints, too little to see.
 inline constexpr Real held_compliance = Real(1e-3);
 
-// Of a joint's blocks: notes the limits of the one of two rows that leaves free what they stop.
+// Links a joint's limits to the two-row block that leaves the limited direction free.
 void find_limits(std::span<JointConstraint> blocks);
-// The lower and the upper limit of a block that has some.
+// The lower and upper limit of a block that has limits.
 std::span<JointConstraint, 2> limits_of(JointConstraint &joint);
-// The row of the limit that bears as the third of the block.
+// Adds the active limit's row as the block's third.
 void add_limit_row(JointConstraint &joint);
-// Makes the limits that bear something rows of their group, as long as it is held. Says whether
-// anything changed.
+// Moves loaded limits into their group as rows, while the group is held. Returns whether anything
+// changed.
 bool choose_limits(StepContext &context, const JointGroup &group);
-// With other limits than before.
+// Factors a group again after its active limits changed.
 void factor_again(StepContext &context, JointGroup &group);
 
-// All rows of a group at once, without limits that would pull. Returns whether their ends meet.
+// Solves all rows of a group together, releasing limits that would pull. Returns whether the ends
+// of its joints meet.
 bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass);
-// Joints that are solved together give way a little (held_compliance), as springs that are the
-// stiffer the finer the substep is: what they hold would come back as speed, many times as much
-// where an island takes more substeps than before, and a bridge that is pulled straight would throw
-// up what falls on it. So drift that the loads do not account for moves bodies in the holding
-// pass, and is taken out of their velocities when they have moved.
+// Joints in a group give a little (held_compliance), like springs that stiffen as the substep gets
+// finer. Taken back as drift, that stretch would turn into speed, amplified where an island takes
+// more substeps than before, and a bridge pulled taut would launch whatever falls on it. So drift
+// that the loads do not account for is corrected by moving bodies in the holding pass, and the
+// correction is removed from their velocities once they have moved.
 void push_groups(StepContext &context, const JointPass &pass);
 void take_back_pushes(StepContext &context);
-// The groups that are held once more, where contacts were solved after them.
+// Solves held groups once more where contacts were solved after them.
 void hold_touched_groups(StepContext &context, const JointPass &pass);
-// After limits were released: what the others bore with them would not be borne again in the rest
-// of the substep. `share`: of the substep, so far.
+// After limits were released: without this, loads that the other rows shared with those limits
+// would not be carried in the rest of the substep. `share`: of the substep, so far.
 void remember_anew(StepContext &context, const JointGroup &group, Real share);
-// Leaves a group to Gauss-Seidel, without what it remembers: forces that nothing has stretched for
-// would give more energy than they took.
+// Leaves a group to Gauss-Seidel and drops its accumulated impulses: forces that no stretch has
+// built up would return more energy than they took.
 void let_go(StepContext &context, JointGroup &group);
 
-// Limits and motors against bodies whose joints are solved together: as heavy as those make them.
+// Effective mass of a limit or motor on bodies held by a group: as heavy as the group makes them.
 void weigh(StepContext &context, JointConstraint &joint);
 bool any_has_changed(StepContext &context);
-// Those that hang on groups that have changed since; calls use(joint) after each.
+// Recomputes it for joints on groups that changed; calls use(joint) after each.
 void weigh_again(StepContext &context, const std::function<void(JointConstraint &)> &use);
-// Likewise, and notes that none has changed any more.
+// The same, then clears the groups' change flags.
 void weigh_again(StepContext &context);
-// What the groups of a joint's bodies answer to an impulse along its rows, where it is not of them.
-// At once, so that the next limit or motor of the same bodies knows of it: each is as heavy as the
-// groups make it, and would overshoot against bodies that these have not held back yet.
+// Applies the response of the groups of a joint's bodies to an impulse along its rows, if the joint
+// is not in the group itself. Must come immediately, so that the next limit or motor on the same
+// bodies sees it: each has the mass that the groups give it, and would overshoot against bodies
+// that the groups have not held back yet.
 void answer(StepContext &context, const JointConstraint &joint, const Vec3 &impulse);
-// What the joints of a group answer to an impact: changes velocities so that the joints hold them.
-// Nothing for JointSystem::none, or a group that is not held.
+// A group's response to an impact: changes velocities so that its joints hold. Does nothing for
+// JointSystem::none, or a group that is not held.
 void answer_impact(StepContext &context, std::uint32_t group);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -43,7 +43,7 @@ Real row_coupling(const RowBlock &rows, const SolverBody &a, const SolverBody &b
            glm::dot(b.inv_inertia * glm::cross(rows.r_b, u), glm::cross(rows.r_b, v));
 }
 
-// The inverse of a symmetric matrix that is not negative; nothing where it is 0.
+// The inverse of a symmetric positive semidefinite matrix; 0 for 0.
 Mat3 inverse_of(Mat3 k) {
     const Real trace = k[0][0] + k[1][1] + k[2][2];
     if (!(trace > Real(0)))
@@ -51,8 +51,8 @@ Mat3 inverse_of(Mat3 k) {
     constexpr Real small = Real(1e-6);
     if (trace > small && trace < Real(1) / small)
         return glm::inverse(k + locked_compliance(k));
-    // The determinant of what is very heavy would be too small a number. By a power of two: that
-    // rounds nothing.
+    // The determinant of a very heavy body's K would underflow. Scale by a power of two, which does
+    // not round.
     const Real scale = std::exp2(static_cast<Real>(-std::ilogb(trace)));
     k *= scale;
     return scale * glm::inverse(k + locked_compliance(k));
@@ -65,7 +65,7 @@ Softness spring_softness(const RowBlock &rows, const JointPass &pass) {
 }
 
 // The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
-// and -1 for an upper one.
+// and -1 for an upper limit.
 Real limit_change(const JointConstraint &joint, Real speed, const Softness &softness,
                   const JointPass &pass, Real side) {
     const Real gap = side * joint.rows.error.x;
@@ -89,7 +89,7 @@ Mat3 locked_compliance(const Mat3 &k) {
     const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
     if (!(size > Real(0)) || glm::determinant(k) > least * size * size * size)
         return Mat3{Real(0)};
-    // Next to 1 along what nothing can move, and next to 0 along all else.
+    // Close to 1 along immovable directions, close to 0 along all others.
     constexpr Real small = Real(1e-4);
     const Mat3 locked = small * glm::inverse(k / size + Mat3{small});
     return (Real(1e3) * size) * (locked * locked);
@@ -179,7 +179,7 @@ Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody 
     }
     along(relative);
     if (pass.at_the_end && rows.swing_length > Real(0)) {
-        // How much longer the line between the anchors becomes while they swing aside.
+        // How much longer the line between the anchors gets as they swing sideways.
         const Real distance = rows.swing_length;
         const Vec3 aside = pass.h * (relative - v.x * rows.axes[0]);
         const Real squared = std::min(glm::dot(aside, aside), distance * distance);
@@ -225,8 +225,9 @@ Vec3 pushed(const Vec3 &bias, Real most) {
 
 namespace {
 
-// K of several rows as it was when the bodies were joined, their frames together, turned with a. As
-// K of now, a spring's stiffness would turn with both bodies, and feed what swings on it.
+// K of several rows as it was when the bodies were joined with their frames aligned, turned with a.
+// With the present K a spring's stiffness would turn with both bodies and feed energy into what
+// swings on it.
 Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     const Joint &of = context.model.joints[joint.joint];
     const RowBlock &rows = joint.rows;
@@ -253,8 +254,8 @@ Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     return k;
 }
 
-// The mean over all directions of K at a point of a body: 1/m + tr([r]^T I^-1 [r]) / 3. The
-// direction of a line between anchors may turn any way.
+// The mean over all directions of K at a point of a body: 1/m + tr([r]^T I^-1 [r]) / 3. The line
+// between anchors may turn to any direction.
 Real mean_inverse_mass(const StepContext &context, std::uint32_t index, const Vec3 &r_local) {
     if (index == Joint::world || !(context.model.bodies[index].mass > Real(0)))
         return Real(0);
@@ -264,7 +265,7 @@ Real mean_inverse_mass(const StepContext &context, std::uint32_t index, const Ve
     return Real(1) / body.mass + glm::dot(body.inv_inertia, Vec3{all} - squared) / Real(3);
 }
 
-// Of a spring of one row, which may be a limit.
+// Softness of a single-row spring, which may be a limit.
 Softness spring_softness(const StepContext &context, const JointConstraint &joint,
                          const JointPass &pass) {
     Softness softness = spring_softness(joint.rows, pass);
@@ -279,7 +280,7 @@ Softness spring_softness(const StepContext &context, const JointConstraint &join
     return softness;
 }
 
-// Of a spring of several rows.
+// Impulse change of a spring of several rows.
 Vec3 spring_change(StepContext &context, const JointConstraint &joint, const Vec3 &wanted,
                    const Softness &softness) {
     const Real stiffness = softness.mass_scale / softness.impulse_scale; // a2 of make_soft

@@ -1,4 +1,4 @@
-// What the rows of a joint do to its two bodies: masses, speeds, impulses.
+// What a joint's rows do to its two bodies: effective masses, velocities, impulses.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -8,15 +8,15 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// So much to add to K, a symmetric matrix that is not negative, that next to no impulse goes along
-// what nothing can move (a locked axis): it would pull in vain, the harder the longer. 0 where
+// What to add to K, symmetric positive semidefinite, so that next to no impulse acts along a
+// direction in which nothing can move (a locked axis): it would pull in vain, ever harder. 0 where
 // there is no such direction.
 Mat3 locked_compliance(const Mat3 &k);
-// K^-1 of the rows. What nothing can move has none: 0.
+// K^-1 of the rows; 0 where nothing can move.
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b);
-// The mean velocity over h, because it turns, of the end of an arm that starts as r.
+// The mean velocity over h of the end of a turning arm that starts at r.
 Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h);
-// How fast the anchors part; at the end of pass.h where the pass says so.
+// The anchors' relative velocity; over the chord to the end of pass.h if pass.at_the_end.
 inline Vec3 point_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
                            const JointPass &pass) {
     if (!pass.at_the_end)
@@ -24,7 +24,7 @@ inline Vec3 point_velocity(const RowBlock &rows, const SolverBody &a, const Solv
     return (b.velocity - a.velocity) + (chord_velocity(b.angular_velocity, rows.r_b, pass.h) -
                                         chord_velocity(a.angular_velocity, rows.r_a, pass.h));
 }
-// The same of rows along or about axes.
+// The same for rows along or about axes.
 Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
                     const JointPass &pass);
 // How fast the rows' errors grow.
@@ -33,10 +33,10 @@ inline Vec3 row_velocity(const RowBlock &rows, const SolverBody &a, const Solver
     return rows.kind == RowKind::point ? point_velocity(rows, a, b, pass)
                                        : axial_velocity(rows, a, b, pass);
 }
-// How much faster they grow in the mean of h than at its start, because the bodies turn: half of h
-// times the second derivative of errors along lines, v^T H v (to first order in h).
+// How much faster the errors grow on average over h than at its start, because the bodies turn: h /
+// 2 times the second derivative of errors along lines, v^T H v (to first order in h).
 Vec3 half_bend(const RowBlock &rows, const SolverBody &a, const SolverBody &b, Real h);
-// What an impulse along the rows is in the world: a force's, or an angular one.
+// The rows' impulse in world axes: linear, or angular.
 inline Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse) {
     if (rows.kind == RowKind::point)
         return impulse;
@@ -45,19 +45,19 @@ inline Vec3 world_impulse(const RowBlock &rows, const Vec3 &impulse) {
         sum += impulse[i] * rows.axes[static_cast<std::size_t>(i)];
     return sum;
 }
-// Such an impulse, at an arm of the body's.
+// Applies it to a body at its lever arm.
 inline void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
     if (rows.kind == RowKind::angular)
         body.apply_angular_impulse(impulse);
     else
         body.apply_impulse(impulse, arm);
 }
-// An impulse along a joint's rows. What does not move by forces is not written to: joints of other
-// bodies, that are solved at the same time, hang on it, too.
+// Applies an impulse along a joint's rows. Bodies that do not move by forces are not written to:
+// other joints solved at the same time may share them.
 void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse);
-// No faster than `most`.
+// Clamped to speed `most`.
 Vec3 pushed(const Vec3 &bias, Real most);
-// What a pass adds to the rows' impulse.
+// The change that a pass makes to the rows' impulse.
 Vec3 impulse_change(StepContext &context, const JointConstraint &joint, const JointPass &pass);
 
 } // namespace plumb::inline PLUMB_PRECISION

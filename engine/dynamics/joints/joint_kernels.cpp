@@ -1,6 +1,6 @@
-// What soft_step does with a block of ball joints. Compiled once for each instruction set, by
-// including itself. Each lane sees the operations of the functions for single joints, in their
-// order: it comes to the same bits.
+// soft_step's work on a block of ball joints. Compiled once for each instruction set, by including
+// itself. Each lane performs the operations of the functions for single joints in the same order,
+// with bit-identical results.
 #include "engine/dynamics/joints/joint_columns.h"
 
 #include "engine/dynamics/joints/joint_constraint.h"
@@ -54,13 +54,13 @@ HWY_INLINE Mask is_body(const JointBlock::End &end, std::size_t lane) {
     return hn::Gt(load(end.is_body, lane), hn::Zero(tag));
 }
 
-// Three Reals of each lane's body; of the world, 0.
+// Three Reals of each lane's body; 0 for the world.
 HWY_INLINE Vector gather_end(const JointBlock::End &end, const BodyReals &bodies, int offset,
                              std::size_t lane) {
     return choose(is_body(end, lane), gather_rows(bodies.bodies, offset, end.body, lane), zeros());
 }
 
-// Lane by lane, as a block has them.
+// As bits, lane by lane within the block.
 HWY_INLINE unsigned bits_of(Mask mask, std::size_t lane) {
     if (hn::AllFalse(tag, mask))
         return 0;
@@ -82,7 +82,7 @@ HWY_INLINE Velocity velocity_of(const JointBlock::End &end, const BodyReals &bod
             gather_end(end, bodies, bodies.angular_velocity, lane)};
 }
 
-// SolverBody::apply_impulse, but for the lanes that are `left`.
+// SolverBody::apply_impulse, except for lanes that are `left`.
 HWY_INLINE void apply(const JointBlock::End &end, Velocity velocity, const Vector &impulse,
                       const BodyReals &bodies, unsigned left, std::size_t lane) {
     velocity.linear = plus(velocity.linear, times(load(end.inv_mass, lane), impulse));
@@ -124,7 +124,7 @@ HWY_INLINE Vector pushed(const Vector &bias, Lanes most) {
     return choose(is_fast, times(slowed, bias), bias);
 }
 
-// impulse_change (joint_impulse.h) of a point's rows, and what it does.
+// impulse_change (joint_impulse.h) of a point's rows, applied.
 void solve_impl(JointBlock &block, const BodyReals &bodies, const JointPass &pass) {
     block.left = 0;
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
@@ -169,7 +169,7 @@ void warm_start_impl(JointBlock &block, const BodyReals &bodies, Real share) {
     }
 }
 
-// point_matrix (joint_impulse.cpp), an end's part of it.
+// An end's share of point_matrix (joint_impulse.cpp).
 HWY_INLINE void subtract_end(Matrix &k, const Matrix &inv_inertia, const Vector &arm) {
     const Matrix crossed{cross(arm, inv_inertia.x), cross(arm, inv_inertia.y),
                          cross(arm, inv_inertia.z)};
@@ -186,7 +186,7 @@ HWY_INLINE Matrix reload_inertia(JointBlock::End &end, const BodyReals &bodies, 
     return inertia;
 }
 
-// mass_of (joint_impulse.h) of what is neither very heavy or light nor held along some axis.
+// mass_of (joint_impulse.h), for bodies neither very heavy nor very light nor locked along an axis.
 HWY_INLINE void weigh_lanes(JointBlock &block, const BodyReals &bodies, std::size_t lane) {
     const Vector linear = plus(load(block.a.inv_mass, lane), load(block.b.inv_mass, lane));
     const Lanes zero = hn::Zero(tag);

@@ -1,4 +1,4 @@
-// How joints' forces stiffen the bodies that they act on, and what is done about it.
+// How joint forces stiffen the bodies they act on, and what is done about it.
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/joints/joint_impulse.h"
 #include "engine/dynamics/method.h"
@@ -12,12 +12,12 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The largest rate times substep that a single pass of Gauss-Seidel follows, measured with balls on
+// The largest rate times substep that a single Gauss-Seidel pass follows, measured with balls on
 // arms.
 constexpr Real followed = Real(1.2);
 
-// Joints that are further from holding than this share of their arms, or as many radians, have been
-// torn apart: they are pulled together softly.
+// Joints with an error of more than this share of their arms, or this many radians, have been torn
+// apart: they are pulled together softly.
 constexpr Real torn_share = Real(0.001);
 
 bool is_torn(const JointConstraint &joint) {
@@ -28,8 +28,7 @@ bool is_torn(const JointConstraint &joint) {
     return !(glm::dot(error, error) <= most * most);
 }
 
-// Calls use(body, force, arm) for what the impulses of the last substep do to the bodies at their
-// ends.
+// Calls use(body, force, arm) for the last substep's impulses on the bodies at their ends.
 template <typename Use> void for_forces(const StepContext &context, Real h, Use &&use) {
     for (const JointConstraint &joint : context.scratch.joints) {
         if (joint.rows.kind == RowKind::angular)
@@ -42,8 +41,8 @@ template <typename Use> void for_forces(const StepContext &context, Real h, Use 
     }
 }
 
-// Whether so much of a stiffness may be more than a substep follows; its bound alone says so of
-// most bodies.
+// Whether a stiffness may be too much for the substep to follow; for most bodies its bound alone
+// rules that out.
 Real followed_rate(Real h) {
     return h * h / (followed * followed);
 }
@@ -52,11 +51,12 @@ bool may_be_too_stiff(const GeometricStiffness &stiffness, const Vec3 &inertia, 
     return !(squared_rate(Vec3{followed_rate(h) * stiffness.most}, inertia) < nearly);
 }
 
-// For the present substep; a body that bears less again is as it was. Says whether anything
-// changed.
+// Sets the inertia for the present substep; a body under less load gets its own back. Returns
+// whether anything changed.
 bool raise_inertia(SolverBody &motion, const Body &body, const GeometricStiffness &stiffness,
                    Real h) {
-    // What cannot move as a joint asks (a locked axis) bears ever more, the heavier it is made.
+    // A body that cannot move as a joint asks (a locked axis) takes ever more load the heavier it
+    // is made.
     constexpr Real most = Real(1e3);
     const Vec3 needed =
         followed_rate(h) * axial_stiffness(stiffness, body.inertia, motion.rotation);
@@ -66,14 +66,14 @@ bool raise_inertia(SolverBody &motion, const Body &body, const GeometricStiffnes
             inverse[axis] = std::min(inverse[axis],
                                      Real(1) / std::min(needed[axis], most * body.inertia[axis]));
     } else if (!is_isotropic(body.inertia)) {
-        return false; // it was found anew when the body turned
+        return false; // was recomputed when the body turned
     }
     const Mat3 before = motion.inv_inertia;
     motion.inv_inertia = solver_inverse_inertia(body, inverse, motion.rotation);
     return motion.inv_inertia != before;
 }
 
-// Of all that joints' forces act on. Notes what changed.
+// For all bodies that joint forces act on. Marks those that changed.
 void raise_inertias(StepContext &context, Real h) {
     std::vector<GeometricStiffness> &stiffness = context.scratch.stiffness;
     std::vector<std::uint8_t> &changed = context.scratch.changed;
@@ -115,7 +115,7 @@ void follow_loads(StepContext &context, Real h) {
         group.is_held = true;
         for (std::uint32_t place = group.first; group.is_held && place < group.last; ++place)
             group.is_held = !is_torn(context.scratch.joints[system.block(place)]);
-        // Torn in the midst of a step: more substeps may follow what did it.
+        // Torn in the middle of a step: the cause may need more substeps.
         group.was_let_go =
             group.was_let_go || (!group.is_held && group.is_factored && !group.was_torn);
         group.was_torn = group.was_torn || !group.is_held;

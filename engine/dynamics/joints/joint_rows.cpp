@@ -55,8 +55,8 @@ void emit_point(const Joint &joint, const Motion &a, const Motion &b, std::size_
     block.r_a = a.rotation * joint.anchor_a_local;
     block.r_b = b.rotation * joint.anchor_b_local;
     block.error = (b.position - a.position) + (block.r_b - block.r_a);
-    // What gives way acts in one place, that of b's anchor, as if its spring were mounted on a: at
-    // two, forces that are not along the stretch, and the damper's are not, would change the
+    // A soft joint acts at a single point, b's anchor, as if its spring were mounted on a: forces
+    // at two points that are not along the stretch, as the damper's are not, would change the
     // angular momentum.
     if (joint.frequency > Real(0))
         block.r_a += block.error;
@@ -69,7 +69,7 @@ void emit_same_turn(const Joint &joint, const Motion &a, const Motion &b, std::s
     RowBlock &block = rows.add(RowKind::angular, RowBounds::equal, 3, first_memory);
     const Mat3 axes = frame_a(joint, a);
     block.axes = {axes[0], axes[1], axes[2]};
-    // The axis of the turn times twice the sine of half its angle: the angle itself to third order.
+    // The rotation axis times twice the sine of half the angle: the angle itself to third order.
     const Quat turn = relative_turn(joint, a, b);
     block.error = Real(2) * Vec3{turn.x, turn.y, turn.z};
     block.frequency = joint.frequency;

@@ -1,5 +1,5 @@
-// What a joint asks of two bodies, as rows that every constrained method can run: each row is a
-// gradient (axis and lever arms), an error, bounds, and softness. No method knows a joint's type.
+// A joint as constraint rows that every constrained method can solve: each row has a gradient (axis
+// and lever arms), an error, bounds and softness. No method knows a joint's type.
 #pragma once
 
 #include "engine/dynamics/joints/joint.h"
@@ -8,37 +8,37 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// point: three rows that hold anchor b on anchor a, along the world's axes. linear: rows along
-// `axes` between the same places. angular: rows about `axes`.
+// point: three rows that hold anchor b on anchor a, along the world axes. linear: rows along `axes`
+// between the same points. angular: rows about `axes`.
 enum class RowKind { point, linear, angular };
 
-// What impulses the rows may have. equal: any. at_least, at_most: the error may be positive
-// (negative) and then nothing pushes; otherwise only pushes up (down). motor: any up to max_force
-// in each row. pull: up to max_force in length.
+// Which impulses the rows may apply. equal: any. at_least (at_most): none while the error is
+// positive (negative), otherwise only upwards (downwards). motor: any up to max_force in each row.
+// pull: any up to max_force in length.
 enum class RowBounds { equal, at_least, at_most, motor, pull };
 
-// One to three rows that are solved at once.
+// One to three rows that are solved together.
 struct RowBlock {
     RowKind kind = RowKind::point;
     RowBounds bounds = RowBounds::equal;
     int count = 3;
-    std::size_t first_memory = 0; // of its rows among JointMemory::impulses
+    std::size_t first_memory = 0; // index of its first row in JointMemory::impulses
 
     std::array<Vec3, 3> axes{}; // unit, world; linear and angular rows
-    Vec3 r_a{Real(0)};          // world, from the centres of mass to where the rows act
+    Vec3 r_a{Real(0)};          // world, from the centres of mass to the points where the rows act
     Vec3 r_b{Real(0)};
     Vec3 error{Real(0)};      // of each row, at the present poses (m or rad)
-    Real speed = Real(0);     // motor: wanted (m/s or rad/s)
+    Real speed = Real(0);     // motor: target (m/s or rad/s)
     Real max_force = Real(0); // N or N m
     Real frequency = Real(0); // Hz; 0: rigid
     Real damping_ratio = Real(1);
-    // Of a row along the line between the anchors: their distance, about which they swing (m).
+    // Rows along the line between the anchors: the anchors' distance, the radius of the swing (m).
     Real swing_length = Real(0);
-    // The axes turn with a, so what slides along a sees a Coriolis term.
+    // The axes turn with a, so motion along a is subject to a Coriolis term.
     bool turns_with_a = false;
 };
 
-// Where the blocks of a joint are written: new ones, or those of the same joint at other poses.
+// Receives a joint's blocks: new ones, or the existing ones at new poses.
 class RowWriter {
   public:
     RowWriter() = default;
@@ -59,7 +59,7 @@ class RowWriter {
     virtual RowBlock &next() = 0;
 };
 
-// Appends them.
+// Appends them to a vector.
 class NewRows final : public RowWriter {
   public:
     explicit NewRows(std::vector<RowBlock> &blocks) : blocks_(blocks) {}
@@ -69,53 +69,53 @@ class NewRows final : public RowWriter {
     std::vector<RowBlock> &blocks_;
 };
 
-// A joint at the present poses of its bodies (the world's is the identity): always the same blocks
-// in the same order, of which the same members are written.
+// A joint's rows at its bodies' present poses (the world's is the identity). Always emits the same
+// blocks in the same order, and writes the same members.
 void emit_rows(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);
 void emit_rows(const Grab &grab, const Motion &world, const Motion &body, RowWriter &rows);
 
-// How far b has come along or about what the joint leaves free, against a.
+// The position of b relative to a along or about the joint's free axis.
 struct JointPlace {
-    Real position = Real(0); // a hinge's angle (rad, -pi..pi), a slider's place (m), the distance
+    Real position = Real(0); // a hinge's angle (rad, -pi..pi), a slider's offset (m), the distance
                              // of a distance joint's anchors (m); 0 for the others
     Real speed = Real(0);    // its rate
 };
 JointPlace place_of(const Joint &joint, const Motion &a, const Motion &b);
 
-// Those of one type: one file each in joints/kinds/.
+// Per joint type: one file each in joints/kinds/.
 #define PLUMB_JOINT_FUNCTIONS(name)                                                                \
     void emit_##name(const Joint &joint, const Motion &a, const Motion &b, RowWriter &rows);       \
     JointPlace place_of_##name(const Joint &joint, const Motion &a, const Motion &b);
 PLUMB_JOINT_TYPES(PLUMB_JOINT_FUNCTIONS)
 #undef PLUMB_JOINT_FUNCTIONS
 
-// The parts that several joints are made of.
+// Parts shared by several joints.
 //
-// The anchors at one point: three rows.
+// Holds the anchors together: three rows.
 void emit_point(const Joint &joint, const Motion &a, const Motion &b, std::size_t first_memory,
                 RowWriter &rows);
-// No turn of frame b against frame a: three rows about the axes of frame a.
+// Keeps frame b aligned with frame a: three rows about the axes of frame a.
 void emit_same_turn(const Joint &joint, const Motion &a, const Motion &b, std::size_t first_memory,
                     RowWriter &rows);
-// Limits and motor of one degree of freedom, whose row is `row` and whose place (rad or m) is
-// `place`: two rows and one, as far as the joint has them.
+// Limits and motor of one degree of freedom with row `row` and position `place` (rad or m): up to
+// two rows and one.
 void emit_limits_and_motor(const Joint &joint, const RowBlock &row, Real place,
                            std::size_t first_memory, RowWriter &rows);
 
 // World axes of a joint's frames.
 Mat3 frame_a(const Joint &joint, const Motion &a);
 Mat3 frame_b(const Joint &joint, const Motion &b);
-// The turn from frame a to frame b, in frame a.
+// The rotation from frame a to frame b, in frame a.
 Quat relative_turn(const Joint &joint, const Motion &a, const Motion &b);
 // The velocity of anchor b against a's material at the same place (m/s, world).
 Vec3 anchor_velocity(const Joint &joint, const Motion &a, const Motion &b);
 
-// How far a joint's own rows, limits included, are from holding: the length of the errors of those
-// along lines and of those about axes.
+// How far a joint's own rows, limits included, are violated: the lengths of the linear and the
+// angular errors.
 struct JointError {
     Real linear = Real(0); // m
     Real angular =
-        Real(0); // rad; of a hinge's axes the sine, of frames twice that of half the turn
+        Real(0); // rad; hinge axes: sine of their angle; frames: twice the sine of half the turn
 };
 JointError joint_error(const Joint &joint, const Motion &a, const Motion &b);
 

@@ -15,11 +15,11 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Products of elimination that a block may cost on the average: a chain costs 1, a loop of a few
-// joints 3, a net of 10 x 10 some hundred.
+// Elimination products that a block may cost on average: a chain costs 1, a loop of a few joints 3,
+// a 10 x 10 net some hundred.
 constexpr std::size_t work_a_block = 12;
 
-// A diagonal value stands for one above the entries: no target is both.
+// Marks a target on the diagonal rather than among the entries; no target is both.
 constexpr std::uint32_t on_diagonal = UINT32_C(1) << 31;
 
 bool is_rigid(const JointConstraint &joint) {
@@ -79,7 +79,7 @@ void JointSystem::find_order(StepContext &context) {
     target_start_.assign(1, 0);
     group_of_body_.assign(context.bodies.size(), none);
 
-    // All lists are kept for their memory.
+    // Lists are kept for their memory.
     const auto clear_lists = [](std::vector<std::vector<std::uint32_t>> &lists, std::size_t count) {
         lists.resize(std::max(lists.size(), count));
         for (std::size_t i = 0; i < count; ++i)
@@ -142,8 +142,8 @@ void JointSystem::find_order(StepContext &context) {
     lower_.resize(rows_.size());
 }
 
-// Orders one group by least degree and finds what fills in; false, and nothing done, when that is
-// too much.
+// Orders one group by minimum degree and finds its fill-in; returns false, with nothing done, when
+// there is too much of it.
 bool JointSystem::eliminate(const std::vector<std::uint32_t> &members) {
     const auto first = static_cast<std::uint32_t>(order_.size());
     std::vector<std::uint32_t> joined;

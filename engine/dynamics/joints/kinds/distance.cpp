@@ -10,7 +10,7 @@ void emit_distance(const Joint &joint, const Motion &a, const Motion &b, RowWrit
     const Vec3 r_b = b.rotation * joint.anchor_b_local;
     const Vec3 gap = (b.position - a.position) + (r_b - r_a);
     const Real distance = glm::length(gap);
-    // Anchors on top of each other: any direction parts them.
+    // Coincident anchors: any direction separates them.
     const Vec3 axis = distance > Real(0) ? gap / distance : Vec3{Real(0), Real(1), Real(0)};
     const auto add = [&](RowBounds bounds, std::size_t memory, Real length) {
         RowBlock &block = rows.add(RowKind::linear, bounds, 1, memory);

@@ -1,4 +1,4 @@
-// Grab: the mouse holds a body's point on a spring of bounded strength.
+// Grab: the mouse holds a body's point with a spring of limited strength.
 #include "engine/dynamics/check_value.h"
 #include "engine/dynamics/joints/joint_rows.h"
 

@@ -23,7 +23,7 @@ void emit_hinge(const Joint &joint, const Motion &a, const Motion &b, RowWriter 
     const Vec3 axis_b = frame_b(joint, b)[0];
     RowBlock &block = rows.add(RowKind::angular, RowBounds::equal, 2, 3);
     block.axes = {axes[1], axes[2], Vec3{Real(0)}};
-    // The sine of the angle between the axes, about the two that must not turn.
+    // The sine of the angle between the axes, about the two perpendicular ones.
     const Vec3 lean = glm::cross(axes[0], axis_b);
     block.error = {glm::dot(lean, axes[1]), glm::dot(lean, axes[2]), Real(0)};
     block.frequency = joint.frequency;
