@@ -291,14 +291,13 @@ bool any_has_turned_far(const StepContext &context) {
     });
 }
 
-// Whether a body has turned so far since the step began that its corners, and its lever arms, are
-// elsewhere, as a fast body does in a substep. Thin bodies get there sooner: along an arm that has
-// turned by t against a stick, K grows by about 3 t^2 / m times its largest over its least inertia,
-// and passes with the mass from the start of the step would push ever harder.
-bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces) {
+// Whether a turn moves a body's corners, and its lever arms, elsewhere, as that of a fast body does
+// in a substep. Thin bodies get there sooner: along an arm that has turned by t against a stick, K
+// grows by about 3 t^2 / m times its largest over its least inertia, and passes with the effective
+// mass of before the turn would push ever harder.
+bool is_far_turn(const StepContext &context, std::uint32_t body, const Vec3 &turn, bool bounces) {
     constexpr Real far = Real(0.2);
     constexpr Real share = Real(0.1);
-    const Vec3 &turn = context.bodies[body].turned;
     const Real squared = glm::dot(turn, turn);
     if (!(squared > Real(0)) || !is_dynamic(context, body))
         return false;
@@ -309,6 +308,17 @@ bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces
     if (bounces && least > Real(0.25) * most)
         return false;
     return squared > std::min(far * far, share * least / most);
+}
+bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces) {
+    return is_far_turn(context, body, context.bodies[body].turned, bounces);
+}
+
+// Whether two bodies have turned so far against each other since the step began that their
+// contact's effective masses no longer hold.
+bool have_turned_apart(const StepContext &context, const Contact &contact) {
+    const Vec3 turn = context.bodies[contact.key.b].turned - context.bodies[contact.key.a].turned;
+    return is_far_turn(context, contact.key.a, turn, false) ||
+           is_far_turn(context, contact.key.b, turn, false);
 }
 
 // Whether a rolling body's core is not at its middle and goes around it: a coin that leans, a ball
@@ -423,11 +433,16 @@ unsigned take_back_pushes(StepContext &context, ContactBlock &block) {
     return lanes;
 }
 
-// Sets a lane's arms and inertias to those of the present poses.
-void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
+void set_inertias(const StepContext &context, ContactBlock &block, std::size_t lane) {
     const Contact &contact = context.contacts[block.contacts[lane]];
     set(block.inv_inertia_a, lane, context.bodies[contact.key.a].inv_inertia);
     set(block.inv_inertia_b, lane, context.bodies[contact.key.b].inv_inertia);
+}
+
+// Sets a lane's arms and inertias to those of the present poses.
+void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    set_inertias(context, block, lane);
     if ((block.found_again >> lane & 1U) != 0) {
         find_again(context, block, lane);
         return;
@@ -447,10 +462,20 @@ void turn_contact_columns(StepContext &context, Real t) {
     if (!context.scratch.schedule.any_turning)
         return;
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
-        for (ContactBlock &block : blocks)
-            for (std::size_t lane = 0; block.turning != 0 && lane < block.used; ++lane)
-                if ((block.turning >> lane & 1U) != 0)
-                    turn_lane(context, block, lane, t);
+        for (ContactBlock &block : blocks) {
+            bool any_apart = false;
+            for (std::size_t lane = 0; block.turning != 0 && lane < block.used; ++lane) {
+                if ((block.turning >> lane & 1U) == 0)
+                    continue;
+                turn_lane(context, block, lane, t);
+                if (have_turned_apart(context, context.contacts[block.contacts[lane]])) {
+                    set_inertias(context, block, lane);
+                    any_apart = true;
+                }
+            }
+            if (any_apart)
+                kernels::finish(std::span(&block, 1));
+        }
     });
 }
 

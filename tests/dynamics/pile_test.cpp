@@ -1,0 +1,83 @@
+// Piles of bodies of any shape, in a pen: no step adds energy, however the bodies are squeezed.
+#include "tests/dynamics/worlds.h"
+
+namespace plumb::inline PLUMB_PRECISION {
+namespace {
+
+using namespace trial;
+
+std::shared_ptr<const HullMesh> any_rock(Random &random, double radius) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 14; ++i) {
+        const V way = any_vector(random, 1);
+        points.push_back(narrow(radius / std::max(0.3, glm::length(way)) * way));
+    }
+    return std::make_shared<const HullMesh>(*convex_hull(points, 64).mesh);
+}
+
+// A box, ball, capsule, cylinder, hull or cross of about the given size at a height, turned any
+// way.
+BodyDef any_piece(Random &random, double size, double height) {
+    const std::uint32_t kind = random.next_index(6);
+    const double a = size * random.next_in(0.2, 0.5), b = size * random.next_in(0.1, 0.4);
+    const double c = size * random.next_in(0.1, 0.4);
+    const double mass = 4000 * a * b * c; // kg
+    const double x = size * random.next_in(-1.5, 1.5), z = size * random.next_in(-1.5, 1.5);
+    BodyDef def = dynamic_body(ball(a), mass, V{x, height, z});
+    Shape &shape = def.colliders[0].shape;
+    if (kind == 0)
+        shape = block(V{a, b, c});
+    else if (kind == 2)
+        shape = upright_capsule(a, b);
+    else if (kind == 3)
+        shape = Cylinder{narrow(V{0, -b, 0}), narrow(V{0, b, 0}), Real(a)};
+    else if (kind == 4) {
+        const auto mesh = any_rock(random, a);
+        shape = ConvexHull{mesh.get(), Vec3{Real(0)}, identity_rotation};
+        def.colliders[0].hull = mesh;
+    } else if (kind == 5) {
+        shape = block(V{a, 0.3 * b, 0.3 * b});
+        def.colliders.emplace_back().shape = block(V{0.3 * b, a, 0.3 * b});
+        def.colliders.emplace_back().shape = block(V{0.3 * b, 0.3 * b, a});
+    }
+    def.pose.rotation = narrow(any_rotation(random));
+    return def;
+}
+
+// The most that one step adds to the energy of ten pieces that fall into a pen, in parts of what
+// they have at first.
+double worst_gain(std::uint32_t seed, double size, double rate, double friction) {
+    Random random(seed);
+    StepSettings settings = settings_for("soft_step");
+    settings.dt = 1 / rate;
+    World world("soft_step", settings);
+    world.add_body(ground(friction, 0));
+    for (int side = 0; side < 4; ++side) {
+        const double angle = 0.5 * pi * side;
+        const V at = size * V{3 * std::cos(angle), 1, 3 * std::sin(angle)};
+        const V half = size * (side % 2 == 0 ? V{0.2, 1, 3} : V{3, 1, 0.2});
+        world.add_body(with_material(static_body(block(half), at), friction, 0));
+    }
+    for (int i = 0; i < 10; ++i)
+        world.add_body(with_material(any_piece(random, size, size * (1 + 0.9 * i)), friction, 0));
+    const double first = world.energy();
+    double before = first, worst = 0;
+    for (int step = 0; step < 1.5 * rate; ++step) {
+        world.step(nullptr);
+        worst = std::max(worst, world.energy() - before);
+        before = world.energy();
+    }
+    return worst / first;
+}
+
+TEST(Piles, GainNoEnergyInAnyStep) {
+    const double gains = 0.03;
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+        EXPECT_LT(worst_gain(seed, 0.1, 60, 0.1), gains) << seed;
+        EXPECT_LT(worst_gain(seed, 0.01, 240, 0.1), gains) << seed;
+        EXPECT_LT(worst_gain(seed, 0.5, 60, 0.6), gains) << seed;
+    }
+}
+
+} // namespace
+} // namespace plumb::inline PLUMB_PRECISION
