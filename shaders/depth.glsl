@@ -6,7 +6,7 @@ float metres_at(ivec2 pixel) {
     return range.x * range.y / (range.y - depth * (range.y - range.x));
 }
 
-// Where a pixel's surface is, in the eye's frame with z forward.
+// A pixel's surface point, in the eye's frame with z forward.
 vec3 seen_at(ivec2 pixel, float metres) {
     vec2 clip = 2.0 * (vec2(pixel) + 0.5) / viewport.xy - 1.0 - centre.xy;
     return vec3(clip * viewport.zw * metres, metres);

@@ -1,4 +1,4 @@
-// A pattern of less than half a step of 8 bits, which hides the steps of slow gradients (Jimenez,
+// A pattern of less than half an 8-bit step, which hides banding in slow gradients (Jimenez,
 // "Interleaved gradient noise", 2014).
 vec3 dither(vec3 colour, vec2 pixel) {
     float noise = fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715))));

@@ -1,4 +1,4 @@
-// One shape: its mesh's vertex, and where and how large it is.
+// One shape: its mesh vertex, pose and size.
 layout(location = 0) in vec3 mesh_position;
 layout(location = 1) in vec3 mesh_normal;
 layout(location = 2) in float mesh_end;

@@ -1,16 +1,15 @@
 // The share of the light that reaches a point, 0..1.
 uniform sampler2DShadow shadow_map;
 
-// Where light is asked for, off a surface: a point on a slope moves by as much as the filter reaches
-// across it.
+// How far off a surface to sample the light: on a slope, as far as the filter reaches across it.
 float off_surface(vec3 normal) {
     float cosine = clamp(dot(normal, to_light.xyz), 0.0, 1.0);
     float sine = sqrt(1.0 - cosine * cosine);
     return light.y * (0.6 + 2.4 * sine);
 }
 
-// At a place of the map. A 5 x 5 tent over its texels from nine filtered fetches (Castano, "Shadow
-// Mapping Summary", The Witness, 2013).
+// Light at a place in the map: a 5 x 5 tent over its texels from nine filtered fetches (Castano,
+// "Shadow Mapping Summary", The Witness, 2013).
 float light_at(vec3 at) {
     if (light.w < 0.5)
         return 1.0;
@@ -43,13 +42,13 @@ float light_at(vec3 at) {
 #endif
 }
 
-// `under` is how far the mesh lies there under the surface that it stands for, in metres.
+// `under` is how far the mesh lies below the surface it approximates there, in metres.
 float light_reaching(vec3 position, vec3 normal, float under) {
     vec3 from = position + normal * (under + off_surface(normal));
     return light_at((shadow * vec4(from, 1.0)).xyz);
 }
 
-// Light from all around: white from above, cooler from the sides, dim and warm from the ground.
+// Ambient light: white from above, cooler from the sides, dim and warm from the ground.
 vec3 ambient_light(vec3 normal) {
     const vec3 above = vec3(1.0);
     const vec3 side = vec3(0.76, 0.785, 0.82);

@@ -11,7 +11,7 @@ flat out float half_width;
 flat out vec3 colour;
 
 void main() {
-    // A little nearer to the eye, so that a line on a surface is not cut by it.
+    // Slightly nearer to the eye, so that a surface does not cut into a line on it.
     vec3 a = 0.998 * (view * vec4(from.xyz, 1.0)).xyz;
     vec3 b = 0.998 * (view * vec4(to.xyz, 1.0)).xyz;
     // The part in front of the near plane.
@@ -42,6 +42,6 @@ void main() {
     at = vec2(end * (half_length + margin), side * margin);
     vec4 clip = second ? clip_b : clip_a;
     vec2 offset = margin * (end * along + side * across);
-    // Already divided, so that the sides of the view do not cut it in perspective.
+    // Already divided by w, so that the sides of the view do not clip it in perspective.
     gl_Position = vec4(clip.xyz / clip.w + vec3(2.0 * offset / viewport.xy, 0.0), 1.0);
 }

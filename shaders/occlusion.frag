@@ -2,13 +2,13 @@
 #include "frame.glsl"
 #include "depth.glsl"
 
-out vec2 result; // the share of light from around that arrives, and the depth in metres
+out vec2 result; // share of the ambient light that arrives, and depth in metres
 
 const int taps = 10;
 
-// Nearby surfaces that rise above this one's tangent plane take light away: after McGuire, Osman,
-// Bukowski, Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm", 2011, with a fall-off of
-// our own.
+// Nearby surfaces that rise above this one's tangent plane block light: after McGuire, Osman,
+// Bukowski, Hennessy, "The Alchemy Screen-Space Ambient Obscurance Algorithm", 2011, with our own
+// falloff.
 void main() {
     ivec2 pixel = 2 * ivec2(gl_FragCoord.xy);
     float metres = metres_at(pixel);
@@ -29,7 +29,7 @@ void main() {
     float pixels = min(reach / (range.w * metres), 0.12 * viewport.y);
     if (pixels < 1.5)
         return;
-    // A spiral of taps, turned from pixel to pixel in a pattern of 4 x 4 that is smoothed away.
+    // A spiral of taps, rotated from pixel to pixel in a 4 x 4 pattern that is smoothed away.
     ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
     int mixed = cell.x ^ cell.y;
     int order = 8 * (mixed & 1) + 4 * (cell.y & 1) + (mixed & 2) + (cell.y >> 1);

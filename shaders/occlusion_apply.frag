@@ -5,7 +5,7 @@
 uniform sampler2D occlusion_map;
 out vec4 result;
 
-// Back to full size: of the four nearest values, those of this pixel's surface.
+// Upsampling: of the four nearest values, those on this pixel's surface.
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float metres = metres_at(pixel);

@@ -4,7 +4,7 @@
 uniform sampler2D occlusion_map;
 out vec2 result;
 
-// The mean over the 4 x 4 pattern, of what lies at the same depth.
+// The mean over the 4 x 4 pattern, of pixels at the same depth.
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(occlusion_map, 0) - 1;

@@ -18,9 +18,9 @@ flat in vec3 lit;
 flat in vec3 direct;
 out vec4 result;
 
-// How much of a pixel the lines of a unit grid cover (Golus, "The Best Darn Grid Shader (Yet)", 2023): a
-// line is never drawn thinner than a pixel, only fainter, and a grid too fine to see becomes even.
-// `pixels` are to a unit, `per_pixel` is its inverse.
+// How much of a pixel a unit grid's lines cover (Golus, "The Best Darn Grid Shader (Yet)", 2023): a
+// line is never drawn thinner than a pixel, only fainter, and a grid too fine to see becomes
+// uniform. `pixels` is pixels per unit, `per_pixel` its inverse.
 float grid_lines(vec2 at, vec2 per_pixel, vec2 pixels, float width) {
     vec2 drawn = clamp(vec2(width), per_pixel, vec2(0.5));
     vec2 from_line = 0.5 - abs(fract(at) - 0.5);
@@ -32,8 +32,8 @@ float grid_lines(vec2 at, vec2 per_pixel, vec2 pixels, float width) {
 }
 
 void main() {
-    // Where the ray through this pixel meets the plane, from the target's foot; exact however large
-    // the square is.
+    // Where the ray through this pixel hits the plane, relative to the target's foot; exact however
+    // large the square is.
     vec3 ray = vec3((2.0 * gl_FragCoord.xy / viewport.xy - 1.0 - centre.xy) * viewport.zw, -1.0);
     float t = foot.y / max(-dot(ray, seen_normal), 1e-6);
     vec2 from_foot = foot.xz + t * vec2(dot(ray, seen_x), dot(ray, seen_z));
@@ -51,7 +51,7 @@ void main() {
     }
 
     float reaching = light_at(shadow_foot + from_foot.x * shadow_x + from_foot.y * shadow_z);
-    // Far away the plane becomes the backdrop; shadows stay on it a little longer.
+    // Far away the plane fades into the backdrop; shadows stay on it a little longer.
     float fade = 1.0 - exp(-0.045 / (eye.w * eye.w) * dot(from_foot, from_foot));
     vec3 seen = mix(albedo * lit, backdrop(gl_FragCoord.xy), fade);
     seen *= 1.0 - (1.0 - reaching) * (1.0 - fade * fade) * direct;

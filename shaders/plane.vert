@@ -6,7 +6,7 @@ uniform vec4 axis_x; // the plane's axes; w: the target's place along them
 uniform vec4 axis_z;
 uniform vec4 normal; // w: the target's height above the plane
 
-// What is the same for all of the plane, so that it is worked out four times, and not for each pixel.
+// Constant over the plane, so computed four times rather than for each pixel.
 flat out vec3 seen_x; // the plane's axes in the eye's frame
 flat out vec3 seen_z;
 flat out vec3 seen_normal;
@@ -15,9 +15,9 @@ flat out vec3 shadow_x; // steps along them, and that foot, in the shadow map
 flat out vec3 shadow_z;
 flat out vec3 shadow_foot;
 flat out vec3 lit;
-flat out vec3 direct; // the share of that which comes straight from the light
+flat out vec3 direct; // the share of that which is direct light
 
-// A square around the target's foot, wide enough that its border has long faded.
+// A square around the target's foot, wide enough that its border is fully faded.
 void main() {
     vec2 corner = vec2(gl_VertexID % 2 == 0 ? -1.0 : 1.0, gl_VertexID < 2 ? 1.0 : -1.0);
     float reach = 40.0 * eye.w + 4.0 * abs(normal.w);

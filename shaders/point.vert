@@ -15,6 +15,6 @@ void main() {
     at = (radius + 1.0) * corner;
     // Nearer to the eye than the lines that end here.
     vec4 clip = projection * vec4(0.996 * (view * vec4(marker.xyz, 1.0)).xyz, 1.0);
-    // One w for the whole square: it is interpolated straight.
+    // The same w for the whole square, so interpolation is linear.
     gl_Position = clip + vec4(2.0 * at / viewport.xy * clip.w, 0.0, 0.0);
 }

@@ -5,7 +5,7 @@
 out vec3 position;
 out vec3 local;
 out vec3 local_normal;
-out vec3 profile; // the place on a round shape of radius 1, without its half height
+out vec3 profile; // position on a round shape of radius 1, without its half height
 flat out mat3 turned; // the shape's axes
 flat out vec4 scale;
 flat out vec4 colour;

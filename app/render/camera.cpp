@@ -12,7 +12,7 @@ namespace plumb {
 
 namespace {
 
-constexpr float min_distance = 1e-3f; // metres; nearer, single precision has nothing left to show
+constexpr float min_distance = 1e-3f; // metres; closer, single precision shows nothing more
 constexpr float max_distance = 1e6f;
 
 void check_viewport(const glm::vec2 &viewport) {
@@ -46,8 +46,8 @@ float Camera::near_plane() const {
     return 0.01f * distance;
 }
 
-// Far enough for a wide scene seen from close by; the ratio of far to near stays below a few
-// hundred thousand down to a distance of a decimetre, which 24 bits of depth bear.
+// Far enough for a wide scene seen from close by; the far to near ratio stays below a few hundred
+// thousand down to a distance of a decimetre, which a 24-bit depth buffer can handle.
 float Camera::far_plane() const {
     return std::max(1000 * distance, 500.0f);
 }
@@ -125,8 +125,8 @@ void Camera::zoom(float notches) {
 void Camera::frame(const glm::vec3 &sphere, float radius, float side) {
     PLUMB_CHECK(radius >= 0 && side > 0,
                 "cannot frame a radius of " << radius << " in a side of " << side);
-    // The sphere touches the sides of the square where a tangent from the eye leaves at half the
-    // angle that the square spans: sin(half) = radius / distance.
+    // The sphere touches the square's sides if a tangent from the eye makes half the angle the
+    // square spans: sin(half) = radius / distance.
     const float half = std::atan(std::tan(0.5f * fov) * side);
     target = sphere;
     distance =

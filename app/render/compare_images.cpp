@@ -17,7 +17,7 @@ namespace plumb {
 
 namespace {
 
-// A channel this far off is within what one rasterizer's rounding explains.
+// A channel this far off can be one rasterizer's rounding.
 constexpr int same_within = 2;
 
 using Plane = std::vector<float>; // one channel, row by row
@@ -62,7 +62,7 @@ glm::vec3 relative_xyz_from_ycxcz(const glm::vec3 &v) {
     return {y + v.y / 500, y, y - v.z / 200};
 }
 
-// CIELAB, its chroma then scaled by lightness for the Hunt effect (ibid., "Perceptually uniform
+// CIELAB with its chroma scaled by lightness for the Hunt effect (ibid., "Perceptually uniform
 // colour space").
 glm::vec3 hunt_lab(const glm::vec3 &linear) {
     const auto f = [](float t) {
@@ -141,7 +141,7 @@ void scale(Kernel &kernel, double factor) {
         weight = static_cast<float>(static_cast<double>(weight) * factor);
 }
 
-// Positive weights then add up to 1, negative ones to -1.
+// Scales positive weights to sum to 1, negative ones to -1.
 void balance(Kernel &kernel) {
     double positive = 0;
     double negative = 0;
@@ -192,7 +192,7 @@ Plane filter_as_seen(const Plane &in, int width, int height, const Sensitivity &
     return out;
 }
 
-// ---- what the two pipelines need of one picture
+// ---- what both pipelines need from one picture
 // ------------------------------------------------------
 
 struct Seen {

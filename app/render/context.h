@@ -13,10 +13,11 @@ namespace plumb {
 
 enum class GlChoice { automatic, window, osmesa };
 
-// "auto", "window", "osmesa". Throws std::invalid_argument that lists them.
+// "auto", "window", "osmesa". Otherwise throws std::invalid_argument listing them.
 [[nodiscard]] GlChoice gl_choice_from_name(const std::string &name);
 
-// What the interactive loop needs of a window. Created by create_context; closed by its destructor.
+// What the interactive loop needs from a window. Created by create_context; closed by its
+// destructor.
 class Window {
   public:
     virtual ~Window() = default;
@@ -28,8 +29,8 @@ class Window {
     [[nodiscard]] virtual bool should_close() const = 0;
     virtual void request_close(bool close) = 0;
     virtual void set_title(const std::string &title) = 0;
-    virtual void poll() = 0;               // handles what has happened
-    virtual void wait(double seconds) = 0; // the same, but sleeps until something happens
+    virtual void poll() = 0;               // handles pending events
+    virtual void wait(double seconds) = 0; // the same, but sleeps until an event arrives
     virtual void swap() = 0;
 };
 
@@ -44,7 +45,7 @@ class GlContext {
     // GL_RENDERER and GL_VERSION.
     [[nodiscard]] const std::string &renderer() const { return renderer_; }
     [[nodiscard]] const std::string &version() const { return version_; }
-    // Drawn by the CPU, as far as the renderer's name tells.
+    // Whether the CPU draws, judging by the renderer's name.
     [[nodiscard]] bool is_software() const;
 
   protected:
@@ -57,8 +58,8 @@ class GlContext {
 
 struct ContextRequest {
     GlChoice choice = GlChoice::automatic;
-    // Off screen (snapshots): `automatic` then means OSMesa, with or without a display, so that
-    // pictures do not depend on it; `window` gives a hidden window.
+    // Off screen (snapshots): `automatic` then means OSMesa whether or not there is a display, so
+    // that pictures do not depend on it; `window` gives a hidden window.
     bool off_screen = false;
     glm::ivec2 size{1280, 720}; // of the window, screen coordinates
     std::string title = "Plumb";
@@ -68,11 +69,11 @@ struct ContextRequest {
 
 struct ContextResult {
     std::unique_ptr<GlContext> context; // never null
-    // Why there is no window, when `automatic` wished for one; empty otherwise.
+    // Why there is no window although `automatic` wanted one; empty otherwise.
     std::string why_no_window;
 };
 
-// No context could be made: says each attempt and its reason.
+// No context could be made; lists each attempt and why it failed.
 class ContextError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -80,7 +81,7 @@ class ContextError : public std::runtime_error {
 
 [[nodiscard]] ContextResult create_context(const ContextRequest &request);
 
-// The two makers; each throws ContextError. Each is the only file to know its library.
+// The two factories; each throws ContextError, and only its own file knows its library.
 [[nodiscard]] std::unique_ptr<GlContext> create_window_context(const ContextRequest &request);
 [[nodiscard]] std::unique_ptr<GlContext> create_osmesa_context();
 

@@ -26,7 +26,7 @@ float bounding_radius(const DrawShape &shape) {
 namespace {
 
 Aabb box_around(const DrawShape &shape) {
-    // What drawing adds to a shape (softened edges, outlines) stays within a part in a hundred.
+    // Drawing adds no more than 1% to a shape (softened edges, outlines).
     const float radius = 1.01f * bounding_radius(shape);
     return {shape.position - radius, shape.position + radius};
 }
@@ -49,7 +49,7 @@ void Culling::rebuild(std::span<const DrawShape> shapes) {
         world.min = glm::min(world.min, boxes_.back().min);
         world.max = glm::max(world.max, boxes_.back().max);
     }
-    // Room to move in: what leaves the world is still found, but by looking at each.
+    // Room to move: shapes that leave the world are still found, but tested one by one.
     const Vec3 air = 0.5f * (world.max - world.min) + 1.0f;
     constexpr int depth = 8, capacity = 16;
     tree_.emplace(Aabb{world.min - air, world.max + air}, depth, capacity);

@@ -1,4 +1,4 @@
-// Which shapes of a draw list can be seen, by an octree that is kept from frame to frame.
+// Frustum culling of a draw list, with an octree that is kept from frame to frame.
 #pragma once
 
 #include "app/render/draw_list.h"
@@ -12,21 +12,21 @@
 
 namespace plumb {
 
-// Of the ball around its position that holds the shape.
+// Radius of the bounding sphere around the shape's position.
 float bounding_radius(const DrawShape &shape);
 
-// Below this many shapes looking at each is as fast as any tree; above, parts of the world that are
-// out of view are left out as a whole.
+// Below this many shapes testing each one is as fast as any tree; above, whole regions out of view
+// are skipped.
 inline constexpr std::size_t least_shapes_to_cull = 256;
 
 class Culling {
   public:
-    // Takes over where the shapes are now. Those that stayed in their cells since the last call
-    // cost one comparison. All positions and sizes must be finite.
+    // Takes over the shapes' positions. A shape that has not moved since the last call costs one
+    // comparison. All positions and sizes must be finite.
     void update(std::span<const DrawShape> shapes);
 
-    // One value for each shape: 0 when no point of it is in the frustum, up to roundings; else 1,
-    // for all that are in view and some beside. Valid until the next call of either.
+    // One value per shape: 0 if no point of it is in the frustum, up to rounding; else 1, for all
+    // shapes in view and some others. Valid until the next call of either function.
     std::span<const std::uint8_t> in_view(const Frustum &frustum);
 
   private:

@@ -1,4 +1,4 @@
-// What the renderer sees: a flat list of values. Poses in metres, colours in sRGB 0..1.
+// The renderer's input: a flat list of values. Poses in metres, colours in sRGB 0..1.
 #pragma once
 
 #include <cmath>
@@ -27,20 +27,20 @@ struct DrawShape {
     // height of the cylinder, along the shape's y axis. The other components are not read.
     glm::vec3 size{0.5f};
     glm::vec3 colour{0.7f};
-    bool selected = false;    // a ring in the accent colour, also when hidden
-    bool highlighted = false; // brightened: what the pointer is over
-    bool glass = false;       // what is behind or inside shows through
+    bool selected = false;    // a ring in the accent colour, even when hidden
+    bool highlighted = false; // brightened: under the pointer
+    bool glass = false;       // things behind or inside show through
 };
 
-// Triangles, each three corners, in a frame of their own.
+// Triangles, three corners each, in their own frame.
 using Corners = std::vector<glm::vec3>;
 
-// Seen from both sides. The renderer keeps what it made of the corners as long as they live: they
-// are not changed, and lists that show the same share them.
+// Visible from both sides. The renderer caches what it makes of the corners as long as they live,
+// so they must not change, and lists that show the same corners share them.
 struct DrawMesh {
     std::shared_ptr<const Corners> corners; // never null
-    // Unit, one for each corner, on the side of the triangle's front: it looks smooth. Kept and
-    // shared as the corners are. Null: the triangles look flat.
+    // Unit, one per corner, on the triangle's front side, for smooth shading. Cached and shared
+    // like the corners. Null: flat shading.
     std::shared_ptr<const Corners> normals{};
     glm::vec3 position{0};
     glm::quat rotation{1, 0, 0, 0}; // unit
@@ -57,12 +57,12 @@ struct DrawPlane {
 
 struct DrawLine {
     glm::vec3 a{0};
-    glm::vec3 b{0}; // a line of no length is drawn as a dot as wide as the line
+    glm::vec3 b{0}; // a line of no length becomes a dot as wide as the line
     glm::vec3 colour{0.2f};
     float width = 2; // pixels
 };
 
-// A marker with a fixed size on the screen, and a stalk along its normal.
+// A marker of fixed screen size, with a stalk along its normal.
 struct DrawPoint {
     glm::vec3 position{0};
     glm::vec3 normal{0}; // the stalk as a vector in metres; zero: none
@@ -70,12 +70,12 @@ struct DrawPoint {
     float radius = 4; // pixels
 };
 
-// A face turned straight up shows its colour times ambient + intensity * cos(angle to the light):
+// A face pointing straight up shows its colour times ambient + intensity * cos(angle to the light):
 // with an ambient of 1 and an intensity of 0, exactly its colour.
 struct Light {
-    glm::vec3 direction{0.45f, -1.0f, -0.55f}; // the way the light goes; any length but zero
+    glm::vec3 direction{0.45f, -1.0f, -0.55f}; // direction of travel; any nonzero length
     float intensity = 0.70f;                   // of the direct light
-    float ambient = 0.50f;                     // of the light from all around
+    float ambient = 0.50f;                     // of the ambient light
 };
 
 struct ViewOptions {
@@ -83,7 +83,7 @@ struct ViewOptions {
     bool grid = true;
     bool shadows = true;
     bool occlusion = true; // darkens creases and contacts
-    bool edges = true;     // softened, lined edges on boxes, and quarters on what is round
+    bool edges = true;     // softened, lined box edges, and shaded quarters on round shapes
 };
 
 struct DrawList {

@@ -11,7 +11,7 @@ namespace plumb {
 
 namespace {
 
-// ImGui keeps the pointer until the atlas is built. Pairs of first and last, closed by a zero.
+// ImGui keeps the pointer until the atlas is built. Pairs of first and last, zero-terminated.
 constexpr ImWchar letters[] = {
     0x0020, 0x00ff, // Latin, with the degree sign, plus-minus, superscripts 1 to 3, times
     0x0370, 0x03ff, // Greek
@@ -28,7 +28,7 @@ ImFont *load_font(ImFontAtlas &atlas, float pixels, const std::filesystem::path 
     const std::filesystem::path path =
         file.empty() ? "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf"
                      : file;
-    // ImGui stops the program at a file that it cannot open, so that is looked at first.
+    // ImGui stops the program if it cannot open a file, so check first.
     std::error_code error;
     if (std::filesystem::is_regular_file(path, error)) {
         ImFontConfig config;

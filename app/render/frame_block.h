@@ -1,4 +1,4 @@
-// What every shader of a frame reads.
+// Data shared by all shaders of a frame.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct FrameBlock {
     glm::vec4 to_light; // xyz unit; w: intensity
     glm::vec4 viewport; // width, height, tan of half the field of view across and up
     glm::vec4 light;  // ambient; shadow texel in metres; shadow texel in texture units; shadows on
-    glm::vec4 range;  // near, far; edges on; metres to a pixel at unit depth
+    glm::vec4 range;  // near, far; edges on; metres per pixel at unit depth
     glm::vec4 centre; // where the target is seen, x and y in clip space
 };
 inline constexpr unsigned frame_binding = 0;
@@ -36,7 +36,7 @@ inline constexpr unsigned occlusion_unit = 3;
                                           const std::string &vertex, const std::string &fragment,
                                           const std::string &definition = {});
 
-// Covers the screen, with a vertex array that has no attributes.
+// Draws over the whole screen, with a vertex array that has no attributes.
 void draw_screen(const ShaderProgram &program, unsigned empty_array);
 
 } // namespace plumb

@@ -103,7 +103,7 @@ void Framebuffer::create() {
 }
 
 void Framebuffer::destroy() {
-    // glad's pointers are null until a context has been loaded, and then nothing was made.
+    // glad's pointers are null until a context is loaded; until then there is nothing to delete.
     if (resolved_ == 0 && texture_ == 0)
         return;
     if (draw_ != resolved_)
@@ -135,7 +135,7 @@ void Framebuffer::bind_resolved() const {
 void Framebuffer::resolve() const {
     if (draw_ == resolved_)
         return;
-    // With sRGB on, the samples are averaged as light.
+    // With sRGB on, samples are averaged in linear light.
     glEnable(GL_FRAMEBUFFER_SRGB);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, draw_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);
@@ -166,7 +166,7 @@ Image Framebuffer::read() const {
 }
 
 void Framebuffer::blit_to_window(glm::ivec2 window_framebuffer_size) const {
-    // With sRGB off the bytes are copied as they are.
+    // With sRGB off, bytes are copied unchanged.
     glDisable(GL_FRAMEBUFFER_SRGB);
     glDisable(GL_SCISSOR_TEST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_);

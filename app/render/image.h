@@ -1,4 +1,4 @@
-// Pictures as plain values, and how far two of them differ.
+// Pictures as plain values.
 #pragma once
 
 #include <cstddef>

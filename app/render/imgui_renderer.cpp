@@ -48,8 +48,8 @@ struct ImguiRenderer::Parts {
     Parts(const Parts &) = delete;
     Parts &operator=(const Parts &) = delete;
 
-    // All that a frame or a callback may have changed. The attributes are pointed at each command's
-    // own vertices as it is drawn, which serves VtxOffset.
+    // Sets everything a frame or callback may have changed. The attributes are set to each
+    // command's own vertices when it is drawn, which supports VtxOffset.
     void set_state(const ImDrawData &data) const {
         glEnable(GL_BLEND);
         glBlendEquation(GL_FUNC_ADD);
@@ -159,7 +159,7 @@ Image paint_image(ImguiRenderer &renderer, glm::ivec2 size, glm::vec3 background
     glClearColor(background.r, background.g, background.b, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGuiIO &io = ImGui::GetIO();
-    // A chart is made while a window's frames come and go: their settings are put back.
+    // Charts are made between a window's frames, so its settings are restored below.
     const ImVec2 display_size = std::exchange(
         io.DisplaySize, ImVec2(static_cast<float>(size.x), static_cast<float>(size.y)));
     const ImVec2 scale = std::exchange(io.DisplayFramebufferScale, ImVec2(1, 1));

@@ -1,4 +1,4 @@
-// Dear ImGui's draw data through our own GL loader, so that panels and charts work in a window and
+// Draws Dear ImGui's draw data with our own GL loader, so panels and charts work in a window and
 // off screen.
 #pragma once
 
@@ -17,11 +17,11 @@ struct ImDrawList;
 
 namespace plumb {
 
-// Stands in for ImGui's own OpenGL back end. Use:
+// Replaces ImGui's own OpenGL back end. Use:
 //   ImGui::CreateContext(); load_font(...); ImguiRenderer renderer(shader_dir);
 //   each frame: ImGui::NewFrame() ... ImGui::Render(); renderer.draw(*ImGui::GetDrawData());
-// An ImTextureID is the name of a GL texture. Colours are sRGB and are blended as they are, as
-// ImGui's own back ends do.
+// An ImTextureID is a GL texture name. Colours are sRGB and blended as they are, as in ImGui's own
+// back ends.
 class ImguiRenderer {
   public:
     // A GL context and an ImGui context must be current; uploads that context's font atlas.
@@ -33,7 +33,7 @@ class ImguiRenderer {
     // Call again after fonts have been added or rebuilt.
     void upload_fonts();
 
-    // Draws over what is bound: the window's own framebuffer.
+    // Draws over the bound framebuffer: the window's own.
     void draw(const ImDrawData &data);
     // Draws over the plain picture of a framebuffer.
     void draw(const ImDrawData &data, Framebuffer &target);
@@ -43,8 +43,8 @@ class ImguiRenderer {
     std::unique_ptr<Parts> parts_;
 };
 
-// A picture made of ImGui's shapes and text alone (a chart), off screen: makes one frame in the
-// current ImGui context, hands its list to `paint` (coordinates in pixels, origin top left), and
+// An off-screen picture of ImGui's shapes and text alone (a chart): runs one frame in the current
+// ImGui context, passes its draw list to `paint` (coordinates in pixels, origin top left), and
 // reads the result back. Must not be called between ImGui::NewFrame and ImGui::Render.
 [[nodiscard]] Image paint_image(ImguiRenderer &renderer, glm::ivec2 size, glm::vec3 background,
                                 const std::function<void(ImDrawList &)> &paint);

@@ -1,4 +1,4 @@
-// Lines and points over the picture, of one width however far they are.
+// Lines and points over the picture, of constant width at any distance.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ class Marks {
     Marks(const Marks &) = delete;
     Marks &operator=(const Marks &) = delete;
 
-    // Once faintly where something hides them, once in full.
+    // Draws them faintly where something hides them, in full elsewhere.
     void draw(const DrawList &list) const;
 
   private:

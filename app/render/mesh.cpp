@@ -78,7 +78,7 @@ Mesh capsule_mesh(int segments, int rings) {
                 "no capsule of " << segments << " segments and " << rings << " rings");
     Mesh mesh;
     const float quarter = std::numbers::pi_v<float> / 2;
-    // From the lower pole up; the equator comes twice, once for each end.
+    // From the lower pole up; the equator appears twice, once for each end.
     for (const float end : {-1.0f, 1.0f}) {
         for (int ring = 0; ring <= rings; ++ring) {
             const float up = static_cast<float>(end < 0 ? ring - rings : ring) /

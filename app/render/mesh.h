@@ -1,4 +1,4 @@
-// The unit shapes that instances are made of.
+// Unit meshes for instanced shapes.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,8 @@ struct Mesh {
 // Two unit hemispheres about y of `rings` rings (>= 1) and `segments` sides (>= 3); the band
 // between them has no height until the ends are moved apart.
 [[nodiscard]] Mesh capsule_mesh(int segments, int rings);
-// Two unit discs across y of `segments` sides (>= 3), and the band between them; no height either.
+// Two unit discs across y of `segments` sides (>= 3), and the band between them, also without
+// height.
 [[nodiscard]] Mesh cylinder_mesh(int segments);
 
 } // namespace plumb

@@ -46,12 +46,12 @@ void Occlusion::resize(glm::ivec2 size) {
         glBindFramebuffer(GL_FRAMEBUFFER, target);
         glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
     };
-    // The format of a Framebuffer's own depth, as a copy needs.
+    // The same format as a Framebuffer's depth, as the copy requires.
     make(depth_texture_, depth_target_, GL_DEPTH_STENCIL_ATTACHMENT, GL_DEPTH24_STENCIL8, size,
          GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8);
     glDrawBuffer(GL_NONE);
     glReadBuffer(GL_NONE);
-    // Occlusion, and the depth in metres that it belongs to.
+    // Occlusion, and its depth in metres.
     for (std::size_t i = 0; i < 2; ++i)
         make(textures_[i], targets_[i], GL_COLOR_ATTACHMENT0, GL_RG32F, (size + 1) / 2, GL_RG,
              GL_FLOAT);
@@ -77,7 +77,7 @@ void Occlusion::draw(const Framebuffer &target) {
     glBindTexture(GL_TEXTURE_2D, textures_[1]);
     target.bind();
     glEnable(GL_BLEND);
-    glBlendFunc(GL_ZERO, GL_SRC_COLOR); // what is there, times what comes
+    glBlendFunc(GL_ZERO, GL_SRC_COLOR); // destination times source
     draw_screen(apply_program_, array_);
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);

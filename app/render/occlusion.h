@@ -1,4 +1,4 @@
-// Creases and contacts, darkened by what is near them in the picture.
+// Screen-space ambient occlusion: darkens creases and contacts.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ class Occlusion {
     ShaderProgram occlusion_program_;
     ShaderProgram smooth_program_;
     ShaderProgram apply_program_;
-    // A copy of the scene's depth at full size; two pictures of half the size.
+    // A copy of the scene's depth at full size; two pictures at half size.
     glm::ivec2 size_{0}; // of the scene
     unsigned depth_texture_ = 0;
     unsigned depth_target_ = 0;

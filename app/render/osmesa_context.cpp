@@ -14,8 +14,8 @@ namespace {
 class OsmesaContext final : public GlContext {
   public:
     OsmesaContext() {
-        // Everything is drawn into a Framebuffer; the context's own buffer is a formality. A
-        // forward-compatible context is refused, so it is not asked for.
+        // Everything is drawn into a Framebuffer; the context's own buffer is a formality.
+        // Forward-compatible contexts are refused, so we do not ask for one.
         static constexpr std::array<int, 13> attributes{OSMESA_FORMAT,
                                                         OSMESA_RGBA,
                                                         OSMESA_DEPTH_BITS,

@@ -16,7 +16,7 @@ float linear_from_srgb(float s) {
 } // namespace
 
 glm::vec3 palette_colour(std::size_t index) {
-    // Similar in lightness, so that shading and not the colour shows the form.
+    // Similar in lightness, so shading rather than colour shows the form.
     static constexpr std::array<glm::vec3, palette_size> colour{{
         {0.42f, 0.61f, 0.77f}, // blue
         {0.91f, 0.67f, 0.48f}, // apricot

@@ -7,16 +7,16 @@
 
 namespace plumb {
 
-// Calm colours for bodies, distinct among neighbours in index; repeats after palette_size.
+// Muted body colours, distinct for neighbouring indices; repeats after palette_size.
 inline constexpr std::size_t palette_size = 8;
 [[nodiscard]] glm::vec3 palette_colour(std::size_t index);
 
-// As shaders and blending need it; components beyond 0..1 are clamped.
+// Linear colour, for shaders and blending; components beyond 0..1 are clamped.
 [[nodiscard]] glm::vec3 linear_from_srgb(const glm::vec3 &srgb);
 
 namespace colours {
 inline constexpr glm::vec3 static_body{0.66f, 0.67f, 0.69f}; // bodies that never move
-inline constexpr glm::vec3 kinematic{0.50f, 0.55f, 0.60f};   // bodies that move as they are told
+inline constexpr glm::vec3 kinematic{0.50f, 0.55f, 0.60f};   // bodies with prescribed motion
 inline constexpr glm::vec3 rod{0.36f, 0.38f, 0.42f};         // massless rods between bodies
 inline constexpr glm::vec3 selected{0.98f, 0.62f, 0.16f};
 inline constexpr glm::vec3 contact{0.85f, 0.26f, 0.22f};

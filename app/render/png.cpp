@@ -40,7 +40,7 @@ void write_png(const std::filesystem::path &path, const Image &image) {
     };
     if (stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.pixels.data(),
                                3 * image.width) == 0)
-        throw std::bad_alloc(); // the only way in which it fails
+        throw std::bad_alloc(); // the only way it fails
     OutputFile file(path);
     file.stream() << bytes;
     file.finish();

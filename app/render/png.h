@@ -7,7 +7,8 @@
 
 namespace plumb {
 
-// As an OutputFile: a reader sees the old picture or the whole new one. Throws std::system_error.
+// Written as an OutputFile: readers see the old picture or the complete new one. Throws
+// std::system_error.
 void write_png(const std::filesystem::path &path, const Image &image);
 
 // Greyscale and alpha are converted to RGB (alpha is dropped). Throws std::runtime_error.

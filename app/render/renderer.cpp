@@ -40,7 +40,7 @@ bool has_finite_pose(const DrawShape &shape) {
            std::isfinite(q.w);
 }
 
-// The box around a mesh, for whoever asks how far things reach.
+// A mesh's bounding box, for code that needs its extent.
 DrawShape box_around(const DrawMesh &mesh) {
     glm::vec3 low(std::numeric_limits<float>::max());
     glm::vec3 high(std::numeric_limits<float>::lowest());
@@ -56,12 +56,11 @@ DrawShape box_around(const DrawMesh &mesh) {
     return box;
 }
 
-// Nothing of the scene passes the depth test there; what is left to see is the colour of the
-// backdrop, more or less.
+// Makes the scene fail the depth test there; what remains is roughly the backdrop's colour.
 void hide(std::span<const PixelRect> rects, glm::ivec2 size) {
     constexpr float grey = 0.75f;
     glClearColor(grey, grey, grey, 1);
-    glClear(GL_COLOR_BUFFER_BIT); // all of it at once, which costs less than parts
+    glClear(GL_COLOR_BUFFER_BIT); // clearing it all is cheaper than parts
     glClearDepth(0);
     glEnable(GL_SCISSOR_TEST);
     for (const PixelRect &rect : rects) {
@@ -134,8 +133,8 @@ struct Renderer::Parts {
             if (!finite(plane.position) || !finite(glm::vec3(normal)) ||
                 glm::dot(normal, glm::dvec3(eye) - position) <= 0)
                 continue;
-            // The plane's own x and z, and where the camera's target stands on them: the grid's
-            // lines repeat every ten metres, so only the rest matters.
+            // The plane's x and z axes, and the camera target's place along them: grid lines repeat
+            // every ten metres, so only the remainder matters.
             const glm::dvec3 x = rotation * glm::dvec3(1, 0, 0);
             const glm::dvec3 z = rotation * glm::dvec3(0, 0, 1);
             const glm::dvec3 to_target = glm::dvec3(list.camera.target) - position;
@@ -152,8 +151,8 @@ struct Renderer::Parts {
         }
     }
 
-    // A ring around the picture of what is selected, seen through whatever hides it: where a
-    // slightly larger copy covers and the shapes themselves do not.
+    // A ring around selected shapes that shows through whatever hides them: the pixels a slightly
+    // larger copy covers and the shapes themselves do not.
     void draw_outlines(const ShapeBatch &batch) const {
         outline_program.use();
         const glm::vec3 colour = linear_from_srgb(colours::selected);
@@ -214,18 +213,18 @@ void Renderer::draw(const DrawList &list, Framebuffer &target, std::span<const P
         shadow = fit_shadow(reaching, camera, aspect, list.light.direction, camera.target,
                             parts.shadow_map.size());
     }
-    // What is out of view throws shadows, but need not be sorted or looked at again.
+    // Shapes out of view cast shadows but need no sorting or further tests.
     if (shapes.size() >= least_shapes_to_cull)
         parts.keep_in_view(shapes, camera, aspect);
 
-    // Near before far, so that what is hidden is not shaded.
+    // Front to back, so hidden pixels are not shaded.
     const glm::vec3 forward = camera.forward();
     std::stable_sort(shapes.begin(), shapes.end(), [&](const DrawShape &a, const DrawShape &b) {
         return glm::dot(a.position - camera.target, forward) <
                glm::dot(b.position - camera.target, forward);
     });
 
-    // What is hidden by glass is seen: far before near.
+    // Things behind glass are visible: back to front.
     std::stable_sort(glass.begin(), glass.end(), [&](const DrawShape &a, const DrawShape &b) {
         return glm::dot(a.position - camera.target, forward) >
                glm::dot(b.position - camera.target, forward);
@@ -264,10 +263,10 @@ void Renderer::draw(const DrawList &list, Framebuffer &target, std::span<const P
 
     target.bind();
     glEnable(GL_FRAMEBUFFER_SRGB);
-    glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT); // the backdrop covers what colour is left
+    glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT); // the backdrop overwrites the colour
     if (parts.quality == Quality::plain && !covered.empty())
         hide(covered, target.size());
-    // In view, and how large.
+    // A shape's radius in pixels, or none when it is out of view.
     const glm::vec3 eye = camera.eye();
     const glm::vec2 widest = 1.0f + glm::abs(camera.centre);
     const float cos_x = 1 / std::hypot(1.0f, tangent * aspect * widest.x);
@@ -279,13 +278,13 @@ void Renderer::draw(const DrawList &list, Framebuffer &target, std::span<const P
         const float x =
             std::abs(glm::dot(d, camera.right()) + camera.centre.x * depth * tangent * aspect);
         const float y = std::abs(glm::dot(d, camera.up()) + camera.centre.y * depth * tangent);
-        // Beyond a side of the view by more than the radius.
+        // Outside a side of the view by more than the radius.
         if (depth < -radius || (x - depth * tangent * aspect) * cos_x > radius ||
             (y - depth * tangent) * cos_y > radius)
             return std::nullopt;
         const float nearest = std::max(depth - radius, relative.near_plane());
         const float pixels = 0.5f * size.y * shape.size.x / (tangent * nearest);
-        // A fine net of wires would only be a blur.
+        // A fine wireframe would only be a blur.
         return list.view.wireframe ? std::min(pixels, 2 * least_sphere_step) : pixels;
     };
     parts.shape_program.use();

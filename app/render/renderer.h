@@ -1,4 +1,4 @@
-// Draws a DrawList into a Framebuffer: the same for a window and for a snapshot.
+// Draws a DrawList into a Framebuffer, the same way for a window and a snapshot.
 #pragma once
 
 #include <filesystem>
@@ -18,9 +18,9 @@ struct PixelRect {
 
 class Renderer {
   public:
-    // Loads the GLSL files of `shader_dir`; a GL context must be current, here and in every call.
-    // Without a GPU each pixel costs: `plain` draws hard shadows, no occlusion, and nothing of the
-    // scene where it is covered. Throws std::runtime_error with file and line when a shader is
+    // Loads the GLSL files from `shader_dir`; a GL context must be current, here and in every call.
+    // Without a GPU every pixel is expensive: `plain` draws hard shadows, no occlusion, and no
+    // scene where it is covered. Throws std::runtime_error with file and line if a shader is
     // missing or does not compile.
     enum class Quality { full, plain };
     explicit Renderer(const std::filesystem::path &shader_dir, Quality quality = Quality::full);
@@ -28,9 +28,8 @@ class Renderer {
     Renderer(Renderer &&) noexcept;
     Renderer &operator=(Renderer &&) noexcept;
 
-    // Draws everything anew and resolves. An empty list gives the background. The same list gives
-    // the same pixels. Shapes with a pose that is not finite are left out. `covered` is what panels
-    // will hide.
+    // Draws everything and resolves. An empty list gives the background. The same list gives the
+    // same pixels. Shapes with a non-finite pose are skipped. `covered` is what panels will hide.
     void draw(const DrawList &list, Framebuffer &target, std::span<const PixelRect> covered = {});
 
   private:
@@ -38,7 +37,7 @@ class Renderer {
     std::unique_ptr<Parts> parts_;
 };
 
-// Draws into a framebuffer of its own, and reads it back.
+// Draws into its own framebuffer and reads it back.
 [[nodiscard]] Image render_image(Renderer &renderer, const DrawList &list, glm::ivec2 size,
                                  int samples = 1);
 

@@ -14,8 +14,8 @@ namespace plumb {
 
 namespace {
 
-// A shader's text with its includes in place, and where each line of it came from. (GLSL's #line
-// could number the files, but Mesa forgets the number in most of its messages.)
+// A shader's source with its includes expanded, and where each line came from. (GLSL's #line could
+// number the files, but Mesa forgets the number in most of its messages.)
 struct Source {
     struct Line {
         std::string file;
@@ -54,8 +54,8 @@ void append_file(const std::filesystem::path &dir, const std::string &name,
     }
 }
 
-// Drivers begin a message with a file's number, always 0 here, and the line: "0:12(5): error: ..."
-// in Mesa, "0(12) : error ..." elsewhere.
+// Driver messages begin with a file number, always 0 here, and the line: "0:12(5): error: ..." in
+// Mesa, "0(12) : error ..." elsewhere.
 std::string name_lines(const std::string &log, const std::vector<Source::Line> &lines) {
     std::istringstream in(log);
     std::string result;

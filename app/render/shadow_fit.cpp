@@ -17,7 +17,7 @@ namespace {
 // How far into the view shadows are drawn, in camera distances from the eye.
 constexpr double reach = 6;
 // A shape that reaches this many camera distances from its centre is a floor or a wall: the map
-// does not grow for it, unless there is nothing else.
+// does not grow for it unless there is nothing else.
 constexpr float wide = 0.8f;
 
 struct Interval {
@@ -56,7 +56,7 @@ std::optional<ShadowFit> fit_shadow(std::span<const DrawShape> shapes, const Cam
                                     float aspect, const glm::vec3 &light_direction,
                                     const glm::vec3 &origin, int map_size) {
     PLUMB_CHECK(glm::dot(light_direction, light_direction) > 0, "the light has no direction");
-    // The light's frame: z against the light, x level unless the light is vertical.
+    // The light's frame: z against the light, x horizontal unless the light is vertical.
     const glm::vec3 z = -glm::normalize(light_direction);
     const glm::vec3 reference = std::abs(z.y) < 0.99f ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, 1);
     const glm::vec3 x = glm::normalize(glm::cross(reference, z));
@@ -82,7 +82,7 @@ std::optional<ShadowFit> fit_shadow(std::span<const DrawShape> shapes, const Cam
 
     // The eye and the far corners of the part of the view that shows shadows.
     const double depth = reach * static_cast<double>(camera.distance);
-    // Of a view with the target in its middle that holds this one.
+    // For a view centred on the target that contains this one.
     const glm::dvec2 widest = 1.0 + glm::abs(glm::dvec2(camera.centre));
     const double height = depth * static_cast<double>(camera.half_height());
     const double half_height = height * widest.y;
@@ -108,15 +108,15 @@ std::optional<ShadowFit> fit_shadow(std::span<const DrawShape> shapes, const Cam
         middle[i] = 0.5 * (low + high);
         side = std::max(side, high - low);
     }
-    // Room for the filter at the border; eight steps for each doubling.
+    // Room for the filter at the border; eight steps per doubling.
     side = std::exp2(std::ceil(8 * std::log2(1.03 * side)) / 8);
     const double texel = side / map_size;
     for (double &m : middle)
         m = texel * std::round(m / texel);
 
     const double top = content[2].high + 0.01 * side;
-    // What lies below the lowest caster is compared at the map's far end. An outlier far below is
-    // given up before depth becomes coarse.
+    // Points below the lowest caster are compared at the map's far end. An outlier far below is
+    // dropped before depth becomes coarse.
     const double bottom = std::max(content[2].low, top - 64 * side) - 0.01 * side;
     const auto row = [&](const glm::vec3 &axis, double at_zero, double length) {
         const glm::dvec3 a(axis);

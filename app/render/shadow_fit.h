@@ -1,4 +1,4 @@
-// Where the shadow map looks.
+// Fits the shadow map to the scene and the camera.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,20 @@
 namespace plumb {
 
 struct ShadowFit {
-    // From positions relative to `origin` to the map's texture coordinates and depth, in [0, 1].
+    // Maps positions relative to `origin` to the map's texture coordinates and depth, in [0, 1].
     glm::mat4 texture_from_relative{1};
     float texel = 0; // metres
 };
 
-// The square of the light's view that holds every shape which can throw or show a shadow near what
-// the camera sees. It moves in whole texels and grows in steps, so that edges of shadows do not
-// crawl. None if no shape is near the view.
+// The square of the light's view that contains every shape that can cast or show a shadow near what
+// the camera sees. It moves in whole texels and grows in steps, so that shadow edges do not crawl.
+// None if no shape is near the view.
 [[nodiscard]] std::optional<ShadowFit> fit_shadow(std::span<const DrawShape> shapes,
                                                   const Camera &camera, float aspect,
                                                   const glm::vec3 &light_direction,
                                                   const glm::vec3 &origin, int map_size);
 
-// Half the size of a shape's extent along a unit direction, metres.
+// Half a shape's extent along a unit direction, metres.
 [[nodiscard]] float half_extent_along(const DrawShape &shape, const glm::vec3 &direction);
 
 } // namespace plumb

@@ -17,7 +17,7 @@ ShadowMap::ShadowMap(const std::filesystem::path &shader_dir, bool soft)
     glBindTexture(GL_TEXTURE_2D, texture_);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size_, size_, 0, GL_DEPTH_COMPONENT,
                  GL_UNSIGNED_INT, nullptr);
-    // Outside the map everything is lit. (Without a GPU its empty border is extended, which is
+    // Outside the map everything is lit. (Without a GPU its empty border is clamped, which is
     // cheaper.)
     const std::array<float, 4> lit{1, 1, 1, 1};
     const GLint filter = soft ? GL_LINEAR : GL_NEAREST;
@@ -54,7 +54,7 @@ void ShadowMap::draw(const std::vector<DrawShape> &shapes,
     glClear(GL_DEPTH_BUFFER_BIT);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(2.0f, 4.0f);
-    // What is nearer to the light than the map's near end still throws its shadow.
+    // Shapes nearer to the light than the map's near end still cast shadows.
     glEnable(GL_DEPTH_CLAMP);
     program_.use();
     meshes.draw(shape_batch(shapes, origin, [&](const DrawShape &shape) {
@@ -64,7 +64,7 @@ void ShadowMap::draw(const std::vector<DrawShape> &shapes,
         const float radius = metres / (fit.texel * static_cast<float>(size_));
         const bool outside = centre.x < -radius || centre.x > 1 + radius || centre.y < -radius ||
                              centre.y > 1 + radius;
-        // A quarter of the texels: a shadow's edge is soft.
+        // A quarter of the texels is enough: shadow edges are soft.
         return outside ? std::nullopt : std::optional<float>(0.25f * shape.size.x / fit.texel);
     }));
     glDisable(GL_CULL_FACE);

@@ -13,18 +13,18 @@ namespace plumb {
 
 class ShadowMap {
   public:
-    // `soft`: a fetch is between the four nearest texels, and there are four times as many of them.
+    // `soft`: a fetch interpolates the four nearest texels, and there are four times as many.
     ShadowMap(const std::filesystem::path &shader_dir, bool soft);
     ~ShadowMap();
     ShadowMap(const ShadowMap &) = delete;
     ShadowMap &operator=(const ShadowMap &) = delete;
 
-    [[nodiscard]] int size() const { return size_; } // texels, both ways
+    [[nodiscard]] int size() const { return size_; } // texels per side
 
-    // For the shaders of the frame.
+    // Binds the map for the frame's shaders.
     void bind() const;
 
-    // `origin` is what the triangles are relative to, and the fit.
+    // The triangles and the fit are relative to `origin`.
     void draw(const std::vector<DrawShape> &shapes, const std::vector<const TriangleBatch *> &flat,
               const glm::vec3 &origin, const ShadowFit &fit, const ShapeMeshes &meshes) const;
 

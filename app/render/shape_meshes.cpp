@@ -31,15 +31,15 @@ enum MeshName : std::size_t {
 };
 static_assert(mesh_count == shape_mesh_count);
 
-// Radii on the screen, in pixels, from which the finer meshes are drawn: there the outline is off
-// by less than a third of a pixel.
+// Screen radii, in pixels, from which the finer meshes are used: there the outline is off by less
+// than a third of a pixel.
 constexpr std::array<float, 3> sphere_steps{least_sphere_step, 36, 140};
 constexpr std::array<float, 2> capsule_steps{12, 60};
 
-// What shaders take flat triangles for, beside the kinds of shapes.
+// The shaders' kind for flat triangles, besides the shape kinds.
 constexpr float mesh_kind = 4;
 
-// Their meshes have two ends, which are moved apart.
+// Whether the mesh has two ends that are moved apart.
 bool has_ends(DrawKind kind) {
     return kind == DrawKind::capsule || kind == DrawKind::cylinder;
 }
@@ -135,7 +135,7 @@ void ShapeMeshes::draw(const ShapeBatch &batch) const {
         const std::size_t count = batch.first[mesh + 1] - batch.first[mesh];
         if (count == 0)
             continue;
-        // GL 3.3 has no first instance: the attributes are pointed there.
+        // GL 3.3 has no base instance, so offset the attributes.
         const std::size_t base = batch.first[mesh] * sizeof(ShapeInstance);
         attribute(3, 4, sizeof(ShapeInstance), base + offsetof(ShapeInstance, position), 1);
         attribute(4, 4, sizeof(ShapeInstance), base + offsetof(ShapeInstance, rotation), 1);
@@ -154,7 +154,7 @@ const ShapeMeshes::Triangles &ShapeMeshes::triangles_of(const TriangleBatch::Par
     Triangles &kept = triangles_[corners.get()];
     if (kept.corners.lock() == corners)
         return kept;
-    if (kept.buffer == 0) // else of others, at the same address
+    if (kept.buffer == 0) // else reuse the buffer of old corners at this address
         glGenBuffers(1, &kept.buffer);
     std::vector<MeshVertex> vertices;
     for (std::size_t i = 0; i + 2 < corners->size(); i += 3) {

@@ -1,5 +1,4 @@
-// The shapes and triangles of a pass, put in order for the graphics card, and the meshes they are
-// drawn with.
+// The shapes and triangles of a pass, batched for the GPU, and the meshes they are drawn with.
 #pragma once
 
 #include <array>
@@ -21,7 +20,7 @@ namespace plumb {
 
 inline constexpr std::size_t shape_mesh_count = 11;
 
-// Which of the meshes, for a shape whose radius on the target is so many pixels.
+// Which mesh to use for a shape whose radius on the target is `pixels`.
 std::size_t mesh_for(const DrawShape &shape, float pixels);
 // Below this radius, in pixels, shapes are drawn with the coarsest mesh.
 inline constexpr float least_sphere_step = 9;
@@ -37,14 +36,14 @@ struct ShapeInstance {
 };
 ShapeInstance instance_of(const DrawShape &shape, const glm::vec3 &origin);
 
-// The shapes of one pass, sorted by mesh: where those of each begin.
+// The shapes of one pass sorted by mesh, and where each mesh's shapes begin.
 struct ShapeBatch {
     std::vector<ShapeInstance> instances;
     std::array<std::size_t, shape_mesh_count + 1> first{};
 };
 
-// Sorts shapes by mesh; `pixels_of` gives the radius on the target in pixels, or none to leave
-// a shape out.
+// Sorts shapes by mesh; `pixels_of` gives the radius on the target in pixels, or none to skip a
+// shape.
 template <class PixelsOf>
 ShapeBatch shape_batch(std::span<const DrawShape> shapes, const glm::vec3 &origin,
                        const PixelsOf &pixels_of) {
@@ -68,7 +67,7 @@ ShapeBatch shape_batch(std::span<const DrawShape> shapes, const glm::vec3 &origi
     return batch;
 }
 
-// All meshes that are glass, or all that are not.
+// All glass meshes, or all others.
 struct TriangleBatch {
     struct Part {
         std::shared_ptr<const Corners> corners, normals;
@@ -89,12 +88,12 @@ class ShapeMeshes {
     ShapeMeshes(const ShapeMeshes &) = delete;
     ShapeMeshes &operator=(const ShapeMeshes &) = delete;
 
-    // With the program in use, which reads the same attributes for both: what an instance has
-    // is constant for triangles.
+    // The program must be in use. It reads the same attributes for both; for triangles, the
+    // instance attributes are constant.
     void draw(const ShapeBatch &batch) const;
     void draw(const TriangleBatch &batch) const;
 
-    // Once a frame: gives back what was kept for corners that are no more.
+    // Once a frame: frees what was kept for corners that no longer exist.
     void forget_unused();
 
   private:

@@ -1,4 +1,4 @@
-// What vertex shaders read: buffers, and the attributes in them.
+// Vertex buffers and their attributes.
 #pragma once
 
 #include <cstddef>
@@ -6,15 +6,15 @@
 
 namespace plumb {
 
-// Replaces what the buffer holds, and binds it for `attribute`.
+// Replaces the buffer's contents, and binds it for `attribute`.
 void upload(unsigned buffer, std::span<const std::byte> bytes);
 
-// What an attribute reads of the buffer bound: floats, one set for each vertex, or with a divisor
-// of 1 for each instance. Sizes in bytes.
+// What an attribute reads from the bound buffer: floats, one set per vertex, or per instance with a
+// divisor of 1. Sizes in bytes.
 void attribute(unsigned index, int components, std::size_t stride, std::size_t offset,
                unsigned divisor);
 
-// An offset into the buffer bound, as OpenGL takes it.
+// An offset into the bound buffer, as OpenGL takes it.
 const void *byte_offset(std::size_t bytes);
 
 } // namespace plumb

@@ -18,7 +18,7 @@ std::string last_error(const char *otherwise) {
 class WindowContext final : public GlContext, public Window {
   public:
     explicit WindowContext(const ContextRequest &request) {
-        // Without a display glfwInit fails, and that is the sign to fall back.
+        // Without a display glfwInit fails, which tells the caller to fall back.
         if (glfwInit() == GLFW_FALSE)
             throw ContextError(last_error("GLFW does not start"));
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
@@ -27,7 +27,7 @@ class WindowContext final : public GlContext, public Window {
         glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
         glfwWindowHint(GLFW_VISIBLE,
                        request.visible && !request.off_screen ? GLFW_TRUE : GLFW_FALSE);
-        // The window only shows what a Framebuffer holds.
+        // The window only shows a Framebuffer's contents.
         glfwWindowHint(GLFW_DEPTH_BITS, 0);
         glfwWindowHint(GLFW_STENCIL_BITS, 0);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);

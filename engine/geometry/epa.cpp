@@ -123,7 +123,7 @@ bool Polytope::grow(int i, const SimplexVertex &point, const Vec3 &size) {
     };
     constexpr std::size_t most = 2 * face_limit + 2;
     std::array<Side, most> open;   // a stack of edges still to be crossed
-    std::array<Side, most> border; // the horizon: edges of faces that stay, in order around the hole
+    std::array<Side, most> border; // the horizon: edges of faces that stay, in order
     std::array<std::uint8_t, slot(face_limit)> removed;
     std::size_t open_count = 0;
     std::size_t border_count = 0;

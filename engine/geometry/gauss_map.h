@@ -18,8 +18,7 @@ struct GaussMap {
         Vec3 edge{Real(0)};     // direction, of any length
         std::uint32_t from, to; // indices of normals less than half a turn apart
     };
-    std::vector<Vec3>
-        normals; // unit; some may belong to no face, where an edge has a face on one side only
+    std::vector<Vec3> normals; // unit; may include some of no face, at edges with only one face
     std::vector<Arc> arcs;
 };
 

@@ -5,8 +5,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 template <typename CoreA, typename CoreB>
 GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
-    // The closest points are final when the support point is no closer to the origin than they are
-    // (van den Bergen 1999, (3)), within this fraction of the squared distance.
+    // The closest points are final when the support point is no closer along v than they are (van
+    // den Bergen 1999, (3)), within this fraction of the squared distance.
     constexpr Real relative = Real(16) * std::numeric_limits<Real>::epsilon();
     constexpr int stall_limit = 6;
     const Real squared_far = far * far;

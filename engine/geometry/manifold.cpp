@@ -14,7 +14,7 @@ void check_margin(Real margin) {
 Manifold collide(const Shape &a, const Shape &b, Real margin, const Vec3 &guess) {
     return std::visit(
         [&]<typename A, typename B>(const A &first, const B &second) {
-            // A kind of shape without contacts would come back here.
+            // A shape type without contact functions would recurse into this function.
             static_assert(Collidable<A, B>, "each two kinds of Shape need unchecked::collide");
             return collide(first, second, margin, guess);
         },

@@ -12,8 +12,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Feature names. The lowest bits say which part, these which kind of contact, so that no two kinds
-// share a name.
+// Feature ids. The lowest bits name the part, these the kind of contact, so that no two kinds share
+// an id.
 constexpr std::uint32_t kind_face = 1U << 24;
 constexpr std::uint32_t kind_edges = 2U << 24;
 constexpr std::uint32_t kind_closest = 3U << 24;
@@ -22,7 +22,7 @@ std::uint32_t bits(int value) {
     return static_cast<std::uint32_t>(value);
 }
 
-// Faces are numbered 2 * axis + (1 on the positive side).
+// Faces are numbered 2 * axis, plus 1 on the positive side.
 int face_number(int axis, Real sign) {
     return 2 * axis + (sign > Real(0) ? 1 : 0);
 }
@@ -33,8 +33,8 @@ Vec3 corner(const Vec3 &half_extents, int index) {
             (index & 4) != 0 ? half_extents.z : -half_extents.z};
 }
 
-// Edges are numbered 4 * direction + signs of the two other coordinates (1 for the next, 2 for the
-// one after it).
+// Edges are numbered 4 * direction, plus 1 if the next coordinate is positive, plus 2 if the one
+// after it is.
 struct Edge {
     Vec3 start{Real(0)};
     Vec3 along{Real(0)};
@@ -52,21 +52,21 @@ Edge edge(const Vec3 &half_extents, int number) {
     return result;
 }
 
-// The point of the box farthest along `direction` lies on this edge of the given direction.
+// The edge along axis i that contains the support point for `direction`.
 int supporting_edge(int i, const Vec3 &direction) {
     const int j = (i + 1) % 3;
     const int k = (i + 2) % 3;
     return 4 * i + (direction[j] > Real(0) ? 1 : 0) + (direction[k] > Real(0) ? 2 : 0);
 }
 
-// A contact point before it is put into the world.
+// A contact point before it is transformed to the world.
 struct FaceContact {
     Vec3 position{Real(0)}; // midway, in the frame of the reference box
     Real separation = Real(0);
     std::uint32_t feature = 0;
 };
 
-// At most eight, of which four are kept.
+// At most eight points; four are kept.
 struct FaceContacts {
     std::array<FaceContact, 8> points{};
     int count = 0;
@@ -84,9 +84,9 @@ struct FaceContacts {
     }
 };
 
-// Keeps the deepest point and the three that with it span the largest area seen along `normal`. A
-// later point replaces an earlier one only when it is clearly better, so that equally good points
-// do not take turns.
+// Keeps the deepest point and the three that span the largest area with it, seen along `normal`. A
+// later point replaces an earlier one only if clearly better, so that equally good points do not
+// alternate.
 FaceContacts best_four(const FaceContacts &all, const Vec3 &normal) {
     if (all.count <= 4)
         return all;
@@ -98,8 +98,8 @@ FaceContacts best_four(const FaceContacts &all, const Vec3 &normal) {
     for (int i = 1; i < all.count; ++i)
         if (all[i].separation < all[first].separation - feature_tolerance)
             first = i;
-    // Clearly deeper ones replaced each other above, so the deepest may have been left by up to the
-    // tolerance for each; only the tolerance itself is meant.
+    // The scan above may leave a point that is shallower than the deepest by more than the
+    // tolerance, because the tolerances of successive replacements add up. Allow only one.
     const Real deepest = all.deepest();
     for (int i = 0; i < all.count && all[first].separation > deepest + feature_tolerance; ++i)
         if (all[i].separation <= deepest + feature_tolerance)
@@ -132,7 +132,7 @@ FaceContacts best_four(const FaceContacts &all, const Vec3 &normal) {
     const Vec3 base = all[kept[1]].position - origin;
     const auto signed_area = [&](const Vec3 &v) { return glm::dot(glm::cross(base, v), normal); };
     pick(2, [&](const Vec3 &v) { return std::abs(signed_area(v)); });
-    // The fourth adds the most area outside of the triangle: beyond one of its three sides.
+    // The fourth adds the most area outside the triangle, beyond one of its sides.
     const Vec3 apex = all[kept[2]].position - origin;
     const Real turn = signed_area(apex) < Real(0) ? Real(-1) : Real(1);
     pick(3, [&](const Vec3 &v) {
@@ -168,9 +168,9 @@ Manifold in_world(const FaceContacts &local, const Vec3 &local_normal, const Box
 
 // --- Box against box ---------------------------------------------------------------------------
 
-// A corner of the polygon that is being clipped, in the coordinates of the reference face. `name`
-// is 0..3 for a corner of the incident face, else 4 + 4 * label of the polygon side + clip plane.
-// `side` labels the side from this corner to the next: 0..3 of the incident face, 4..7 clip planes.
+// A corner of the polygon being clipped, in the coordinates of the reference face. `name` is 0..3
+// for a corner of the incident face, else 4 + 4 * label of the polygon side + clip plane. `side`
+// labels the side from this corner to the next: 0..3 for the incident face, 4..7 for clip planes.
 struct FaceCorner {
     Real u = Real(0);
     Real v = Real(0);
@@ -190,7 +190,7 @@ struct FacePolygon {
 };
 
 // One plane of Sutherland and Hodgman 1974, "Reentrant polygon clipping". Corners within
-// feature_tolerance of the plane are on it and keep their names.
+// feature_tolerance of the plane count as on it and keep their names.
 FacePolygon clipped(const FacePolygon &in, int plane, Real limit) {
     const auto beyond = [&](const FaceCorner &c) {
         const Real coordinate = plane < 2 ? c.u : c.v;
@@ -206,7 +206,7 @@ FacePolygon clipped(const FacePolygon &in, int plane, Real limit) {
         if (d0 <= Real(0)) {
             FaceCorner kept = here;
             if (d0 == Real(0) && d1 > Real(0))
-                kept.side = 4 + plane; // the polygon goes on along the plane
+                kept.side = 4 + plane; // the polygon continues along the plane
             out.add(kept);
         }
         if ((d0 < Real(0) && d1 > Real(0)) || (d0 > Real(0) && d1 < Real(0))) {
@@ -223,15 +223,15 @@ FacePolygon clipped(const FacePolygon &in, int plane, Real limit) {
     return out;
 }
 
-// Contacts of the face `axis`, `sign` of a reference box with the face of the incident box that
-// looks most against it. `feature` names which box is the reference.
+// Contacts of the face `axis`, `sign` of a reference box with the most anti-parallel face of the
+// incident box. `feature` names which box is the reference.
 FaceContacts face_contacts(const Vec3 &half, int axis, Real sign, const RelativeBox &incident,
                            const Vec3 &incident_half, Real margin, std::uint32_t feature) {
     int incident_axis = 0;
     Real steepest = Real(-1);
     for (int j = 0; j < 3; ++j) {
         const Real slope = std::abs(incident.axes[j][axis]);
-        // Clearly steeper only: with two faces at 45 degrees the choice must not flicker.
+        // Only if clearly steeper: with two faces at 45 degrees the choice must not flicker.
         if (slope > steepest + Real(1e-3)) {
             steepest = slope;
             incident_axis = j;
@@ -274,8 +274,8 @@ FaceContacts face_contacts(const Vec3 &half, int axis, Real sign, const Relative
     return result;
 }
 
-// The contact of the two edges that the axis was made of. `sideways` is how far the line between
-// their closest points is off the axis: more than rounding when the closest points are ends.
+// The contact of the two edges whose cross product is the axis. `sideways` is how far the line
+// between their closest points is off the axis: more than rounding if a closest point is an end.
 FaceContacts edge_contact(const RelativeBox &b, const Vec3 &half_a, const Vec3 &half_b,
                           const BoxAxis &axis, Real &sideways) {
     const int number_a = supporting_edge(axis.index_a, axis.normal);
@@ -297,9 +297,9 @@ bool is_inner(Real parameter) {
     return parameter > Real(0) && parameter < Real(1);
 }
 
-// The closest points of two disjoint boxes that are not inner points of two edges: a corner and a
-// box. (Where inner points of edges are closest, the axis that the edges make is the best of all
-// and its separation the distance, so that case never gets here.)
+// The closest points of two disjoint boxes when they are a corner and a box, not interior points of
+// two edges. (If interior points of edges are closest, the edges' axis is the best of all and its
+// separation is the distance, so that case never gets here.)
 struct ClosestPair {
     Vec3 on_a{Real(0)};
     Vec3 difference{Real(0)};
@@ -308,7 +308,7 @@ struct ClosestPair {
 };
 
 ClosestPair closest_corner(const RelativeBox &b, const Vec3 &half_a, const Vec3 &half_b) {
-    // Two corners that are closest are found from both; the first finder names them.
+    // Two closest corners are found from both boxes; the first one found names the feature.
     constexpr Real clearly = Real(0.9999);
     ClosestPair best;
     const auto consider = [&](const Vec3 &on_a, const Vec3 &difference, std::uint32_t feature) {
@@ -331,9 +331,9 @@ ClosestPair closest_corner(const RelativeBox &b, const Vec3 &half_a, const Vec3 
     return best;
 }
 
-// Whether a is the reference of two boxes whose faces serve equally well: the larger one. The
-// choice does not change while the bodies move and, but for boxes of one size, nor with the order
-// of the arguments.
+// Whether a is the reference when both boxes' faces are equally good: the larger box is. The choice
+// does not change while the bodies move or, except for boxes of equal size, with the argument
+// order.
 bool is_reference(const Vec3 &a, const Vec3 &b) {
     const Real sum_a = a.x + a.y + a.z;
     const Real sum_b = b.x + b.y + b.z;
@@ -362,8 +362,8 @@ Manifold collide(const Box &a, const Box &b, Real margin) {
     if (best.separation > margin)
         return {};
 
-    // A contact is tight when its deepest point is where the best axis says it is: then no other
-    // place of the two boxes is deeper or closer. Overlapping boxes always have a tight contact;
+    // A contact is tight if its deepest point is as deep as the best axis predicts: then no other
+    // part of the boxes is deeper or closer. Overlapping boxes always have a tight contact;
     // disjoint ones do unless a corner is closest to a corner or an edge.
     constexpr Real tight = Real(2) * feature_tolerance;
     const auto with_face_of_a = [&] {
@@ -385,7 +385,7 @@ Manifold collide(const Box &a, const Box &b, Real margin) {
         return normal;
     };
 
-    Manifold result; // the one nearest to being tight
+    Manifold result; // the closest to tight so far
     Real off_best = std::numeric_limits<Real>::infinity();
     Real depth = std::numeric_limits<Real>::infinity();
     const auto accept = [&](const FaceContacts &contacts, const Vec3 &normal, const Box &frame,
@@ -400,10 +400,10 @@ Manifold collide(const Box &a, const Box &b, Real margin) {
         return off <= tight;
     };
 
-    // A's face, unless B's is better; a face, unless the edges are better. They are not when their
-    // axis leans little against the face's normal and the face's contact is tight: then two
-    // crossing edges are deepest, and their crossing is one of the points where the faces are
-    // clipped. A box that rocks on another so keeps its four points.
+    // Prefer A's face unless B's is better, and a face unless the edges are better. Edges do not
+    // win if their axis is nearly parallel to the face's normal and the face contact is tight: then
+    // two crossing edges are deepest, and their crossing is one of the clipped points anyway. So a
+    // box rocking on another keeps its four points.
     constexpr Real little = Real(0.99); // cosine of 8 degrees
     if (axes.edges.separation <= best_face.separation + feature_tolerance ||
         glm::dot(axes.edges.normal, best_face.normal) > little) {
@@ -445,8 +445,8 @@ Manifold collide(const Sphere &a, const Box &b, Real margin) {
     const Vec3 outside = center - on_box;
     const Real squared_distance = glm::dot(outside, outside);
 
-    // The feature is the region of the box that is closest, in base 3: 0 below, 1 within, 2 above.
-    Vec3 normal{Real(0)}; // out of the box, in its frame
+    // The feature is the closest region of the box, in base 3: 0 below, 1 within, 2 above.
+    Vec3 normal{Real(0)}; // out of the box, in the box's frame
     Vec3 surface = on_box;
     Real distance = std::sqrt(squared_distance);
     std::uint32_t feature = 0;
@@ -456,7 +456,7 @@ Manifold collide(const Sphere &a, const Box &b, Real margin) {
         for (int i = 0; i < 3; ++i, place *= 3)
             feature += place * (outside[i] > Real(0) ? 2U : outside[i] < Real(0) ? 0U : 1U);
     } else {
-        // The centre is in the box: out through the nearest face.
+        // The centre is in the box: push out through the nearest face.
         int axis = 0;
         Real depth = std::numeric_limits<Real>::infinity();
         for (int i = 0; i < 3; ++i) {
@@ -526,7 +526,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
     if (best.separation - b.radius > margin)
         return {};
 
-    // On a face: both ends of the part of the segment that is above it.
+    // On a face: both ends of the part of the segment above it.
     FaceContacts on_face;
     const Vec3 face_normal = face.normal;
     if (edges.separation <= face.separation + feature_tolerance) {
@@ -538,7 +538,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
         std::uint32_t high_name = 1;
         for (const int side : {(axis + 1) % 3, (axis + 2) % 3}) {
             for (const Real way : {Real(1), Real(-1)}) {
-                // way * (start + s * along) <= half, where ends on the border keep their names.
+                // Clip to way * (start + s * along) <= half; ends on the border keep their names.
                 Real d0 = way * start[side] - half[side];
                 Real d1 = way * end[side] - half[side];
                 if (std::abs(d0) <= feature_tolerance)
@@ -585,7 +585,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
     }
 
     if (best.separation <= Real(0)) {
-        // The segment runs through the box and leaves it soonest across an edge.
+        // The segment runs through the box, and the shortest way out is across an edge.
         if (!(edges.separation > -std::numeric_limits<Real>::infinity()))
             return in_world(on_face, face_normal, a, false);
         const int number = supporting_edge(edges.index_a, edges.normal);
@@ -600,15 +600,15 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
         return in_world(contact, edges.normal, a, false);
     }
 
-    // Apart: the closest points are an end and the box, a corner and the segment, or inner points
-    // of an edge and the segment. An end over a face is found above already, but for the
+    // Disjoint: the closest points are an end and the box, a corner and the segment, or interior
+    // points of an edge and the segment. An end over a face was already found above, up to
     // tolerances.
     Real least = std::numeric_limits<Real>::infinity();
     Vec3 surface{Real(0)};
     Vec3 difference{Real(0)};
     std::uint32_t feature = 0;
     const auto consider = [&](const Vec3 &on_box, const Vec3 &away, std::uint32_t name) {
-        constexpr Real clearly = Real(0.9999); // the first finder names what several find
+        constexpr Real clearly = Real(0.9999); // if several find the same pair, the first names it
         const Real squared_distance = glm::dot(away, away);
         if (squared_distance < least * clearly) {
             least = squared_distance;
@@ -648,7 +648,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
     const int next = (main_axis + 1) % 3;
     const int last = (main_axis + 2) % 3;
     if (std::abs(surface[next]) >= half[next] && std::abs(surface[last]) >= half[last]) {
-        // On the edge that is most nearly parallel there may be two contacts.
+        // Along the most nearly parallel edge there may be two contacts.
         const Edge box_edge = edge(half, supporting_edge(main_axis, surface));
         const Capsule as_capsule{box_edge.start, box_edge.start + box_edge.along, Real(0)};
         const Manifold beside = collide(as_capsule, Capsule{start, end, b.radius}, margin);
@@ -677,8 +677,8 @@ Manifold collide(const Box &a, const HalfSpace &b, Real margin) {
             corners.add(p - Real(0.5) * separation * up, separation, bits(i));
     }
     if (corners.count > 4) {
-        // Those of the face that looks most at the plane: they are spread as widely as can be, the
-        // deepest is among them, and no corner is kept that has a deeper one below it.
+        // Keep the corners of the face turned most towards the plane: they have the widest spread
+        // and include the deepest, and no kept corner has a deeper one below it.
         const Vec3 steep = glm::abs(up);
         const int axis =
             steep.y >= steep.x && steep.y >= steep.z ? 1 : (steep.x >= steep.z ? 0 : 2);

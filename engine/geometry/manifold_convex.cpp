@@ -12,8 +12,8 @@ namespace {
 
 constexpr int corner_limit = 16;
 
-// Names of points, in the lowest bits of a feature: a corner by its number, then the crossings of
-// 16 + 16 sides with 16 planes, then these.
+// Point names, in the lowest bits of a feature id: corners by number, then the crossings of 16 + 16
+// sides with 16 planes, then these.
 constexpr std::uint32_t name_support = 1022;
 constexpr std::uint32_t name_closest = 1023;
 
@@ -21,7 +21,7 @@ constexpr std::size_t index(int i) {
     return static_cast<std::size_t>(i);
 }
 
-// What a shape turns towards the other: one corner, the two ends of a side, or the corners of a
+// The part of a shape that faces the other: one corner, the two ends of a side, or the corners of a
 // face, counter-clockwise around its normal.
 struct Feature {
     std::array<Vec3, index(corner_limit)> corners;
@@ -61,7 +61,7 @@ Feature feature_of(const TriangleCore &triangle, const Vec3 &direction) {
         result.normal = normal / (is_back ? -length : length);
         return result;
     }
-    // A needle: its longest side.
+    // A needle: use its longest edge.
     const std::array<Vec3, 3> corners = {triangle.a, triangle.b, triangle.c};
     Real longest = Real(-1);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -82,13 +82,13 @@ Feature feature_of(const BoxCore &box, const Vec3 &direction) {
     Vec3 lengths{Real(0)};
     for (int i = 0; i < 3; ++i) {
         lengths[i] = glm::length(box.half_edges[i]);
-        // The normal of a flat box's face has no length of its own; it is at right angles to the
-        // two others.
+        // In a flat box a face normal may have no half edge of its own, so take the cross product
+        // of the other two.
         const Vec3 normal = glm::cross(box.half_edges[(i + 1) % 3], box.half_edges[(i + 2) % 3]);
         const Real length = glm::length(normal);
         const Real slope =
             length > Real(0) ? std::abs(glm::dot(normal, direction)) / length : Real(-1);
-        // Clearly steeper only: with two faces at 45 degrees the choice must not flicker.
+        // Only if clearly steeper: with two faces at 45 degrees the choice must not flicker.
         if (slope > steepest + Real(1e-3)) {
             steepest = slope;
             axis = i;
@@ -112,7 +112,7 @@ Feature feature_of(const BoxCore &box, const Vec3 &direction) {
     result.normal = sign * up / length;
     result.number = static_cast<std::uint32_t>(2 * axis + (sign > Real(0) ? 1 : 0));
     const Vec3 middle = box.center + result.normal * lengths[axis];
-    const Vec3 w = sign * v; // turns the other way around on the other side
+    const Vec3 w = sign * v; // reverses the winding on the opposite side
     result.add(middle - u - w);
     result.add(middle + u - w);
     result.add(middle + u + w);
@@ -126,7 +126,7 @@ Feature feature_of(const CylinderCore &cylinder, const Vec3 &direction) {
     const Vec3 outward = direction - along * cylinder.axis;
     const Real across = glm::length(outward);
     if (std::abs(along) < Real(0.7) && across > Real(0)) {
-        // The line of the side that is farthest along the direction.
+        // The line on the side surface farthest along the direction.
         const Vec3 off = outward * (cylinder.side / across);
         result.add(cylinder.a + off);
         result.add(cylinder.b + off);
@@ -165,7 +165,7 @@ Feature feature_of(const HullCore &hull, const Vec3 &direction) {
     return result;
 }
 
-// A contact point before four are chosen.
+// A contact point before reduction to four.
 struct Candidate {
     Vec3 position{Real(0)};
     Real separation = Real(0);
@@ -187,8 +187,8 @@ struct Candidates {
     }
 };
 
-// A corner of the polygon that is being clipped: `name` as above, `side` the label of the side from
-// here to the next: a side of the incident face, or 16 + the plane that made it.
+// A corner of the polygon being clipped: `name` as above, `side` labels the side from here to the
+// next corner: a side of the incident face, or 16 + the clip plane that made it.
 struct ClipCorner {
     Vec3 position;
     std::uint32_t name;
@@ -205,8 +205,8 @@ struct Polygon {
 };
 
 // One plane of Sutherland and Hodgman 1974, "Reentrant polygon clipping". Corners within
-// feature_tolerance of the plane are on it and keep their names. Two corners are a segment, not a
-// polygon of two sides.
+// feature_tolerance of the plane count as on it and keep their names. Two corners are a segment,
+// not a polygon with two sides.
 Polygon clipped(const Polygon &in, std::uint32_t plane, const Vec3 &at, const Vec3 &outward) {
     const auto beyond = [&](const ClipCorner &corner) {
         const Real distance = glm::dot(corner.position - at, outward);
@@ -221,7 +221,7 @@ Polygon clipped(const Polygon &in, std::uint32_t plane, const Vec3 &at, const Ve
         if (d0 <= Real(0)) {
             ClipCorner kept = here;
             if (d0 == Real(0) && d1 > Real(0))
-                kept.side = corner_limit + plane; // the polygon goes on along the plane
+                kept.side = corner_limit + plane; // the polygon continues along the plane
             out.add(kept);
         }
         const bool is_way_back = in.count == 2 && i == 1;
@@ -235,7 +235,7 @@ Polygon clipped(const Polygon &in, std::uint32_t plane, const Vec3 &at, const Ve
     return out;
 }
 
-// Keeps the deepest point and the three that with it span the largest area seen along `normal`.
+// Keeps the deepest point and the three that span the largest area with it, seen along `normal`.
 void add_best_four(Manifold &manifold, const Candidates &all, const Vec3 &origin) {
     const Vec3 &normal = manifold.normal;
     std::array<int, 4> kept{};
@@ -244,8 +244,8 @@ void add_best_four(Manifold &manifold, const Candidates &all, const Vec3 &origin
         for (; kept_count < all.count; ++kept_count)
             kept[index(kept_count)] = kept_count;
     } else {
-        // A later point replaces an earlier one only when it is clearly better, so that equally
-        // good points do not take turns.
+        // A later point replaces an earlier one only if clearly better, so that equally good points
+        // do not alternate.
         constexpr Real clearly = Real(1.01);
         std::array<bool, index(2 * corner_limit + 1)> is_taken{};
         const auto keep = [&](int i) {
@@ -281,7 +281,7 @@ void add_best_four(Manifold &manifold, const Candidates &all, const Vec3 &origin
             [&](const Vec3 &v) { return std::abs(glm::dot(glm::cross(q - p, v - p), normal)); });
         const Vec3 r = all.points[index(kept[2])].position;
         const Real turn = glm::dot(glm::cross(q - p, r - p), normal) < Real(0) ? Real(-1) : Real(1);
-        // The fourth adds the most area outside of the triangle: beyond one of its three sides.
+        // The fourth adds the most area outside the triangle, beyond one of its sides.
         keep_most([&](const Vec3 &v) {
             const auto beyond = [&](const Vec3 &from, const Vec3 &to) {
                 return -turn * glm::dot(glm::cross(to - from, v - from), normal);
@@ -301,7 +301,7 @@ std::uint32_t pair_name(const Feature &reference, const Feature &incident, bool 
            (incident.number & 0x3ffU) << 10;
 }
 
-// The points of the incident feature, with that radius around it, over the reference face.
+// Contact points of the incident feature (rounded by `radius`) over the reference face.
 Candidates over_face(const Feature &reference, const Feature &incident, Real radius, Real margin,
                      std::uint32_t feature) {
     Polygon polygon;
@@ -327,7 +327,7 @@ Candidates over_face(const Feature &reference, const Feature &incident, Real rad
     return result;
 }
 
-// How round a side is: of a contact off its line, see along_sides.
+// The radius of curvature across a side; see along_sides.
 template <typename Core> Real roundness(const Core &core) {
     if constexpr (std::same_as<Core, CylinderCore>)
         return core.side;
@@ -335,12 +335,12 @@ template <typename Core> Real roundness(const Core &core) {
         return core.radius;
 }
 
-// Two sides that run along each other: the ends of their common stretch. `thinner` is the lesser of
-// their roundnesses: where the lines are e off each other sideways, a point between them is off a
-// surface by (e / 2)^2 / (2 thinner).
+// Two parallel sides: the ends of their overlap. `thinner` is the smaller of their roundnesses: if
+// the lines are offset sideways by e, a point midway is off a surface by (e / 2)^2 / (2 thinner).
 Candidates along_sides(const Feature &a, Real radius_a, const Feature &b, Real radius_b,
                        const Vec3 &normal, Real thinner, Real margin, std::uint32_t feature) {
-    // As for capsules (manifold_round.cpp): beyond this sine the far end of a metre is 2 cm away.
+    // As for capsules (manifold_round.cpp): at this sine, sides one metre long are 2 cm apart at
+    // the far end.
     constexpr Real parallel_sine = Real(0.02);
     Candidates result;
     const Vec3 along_a = a.corners[1] - a.corners[0];
@@ -371,7 +371,7 @@ Candidates along_sides(const Feature &a, Real radius_a, const Feature &b, Real r
     return result;
 }
 
-// Whether a point is over a face, give or take the tolerance.
+// Whether a point is over a face, within the tolerance.
 bool is_over(const Feature &face, const Vec3 &point) {
     for (int i = 0; i < face.count; ++i) {
         const Vec3 &at = face.corners[index(i)];
@@ -383,8 +383,8 @@ bool is_over(const Feature &face, const Vec3 &point) {
     return true;
 }
 
-// `guess`: about the normal; zero: unknown. Then a face is guessed by where the other is, but the
-// search goes its own way.
+// `guess`: an approximate normal; zero: unknown. Then the direction between the middles selects the
+// face to try, but the search starts without a guess.
 template <typename A, typename B>
 Proximity proximity_near(const A &a, const B &b, Real margin, const Vec3 &guess) {
     if constexpr (HaveFaceGap<A, B>) {
@@ -415,8 +415,8 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
         return manifold;
     };
 
-    // How far the other shape is above the plane of a face. When that is as good as the best there
-    // is, its normal is the one.
+    // How far the other shape is above the plane of each face. If that is as good as the best
+    // separation, use the face's normal.
     constexpr Real none = -std::numeric_limits<Real>::infinity();
     const Real above_a =
         on_a.is_face() ? glm::dot(b.support(-on_a.normal) - on_a.corners[0], on_a.normal) - b.radius
@@ -428,7 +428,7 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
         const Feature incident = feature_of(incident_core, -reference.normal);
         const std::uint32_t feature = pair_name(reference, incident, is_b);
         Candidates contacts = over_face(reference, incident, incident_core.radius, margin, feature);
-        // The deepest point of a rim is between the corners.
+        // The deepest point of a rim may be between the corners.
         if (contacts.deepest() > found.separation + Real(0.1) * feature_tolerance) {
             const Vec3 support = incident_core.support(-reference.normal);
             const Real height = glm::dot(support - reference.corners[0], reference.normal);
@@ -439,7 +439,7 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
         }
         return contacts;
     };
-    // A face that the closest or deepest place is not over is none, however good its plane.
+    // Reject a face that the closest or deepest point is not over, however good its plane.
     const auto is_there = [&](const Candidates &contacts) {
         return contacts.deepest() <= found.separation + Real(2) * feature_tolerance;
     };
@@ -466,7 +466,7 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     return accept(one, found.normal);
 }
 
-// The half-space's plane is a face without sides.
+// The half-space's plane acts as a face without sides.
 template <typename A>
 Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real margin) {
     const Vec3 origin = place_of(shape);

@@ -11,11 +11,12 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Capsules whose axes enclose an angle with a sine below this count as parallel and get a contact
-// at both ends of their overlap. Beyond it the far end of an overlap of one metre is 2 cm away.
+// Capsules whose axes form an angle with a sine below this count as parallel and get a contact at
+// each end of their overlap. At this sine, axes overlapping by one metre are 2 cm apart at the far
+// end.
 constexpr Real side_by_side_sine = Real(0.02);
 
-// One contact of two balls with the given normal and distance of their centres.
+// The contact of two balls, given the normal and distance between their centres.
 Manifold ball_contact(const Vec3 &center_a, Real radius_a, const Vec3 &center_b, Real radius_b,
                       const Vec3 &normal, Real distance, Real margin) {
     Manifold manifold;
@@ -29,8 +30,8 @@ Manifold ball_contact(const Vec3 &center_a, Real radius_a, const Vec3 &center_b,
     return manifold;
 }
 
-// `v` without its part along `axis`. Once more than needed in exact arithmetic: when v is nearly
-// all along the axis, the first pass leaves its rounding there.
+// `v` without its component along `axis`. Done twice, because when v is nearly parallel to the axis
+// the first pass leaves rounding along it.
 Vec3 without(Vec3 v, const Vec3 &axis) {
     const Real squared = glm::dot(axis, axis);
     for (int pass = 0; pass < 2; ++pass)
@@ -38,7 +39,7 @@ Vec3 without(Vec3 v, const Vec3 &axis) {
     return v;
 }
 
-// A vector is longer than the rounding of points that were computed from lengths of this size.
+// Whether v is longer than the rounding of points computed from lengths of this size.
 bool is_significant(const Vec3 &v, Real squared_size) {
     constexpr Real noise = Real(16) * std::numeric_limits<Real>::epsilon();
     const Real squared = glm::dot(v, v);
@@ -48,8 +49,8 @@ bool is_significant(const Vec3 &v, Real squared_size) {
 } // namespace
 
 Vec3 any_perpendicular(const Vec3 &axis) {
-    // The world axis that is least parallel, made perpendicular. Y is tried first, so that vertical
-    // pushes win when they are possible.
+    // The least parallel world axis, made perpendicular. Y is tried first, so that vertical pushes
+    // win if possible.
     const Vec3 size = glm::abs(axis);
     const Real squared = glm::dot(axis, axis);
     if (!(squared >= std::numeric_limits<Real>::min()))
@@ -75,7 +76,7 @@ Manifold collide(const Sphere &a, const Capsule &b, Real margin) {
     const Real t = closest_parameter(offset, along, Vec3{Real(0)});
     const Vec3 difference = offset + t * along;
     const Real distance = glm::length(difference);
-    // Beside the segment the normal is at right angles to it, however near the axis is.
+    // Beside the segment the normal is perpendicular to it, however close the axis is.
     const bool is_beside = t > Real(0) && t < Real(1);
     const Vec3 away = is_beside ? without(difference, along) : difference;
     const Vec3 normal = is_significant(away, is_beside ? glm::dot(along, along) : Real(0))
@@ -119,8 +120,8 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
     const Vec3 along_b = b.b - b.a;
     const Real squared_a = glm::dot(along_a, along_a);
     const Real squared_b = glm::dot(along_b, along_b);
-    // The longer one, then the thicker one, is the reference: a choice that does not change while
-    // the bodies move, nor with the order of the arguments.
+    // The longer capsule, or if equal the thicker one, is the reference: a choice that does not
+    // change while the bodies move or with the argument order.
     if (squared_b > squared_a || (squared_b == squared_a && b.radius > a.radius))
         return mirrored(collide(b, a, margin));
 
@@ -129,9 +130,8 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
     const Real squared_cross = glm::dot(cross, cross);
     const SegmentPair closest = closest_between_segments(Vec3{Real(0)}, along_a, offset, along_b);
 
-    // The normal is at right angles to an axis that the contact is beside, however near to each
-    // other the axes are. Where they cross, the shortest way out leads along their common
-    // perpendicular.
+    // The normal is perpendicular to each axis that the contact is beside, however close the axes
+    // are. Where the axes cross, the shortest way out is along their common perpendicular.
     const bool is_parallel =
         squared_cross <= side_by_side_sine * side_by_side_sine * squared_a * squared_b;
     const bool is_beside_a = closest.s > Real(0) && closest.s < Real(1);
@@ -158,7 +158,7 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
     if (one.count == 0 || !is_parallel || !(squared_b > Real(0)))
         return one;
 
-    // Where the two axes run beside each other, in the parameter of A's axis.
+    // The overlap of the axes, in the parameter of A's axis.
     const Real at_start = glm::dot(offset, along_a) / squared_a;
     const Real at_end = glm::dot(offset + along_b, along_a) / squared_a;
     const bool same_way = at_start <= at_end;
@@ -171,8 +171,8 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
 
     Manifold two;
     two.normal = one.normal;
-    // The two share the normal. A pair of axis points that is off it sideways by e has its contact
-    // point e / 2 off each, which puts it off a surface of radius r by (e / 2)^2 / (2 r).
+    // Both contacts share the normal. If a pair of axis points is offset sideways from it by e, the
+    // contact point is e / 2 off each axis, and so off a surface of radius r by (e / 2)^2 / (2 r).
     const Real thinner = std::min(a.radius, b.radius);
     const Real sideways_limit =
         std::max(Real(2) * feature_tolerance, std::sqrt(Real(8) * thinner * feature_tolerance));
@@ -192,7 +192,7 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
         const Vec3 on_b = b.a + t * along_b - b.radius * one.normal;
         add_point(two, Real(0.5) * (on_a + on_b), separation, feature);
     };
-    // Features: 1..4 name the end that bounds the overlap, 1, 2 for A's and 3, 4 for B's.
+    // Features: 1..4 name the end that bounds the overlap: 1, 2 for A's ends and 3, 4 for B's.
     if (low_b > Real(0))
         add_end(low, true, same_way ? Real(0) : Real(1), same_way ? 3 : 4);
     else
@@ -202,7 +202,7 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
     else
         add_end(high, false, Real(0), 2);
 
-    // Where the axes cross between the ends, the ends are not the deepest place.
+    // If the axes cross between the ends, the ends are not the deepest points.
     Real deepest = std::numeric_limits<Real>::infinity();
     for (int i = 0; i < two.count; ++i)
         deepest = std::min(deepest, two.points[static_cast<std::size_t>(i)].separation);

@@ -63,9 +63,9 @@ Vec3 inertia_of(const Capsule &capsule, Real mass) {
     if (equivalent <= Real(0))
         return Vec3{Real(0)}; // a point
     const Real cylinder = mass * (length / equivalent);
-    const Real caps = mass - cylinder; // both half balls
+    const Real caps = mass - cylinder; // both hemispheres
 
-    // A cylinder, and two half balls whose centres of mass lie 3/8 r beyond its ends. About the
+    // A cylinder, and two hemispheres whose centres of mass lie 3/8 r beyond its ends. About the
     // middle, by the parallel axis theorem, per unit mass of the caps:
     //   (2/5 r^2 - (3/8 r)^2) + (L/2 + 3/8 r)^2 = 2/5 r^2 + L^2/4 + 3/8 L r.
     const Real along = cylinder * r * r / Real(2) + caps * Real(0.4) * r * r;
@@ -97,7 +97,7 @@ Mat3 turned_inertia(const Mat3 &inertia, const Quat &rotation) {
     return r * inertia * glm::transpose(r);
 }
 
-// Of a solid of revolution about the unit vector `axis`.
+// The inertia of a solid of revolution about the unit vector `axis`.
 Mat3 inertia_about(const Vec3 &axis, Real along, Real across) {
     return Mat3{across} + (along - across) * glm::outerProduct(axis, axis);
 }
@@ -183,8 +183,9 @@ Mat3 inertia(const ConvexHull &hull, Real mass) {
     return (mass / hull.mesh->volume) * hull.mesh->inertia;
 }
 
-// Jacobi's method (Golub, Van Loan 2013, "Matrix Computations", 8.5): rotations in one coordinate
-// plane after the other make the matrix diagonal. Four rounds do for a 3 x 3 matrix of doubles.
+// Jacobi's method (Golub, Van Loan 2013, "Matrix Computations", 8.5): rotates in one coordinate
+// plane after the other until the matrix is diagonal. Four rounds are enough for a 3 x 3 matrix of
+// doubles.
 PrincipalFrame principal_frame(const Mat3 &inertia) {
     glm::dmat3 m(inertia);
     PLUMB_CHECK(std::isfinite(m[0][0] + m[1][0] + m[2][0] + m[1][1] + m[2][1] + m[2][2]),
@@ -220,10 +221,10 @@ PrincipalFrame principal_frame(const Mat3 &inertia) {
     return frame;
 }
 
-// The sum over the tetrahedra from one point to the triangles, each with its sign. For one with the
-// edges a, b, c from that point: volume v = a . (b x c) / 6, first moment v (a + b + c) / 4, second
-// moments v / 20 (s s^T + a a^T + b b^T + c c^T) with s = a + b + c (Tonon 2004, "Explicit exact
-// formulas for the 3-D tetrahedron inertia tensor").
+// Sums over signed tetrahedra from one point to the triangles. For edges a, b, c from that point:
+// volume v = a . (b x c) / 6, first moment v (a + b + c) / 4, second moments v / 20 (s s^T + a a^T
+// + b b^T + c c^T) with s = a + b + c (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron
+// inertia tensor").
 MassProperties mass_properties(std::span<const Triangle> surface) {
     using Wide = glm::dvec3;
     Wide base{0.0};
@@ -252,7 +253,7 @@ MassProperties mass_properties(std::span<const Triangle> surface) {
     const Wide center = first / (4.0 * six_volumes);
     mass.volume = Real(six_volumes / 6.0);
     mass.center = Vec3(base + center);
-    // Moments about the centre: those about the base less what its distance adds.
+    // Moments about the centre: the moments about the base minus the parallel axis term.
     second = second / 120.0 - (six_volumes / 6.0) * glm::outerProduct(center, center);
     const double trace = second[0][0] + second[1][1] + second[2][2];
     mass.inertia = Mat3(glm::dmat3(trace) - second);

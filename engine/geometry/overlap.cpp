@@ -23,7 +23,6 @@ Aabb local_box(const Box &box) {
     return {-box.half_extents, box.half_extents};
 }
 
-// Whether v is longer than radius.
 bool is_longer(const Vec3 &v, Real radius) {
     return glm::dot(v, v) > radius * radius;
 }
@@ -39,15 +38,15 @@ bool interior_is_near(const Vec3 &a, const Vec3 &d, const Vec3 &point, Real radi
     return glm::dot(cross, cross) <= radius * radius * squared;
 }
 
-// Whether two segments come within `radius` of each other where both are closest between their
-// ends. Nothing is divided, so that integers stay integers, and the cross product is accurate, so
-// that nearly parallel segments lose nothing.
+// Whether two segments come within `radius` of each other at points between the ends of both. There
+// is no division, so integers stay exact, and the cross product is accurate, so nearly parallel
+// segments lose no precision.
 bool interiors_are_near(const Vec3 &a, const Vec3 &along_a, const Vec3 &b, const Vec3 &along_b,
                         Real radius) {
     const Vec3 offset = b - a;
     const Vec3 across = accurate_cross(along_a, along_b);
     const Real squared = glm::dot(across, across);
-    // offset + t along_b - s along_a is parallel to `across` for these over `squared`.
+    // With these over `squared`, offset + t along_b - s along_a is parallel to `across`.
     const Real s = glm::dot(accurate_cross(offset, along_b), across);
     const Real t = glm::dot(accurate_cross(offset, along_a), across);
     if (squared == Real(0) || s < Real(0) || s > squared || t < Real(0) || t > squared)
@@ -56,16 +55,16 @@ bool interiors_are_near(const Vec3 &a, const Vec3 &along_a, const Vec3 &b, const
     return product_difference_sign(gap, gap, radius * radius, squared) <= 0;
 }
 
-// Whether a segment has a point in the box: no axis of the box and none across an axis of the box
-// and the segment separates them.
+// Whether a segment has a point in the box, by separating axes: the box's axes, and their cross
+// products with the segment.
 bool meets(const Aabb &box, const Vec3 &a, const Vec3 &b) {
-    const Vec3 low = box.min - a, high = box.max - a; // the box, seen from a
+    const Vec3 low = box.min - a, high = box.max - a; // the box relative to a
     const Vec3 d = b - a;
     for (int i = 0; i < 3; ++i)
         if (std::max(Real(0), d[i]) < low[i] || std::min(Real(0), d[i]) > high[i])
             return false;
     for (int i = 0; i < 3; ++i) {
-        // Seen along axis i: the corners must not all be on one side of the line.
+        // Projected along axis i, the corners must not all be on one side of the line.
         const int j = (i + 1) % 3, k = (i + 2) % 3;
         const Real most =
             std::max(low[j] * d[k], high[j] * d[k]) - std::min(low[k] * d[j], high[k] * d[j]);
@@ -77,9 +76,9 @@ bool meets(const Aabb &box, const Vec3 &a, const Vec3 &b) {
     return true;
 }
 
-// Whether the segment comes within `radius` of an edge of the box along axis i, where both are
-// closest between their ends. Seen along the axis the edge is a point. A segment along the axis has
-// a closest end, too, and is left to the ends and corners.
+// Whether the segment comes within `radius` of a box edge along axis i, at points between the ends
+// of both. Projected along the axis the edge is a point. For a segment along the axis an end is
+// also closest, so the tests of ends and corners cover it.
 bool passes_edge(const Aabb &box, int i, const Vec3 &a, const Vec3 &d, Real radius) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const Real squared = d[j] * d[j] + d[k] * d[k];
@@ -99,7 +98,7 @@ bool passes_edge(const Aabb &box, int i, const Vec3 &a, const Vec3 &d, Real radi
 }
 
 // Whether the segment from a to b comes within `radius` of the box: an end does, or it enters the
-// box, or it passes a corner or an edge that near.
+// box, or it passes that close to a corner or an edge.
 bool is_near(const Aabb &box, const Vec3 &a, const Vec3 &b, Real radius) {
     const Vec3 gap = glm::max(box.min - glm::max(a, b), glm::min(a, b) - box.max);
     if (gap.x > radius || gap.y > radius || gap.z > radius)
@@ -183,7 +182,7 @@ bool overlaps(const Capsule &a, const Capsule &b) {
     const Real radius = a.radius + b.radius;
     const Vec3 along_a = a.b - a.a;
     const Vec3 along_b = b.b - b.a;
-    // Closest are two ends, an end and the interior of the other, or both interiors.
+    // The closest points are two ends, an end and an interior point, or two interior points.
     return !is_longer(b.a - a.a, radius) || !is_longer(b.b - a.a, radius) ||
            !is_longer(b.a - a.b, radius) || !is_longer(b.b - a.b, radius) ||
            interior_is_near(a.a, along_a, b.a, radius) ||

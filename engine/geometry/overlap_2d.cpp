@@ -32,14 +32,14 @@ bool overlaps_any_part(const Compound2 &compound, const auto &shape) {
     });
 }
 
-// Along a line: by x, or by y where x is the same.
+// The order along a line: by x, then y.
 bool comes_before(const Vec2 &a, const Vec2 &b) {
     return std::tie(a.x, a.y) < std::tie(b.x, b.y);
 }
 
-// On which sides of the line of the one the ends of the other are, exactly.
+// Which sides of each segment's line the other's ends are on; exact.
 struct SegmentSides {
-    int b_a = 0; // of b.a, seen along a
+    int b_a = 0; // of b.a, relative to a's line
     int b_b = 0;
     int a_a = 0;
     int a_b = 0;
@@ -47,8 +47,8 @@ struct SegmentSides {
     SegmentSides(const Segment2 &a, const Segment2 &b)
         : b_a(orient2d(a.a, a.b, b.a)), b_b(orient2d(a.a, a.b, b.b)), a_a(orient2d(b.a, b.b, a.a)),
           a_b(orient2d(b.a, b.b, a.b)) {}
-    // For segments whose bounds touch, that is all there is to ask (Cormen, Leiserson, Rivest,
-    // Stein, "Introduction to Algorithms", 33.1).
+    // Sufficient for segments whose bounds touch (Cormen, Leiserson, Rivest, Stein, "Introduction
+    // to Algorithms", 33.1).
     bool do_overlap() const { return b_a * b_b <= 0 && a_a * a_b <= 0; }
     bool are_on_one_line() const { return b_a == 0 && b_b == 0 && a_a == 0 && a_b == 0; }
 };
@@ -83,8 +83,8 @@ bool overlaps(const Rectangle &a, const Rectangle &b) {
     return !is_empty(a) && !is_empty(b) && touch(a, b);
 }
 
-// By separating axes, as below. A's corners are taken relative to B's centre, so that what is
-// rounded is of the size of the two, not of their distance from the origin.
+// By separating axes, as below. A's corners are taken relative to B's centre, so that roundings
+// scale with the rectangles and not with their distance from the origin.
 bool overlaps(const Rectangle &a, const OrientedRectangle &b) {
     check_valid(a);
     check_valid(b);
@@ -97,7 +97,7 @@ bool overlaps(const Rectangle &a, const OrientedRectangle &b) {
     const Vec2 extent{axis.x * half.x + axis.y * half.y, axis.y * half.x + axis.x * half.y};
     if (!touch({low, high}, {-extent, extent}))
         return false;
-    // What A covers on the axes of B.
+    // Whether A's projection on an axis of B reaches B.
     const auto covers = [&](const Vec2 &u, Real reach) {
         const auto [left, right] = std::minmax({low.x * u.x, high.x * u.x});
         const auto [bottom, top] = std::minmax({low.y * u.y, high.y * u.y});
@@ -154,9 +154,10 @@ std::optional<Segment2> intersection(const Segment2 &a, const Segment2 &b) {
     if (sides.a_b == 0)
         return Segment2{a.b, a.b};
 
-    // They cross. On b, divided by the distances of its ends from the line of a: however small the
-    // angle, the point is no further from that line than these distances are wrong. Along nearly
-    // parallel segments it may be further off; but not off their ends.
+    // They cross. Interpolate along b by its ends' distances from a's line: however small the
+    // angle, the point is no farther from that line than the error of these distances. Nearly
+    // parallel segments may have a larger error along their direction, but the point is clamped to
+    // their ends.
     const Vec2 along = a.b - a.a;
     const Vec2 from_a = b.a - a.a;
     const Vec2 to_b = b.b - a.a;
@@ -169,8 +170,8 @@ std::optional<Segment2> intersection(const Segment2 &a, const Segment2 &b) {
     return Segment2{point, point};
 }
 
-// Separating axes (Gottschalk, Lin, Manocha 1996, in the plane): of two rectangles, the normals of
-// their faces are all that can separate them.
+// Separating axes (Gottschalk, Lin, Manocha 1996, in 2D): only their face normals can separate two
+// rectangles.
 SatResult2 separating_axis(const OrientedRectangle &a, const OrientedRectangle &b) {
     check_valid(a);
     check_valid(b);

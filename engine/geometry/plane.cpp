@@ -18,8 +18,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Heights are normal . p - offset, metres times the length of the normal, which may be a little off
-// one.
+// Heights are normal . p - offset: metres times the length of the normal, which may be slightly off
+// 1.
 Real height_of(const Plane &plane, const Vec3 &point) {
     return glm::dot(plane.normal, point) - plane.offset;
 }
@@ -37,7 +37,7 @@ PlaneTest around(Real height, Real reach, Real normal_length) {
     return between(height - reach, height + reach, normal_length);
 }
 
-// All of `points` on one side, exactly, or across.
+// Which side all `points` are on, or across; exact.
 template <typename... Points> PlaneTest of_points(const Plane &plane, const Points &...points) {
     const int lowest = std::min({plane_sign(plane.normal, plane.offset, points)...});
     const int highest = std::max({plane_sign(plane.normal, plane.offset, points)...});
@@ -102,7 +102,7 @@ PlaneTest classify(const Plane &plane, const Capsule &capsule) {
 PlaneTest classify(const Plane &plane, const Cylinder &cylinder) {
     check_valid(plane);
     check_valid(cylinder);
-    // A flat end reaches up by its radius times the sine of the angle between axis and normal.
+    // A flat end extends by its radius times the sine of the angle between axis and normal.
     const Vec3 along = cylinder.b - cylinder.a;
     const Real reach =
         cylinder.radius * glm::length(glm::cross(plane.normal, along)) / glm::length(along);

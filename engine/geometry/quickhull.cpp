@@ -26,8 +26,8 @@ Wide wide(const Vec3 &v) {
     return {double(v.x), double(v.y), double(v.z)};
 }
 
-// Twice the area of a triangle, along its normal. The differences of a needle's corners nearly
-// cancel in the product, so it is taken with the widest numbers there are.
+// Twice the area of a triangle, along its normal. For a needle the products nearly cancel, so this
+// uses the widest type available.
 Wide area_vector(const Vec3 &a, const Vec3 &b, const Vec3 &c) {
     using Widest = glm::vec<3, long double, glm::defaultp>;
     const Widest u = Widest(b) - Widest(a);
@@ -36,29 +36,28 @@ Wide area_vector(const Vec3 &a, const Vec3 &b, const Vec3 &c) {
 }
 
 Wide unit(const Wide &v) {
-    // + 0.0 makes of -0 a 0.
+    // + 0.0 turns -0 into 0.
     return v / glm::length(v) + 0.0;
 }
 
-// --- Quickhull (Barber, Dobkin, Huhdanpaa 1996, "The quickhull algorithm for convex hulls")
-// --------
+// --- Quickhull (Barber, Dobkin, Huhdanpaa 1996, "The quickhull algorithm for convex hulls") ---
 //
-// The surface is a closed mesh of triangles, at all times exactly convex: which triangles a point
-// sees is decided by the exact sign, and one that is in the plane of a triangle does not see it. So
-// the triangles that are seen are always one disc, and no new triangle is flat. Which points are
-// worth adding, on the other hand, is a matter of rounded heights and of the tolerance.
+// The surface is a closed triangle mesh that is exactly convex at all times: which triangles a
+// point sees is decided by exact signs, and a point in a triangle's plane does not see it. So the
+// visible triangles always form a disc, and no new triangle is flat. Which points are worth adding,
+// on the other hand, depends on rounded heights and the tolerance.
 
 struct Facet {
     std::array<Index, 3> corners{}; // counter-clockwise from outside
     std::array<Index, 3> across{};  // the facet beyond the edge from corner i to corner i + 1
     Wide normal{0.0};               // outward unit normal
-    Index first_outside = no_index; // a list of points in front of it
+    Index first_outside = no_index; // head of the list of points in front of it
     bool is_gone = false;
 };
 
 class Surface {
   public:
-    // Grows the hull of the points. The number of its vertices stays within the limit.
+    // Grows the hull of the points up to the vertex limit.
     Surface(std::vector<Vec3> points, double tolerance, std::size_t max_vertices)
         : points_(std::move(points)), tolerance_(tolerance), max_vertices_(max_vertices),
           next_outside_(points_.size(), no_index), fan_at_(points_.size(), no_index) {
@@ -74,7 +73,7 @@ class Surface {
     std::vector<Vec3> left_over() const;
 
   private:
-    // A facet and the point in front of it that is to be added, by its height.
+    // A point to be added and the facet it is in front of, ordered by height.
     struct Candidate {
         double height;
         Index facet;
@@ -99,9 +98,9 @@ class Surface {
     double height(Index point, const Facet &facet) const {
         return glm::dot(facet.normal, wide(points_[point]) - wide(points_[facet.corners[0]]));
     }
-    // The point of the greatest measure(point), of equals (within the tolerance) the one farthest
-    // from the centre: points of a face or an edge tie, and of those the farthest from anywhere is
-    // a corner.
+    // The point with the greatest measure(point); ties (within the tolerance) go to the point
+    // farthest from the centre. Points of a face or an edge tie, and the farthest of them from
+    // anywhere is a corner.
     template <typename Measure> Index farthest(Measure &&measure, double &greatest) const;
 
     std::vector<Vec3> points_;
@@ -111,8 +110,8 @@ class Surface {
     HullProblem problem_ = HullProblem::none;
     Wide center_{0.0};
     std::vector<Facet> facets_;
-    std::vector<Index> next_outside_; // of each point: the next in its list
-    std::vector<Index> fan_at_;       // of a point on the horizon: the new facet that starts there
+    std::vector<Index> next_outside_; // per point: the next in its list
+    std::vector<Index> fan_at_;       // per horizon point: the new facet that starts there
     std::vector<Index> seen_;
     std::priority_queue<Candidate> candidates_;
 };
@@ -140,7 +139,7 @@ HullProblem Surface::start() {
     for (const Vec3 &point : points_)
         center_ += wide(point) / double(points_.size());
 
-    // A first tetrahedron of corners that are far apart.
+    // The first tetrahedron, with corners far apart.
     double reach = 0.0;
     Index a = farthest([&](const Wide &p) { return glm::length(p - center_); }, reach);
     Index b = farthest([&](const Wide &p) { return glm::length(p - wide(points_[a])); }, reach);
@@ -185,9 +184,9 @@ Index Surface::make_facet(Index a, Index b, Index c) {
     return static_cast<Index>(facets_.size() - 1);
 }
 
-// Puts a point into the list of the facet above which it is highest; into none when it sees none of
-// them. A point that is outside of the new hull and was in front of a facet that is gone sees a new
-// one (Barber et al. 1996, section 2).
+// Adds a point to the list of the facet it is highest above, or to none if it sees none of them. A
+// point that is outside the new hull and was in front of a removed facet sees a new one (Barber et
+// al. 1996, section 2).
 void Surface::assign(Index point, Index first_facet, Index end_facet) {
     Index best = no_index;
     double best_height = -std::numeric_limits<double>::infinity();
@@ -216,7 +215,7 @@ void Surface::propose(Index facet) {
     for (Index i = here.first_outside; i != no_index; i = next_outside_[i]) {
         const Wide from_center = wide(points_[i]) - center_;
         const double squared = glm::dot(from_center, from_center);
-        // Of equal points (duplicates) the first in the input.
+        // Of duplicates take the first in the input.
         if (height(i, here) >= greatest - tolerance_ &&
             (squared > best_squared || (squared == best_squared && i < best))) {
             best = i;
@@ -237,7 +236,7 @@ void Surface::grow() {
     } while (vertex_count_ < max_vertices_ && bring_back());
 }
 
-// The facets that a point sees, from one of them on. They are connected.
+// Flood-fills the facets that a point sees, starting from one of them. They are connected.
 void Surface::gather_seen(Index point, Index first) {
     seen_.assign(1, first);
     facets_[first].is_gone = true; // marks those in seen_
@@ -253,7 +252,7 @@ void Surface::add(const Candidate &eye) {
     ++vertex_count_;
     gather_seen(eye.point, eye.facet);
 
-    // The hole's border, the horizon, is joined to the point by a fan of new facets.
+    // A fan of new facets connects the hole's border, the horizon, to the point.
     const Index first_new = static_cast<Index>(facets_.size());
     for (const Index gone : seen_)
         for (std::size_t i = 0; i < 3; ++i) {
@@ -289,8 +288,8 @@ void Surface::add(const Candidate &eye) {
         propose(fresh);
 }
 
-// A point that is left over for its small height above its own facet may be higher above another
-// that it sees. Returns whether there are any such.
+// A point that was left over because it is barely above its own facet may be higher above another
+// facet it sees. Returns whether there are any such points.
 bool Surface::bring_back() {
     const Index count = static_cast<Index>(facets_.size());
     for (Index i = 0; i < count; ++i) {
@@ -337,18 +336,17 @@ std::vector<Vec3> Surface::left_over() const {
     return result;
 }
 
-// --- Faces
-// ----------------------------------------------------------------------------------------
+// --- Faces ---
 
-// The facets as joined into faces.
+// The facets joined into faces.
 struct Faces {
-    std::vector<Index> face_of; // of each facet
-    std::vector<Index> seeds;   // of each face: the largest facet, whose plane the others are in
+    std::vector<Index> face_of; // per facet
+    std::vector<Index> seeds;   // per face: the largest facet, whose plane the others are in
 };
 
-// Grows faces from the largest facets outwards, over facets with all corners in the plane of the
-// first, within the tolerance. A facet joins only where the face remains one disc: by one edge when
-// its third corner is new to the face, or by two.
+// Grows faces outwards from the largest facets, over facets whose corners are all in the seed's
+// plane within the tolerance. A facet joins only if the face stays a disc: it shares one edge and
+// its third corner is new to the face, or it shares two.
 Faces join(const std::vector<Facet> &facets, const std::vector<Vec3> &points, double tolerance) {
     std::vector<double> areas;
     std::vector<Index> order;
@@ -406,7 +404,7 @@ Faces join(const std::vector<Facet> &facets, const std::vector<Vec3> &points, do
     return faces;
 }
 
-// The points at which at least three faces meet, ascending, and all others that are on a facet.
+// The points where at least three faces meet, ascending, and all other facet corners.
 struct Corners {
     std::vector<Index> kept;
     std::vector<Index> dropped;
@@ -430,10 +428,9 @@ Corners corners_of(const std::vector<Facet> &facets, const Faces &faces) {
     return corners;
 }
 
-// --- The mesh
-// -------------------------------------------------------------------------------------
+// --- The mesh ---
 
-// Vertices, faces as loops of vertices, edges. Vertex k is point kept[k].
+// Adds vertices, faces as vertex loops, and edges. Vertex k is point kept[k].
 void add_topology(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &faces,
                   const std::vector<Vec3> &points, const std::vector<Index> &kept) {
     std::vector<Index> vertex_of(points.size(), no_index);
@@ -489,7 +486,7 @@ void add_topology(HullMesh &mesh, const std::vector<Facet> &facets, const Faces 
     }
 }
 
-// The planes, each moved out until exactly no vertex is in front of it, and the slack.
+// Adds the slack and the planes, each moved out until no vertex is in front of it by exact signs.
 void add_planes(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &faces,
                 const std::vector<Vec3> &points) {
     std::vector<Wide> normals(faces.seeds.size(), Wide{0.0});
@@ -515,7 +512,7 @@ void add_planes(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &f
         const auto is_in_front = [&](const Vec3 &vertex) {
             return plane_sign(plane.normal, plane.offset, vertex) > 0;
         };
-        // Of subnormal coordinates the product may be 0, and the loop would never end.
+        // For subnormal coordinates the product may be 0, and the loop would never end.
         Real step = std::max(epsilon * std::max(std::abs(plane.offset), epsilon * reach),
                              std::numeric_limits<Real>::denorm_min());
         while (std::any_of(mesh.vertices.begin(), mesh.vertices.end(), is_in_front)) {
@@ -523,7 +520,7 @@ void add_planes(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &f
             step *= Real(2);
         }
 
-        // Two heights that are linear in the point differ most in a corner of the box.
+        // Two heights that are linear in the point differ most at a corner of the box.
         const Facet &seed = facets[faces.seeds[face]];
         const Wide base = wide(points[seed.corners[0]]);
         for (int corner = 0; corner < 8; ++corner) {
@@ -541,7 +538,8 @@ void add_planes(HullMesh &mesh, const std::vector<Facet> &facets, const Faces &f
                                            mesh.vertices[mesh.vertex_indices[i]]) == 0;
     }
     // A height is three products and three sums of terms that add up to at most twice the reach,
-    // each off by half an epsilon: 4 epsilon * reach. As much again for what is computed here.
+    // each off by half an epsilon: 4 epsilon * reach. The same again for the rounding of this
+    // computation.
     mesh.slack = Real(tilt) + Real(8) * epsilon * reach;
 }
 
@@ -573,16 +571,16 @@ double left_out(const HullMesh &mesh, const std::vector<Vec3> &points) {
     return greatest;
 }
 
-// A mesh, and what is not in it though it may be in front of it.
+// A mesh, and points not in it that may be in front of it.
 struct Built {
     HullMesh mesh;
     HullProblem problem = HullProblem::none;
-    std::vector<Vec3> left_over; // never was a vertex
+    std::vector<Vec3> left_over; // never were vertices
     std::vector<Vec3> dropped;   // was
 };
 
-// A vertex at which only two faces meet, or that is within one, has gone flat when facets were
-// joined. Without such vertices there may be others, so the hull is built anew of those left.
+// A vertex with fewer than three faces became flat when facets were joined. Removing such vertices
+// may create others, so the hull is rebuilt from the remaining points.
 Built build(std::vector<Vec3> candidates, double tolerance, double join_tolerance,
             int max_vertices) {
     Built built;
@@ -637,13 +635,13 @@ HullResult convex_hull(std::span<const Vec3> points, int max_vertices) {
     }
     const double tolerance =
         3.0 * double(std::numeric_limits<Real>::epsilon()) * (far.x + far.y + far.z);
-    // Where inertia (to the fifth power) overflows as a double; well before it the signs would.
+    // Inertia (fifth power) overflows a double beyond this; the exact signs are good well past it.
     constexpr double greatest = 1e60;
     if (!(far.x + far.y + far.z < greatest))
         return failed(HullProblem::out_of_range, tolerance);
 
-    // A component below 1e-80 would underflow in the exact signs; it is far below any tolerance
-    // that counts.
+    // A component below 1e-80 would underflow in the exact signs; it is far below any relevant
+    // tolerance.
     std::vector<Vec3> candidates(points.begin(), points.end());
     if constexpr (sizeof(Real) == sizeof(double))
         for (Vec3 &point : candidates)
@@ -651,8 +649,8 @@ HullResult convex_hull(std::span<const Vec3> points, int max_vertices) {
                 if (std::abs(double(point[i])) < 1e-80)
                     point[i] = Real(0);
 
-    // Joining facets may cost more than the tolerance where the points are hardly larger than it;
-    // then less is joined. What is exactly in one plane costs nothing.
+    // Joining facets may lose more than the tolerance if the point set is hardly larger than it;
+    // then join less. Exactly coplanar facets lose nothing.
     for (double join_tolerance = tolerance;;) {
         Built built = build(candidates, tolerance, join_tolerance, max_vertices);
         if (built.problem != HullProblem::none)

@@ -25,8 +25,8 @@ namespace {
 using Wide = glm::dvec3;
 template <typename T> using Vector = glm::vec<3, T, glm::defaultp>;
 
-// The greatest power of two that is not above |x|, and so divides without rounding; the smallest
-// normal one for less.
+// The greatest power of two not above |x|, so that dividing by it does not round; at least the
+// smallest normal one.
 Real power_of_two_in(Real x) {
     using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
     const Bits exponent = std::bit_cast<Bits>(infinity);
@@ -34,8 +34,8 @@ Real power_of_two_in(Real x) {
                     std::numeric_limits<Real>::min());
 }
 
-// A vector divided by the power of two in its largest component, so that its square neither
-// overflows nor vanishes, and nothing is rounded.
+// A vector divided by the power of two in its largest component: exact, and its square neither
+// overflows nor vanishes.
 struct Scaled {
     Vec3 vector{Real(0)};
     Real scale = Real(1);
@@ -46,7 +46,7 @@ struct Scaled {
     }
 };
 
-// A stretch of the whole line, before it is cut to the ray.
+// An interval on the infinite line, before clipping to the ray.
 template <typename T> struct Stretch {
     T enter = std::numeric_limits<T>::infinity();
     T exit = -std::numeric_limits<T>::infinity();
@@ -55,13 +55,13 @@ template <typename T> struct Stretch {
     bool is_empty() const { return !(enter <= exit); }
 };
 
-// The line t * d and a ball around m. `rest` is the discriminant in the form of Lagrange's
-// identity: what is squared is the distance of the line, not that of the ball.
+// The line t * d and a ball around m. `rest` is the discriminant by Lagrange's identity, which
+// squares the ball's distance from the line, not from the origin.
 template <typename T> struct LineAndBall {
     Vector<T> m, d;
     T squared;
     T middle;
-    T rest; // not negative when they meet
+    T rest; // >= 0 when they meet
     bool is_point;
 
     LineAndBall(const Vector<T> &center, const Vector<T> &direction, T radius)
@@ -73,8 +73,8 @@ template <typename T> struct LineAndBall {
     Stretch<T> stretch() const {
         const T half = std::sqrt(rest);
         Stretch<T> stretch{(middle - half) / squared, (middle + half) / squared, Vector<T>(T(0))};
-        // From the point closest to the centre, which may be much closer than the origin. A point
-        // has no direction of its own: what is left of the difference is rounding.
+        // Computed from the line's closest point to the centre, which may be much closer than the
+        // origin. A ball of radius 0 has no outward direction: the difference is only rounding.
         stretch.outward = is_point ? -d : (middle / squared * d - m) - half / squared * d;
         return stretch;
     }
@@ -85,7 +85,7 @@ Stretch<double> through_ball(const Wide &m, const Wide &d, double radius) {
     return both.rest >= 0.0 ? both.stretch() : Stretch<double>{};
 }
 
-// Cuts a stretch to the ray. `starts_inside` is decided by the origin alone.
+// Clips a stretch to the ray. `starts_inside` depends only on the origin.
 template <typename T>
 std::optional<RayInterval> cut(const Stretch<T> &stretch, Real scale, bool starts_inside,
                                Real max_t) {
@@ -97,8 +97,8 @@ std::optional<RayInterval> cut(const Stretch<T> &stretch, Real scale, bool start
         interval.t_exit = std::clamp(exit, Real(0), max_t);
         return interval;
     }
-    // An origin outside cannot have the solid around it: a stretch that seems to begin behind it
-    // by rounding and end before it begins at once.
+    // The origin is outside, so a stretch that by rounding begins behind it and ends ahead of it
+    // begins at the origin.
     if (stretch.is_empty() || stretch.exit < T(0))
         return std::nullopt;
     interval.t_enter = std::max(Real(stretch.enter) / scale, Real(0));
@@ -114,7 +114,7 @@ bool is_rotated(const Box &box) {
 }
 
 // A box without rotation, with the faces as the caller would compute them, so that rays in its
-// faces are exact.
+// faces are handled exactly.
 Aabb aligned(const Box &box) {
     return {box.center - box.half_extents, box.center + box.half_extents};
 }
@@ -130,8 +130,8 @@ std::optional<RayInterval> through_aligned(const Aabb &box, const Ray &ray) {
     return interval;
 }
 
-// An axis, the ray's line relative to its start, and what both have to do with each other. In
-// double, where the products of coordinates and radius have room.
+// An axis, the ray's line relative to its start, and shared products. In double, where products of
+// coordinates and radius do not overflow.
 struct AxisAndLine {
     Wide axis;
     Wide m; // from the line's origin to the axis' start
@@ -155,9 +155,9 @@ struct AxisAndLine {
     }
 };
 
-// The line against an endless cylinder; they are not parallel. |(t d - m) x axis| = r |axis|, whose
-// discriminant is axis^2 (r^2 (d x axis)^2 - (m . (d x axis))^2): the distance of two lines is that
-// of their moments, so that nearly parallel ones lose nothing.
+// The line against an infinite cylinder not parallel to it. |(t d - m) x axis| = r |axis| has the
+// discriminant axis^2 (r^2 (d x axis)^2 - (m . (d x axis))^2): the distance between two lines by
+// their moments, so nearly parallel lines lose no precision.
 Stretch<double> through_side(const AxisAndLine &line, double radius) {
     const double volume = glm::dot(line.m, line.across);
     const double rest = radius * radius * line.across_squared - volume * volume;
@@ -167,15 +167,15 @@ Stretch<double> through_side(const AxisAndLine &line, double radius) {
     const double middle = glm::dot(glm::cross(line.m, line.axis), line.across);
     Stretch<double> stretch{(middle - half) / line.across_squared,
                             (middle + half) / line.across_squared, Wide(0.0)};
-    // Off a line only the ray has a direction: the part of it that is across the line.
+    // For radius 0 only the ray gives a direction: its component perpendicular to the axis.
     stretch.outward = radius > 0.0
                           ? line.outward(stretch.enter)
                           : glm::dot(line.d, line.axis) / line.axis_squared * line.axis - line.d;
     return stretch;
 }
 
-// A capsule is two balls and the cylinder between them. It is convex, so its stretch goes from the
-// first entry to the last exit of the three.
+// A capsule is two balls and a cylinder. It is convex, so its stretch runs from the first entry to
+// the last exit of the three.
 Stretch<double> through_capsule(const AxisAndLine &line, double radius) {
     Stretch<double> whole = through_ball(line.m, line.d, radius);
     const auto enter_at = [&](double t, const Wide &outward) {
@@ -187,13 +187,13 @@ Stretch<double> through_capsule(const AxisAndLine &line, double radius) {
     const Stretch<double> other = through_ball(line.m + line.axis, line.d, radius);
     enter_at(other.enter, other.outward);
     whole.exit = std::max(whole.exit, other.exit);
-    // A ray along the axis enters and leaves by the balls.
+    // A ray along the axis enters and leaves through the balls.
     if (!(line.across_squared > 0.0))
         return whole;
     const Stretch<double> side = through_side(line, radius);
     if (side.is_empty())
         return whole;
-    // Only its ends that lie between the two end planes are ends of the capsule.
+    // Only ends between the two end planes belong to the capsule.
     const auto is_between = [&](double t) {
         const double height = line.height(t);
         return height >= 0.0 && height <= line.axis_squared;
@@ -202,14 +202,14 @@ Stretch<double> through_capsule(const AxisAndLine &line, double radius) {
         enter_at(side.enter, side.outward);
     if (is_between(side.exit)) {
         whole.exit = std::max(whole.exit, side.exit);
-        enter_at(side.exit, line.outward(side.exit)); // by the very seam, where no ball was met
+        enter_at(side.exit, line.outward(side.exit)); // through the seam, missing both balls
     }
-    if (whole.enter < std::numeric_limits<double>::infinity()) // else nothing was met
+    if (whole.enter < std::numeric_limits<double>::infinity()) // else nothing was hit
         whole.exit = std::max(whole.exit, whole.enter);
     return whole;
 }
 
-// The line between the planes of the two ends of a cylinder.
+// The line between a cylinder's two end planes.
 Stretch<double> between_ends(const AxisAndLine &line) {
     const double climb = glm::dot(line.d, line.axis);
     const double start = glm::dot(line.m, line.axis); // the height of the start over the origin
@@ -240,7 +240,7 @@ Stretch<double> through_cylinder(const AxisAndLine &line, double radius) {
     return whole;
 }
 
-// Nearer to touching than rounded numbers can tell.
+// Closer to touching than rounding can resolve: decided by exact signs.
 [[gnu::cold]] std::optional<RayInterval> through_touched(const Sphere &sphere, const Ray &ray,
                                                          const Scaled &direction) {
     const auto &[center, radius] = sphere;
@@ -253,7 +253,7 @@ Stretch<double> through_cylinder(const AxisAndLine &line, double radius) {
                              double(radius));
     both.rest = line > 0 ? std::max(both.rest, 0.0) : 0.0;
     Stretch<double> stretch = both.stretch();
-    stretch.exit = std::max(stretch.exit, 0.0); // ahead, as has been decided
+    stretch.exit = std::max(stretch.exit, 0.0); // already known to be ahead
     return cut(stretch, direction.scale, starts_inside, ray.max_t);
 }
 
@@ -268,15 +268,15 @@ std::optional<RayInterval> ray_interval(const Sphere &sphere, const Ray &ray) {
     const Vec3 &m = both.m;
     const Real away = glm::dot(m, m);
     const Real reach = radius * radius;
-    // What roundings, and underflow, can take from `rest` and from the depth of the origin: as in
-    // line_ball_sign and ball_sign (predicates.h), whose unit is half an epsilon. An origin that
-    // is outside by that much has `middle` too large for its sign to be wrong, when the line meets
-    // the ball: its square is at least the height over the ball times |d|^2.
+    // Bounds on the error from rounding and underflow in `rest` and in the origin's depth: as in
+    // line_ball_sign and ball_sign (predicates.h), whose unit is half an epsilon. If the origin is
+    // outside by that much and the line hits the ball, `middle` is too large for its sign to be
+    // wrong: its square is at least the height over the ball times |d|^2.
     const Real e = Real(4) * epsilon * (((std::abs(m.x) + std::abs(m.y)) + std::abs(m.z)) + radius);
     const Real doubt =
         both.squared * (e * (Real(2) * radius + e)) + std::numeric_limits<Real>::min();
     const Real depth_doubt = Real(4) * epsilon * (reach + away) + std::numeric_limits<Real>::min();
-    // Written so that what overflowed is in doubt.
+    // Written so that overflow counts as doubt.
     if (!(std::abs(both.rest) > doubt && std::abs(reach - away) > depth_doubt)) [[unlikely]]
         return through_touched(sphere, ray, d);
     const bool starts_inside = away < reach;
@@ -369,14 +369,14 @@ std::optional<RayHit> raycast(const Plane &plane, const Ray &ray) {
         return ray.max_t >= Real(0)
                    ? std::optional(RayHit{Real(0), ray.origin, Vec3{Real(0)}, true})
                    : std::nullopt;
-    // What is on the other side, or in the plane, is solid to a ray from this one.
+    // To a ray from this side, the plane and everything beyond it is solid.
     const Real front = Real(side);
     return raycast(HalfSpace{front * plane.normal, front * plane.offset}, ray);
 }
 
 namespace {
 
-// The ends are asked for themselves: b as origin + 1 * direction would be rounded.
+// The ends are tested directly: b as origin + 1 * direction would be rounded.
 template <typename Solid> bool has_point_of(const Solid &solid, const Vec3 &a, const Vec3 &b) {
     check_point(b);
     if (contains(solid, a) || contains(solid, b))

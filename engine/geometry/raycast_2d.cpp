@@ -19,8 +19,8 @@ Real cross(const Vec2 &a, const Vec2 &b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// A ray with its direction brought near unit length by a power of two, so without rounding, so that
-// its square neither overflows nor vanishes.
+// A ray with its direction scaled near unit length by a power of two (exact), so that its square
+// neither overflows nor vanishes.
 struct RescaledRay {
     Ray2 ray;
     int exponent = 0;
@@ -38,15 +38,15 @@ struct RescaledRay {
         if (interval && exponent != 0) {
             interval->t_enter = std::scalbn(interval->t_enter, -exponent);
             interval->t_exit = std::scalbn(interval->t_exit, -exponent);
-            if (interval->t_enter == infinity) // too small a direction to get there
+            if (interval->t_enter == infinity) // the direction is too small to get there
                 return std::nullopt;
         }
         return interval;
     }
 };
 
-// Whether the line through `origin` along `direction` passes between, or through, the two corners
-// of a rectangle that are furthest to its sides. Exact.
+// Whether the line through `origin` along `direction` passes between or through the rectangle's
+// corners farthest to its left and right. Exact.
 bool line_meets(const Rectangle &rectangle, const Vec2 &origin, const Vec2 &direction) {
     const bool rises = (direction.x > Real(0)) == (direction.y > Real(0));
     const Vec2 left{rectangle.min.x, rises ? rectangle.max.y : rectangle.min.y};
@@ -79,7 +79,7 @@ std::optional<RayInterval2> ray_interval(const Circle &circle, const Ray2 &ray) 
     if (!starts_inside && (depth_sign < 0 || dot_sign(origin, center, zero, direction) < 0))
         return std::nullopt;
 
-    // The distance of the centre from the line is |across| / |d|.
+    // The centre's distance from the line is |across| / |d|.
     const Vec2 to_center = circle.center - ray.origin;
     const Real along = glm::dot(d, to_center);
     const Real across = cross(d, to_center);
@@ -97,14 +97,14 @@ std::optional<RayInterval2> ray_interval(const Circle &circle, const Ray2 &ray) 
     const Real enter = std::max(middle - half, Real(0));
     if (!(enter <= max_t) || enter == infinity)
         return std::nullopt;
-    // Off a point only the ray has a direction.
+    // For radius 0 only the ray gives a direction.
     const Vec2 outward = circle.radius > Real(0) ? enter * d - to_center : -d;
     return rescaled.in_given_units(
         RayInterval2{enter, std::min(middle + half, max_t), glm::normalize(outward)});
 }
 
-// The slab test (Kay and Kajiya 1986, "Ray tracing complex scenes"), with its decisions taken by
-// comparisons and the exact test above, and the quotients for the result alone.
+// The slab test (Kay and Kajiya 1986, "Ray tracing complex scenes"), decided by comparisons and the
+// exact test above; the quotients are used only for the result.
 std::optional<RayInterval2> ray_interval(const Rectangle &rectangle, const Ray2 &ray) {
     check_valid(rectangle);
     check_valid(ray);
@@ -140,7 +140,7 @@ std::optional<RayInterval2> ray_interval(const Rectangle &rectangle, const Ray2 
         return std::nullopt;
     if (!(interval.t_enter <= ray.max_t) || interval.t_enter == infinity)
         return std::nullopt;
-    // Through a corner, roundings may have swapped them.
+    // For a ray through a corner rounding may have swapped them.
     interval.t_exit = std::min(std::max(interval.t_exit, interval.t_enter), ray.max_t);
     return interval;
 }
@@ -198,7 +198,7 @@ std::optional<RayHit2> raycast(const Segment2 &segment, const Ray2 &ray) {
         return std::nullopt;
 
     RayHit2 hit;
-    // Along the larger component, the quotient is the best determined.
+    // The quotient is most accurate along the larger component.
     const int i = std::abs(d.x) >= std::abs(d.y) ? 0 : 1;
     if (side_a == 0 && side_b == 0) {
         const bool is_forward = d[i] > Real(0);
@@ -207,13 +207,13 @@ std::optional<RayHit2> raycast(const Segment2 &segment, const Ray2 &ray) {
             return std::nullopt;
         hit.normal = -glm::normalize(RescaledRay(ray).ray.direction);
     } else {
-        // d x (b - a) has the sign of side_b - side_a, and (a - origin) x (b - origin) must have
-        // the same for the segment to be ahead.
+        // d x (b - a) has the sign of side_b - side_a, and the segment is ahead if (a - origin) x
+        // (b - origin) has the same sign.
         const int turn = side_b > side_a ? 1 : -1;
         if (orient2d(ray.origin, segment.a, segment.b) != turn)
             return std::nullopt;
-        // Divided by the distances of the ends from the ray, as `intersection` does it; and as
-        // there, nearly along the segment it may be off, but not to behind the origin.
+        // Interpolate by the ends' distances from the ray, as in `intersection`. As there, a ray
+        // nearly along the segment may be off, but never to behind the origin.
         const Vec2 along = segment.b - segment.a;
         const Vec2 unit = RescaledRay(ray).ray.direction;
         const Real left = std::abs(cross(unit, segment.a - ray.origin));
@@ -248,8 +248,8 @@ bool linetest(const Circle &circle, const Vec2 &a, const Vec2 &b) {
 bool linetest(const Rectangle &rectangle, const Vec2 &a, const Vec2 &b) {
     if (!overlaps(rectangle, bounds(Segment2{a, b})))
         return false;
-    // Corners on both sides of the line, or on it: the signs of b - a, not its rounded value,
-    // choose which.
+    // There must be corners on both sides of the line or on it. The signs of b - a, not its rounded
+    // value, select the corners.
     const bool rises = (a.x < b.x) == (a.y < b.y);
     const Vec2 left{rectangle.min.x, rises ? rectangle.max.y : rectangle.min.y};
     const Vec2 right{rectangle.max.x, rises ? rectangle.min.y : rectangle.max.y};

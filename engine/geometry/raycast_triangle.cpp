@@ -18,7 +18,7 @@ namespace {
 
 using Wide = glm::dvec3;
 
-// The parameter at which the ray comes to the height of a point of its line.
+// The ray's parameter at a point on its line.
 double parameter_of(const Ray &ray, const Vec3 &point) {
     const Wide d(ray.direction);
     return glm::dot(Wide(point) - Wide(ray.origin), d) / glm::dot(d, d);
@@ -29,24 +29,23 @@ int turn_along(int axis, const Vec3 &direction, const Vec3 &a, const Vec3 &b) {
     return cross_sign(seen_along(axis, direction), seen_along(axis, a), seen_along(axis, b));
 }
 
-// A ray and a segment on one line, the origin not between the ends. Where the ray comes to it
-// first.
+// Where a ray first hits a collinear segment. The origin is not between the ends.
 std::optional<double> along_segment(const Ray &ray, const Vec3 &a, const Vec3 &b) {
     for (int axis = 0; axis < 3; ++axis)
         if (turn_along(axis, ray.direction, ray.origin, a) != 0)
-            return std::nullopt; // beside it
+            return std::nullopt; // not collinear
     const double to_a = parameter_of(ray, a), to_b = parameter_of(ray, b);
     return to_a > 0.0 ? std::optional(std::min(to_a, to_b)) : std::nullopt;
 }
 
-// A ray and a segment in one plane. The origin is not on the segment.
+// Where a ray hits a coplanar segment. The origin is not on the segment.
 std::optional<double> to_segment(const Ray &ray, const Vec3 &a, const Vec3 &b) {
     for (int axis = 0; axis < 3; ++axis) {
         const int slope = turn_along(axis, ray.direction, a, b);
         if (slope == 0)
             continue;
-        // Seen from here the plane is no line: the ray's line must pass between a and b, and go
-        // towards that of the segment.
+        // In this projection the plane is not a line: the ray's line must pass between a and b, and
+        // the ray must approach the segment's line.
         const int side_a = turn_along(axis, ray.direction, ray.origin, a);
         const int side_b = turn_along(axis, ray.direction, ray.origin, b);
         const int side_origin =
@@ -77,7 +76,7 @@ std::optional<RayHit> starting_on(const Ray &ray) {
     return RayHit{Real(0), ray.origin, Vec3{Real(0)}, true};
 }
 
-// The ray is in the plane of the triangle, or its line meets a flat one.
+// The ray is in the triangle's plane, or the triangle is flat and the ray's line meets it.
 std::optional<RayHit> raycast_in_plane(const Triangle &triangle, const Ray &ray) {
     if (point_meets_triangle(ray.origin, triangle))
         return starting_on(ray);
@@ -103,8 +102,7 @@ std::optional<RayHit> raycast(const Triangle &triangle, const Ray &ray) {
     check_ray(ray);
     check_valid(triangle);
     const Vec3 &a = triangle.a, &b = triangle.b, &c = triangle.c;
-    // On which hand the ray's line passes each edge. It goes through the triangle if on no two it
-    // differs.
+    // Which side the ray's line passes each edge on. It goes through the triangle if no two differ.
     const int ab = triple_sign(ray.direction, ray.origin, a, b);
     const int bc = triple_sign(ray.direction, ray.origin, b, c);
     if (ab * bc < 0)
@@ -122,7 +120,7 @@ std::optional<RayHit> raycast(const Triangle &triangle, const Ray &ray) {
         return std::nullopt; // leads away
     const Wide n = accurate_cross(a, b, a, c);
     const double t = glm::dot(n, Wide(a) - Wide(ray.origin)) / glm::dot(n, Wide(ray.direction));
-    // It is not before the first corner nor after the last, where a grazing ray's quotient may be.
+    // Clamp to between the first corner and the last: a grazing ray's quotient may be outside.
     const double to_a = parameter_of(ray, a), to_b = parameter_of(ray, b),
                  to_c = parameter_of(ray, c);
     const double first = std::max(0.0, std::min({to_a, to_b, to_c}));

@@ -11,17 +11,18 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Edge directions whose cross product is shorter than this (the sine of their angle) count as
-// parallel. A dropped axis costs at most this angle times the edge length, which is rounding.
+// Edges whose directions' cross product (the sine of their angle) is shorter than this count as
+// parallel. Dropping the axis costs at most this angle times the edge length, which is within
+// rounding.
 constexpr Real parallel_sine = Real(16) * std::numeric_limits<Real>::epsilon();
 
-// With a rotation of unit length to the last place: a box may come with one that is a little off.
+// Normalises the rotation to the last place: a valid box may have one that is slightly off.
 Box unit(const Box &box) {
     return {box.center, glm::normalize(box.rotation), box.half_extents};
 }
 
-// The same axes as in best_axes, but only whether one of them parts the boxes: lengths need no
-// square roots then.
+// The same axes as in best_axes, but only tests whether one separates the boxes, which needs no
+// square roots.
 bool have_no_gap(const RelativeBox &relative, const Vec3 &half_a, const Vec3 &half_b) {
     const Vec3 &t = relative.position;
     const Mat3 &r = relative.axes;
@@ -86,10 +87,10 @@ BoxAxes best_axes(const RelativeBox &relative, const Vec3 &half_a, const Vec3 &h
         }
     }
 
-    // Both boxes are projected with all three half edges, also those that the axis was made
-    // perpendicular to. So an axis that rounding has turned is still a valid axis: it never reports
-    // boxes apart that are not. And as the rectangle of the Minkowski difference that two nearly
-    // parallel edges span is thin just where the axis is uncertain, what it misses is rounding too.
+    // Both boxes are projected with all three half edges, including the two whose cross product is
+    // the axis. So an axis turned by rounding is still valid: it never separates overlapping boxes.
+    // And because the Minkowski difference's face spanned by two nearly parallel edges is thin
+    // exactly where the axis is uncertain, what the axis misses is within rounding too.
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
             Vec3 axis{Real(0)}; // e_i x r_j
@@ -146,7 +147,7 @@ bool overlaps(const Aabb &a, const Box &b) {
     check_valid(b);
     if (a.min.x > a.max.x || a.min.y > a.max.y || a.min.z > a.max.z)
         return false;
-    // Differences first: far from the origin, they are more accurate than a centre.
+    // Take differences first: far from the origin they are more accurate than a centre.
     const Vec3 low = b.center - a.min;
     const Vec3 high = a.max - b.center;
     const Vec3 position = Real(0.5) * (low - high);

@@ -24,7 +24,7 @@ std::optional<CastHit> cast_cores(const CorePair &cores, const MovingCore &core_
     Vec3 guess = cores.between_middles();
     constexpr int step_limit = 100;
     for (int step = 0;; ++step) {
-        // B comes towards A, which stays near the origin.
+        // Move B towards A, so that A stays near the origin.
         core_b.place(-hit.t * translation);
         const GjkResult found = cores.search(guess, std::numeric_limits<Real>::infinity());
         const Real between = std::sqrt(found.squared_distance);
@@ -44,18 +44,18 @@ std::optional<CastHit> cast_cores(const CorePair &cores, const MovingCore &core_
         const Real speed = glm::dot(normal, translation);
         const bool is_touch = gap <= cast_target(size) || is_limit;
         if (!is_touch) {
-            // Of a convex function that does not fall, and is positive, nothing later is zero.
+            // The distance is convex: if positive and not decreasing, it never reaches zero later.
             if (!(speed > Real(0)) || gap > speed * (Real(1) - hit.t) + cast_target(size))
                 return std::nullopt;
         }
-        // Between touching cores the direction is rounding, and one that A moves away along is,
-        // too; that of the step before is not.
+        // Between touching cores the direction is only rounding, and so is a direction along which
+        // A moves away. Then keep the previous step's normal.
         if (!is_touch || (between > Real(32) * cast_target(size) && speed > Real(0)))
             hit.normal = normal;
         const Real next = std::min(hit.t + gap / speed, Real(1));
         if (is_touch || !(next > hit.t)) {
             const Witnesses on = witnesses(found);
-            // Between cores that are apart the point is where they say, whatever the normal.
+            // If the cores are apart, their direction locates the point, whatever the hit normal.
             const Vec3 &inward = between > Real(32) * cast_target(size) ? normal : hit.normal;
             hit.point = (on.on_b - cores.radius_b() * inward) + hit.t * translation;
             return hit;

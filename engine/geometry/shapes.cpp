@@ -25,7 +25,7 @@ void check_plane(const Vec3 &normal, Real offset, const char *shape) {
     PLUMB_CHECK(are_finite(offset), shape << " offset must be finite, got " << offset);
 }
 
-// Of what `placed` is given.
+// Checks the arguments of `placed`.
 template <typename Solid> void check_placing(const Solid &local, const Transform &pose) {
     check_valid(local);
     const Vec3 &p = pose.position;
@@ -44,8 +44,8 @@ Sphere placed(const Sphere &local, const Transform &pose) {
     return {to_world_point(pose, local.center), local.radius};
 }
 
-// Of the product of two roundings off unit length each the length may be off by more than a box
-// may have.
+// The product of two rotations that are each a rounding off unit length may be off by more than a
+// box allows.
 Box placed(const Box &local, const Transform &pose) {
     check_placing(local, pose);
     return {to_world_point(pose, local.center), unit(pose.rotation * local.rotation),
@@ -97,8 +97,8 @@ Aabb bounds(const Sphere &sphere) {
 
 Aabb bounds(const Box &box) {
     check_valid(box);
-    // The extent along a world axis is the sum of the projections of the three half edges
-    // (Ericson 2005, "Real-Time Collision Detection", 4.2.6).
+    // The extent along a world axis is the sum of the three half edges' projections (Ericson 2005,
+    // "Real-Time Collision Detection", 4.2.6).
     const Mat3 rotation = glm::mat3_cast(box.rotation);
     const Vec3 extent = glm::abs(rotation[0]) * box.half_extents.x +
                         glm::abs(rotation[1]) * box.half_extents.y +
@@ -114,8 +114,8 @@ Aabb bounds(const Capsule &capsule) {
 
 Aabb bounds(const Cylinder &cylinder) {
     check_valid(cylinder);
-    // A disc with the unit normal n reaches r sqrt(1 - n_i^2) along axis i; written without the
-    // difference, which would cancel where the cylinder lies along an axis.
+    // A disc with unit normal n extends r sqrt(1 - n_i^2) along axis i; written without the
+    // difference, which would cancel for a cylinder along an axis.
     const Vec3 axis = glm::normalize(cylinder.b - cylinder.a);
     const Vec3 reach =
         cylinder.radius *

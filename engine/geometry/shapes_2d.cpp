@@ -18,7 +18,8 @@ bool is_finite(const Vec2 &v) {
     return std::isfinite(v.x) && std::isfinite(v.y);
 }
 
-// a + b, rounded up. What rounding lost is exact (Knuth 1969, TAOCP 2, 4.2.2, theorem B).
+// a + b, rounded up. The rounding error is computed exactly (Knuth 1969, TAOCP 2, 4.2.2, theorem
+// B).
 Real sum_above(Real a, Real b) {
     const Real sum = a + b;
     const Real b_kept = sum - a;
@@ -75,12 +76,12 @@ Rectangle bounds(const Circle &circle) {
 
 Rectangle bounds(const OrientedRectangle &rectangle) {
     check_valid(rectangle);
-    // The sum of the projections of the half edges (Ericson 2005, "Real-Time Collision Detection",
-    // 4.2.6, in the plane).
+    // The sum of the half edges' projections (Ericson 2005, "Real-Time Collision Detection", 4.2.6,
+    // in 2D).
     const Vec2 axis = glm::abs(rectangle.axis);
     const Vec2 &half = rectangle.half_extents;
     Vec2 extent{axis.x * half.x + axis.y * half.y, axis.y * half.x + axis.x * half.y};
-    // Three roundings, and one of the axis's length; none when it is turned by quarters.
+    // Three roundings, and one of the axis's length; none if turned by a multiple of 90 degrees.
     if (axis.x != Real(0) && axis.y != Real(0))
         extent *= Real(1) + Real(4) * epsilon;
     return around(rectangle.center, extent);

@@ -7,8 +7,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Each core is made with one combined test: a sum is finite when all its terms are (sizes are far
-// from overflow). Only when it fails the full check says what is wrong.
+// Each core is checked by one combined test: a sum is finite if all its terms are (sizes are far
+// from overflow). Only if that fails does the full check report what is wrong.
 bool has_finite_sum(const Vec3 &v) {
     return std::isfinite(v.x + v.y + v.z);
 }

@@ -34,9 +34,9 @@ Wide closest_on_segment(const Wide &a, const Wide &b, const Wide &p) {
     return a + height / squared * along;
 }
 
-// The foot of p on the plane in coordinates along and across the longest edge, which are as good in
-// a narrow triangle as in another, where areas (Ericson 2005, "Real-Time Collision Detection",
-// 5.1.5) would cancel. Whether it is in the triangle; then `foot` is it.
+// Whether the projection of p on the plane is in the triangle; if so, `foot` is set to it. Uses
+// coordinates along and across the longest edge, which stay accurate in narrow triangles, where
+// areas (Ericson 2005, "Real-Time Collision Detection", 5.1.5) would cancel.
 bool foot_is_in_triangle(std::array<Wide, 3> corner, const Wide &p, Wide &foot) {
     const auto squared_length = [&](int i, int j) {
         const Wide edge = corner[std::size_t(j)] - corner[std::size_t(i)];
@@ -87,7 +87,7 @@ Vec3 normal(const Triangle &triangle) {
     check_valid(triangle);
     const Wide n = accurate_cross(triangle.a, triangle.b, triangle.a, triangle.c);
     const double largest = largest_magnitude(n);
-    // By its largest component first, as the squares of a tiny triangle's would vanish.
+    // Divide by the largest component first: for a tiny triangle the squares would vanish.
     return largest > 0.0 ? Vec3(glm::normalize(n / largest)) : Vec3{Real(0)};
 }
 
@@ -123,7 +123,7 @@ Vec3 closest_point(const Triangle &triangle, const Vec3 &point) {
             if (squared_distance(other) < squared_distance(closest))
                 closest = other;
     }
-    // A point in the triangle comes back but for rounding.
+    // A point in the triangle comes back changed only by rounding.
     const double rounding =
         16.0 * double(std::numeric_limits<Real>::epsilon()) *
         std::max({largest_magnitude(a), largest_magnitude(b), largest_magnitude(c)});

@@ -18,7 +18,7 @@ bool are_in_line(const Vec3 &a, const Vec3 &b, const Vec3 &c) {
     return turn(0, a, b, c) == 0 && turn(1, a, b, c) == 0 && turn(2, a, b, c) == 0;
 }
 
-// An axis along which the triangle is seen with an area, or -1 when it is flat.
+// An axis along which the triangle's projection has an area, or -1 if the triangle is flat.
 int viewing_axis(const Triangle &t) {
     for (int axis = 0; axis < 3; ++axis)
         if (turn(axis, t.a, t.b, t.c) != 0)
@@ -42,8 +42,8 @@ bool are_opposite(int a, int b) {
     return a * b < 0;
 }
 
-// Segments in one plane, seen along an axis in which that plane is no line. Each must reach the
-// other's line; in line with each other, their bounds decide.
+// Coplanar segments, projected along an axis that keeps their plane from becoming a line. Each must
+// reach the other's line; if collinear, their bounds decide.
 bool segments_meet_as_seen(int axis, const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
     const int side_c = turn(axis, a, b, c), side_d = turn(axis, a, b, d);
     if (side_c * side_d > 0)
@@ -61,7 +61,7 @@ bool segments_meet(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
         if (turn(axis, a, b, c) != 0 || turn(axis, a, b, d) != 0 || turn(axis, c, d, a) != 0 ||
             turn(axis, c, d, b) != 0)
             return segments_meet_as_seen(axis, a, b, c, d);
-    return true; // all on one line, where the bounds decide
+    return true; // collinear, so the bounds decide
 }
 
 bool is_in_triangle_as_seen(int axis, const Triangle &t, const Vec3 &p) {
@@ -81,8 +81,8 @@ bool meets_in_plane(const Vec3 &p, const Vec3 &q, const Triangle &t) {
            segments_meet_as_seen(axis, p, q, t.c, t.a);
 }
 
-// The sides of p and q are those of the triangle's plane. A segment that crosses the plane has the
-// triangle's edges all on one hand.
+// `side_p` and `side_q` are sides of the triangle's plane. A segment that crosses the plane hits
+// the triangle if it passes all edges on the same side.
 bool segment_meets(const Vec3 &p, int side_p, const Vec3 &q, int side_q, const Triangle &t) {
     if (side_p * side_q > 0)
         return false;
@@ -112,8 +112,8 @@ bool an_edge_meets(const Triangle &edges, const CornerSides &sides, const Triang
            segment_meets(edges.c, sides.c, edges.a, sides.a, t);
 }
 
-// The corner of the box that is farthest to the left of the way from p to q, as seen along the
-// axis, or farthest to the right.
+// The corner of the box farthest to the left, or to the right, of the direction from p to q,
+// projected along the axis.
 Vec3 corner_beside(int axis, const Vec3 &p, const Vec3 &q, bool is_left, const Aabb &box) {
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     Vec3 corner = box.min;
@@ -122,7 +122,7 @@ Vec3 corner_beside(int axis, const Vec3 &p, const Vec3 &q, bool is_left, const A
     return corner;
 }
 
-// Whether the line of an edge, as seen along the axis, has the box on its right altogether.
+// Whether the whole box is to the right of an edge's line, projected along the axis.
 bool is_right_of_edge(int axis, const Vec3 &p, const Vec3 &q, const Aabb &box) {
     return turn(axis, p, q, corner_beside(axis, p, q, true, box)) < 0;
 }
@@ -158,8 +158,8 @@ bool segment_meets_triangle(const Segment &segment, const Triangle &triangle) {
                          triangle);
 }
 
-// Two triangles that meet do so in an edge of one of them: the common stretch of two that cross
-// ends at edges, and of two in one plane either edges cross or one lies in the other.
+// Two triangles that meet do so at an edge of one of them: if they cross, their common segment ends
+// at edges; if they are coplanar, edges cross or one triangle is inside the other.
 bool triangle_meets_triangle(const Triangle &a, const Triangle &b) {
     const CornerSides of_b(a, b);
     if (of_b.are_apart())
@@ -171,12 +171,12 @@ bool triangle_meets_triangle(const Triangle &a, const Triangle &b) {
 }
 
 // Separating axes (Akenine-Moeller 2001, "Fast 3D Triangle-Box Overlap Testing"): the box's three,
-// the triangle's normal, and the nine of their edges. The nine are asked for in the three views
-// along the box's axes, where each is the line of an edge, with the box on its outer side.
+// the triangle's normal, and nine edge cross products. The nine are tested in the three projections
+// along the box's axes, where each is the line of an edge with the box on its outer side.
 bool triangle_meets_box(const Triangle &t, const Aabb &box) {
     if (!bounds_meet(t, box))
         return false;
-    Vec3 front = box.min, back = box.min; // the corners farthest along the normal, and against it
+    Vec3 front = box.min, back = box.min; // the corners farthest along and against the normal
     bool is_flat = true;
     for (int axis = 0; axis < 3; ++axis) {
         const int side = turn(axis, t.a, t.b, t.c);

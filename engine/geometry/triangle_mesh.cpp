@@ -37,7 +37,7 @@ Aabb bounds(const TriangleMesh &mesh) {
 }
 
 bool is_closed(const TriangleMesh &mesh) {
-    // An edge, named from its lower to its higher corner, and the direction in which it is used.
+    // An edge, keyed by its lower and higher corner index, and the direction in which it is used.
     struct Use {
         std::uint64_t edge;
         int direction;
@@ -56,7 +56,7 @@ bool is_closed(const TriangleMesh &mesh) {
         int sum = 0;
         for (; i < uses.size() && uses[i].edge == edge; ++i)
             sum += uses[i].direction;
-        if (sum != 0 && edge >> 32 != (edge & 0xFFFF'FFFFU)) // one from a corner to itself is none
+        if (sum != 0 && edge >> 32 != (edge & 0xFFFF'FFFFU)) // a corner to itself is no edge
             return false;
     }
     return true;

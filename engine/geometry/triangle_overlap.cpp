@@ -15,8 +15,8 @@ namespace {
 
 using Wide = glm::dvec3;
 
-// The three that follow ask whether a distance is at most a radius without a division or a root, so
-// that integers stay integers: each compares squares of volumes, areas and lengths.
+// The next three test whether a distance is at most a radius without division or square root, so
+// that integers stay exact: they compare squares of volumes, areas and lengths.
 
 bool is_near_segment(const Wide &a, const Wide &b, const Wide &p, double squared_radius) {
     const Wide along = b - a, from_a = p - a, from_b = p - b;
@@ -28,7 +28,7 @@ bool is_near_segment(const Wide &a, const Wide &b, const Wide &p, double squared
     return glm::dot(cross, cross) <= squared_radius * glm::dot(along, along);
 }
 
-// Whether points between the ends of both segments are the closest of their two lines, and near.
+// Whether the lines' closest points are between the ends of both segments, and near.
 bool are_near_between_ends(const Segment &a, const Segment &b, double squared_radius) {
     const Wide across = accurate_cross(a.a, a.b, b.a, b.b);
     const double squared = glm::dot(across, across);
@@ -43,10 +43,10 @@ bool are_near_between_ends(const Segment &a, const Segment &b, double squared_ra
     return s >= 0.0 && s <= squared && t >= 0.0 && t <= squared;
 }
 
-// A triangle and what distances from it take.
+// A triangle with precomputed values for distances.
 struct WideTriangle {
     Wide a, b, c;
-    Wide across; // at right angles to it, with twice its area; zero when it is flat
+    Wide across; // normal to it, of length twice its area; zero when flat
     double squared;
 
     explicit WideTriangle(const Triangle &t)
@@ -67,7 +67,7 @@ struct WideTriangle {
     }
 
   private:
-    // On the inner side of an edge.
+    // Whether p is on the inner side of an edge.
     bool is_over(const Wide &from, const Wide &to, const Wide &p) const {
         return glm::dot(across, glm::cross(to - from, p - from)) >= 0.0;
     }

@@ -15,12 +15,12 @@ namespace {
 
 using Kind = ClothSpring::Kind;
 
-// A cloth as it is put together: springs by their ends.
+// Builds a cloth, with its springs keyed by their ends.
 class Weaver {
   public:
     explicit Weaver(std::vector<glm::dvec3> places) { parts_.places = std::move(places); }
 
-    // The spring between two particles, made if there is none.
+    // The spring between two particles, created on first use.
     std::uint32_t spring(Kind kind, std::uint32_t a, std::uint32_t b) {
         const std::pair<std::uint32_t, std::uint32_t> ends = std::minmax(a, b);
         const auto [entry, is_new] =
@@ -68,7 +68,7 @@ ClothParts woven_grid(const ClothDesc &cloth) {
         }
     along(Kind::bend, 2, 0);
     along(Kind::bend, 0, 2);
-    // All sides are springs already: the kind does not matter.
+    // All sides are already springs, so the kind does not matter.
     for (int j = 0; j < nz; ++j)
         for (int i = 0; i < nx; ++i) {
             const std::array corners{at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)};
@@ -84,7 +84,7 @@ ClothParts woven_mesh(const MeshData &mesh) {
     Weaver weaver(mesh.vertices);
     for (const std::array<std::uint32_t, 3> &corners : mesh.triangles)
         weaver.triangle(Kind::stretch, corners);
-    // Of each edge, the corners opposite to it.
+    // The corners opposite each edge.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> opposite;
     for (const std::array<std::uint32_t, 3> &corners : mesh.triangles)
         for (std::size_t i = 0; i < 3; ++i)
@@ -110,7 +110,7 @@ ClothParts cloth_parts(const ClothDesc &cloth) {
 glm::dvec3 cloth_place(const ClothDesc &cloth, std::uint32_t particle) {
     if (cloth.mesh)
         return cloth.mesh->vertices.at(particle);
-    // Counted from the middle, so that what lies opposite is exactly opposite.
+    // Measured from the middle, so that the grid is exactly symmetric.
     const auto place = [](double size, int i, int count) {
         return size * (2 * i - count) / (2 * count);
     };

@@ -14,8 +14,8 @@ namespace plumb {
 
 namespace {
 
-// The angle between two directions, in [0, pi]. By atan2, which keeps its digits where acos loses
-// half of them: near 0 and pi.
+// The angle between two directions, in [0, pi]. Uses atan2 because acos loses half its digits near
+// 0 and pi.
 double angle_between(const glm::dvec3 &a, const glm::dvec3 &b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
@@ -207,7 +207,7 @@ double mean_period(std::span<const double> times, std::span<const double> values
         const double above = values[i] - level;
         if (!(below < 0 && above >= 0))
             continue;
-        // Where the chord between the two samples meets the level.
+        // Where the chord between the samples crosses the level.
         const double fraction = below / (below - above);
         last = times[i - 1] + fraction * (times[i] - times[i - 1]);
         if (count == 0)
@@ -231,8 +231,8 @@ double sign_changes(std::span<const double> values, double level) {
     return static_cast<double>(changes);
 }
 
-// Where the chord from the last sample on the first side meets the level, once there is one on the
-// other.
+// Where the chord from the last sample on the first side crosses the level, once there is a sample
+// on the other side.
 double first_crossing(std::span<const double> times, std::span<const double> values, double level) {
     const auto side_of = [&](double value) { return value > level ? 1 : value < level ? -1 : 0; };
     int side = 0;
@@ -285,7 +285,7 @@ double reduce(std::span<const double> times, std::span<const double> values, Red
         std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
         return nan;
     const auto [min, max] = std::minmax_element(values.begin(), values.end());
-    // Halved first: the sum of two finite values may overflow.
+    // Halve first: the sum of two finite values may overflow.
     const double middle = level.value_or(0.5 * *min + 0.5 * *max);
     switch (reduction) {
     case Reduction::last:

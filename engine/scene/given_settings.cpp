@@ -43,7 +43,7 @@ double parse_plain_number(std::string_view text) {
     return value;
 }
 
-// Where the text for people has "m/s^2".
+// "m/s²" for "m/s^2".
 std::string unit_for_people(std::string_view unit) {
     std::string text(unit);
     if (const std::size_t at = text.find("^2"); at != std::string::npos)
@@ -51,7 +51,7 @@ std::string unit_for_people(std::string_view unit) {
     return text;
 }
 
-// Where all methods have the same default, that; else each method's own.
+// The default shared by all methods, or else each method's own.
 std::string default_for_people(const SettingRow &row) {
     const StepSettings first = method_infos().front().defaults;
     const bool same = std::ranges::all_of(method_infos(), [&](const MethodInfo &method) {

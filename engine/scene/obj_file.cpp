@@ -20,7 +20,7 @@ namespace plumb {
 
 namespace {
 
-// What is wrong with a line; thrown and caught in this file only.
+// An error on a line; thrown and caught in this file only.
 struct Refusal {
     std::size_t line;
     std::string what;       // was wrong
@@ -33,7 +33,7 @@ template <typename... Parts> std::string text(const Parts &...parts) {
     return out.str();
 }
 
-// As it can be shown on one line of a terminal.
+// A token made safe to print on one line of a terminal.
 std::string quoted(std::string_view token) {
     constexpr std::size_t most = 40;
     std::string shown = "'";
@@ -85,7 +85,7 @@ double read_coordinate(std::string_view token, std::size_t line) {
     return value;
 }
 
-// An index, then perhaps others behind slashes; of digits so few that no int overflows.
+// An index, optionally followed by others after slashes, each short enough not to overflow an int.
 bool is_corner(std::string_view token) {
     for (int part = 0; part < 3; ++part) {
         if (token.starts_with('-'))
@@ -121,7 +121,7 @@ void check_face(std::string_view rest, std::size_t line) {
                       text(max_obj_polygon_corners, " at most; cut it up")};
 }
 
-// The lines of a file that are read, and what each gives.
+// The relevant lines of a file and their contents.
 struct ObjLines {
     std::vector<glm::dvec3> vertices;
     std::vector<std::size_t> face_lines;      // the number of each line with a face
@@ -129,8 +129,8 @@ struct ObjLines {
     std::string faces;                        // those lines, for tinyobjloader
 };
 
-// tinyobjloader takes what it cannot read for zero, overflows on long numbers, and its own are some
-// last digits off. So it gets no line that was not checked here, and vertices are read here.
+// tinyobjloader reads garbage as zero, overflows on long numbers, and is off in the last digits. So
+// it gets only lines that were checked here, and vertices are read here.
 ObjLines checked_lines(std::string_view file) {
     ObjLines lines;
     std::size_t number = 0;
@@ -171,8 +171,8 @@ struct Flat {
     double x, y;
 };
 
-// (b - a) x (c - a): +1 when a, b, c turn counter-clockwise. As orient2d (predicates.h), whose
-// points are of the engine's precision.
+// The sign of (b - a) x (c - a): +1 when a, b, c turn counter-clockwise. Like orient2d
+// (predicates.h), whose points are in the engine's precision.
 int turn(const Flat &a, const Flat &b, const Flat &c) {
     const double left = (b.x - a.x) * (c.y - a.y);
     const double right = (b.y - a.y) * (c.x - a.x);
@@ -189,7 +189,7 @@ bool is_same(const Flat &a, const Flat &b) {
     return a.x == b.x && a.y == b.y;
 }
 
-// Cuts polygons into triangles, one after the other.
+// Triangulates polygons.
 class Cutter {
   public:
     Cutter(const std::vector<glm::dvec3> &vertices,
@@ -217,8 +217,8 @@ class Cutter {
                       "cut it into triangles"};
     }
 
-    // How far a sum of as many products of differences may be off, as a part of their magnitudes:
-    // each product has three roundings, each sum one.
+    // Bound on the relative error of a sum of `count` products of differences, as a fraction of
+    // their magnitudes: three roundings per product, one per addition.
     static double roundings(std::size_t count) {
         return static_cast<double>(count + 4) * exact::unit;
     }
@@ -249,10 +249,10 @@ class Cutter {
         return true;
     }
 
-    // The corners seen along an axis, counter-clockwise; false when there is no area to be seen.
+    // Projects the corners along an axis, counter-clockwise; false when no area is left.
     bool flatten(const std::vector<std::uint32_t> &corners) {
-        // Newell's normal (Sutherland, Sproull, Schumacker 1974), twice the area along each axis,
-        // from the first corner so that it cancels less.
+        // Newell's normal (Sutherland, Sproull, Schumacker 1974), twice the projected area along
+        // each axis, relative to the first corner to reduce cancellation.
         const glm::dvec3 first = vertices_[corners[0]];
         glm::dvec3 normal{0};
         glm::dvec3 sum{0};
@@ -306,8 +306,8 @@ class Cutter {
         triangles_.push_back({corners[previous_[tip]], corners[tip], corners[next_[tip]]});
     }
 
-    // Whether the corner can be cut off: it sticks out, and no other is in the triangle. Only one
-    // that does not stick out itself can be the deepest in.
+    // Whether the corner can be clipped: it is convex, and no other corner is inside the triangle.
+    // Convex corners need no test, as the deepest corner inside is never convex.
     bool is_ear(std::size_t tip, std::size_t line) {
         const std::size_t first = previous_[tip];
         const std::size_t last = next_[tip];
@@ -324,7 +324,7 @@ class Cutter {
                 continue;
             if (turn(flat_[previous_[i]], p, flat_[next_[i]]) > 0)
                 continue;
-            // A slit along which an outline comes back to where it was does not cross it.
+            // An outline that returns to its own corner along a slit does not cross itself.
             if (!is_same(p, a) && !is_same(p, b) && !is_same(p, c))
                 return false;
         }
@@ -338,7 +338,7 @@ class Cutter {
     std::size_t tests_ = 0;
 };
 
-// What tinyobjloader calls for each face.
+// tinyobjloader's face callback.
 struct Faces {
     const ObjLines &lines;
     Cutter cutter;

@@ -10,15 +10,15 @@
 
 namespace plumb {
 
-// The header above declares the one in f32; this is its twin, compiled from the same source.
+// The header above declares the f32 version; this is its f64 twin, compiled from the same source.
 namespace f64 {
 ProbeAnswer answer_probe(const ProbeDesc &);
 }
 
 namespace {
 
-// What a failed check says, without the place in our code where it failed: who wrote the probe has
-// to mend that and not the code.
+// A failed check's message without the source location: it is the probe that needs fixing, not the
+// code.
 std::string reason(const CheckFailure &failure) {
     const std::string text = failure.what();
     return text.substr(0, text.rfind(" (check `"));

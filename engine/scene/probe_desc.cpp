@@ -10,8 +10,8 @@ namespace plumb {
 
 namespace {
 
-// The places of the probe that can be moved, in the order of their handles. `visit` is given the
-// present place and a function that moves it; a probe that is const must not be moved.
+// Visits the probe's movable points in handle order. `visit` gets the current position and a
+// function that moves it, which must not be called for a const probe.
 template <typename Probe, typename Visit> void for_each_handle(Probe &probe, Visit &&visit) {
     for (auto &point : probe.points)
         visit(point, [&](const auto &place) { point = place; });
@@ -32,7 +32,7 @@ template <typename Probe, typename Visit> void for_each_handle(Probe &probe, Vis
                 probe.motion = place - probe.shapes.front().position;
         });
     if (probe.ray) {
-        auto &ray = *probe.ray; // moved as a whole by its origin; a segment by either end
+        auto &ray = *probe.ray; // a ray moves as a whole by its origin, a segment by either end
         visit(ray.origin, [&](const auto &place) { ray.origin = place; });
         if (ray.end)
             visit(*ray.end, [&](const auto &place) { ray.end = place; });

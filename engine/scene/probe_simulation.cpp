@@ -22,7 +22,7 @@ class ProbeSimulation final : public Simulation {
     const StepReport &report() const override { return report_; }
     Measures measure() const override { return {}; }
     double energy() const override { return 0; }
-    // Nothing moves: what could differ is what the probes are answered.
+    // Nothing moves: only the probes' answers could differ.
     std::uint64_t hash() const override { return hash_of_answers(scene_.probes, run_.precision); }
 
     const MethodInfo &method() const override { return *run_.method; }

@@ -8,7 +8,7 @@
 namespace plumb {
 
 struct ProbeSize {
-    std::size_t shapes = 0;    // with the parts of compounds
+    std::size_t shapes = 0;    // including parts of compounds
     std::size_t triangles = 0; // of meshes and height fields
     std::size_t scattered = 0;
     std::size_t questions = 0; // shape and point pairs, or shape pairs

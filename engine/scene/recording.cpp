@@ -7,7 +7,7 @@ namespace plumb {
 
 namespace {
 
-// A body that holds the place of a removed one, and meets nothing.
+// Takes the slot of a removed body and collides with nothing.
 BodyDesc placeholder(const std::string &name) {
     BodyDesc body;
     body.name = name;
@@ -20,8 +20,8 @@ BodyDesc placeholder(const std::string &name) {
 
 } // namespace
 
-// Bodies that are added fill the holes that removed ones left, and come earlier in the solver's
-// order for it. A scene has no holes: the recording makes them anew.
+// Added bodies fill the holes left by removed ones, which changes the solver's order. Scenes have
+// no holes, so the recording recreates them: it adds placeholders and removes them again.
 Recorder::Recorder(const Simulation &simulation) {
     recording_.scene = simulation.describe();
     std::vector<BodyDesc> &bodies = recording_.scene.bodies;
@@ -34,7 +34,7 @@ Recorder::Recorder(const Simulation &simulation) {
     }
     if (recording_.commands.empty())
         return;
-    // A method that knows no contacts refuses such a scene, and not what is left of it.
+    // A method without contacts would refuse the scene with placeholders, though not what remains.
     const MethodInfo &method = simulation.method();
     if (!method.contacts) {
         const WorldDesc other;
@@ -49,7 +49,7 @@ void Recorder::add(const Simulation &simulation, const Command &command) {
 }
 
 void Recorder::before_step(const Simulation &simulation) {
-    // One more than there are: of a step that failed, the hash is there already.
+    // A step that failed has already left a hash.
     forget_after(simulation.step_count());
     recording_.hashes.push_back(simulation.hash());
 }

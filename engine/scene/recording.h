@@ -1,5 +1,5 @@
-// A run as a scene and the commands that followed, with a hash of every state: replayed, it gives
-// the same states to the bit. The file's format is described in scenes/README.md.
+// A run as a scene and the commands that followed, with a hash of every state: a replay gives the
+// same states bit for bit. The file format is described in scenes/README.md.
 #pragma once
 
 #include "engine/scene/command.h"
@@ -16,41 +16,41 @@
 namespace plumb {
 
 struct RecordedCommand {
-    std::uint64_t step = 0; // how many steps had been taken
+    std::uint64_t step = 0; // steps taken before it
     Command command;
     std::size_t line = 0; // in the recording's file, if it was read from one
 };
 
-// Of the state at the start and after each step, the commands at that step included.
+// Hashes are of the state at the start and after each step, including the commands at that step.
 struct Recording {
     SceneDesc scene; // at the start, in full: method, settings, precision and state
-    std::vector<RecordedCommand> commands; // in the order in which they were given
-    std::vector<std::uint64_t> hashes;     // one at least
+    std::vector<RecordedCommand> commands; // in the order given
+    std::vector<std::uint64_t> hashes;     // at least one
     std::uint64_t first_step() const { return scene.step_count; }
     std::uint64_t last_step() const { return first_step() + hashes.size() - 1; }
 };
 
-// Writes down what is done to a simulation, which must be told of all of it.
+// Records what is done to a simulation. It must be told about every command, step and restore.
 class Recorder {
   public:
-    // A run that starts from the present state.
+    // Starts recording from the current state.
     explicit Recorder(const Simulation &simulation);
 
-    // The command has been obeyed.
+    // Call after a command has been executed.
     void add(const Simulation &simulation, const Command &command);
-    // A step is about to be taken, and has been if it did not throw.
+    // Call before each step; one that throws does not count.
     void before_step(const Simulation &simulation);
-    // An earlier state has been restored: it was saved just before the step that followed it, and
-    // what came after it is forgotten.
+    // Call after restoring an earlier state, saved just before the step that followed it;
+    // everything recorded after it is dropped.
     void went_back(const Simulation &simulation);
 
-    // Up to the present state.
+    // Up to the current state.
     Recording recording(const Simulation &simulation) const;
 
   private:
     void forget_after(std::uint64_t step);
 
-    Recording recording_; // the hashes of all states but the present one
+    Recording recording_; // with hashes of all states but the current one
 };
 
 struct RecordingResult {
@@ -59,38 +59,39 @@ struct RecordingResult {
     bool ok() const;                    // no message is an error
 };
 
-// As parse_scene and load_scene, of which they take over what is said of scenes. A scene without a
+// Like parse_scene and load_scene, with the same messages about the scene. A scene without a
 // recording is an error.
 RecordingResult parse_recording(std::string_view text, const std::string &path);
 RecordingResult load_recording(const std::filesystem::path &path);
 
-// As write_scene. Of files that the scene names, the names are written.
+// Like write_scene; files used by the scene are written by name only.
 std::string write_recording(const Recording &recording);
 
 // A state's hash as 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
 
-// A command of a recording that cannot be obeyed.
+// A recorded command that cannot be executed.
 struct CommandFailure : std::invalid_argument {
     CommandFailure(const RecordedCommand &command, const std::string &what)
         : std::invalid_argument(what), line(command.line) {}
     std::size_t line;
 };
 
-// Takes a recording's way through a simulation that was made of its scene.
+// Replays a recording on a simulation created from its scene.
 class Replay {
   public:
     // The recording must outlive it.
     explicit Replay(const Recording &recording) : recording_(recording) {}
 
-    // Gives the simulation the commands that were given at its present step, and compares. False
-    // when the state is not the one that was recorded. Throws CommandFailure.
+    // Applies the commands recorded at the simulation's current step and compares hashes. False
+    // when the state differs from the recorded one. Throws CommandFailure.
     bool obey(Simulation &simulation);
-    // "the replay first differs at step 12: recorded 1f…, now 2e…", after `obey` was false.
+    // "the replay first differs at step 12: recorded 1f…, now 2e…"; call after `obey` returned
+    // false.
     std::string difference(const Simulation &simulation) const;
-    // An earlier state has been restored, as it was after `obey`.
+    // Call after restoring an earlier state that was saved after `obey`.
     void went_back(const Simulation &simulation);
-    // How many of the recording's commands have been given.
+    // How many of the recording's commands have been applied.
     std::size_t given() const { return next_; }
     bool is_at_end(const Simulation &simulation) const {
         return simulation.step_count() >= recording_.last_step();

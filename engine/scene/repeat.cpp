@@ -40,8 +40,7 @@ glm::dquat random_turn(Random &random) {
     return {outer * std::cos(b), inner * std::sin(a), inner * std::cos(a), outer * std::sin(b)};
 }
 
-// Points in cells as wide as the smallest distance, so that only 27 cells are asked for a
-// neighbour.
+// Points in a grid of cells min_distance wide, so that only 27 cells need testing for a neighbour.
 class SpacedPoints {
   public:
     explicit SpacedPoints(double min_distance) : min_distance_(min_distance) {}
@@ -77,7 +76,7 @@ class SpacedPoints {
     std::map<Cell, std::vector<glm::dvec3>> cells_;
 };
 
-// The i-th of `count` places, `spacing` apart and centred on 0.
+// The i-th of `count` positions, `spacing` apart and centred on 0.
 double centred(int i, int count, double spacing) {
     return (i - 0.5 * (count - 1)) * spacing;
 }
@@ -156,7 +155,8 @@ struct CopyCounter {
     std::uint64_t operator()(const LineRepeat &line) const { return natural(line.count); }
     std::uint64_t operator()(const PyramidRepeat &pyramid) const {
         const std::uint64_t n = natural(pyramid.base);
-        // Gauss's sums; n (n + 1) is below 2^63 for every int, the third factor may carry it past.
+        // Gauss's sums; n (n + 1) is below 2^63 for every int, but the third factor may overflow
+        // it.
         const std::uint64_t pairs = n * (n + 1);
         if (!pyramid.square)
             return pairs / 2;

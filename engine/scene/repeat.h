@@ -1,4 +1,4 @@
-// One body made into many: where the copies stand.
+// Repeats one body: the placement of its copies.
 #pragma once
 
 #include "engine/core/random.h"
@@ -15,7 +15,7 @@
 
 namespace plumb {
 
-// All layouts are in world axes, about the body's own position; lengths in metres. Counts are at
+// All layouts use world axes, relative to the body's own position; lengths in metres. Counts are at
 // least 1.
 
 // count.x * count.y * count.z copies, centred on the position in x and z, growing up from it in y.
@@ -24,7 +24,7 @@ struct GridRepeat {
     glm::dvec3 spacing{1};
 };
 
-// One above the other from the position up, each turned by `turn` (rad) about +y against the one
+// A stack from the position up, each copy turned by `turn` (rad) about +y relative to the one
 // below.
 struct StackRepeat {
     int count = 1;
@@ -46,8 +46,9 @@ struct PyramidRepeat {
     bool square = false;
 };
 
-// On a circle about the vertical through the position, the first towards +z, then towards +x.
-// Facing: each is turned about +y by its place's angle, so that all show the same side outwards.
+// A circle about the vertical through the position, the first copy towards +z, then towards +x.
+// Facing: each is turned about +y by its angle on the circle, so that all face outwards with the
+// same side.
 struct RingRepeat {
     int count = 1;
     double radius = 1;
@@ -68,16 +69,15 @@ using Repeat =
 // How many copies; exact for any counts in int's range, saturating at 2^63.
 std::size_t repeat_count(const Repeat &repeat);
 
-// Where one copy stands. The copy's rotation, velocity and angular velocity are those of the body,
-// turned.
+// Where one copy stands. Its rotation, velocity and angular velocity are the body's, turned.
 struct Placement {
     glm::dvec3 position{0};
     glm::dquat turn{1, 0, 0, 0};
 };
 
-// The copies in the order of their numbers: bottom to top, then by z, then by x; along; around.
-// A scatter draws from `random`; it gives up, and returns fewer, when one copy has found no free
-// place in `scatter_attempts` draws. Every other kind returns repeat_count().
+// The copies in numbering order: bottom to top, then by z, then by x; along; around. A scatter
+// draws from `random`; it gives up and returns fewer when a copy finds no free place in
+// `scatter_attempts` draws. Every other kind returns repeat_count() copies.
 inline constexpr int scatter_attempts = 1000;
 std::vector<Placement> placements(const Repeat &repeat, const glm::dvec3 &position, Random &random);
 

@@ -10,7 +10,7 @@
 
 namespace plumb {
 
-// One thing to say about a scene file. Lines and columns count from 1.
+// One message about a scene file. Lines and columns count from 1.
 struct SceneMessage {
     enum class Severity { error, warning };
     Severity severity = Severity::error;
@@ -20,8 +20,7 @@ struct SceneMessage {
     std::string suggestion; // what would be right; may be empty
 };
 
-// Stated limits: a larger file is refused; of one with more mistakes the first are listed, and how
-// many more there are.
+// A larger file is refused. Of more mistakes than this, the first are listed and the rest counted.
 inline constexpr std::size_t max_scene_file_bytes = 64U << 20U;
 inline constexpr std::size_t max_listed_mistakes = 50;
 
@@ -31,26 +30,26 @@ struct SceneFileResult {
     bool ok() const;                    // no message is an error
 };
 
-// `path` stands in messages, its stem names the scene, and the files that a scene names (meshes of
-// probes) are looked for beside it; it is not read itself. Reports every error of the file at
-// once (see max_listed_mistakes); warnings only when there is no error. A syntax error of TOML
-// hides what comes after it. Method names must be among `known_methods` (empty: not checked).
+// `path` is not read: it appears in messages, its stem names the scene, and files that the scene
+// uses (meshes of probes) are looked up beside it. Reports all errors of the file together (see
+// max_listed_mistakes); warnings only if there are no errors. A TOML syntax error hides everything
+// after it. Method names must be among `known_methods` (empty: not checked).
 SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             const std::vector<std::string> &known_methods = {});
 
-// A file that cannot be read or is too large is one error message at line 0, and a pipe or a device
-// is read no further than a file may be long. One without a body or a probe is an error too, for
-// there is nothing to run, while parse_scene takes the text of such a scene.
+// A file that cannot be read or is too large gives one error at line 0; pipes and devices are read
+// only up to the size limit. A scene without a body or a probe is an error too, as there is nothing
+// to run; parse_scene accepts one.
 SceneFileResult load_scene(const std::filesystem::path &path,
                            const std::vector<std::string> &known_methods = {});
 
 // "path:line:column: error: what; what would be right"
 std::string format_message(const std::string &path, const SceneMessage &message);
 
-// The scene as a file that parses to the same values, bit for bit, but for `name` (the file's stem)
-// and the expects' `line`. Repeated bodies and joints come out one by one. `scene` must be one that
-// parse_scene accepts: the text of any other is a file with errors. Of files that the scene names,
-// the names are written.
+// The text of a scene file that parses back to the same values, bit for bit, except `name` (the
+// file's stem) and the expects' `line`. Repeated bodies and joints are written one by one. `scene`
+// must be one that parse_scene accepts: any other gives a file with errors. Files used by the scene
+// are written by name only.
 std::string write_scene(const SceneDesc &scene);
 
 } // namespace plumb

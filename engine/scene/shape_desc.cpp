@@ -12,7 +12,7 @@
 
 namespace plumb {
 
-// The header above declares the one in f32; this is its twin, compiled from the same source.
+// The header above declares the f32 version; this is its f64 twin, compiled from the same source.
 namespace f64 {
 HullMeasures measure_hull(std::span<const glm::dvec3>);
 }
@@ -69,7 +69,7 @@ struct BoundsOf {
         return around(glm::abs(orientation * glm::dvec3(0, c.half_height, 0)) + c.radius);
     }
     BoundsDesc operator()(const CylinderDesc &c) const {
-        // A disc reaches along an axis as far as its radius times the sine to its normal.
+        // A disc's extent along an axis is its radius times the sine of the angle to its normal.
         const glm::dvec3 up = orientation * glm::dvec3(0, 1, 0);
         return around(c.half_height * glm::abs(up) +
                       c.radius * glm::sqrt(glm::max(glm::dvec3(0), 1.0 - up * up)));

@@ -39,7 +39,7 @@ std::string_view of_probes(const KindInfo &info) {
     return "";
 }
 
-// Shown a kind's fields, it says them in a few words.
+// A visitor that summarises a kind's fields in a few words.
 class Summary {
   public:
     explicit Summary(std::string_view kind) : text_(kind) { std::ranges::replace(text_, '_', ' '); }

@@ -1,5 +1,5 @@
-// What there is to say about a kind of shape without a shape: its keys, and its fields in words.
-// Not for users of the engine.
+// A shape kind's keys, and its fields in words, without an actual shape. Not for users of the
+// engine.
 #pragma once
 
 #include "engine/scene/file/number.h"
@@ -11,7 +11,7 @@
 
 namespace plumb::scene_file {
 
-// Shown a kind's fields, it lists them.
+// A visitor that lists a kind's fields.
 class FieldList {
   public:
     void length(std::string_view key, double &, std::string_view = {}) { add(key); }
@@ -88,7 +88,7 @@ template <typename Shape> const FieldList &fields_of() {
     return list;
 }
 
-// The section on shapes of scenes/README.md.
+// The shape section of scenes/README.md.
 std::string shape_reference();
 
 } // namespace plumb::scene_file

@@ -1,5 +1,5 @@
-// The kinds of shapes in scene files, an entry each: its name, who may have it, its fields. The
-// reader, the writer, what they say of mistakes, and the reference in scenes/README.md are made of
+// The shape kinds of scene files, one entry each: its name, who may have it, its fields. The
+// reader, the writer, their error messages and the reference in scenes/README.md are generated from
 // these. A kind without an entry does not compile. Not for users of the engine.
 #pragma once
 
@@ -14,42 +14,41 @@
 namespace plumb::scene_file {
 
 inline constexpr std::size_t max_mesh_triangles = 100'000;
-inline constexpr std::size_t max_shape_points = 10'000;      // of a hull that is written out
+inline constexpr std::size_t max_shape_points = 10'000;      // of a hull given inline
 inline constexpr std::size_t max_height_samples = 1'000'000; // of a height field
 
-// Of BodyDesc::locked.
+// For BodyDesc::locked.
 inline constexpr std::array<std::string_view, 6> locked_names{
     "x", "y", "z", "rotation_x", "rotation_y", "rotation_z"};
 
-// What places a shape of a probe. Those of bodies take both.
+// What places a probe's shape. Body shapes take both position and rotation.
 enum class Placing { by_its_points, position, position_and_rotation };
-// What a body with the shape can be.
+// How a body with the shape can move.
 enum class Moves { by_forces, as_told, never };
 
 struct KindInfo {
     std::string_view name;
     std::string_view with_article;
-    std::string_view size;  // said to who gives it the size of another kind
+    std::string_view size;  // for the error about another kind's size
     std::string_view about; // in the reference
     Placing placing = Placing::position_and_rotation;
     Moves moves = Moves::by_forces;
     bool is_flat = false;
 };
 
-// One of several ways to say what a shape is, known by its key.
+// One of several ways to specify a shape, identified by its key.
 template <typename Fields> struct Way {
     std::string_view key;
-    bool is_chosen; // of a shape that is there
+    bool is_chosen; // by an existing shape
     Fields fields;
 };
 template <typename Fields> Way(std::string_view, bool, Fields) -> Way<Fields>;
 
-// Each has `info` and `fields(shape, visitor)`, which shows the visitor the fields in the order of
-// the file:
-//   length, size, turn      a positive number, one for each axis, an angle: all needed
-//   corners, cloud          points, as many as there are; any number of them
+// Each has `info` and `fields(shape, visitor)`, which visits the fields in file order:
+//   length, size, turn      a positive number, one per axis, an angle; all required
+//   corners, cloud          a fixed number of points; any number of points
 //   either                  one of several ways
-//   file, word, whole       what else there is, with the present value as default
+//   file, word, whole       other fields; the current value is the default
 //   surface, heights, parts
 template <typename Shape> struct Kind;
 
@@ -269,7 +268,7 @@ template <> struct Kind<FlatCompoundDesc> {
     static void fields(FlatCompoundDesc &c, auto &visitor) { visitor.parts("parts", c.parts); }
 };
 
-// What the kinds of a variant of shapes are called, in its order.
+// Names of the kinds in a shape variant, in its order.
 template <typename Shape, std::size_t... i>
 std::vector<std::string_view> kind_names(std::index_sequence<i...>) {
     return {Kind<std::variant_alternative_t<i, Shape>>::info.name...};
@@ -280,7 +279,7 @@ template <typename Shape> const std::vector<std::string_view> &kind_names() {
     return names;
 }
 
-// A shape of the kind with that index.
+// A default shape of the kind with that index.
 template <typename Shape, std::size_t i = 0> Shape shape_of_kind(std::size_t index) {
     if constexpr (i + 1 < std::variant_size_v<Shape>)
         if (index != i)

@@ -10,8 +10,8 @@ namespace plumb {
 
 namespace {
 
-// A grid of points over [0, 1] x [0, 1], as triangles; a direction that closes has its last row at
-// its first. Points that coincide (the poles of a ball) are one vertex.
+// Triangulates a grid of points over [0, 1] x [0, 1]; a direction that closes wraps its last row to
+// its first. Coincident points (a ball's poles) share one vertex.
 template <typename Place>
 MeshData grid(int rows, int columns, bool closes_u, bool closes_v, const Place &place) {
     MeshData mesh;
@@ -22,7 +22,7 @@ MeshData grid(int rows, int columns, bool closes_u, bool closes_v, const Place &
         for (int v = 0; v < points_v; ++v) {
             const glm::dvec3 point =
                 place(static_cast<double>(u) / rows, static_cast<double>(v) / columns);
-            // Only neighbours in a row can coincide.
+            // Only neighbours within a row can coincide.
             const bool is_new = v == 0 || mesh.vertices.back() != point;
             if (is_new)
                 mesh.vertices.push_back(point);
@@ -43,11 +43,11 @@ MeshData grid(int rows, int columns, bool closes_u, bool closes_v, const Place &
     return mesh;
 }
 
-// Within [-1, 1] on each axis; fronts outside.
+// Within [-1, 1] on each axis; fronts face outwards.
 MeshData unit_model(MeshModel::Kind kind, int detail) {
     using enum MeshModel::Kind;
     const auto on_ball = [](double u, double v) {
-        // The poles are exact, so that their copies are one.
+        // Exact poles, so that their copies coincide.
         const double ring = u == 0 || u == 1 ? 0 : std::sin(std::numbers::pi * u);
         return glm::dvec3(ring * std::sin(2 * std::numbers::pi * v),
                           u == 1 ? -1 : std::cos(std::numbers::pi * u),

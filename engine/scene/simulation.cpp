@@ -14,7 +14,7 @@
 
 namespace plumb {
 
-// The header above declares the one in f32; this is its twin, compiled from the same source.
+// The header above declares the f32 version; this is its f64 twin, compiled from the same source.
 namespace f64 {
 std::unique_ptr<Simulation> make_world_simulation(const SceneDesc &, const ResolvedRun &,
                                                   TaskPool *);

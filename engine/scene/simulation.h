@@ -1,7 +1,7 @@
 // A running scene, in whichever precision it asks for: what the app and the lab work with.
 //
-// All values cross this boundary in double. Bodies are named by an index below body_count(),
-// the same as long as the body lives.
+// All values cross this boundary in double. Bodies are identified by an index below body_count(),
+// stable for the body's lifetime.
 #pragma once
 
 #include "engine/core/task_pool.h"
@@ -23,7 +23,7 @@
 
 namespace plumb {
 
-// What does not change while a body lives.
+// Properties that are fixed for a body's lifetime.
 struct BodyInfo {
     bool alive = false; // a removed body leaves a hole
     std::string name;
@@ -42,15 +42,15 @@ struct Pick {
     glm::dvec3 normal{0};
 };
 
-// How a scene is to be run, where that differs from the file.
+// How to run a scene, where that differs from the file.
 struct RunOptions {
     std::string method; // empty: the scene's own
     GivenSettings settings;
     std::optional<Precision> precision;
 };
 
-// Method and settings that a scene runs with under these options. Another method than the scene's
-// own takes the scene's settings for that method, else the method's defaults. Throws
+// The method and settings that a scene runs with under these options. A method other than the
+// scene's own uses the scene's settings for that method, else the method's defaults. Throws
 // std::invalid_argument when the method is unknown or a number is out of range.
 struct ResolvedRun {
     const MethodInfo *method = nullptr;
@@ -59,29 +59,28 @@ struct ResolvedRun {
 };
 ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options);
 
-// What the scene says for that method, in full.
+// The complete settings that the scene specifies for a method.
 StepSettings settings_of(const WorldDesc &world, const MethodInfo &method);
 
-// Makes that the world's method, with those settings; the one that it had becomes one of the
-// others.
+// Sets the world's method and settings; the previous method moves to other_methods.
 void set_run(WorldDesc &world, const MethodInfo &method, const StepSettings &settings);
 
-// Empty when the method can run the scene; else why not ("rk4 has no contacts, and ...").
+// Empty when the method can run the scene, else why not ("rk4 has no contacts, and ...").
 std::string why_not(const MethodInfo &method, const SceneDesc &scene);
 
 class Simulation {
   public:
     virtual ~Simulation() = default;
 
-    // Throws std::invalid_argument as resolve_run does, or when why_not is not empty. `tasks` may
-    // be null (one thread) and must outlive the simulation.
+    // Throws std::invalid_argument like resolve_run, or when why_not is not empty. `tasks` may be
+    // null (one thread) and must outlive the simulation.
     static std::unique_ptr<Simulation> create(const SceneDesc &scene, const RunOptions &options,
                                               TaskPool *tasks);
 
-    // False when the scene has only probes: then a step does nothing, and the step count stays 0.
+    // False when the scene has only probes: steps then do nothing, and the step count stays 0.
     virtual bool has_world() const { return true; }
 
-    // `times`, when not null, gets the times of the phases added.
+    // Adds the phases' times to `times` unless it is null.
     virtual void step(StepTimes *times) = 0;
     void step() { step(nullptr); }
     virtual std::uint64_t step_count() const = 0;
@@ -89,18 +88,18 @@ class Simulation {
     virtual const StepReport &report() const = 0; // of the last step
     virtual Measures measure() const = 0;
     virtual double energy() const = 0; // kinetic and potential, J
-    // Of everything that decides the future: poses, velocities, remembered impulses, settings.
+    // Covers everything that decides the future: poses, velocities, accumulated impulses, settings.
     virtual std::uint64_t hash() const = 0;
 
     virtual const MethodInfo &method() const = 0;
     virtual const StepSettings &settings() const = 0;
     virtual Precision precision() const = 0;
 
-    // The one way in which anything but a step changes a simulation. Throws std::invalid_argument,
-    // and changes nothing, when it cannot be done: a body that is not there, a value out of range,
-    // a method that cannot run the scene, a body for a method that knows no contacts.
+    // The only way to change a simulation other than stepping. Throws std::invalid_argument and
+    // changes nothing when the command is impossible: a missing body, a value out of range, a
+    // method that cannot run the scene, adding a body under a method without contacts.
     virtual void apply(const Command &command) = 0;
-    // The same, said shorter. A change of method or settings takes effect at the next step.
+    // Shorthands. Changes of method or settings take effect at the next step.
     void set_method(std::string_view name) { apply(SetMethod{std::string(name)}); }
     void set_settings(const StepSettings &settings) {
         apply(SetSettings{GivenSettings::differences(this->settings(), settings)});
@@ -108,27 +107,27 @@ class Simulation {
     std::size_t add_body(BodyDesc body); // under a free name; returns its index
     void remove_body(std::size_t body);
 
-    // A complete copy of the state: restore, and the same bits follow.
+    // A complete copy of the state; after restoring it the run repeats bit for bit.
     class Saved {
       public:
         virtual ~Saved() = default;
-        // Of memory that it does not share with another save of the same simulation (null: all).
+        // Bytes not shared with another save of the same simulation (null: all bytes).
         virtual std::size_t bytes_beside(const Saved *) const { return 0; }
     };
-    // Into the memory of an older save of this simulation, if one is given. What has not changed
-    // since `before`, likewise, is shared with it.
+    // Reuses the memory of `reuse`, an older save of this simulation, if given. Data unchanged
+    // since `before`, another save of it, is shared with that save.
     virtual std::unique_ptr<Saved> save(std::unique_ptr<Saved> reuse,
                                         const Saved *before) const = 0;
     std::unique_ptr<Saved> save() const { return save(nullptr, nullptr); }
     virtual void restore(const Saved &saved) = 0; // saved by this simulation
 
-    // The present state as a scene that loads to the same hash.
+    // The current state as a scene that loads to the same hash.
     virtual SceneDesc describe() const = 0;
 
     virtual std::size_t body_count() const = 0; // holes included
     virtual const BodyInfo &body_info(std::size_t body) const = 0;
     virtual std::optional<std::size_t> find_body(std::string_view name) const = 0;
-    // The name, with a number behind it when it is taken already.
+    // The name, with a number appended if it is already taken.
     std::string free_name(const std::string &name) const;
 
     // Particles, springs and cloth, as they were at the start.
@@ -137,9 +136,9 @@ class Simulation {
 
     virtual const std::string &joint_name(std::size_t joint) const = 0; // a JointView's
 
-    virtual std::optional<GrabView> grab() const { return {}; } // nothing: none is held
+    virtual std::optional<GrabView> grab() const { return {}; } // empty: nothing held
 
-    // Into the memory of an older frame. What is not asked for comes out empty.
+    // Reuses the frame's memory. Parts not asked for are left empty.
     virtual void read(Frame &into, const FrameParts &parts) const = 0;
     Frame read(const FrameParts &parts = {}) const {
         Frame frame;

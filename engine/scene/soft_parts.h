@@ -1,5 +1,5 @@
-// All particles and springs of a scene, cloth taken apart, in the order in which its world has
-// them: particles one by one, then those of each cloth; springs likewise.
+// All particles and springs of a scene, cloth expanded, in the world's order: single particles,
+// then those of each cloth; the same for springs.
 #pragma once
 
 #include "engine/scene/scene_desc.h"
@@ -12,14 +12,14 @@
 
 namespace plumb {
 
-// Where a cloth's particles and springs are among all.
+// A cloth's ranges among all particles and springs.
 struct ClothInfo {
     std::string name;
     std::size_t first_particle = 0, particle_count = 0;
     std::size_t first_spring = 0, spring_count = 0;
     struct Triangle {
         std::array<std::uint32_t, 3> corners{}; // particles of the world
-        std::array<std::uint32_t, 3> sides{};   // springs of the world; one that is torn opens it
+        std::array<std::uint32_t, 3> sides{}; // springs of the world; a torn one opens the triangle
     };
     std::vector<Triangle> triangles;
     std::optional<glm::vec3> colour; // cloth's or material's
@@ -31,7 +31,7 @@ struct ParticleInfo {
     double radius = 0;
     bool pinned = false;
     std::string material;
-    std::optional<std::size_t> cloth; // that it is of
+    std::optional<std::size_t> cloth; // it belongs to
     std::optional<glm::vec3> colour;  // particle's or material's
 };
 
@@ -39,7 +39,7 @@ struct SpringEndInfo {
     enum class Kind { world, particle, body };
     Kind kind = Kind::world;
     std::size_t index = 0;      // of the particle or body
-    glm::dvec3 anchor_local{0}; // in the body's frame, or a point of the world
+    glm::dvec3 anchor_local{0}; // in the body's frame, or in the world
 };
 
 struct SpringInfo {
@@ -52,27 +52,27 @@ struct SpringInfo {
     std::optional<std::size_t> cloth;
 };
 
-// Where that end is now.
+// The end's current position.
 glm::dvec3 place_of(const SpringEndInfo &end, const std::vector<BodyState> &bodies,
                     const std::vector<ParticleState> &particles);
 
 class SoftParts {
   public:
     SoftParts() = default; // nothing soft
-    // Bodies have the index that they have in the scene. Throws std::invalid_argument for the end
-    // of a spring that names nothing of the scene, which no scene that was read has.
+    // Bodies keep their index in the scene. Throws std::invalid_argument for a spring end that
+    // names nothing in the scene, which cannot happen for a scene that was read.
     explicit SoftParts(const SceneDesc &scene);
 
     bool empty() const { return particles.empty() && springs.empty(); }
 
-    // "bob"; of a cloth's, see cloth.h.
+    // "bob"; for a cloth's particles see cloth.h.
     std::string particle_name(std::size_t particle) const;
     std::optional<std::size_t> find_particle(std::string_view name) const;
-    // Of all that pulls at it (kg): its whole cloth, or all particles that are of none.
+    // Mass of everything that may pull at it (kg): its whole cloth, or all particles without one.
     double mass_around(std::size_t particle) const;
     bool has_name(std::string_view name) const;        // a particle or a cloth
-    std::string spring_name(std::size_t spring) const; // of a cloth's springs, the cloth's
-    std::optional<std::size_t> find_spring(std::string_view name) const; // none of a cloth's
+    std::string spring_name(std::size_t spring) const; // the cloth's name for its springs
+    std::optional<std::size_t> find_spring(std::string_view name) const; // not cloth springs
 
     std::vector<ParticleInfo> particles;
     std::vector<SpringInfo> springs;
@@ -83,7 +83,7 @@ class SoftParts {
 
     using Indices = std::map<std::string, std::size_t, std::less<>>;
     std::vector<ClothDesc> descs_;                           // of the cloths
-    std::vector<std::string> particle_names_, spring_names_; // less those of cloth
+    std::vector<std::string> particle_names_, spring_names_; // without cloth
     Indices particles_by_name_, springs_by_name_, cloths_by_name_;
 };
 

@@ -19,7 +19,7 @@ bool do_collide(const ColliderDesc &a, const ColliderDesc &b) {
 
 } // namespace
 
-// Nothing for what is not looked at, and for what single precision cannot tell.
+// Empty for shapes that are skipped, and for those single precision cannot resolve.
 std::optional<f32::Shape> StartOverlaps::placed(const ColliderDesc &collider,
                                                 const glm::dvec3 &position,
                                                 const glm::dquat &orientation) {
@@ -32,12 +32,13 @@ std::optional<f32::Shape> StartOverlaps::placed(const ColliderDesc &collider,
     const f32::Shape shape = f32::placed(*made->second.shape, pose);
     const auto *cylinder = std::get_if<f32::Cylinder>(&shape);
     if (cylinder != nullptr && cylinder->a == cylinder->b)
-        return std::nullopt; // so far from the other that it is none
+        return std::nullopt; // so far off that its ends coincide
     return shape;
 }
 
 std::optional<double> StartOverlaps::deepest(const BodyDesc &a, const BodyDesc &b, double margin) {
-    // Both relative to the first, or to the second when the first is a plane: it may be far away.
+    // Relative to the first body, or to the second if the first has a plane, whose origin may be
+    // far away.
     const glm::dvec3 origin = has_plane(a) ? b.position : a.position;
     const auto place = [&](const BodyDesc &body, const ColliderDesc &collider) {
         return placed(collider, body.position - origin + body.orientation * collider.position,

@@ -1,4 +1,4 @@
-// How deep the bodies of a scene are in each other where it begins.
+// Penetration depth of a scene's bodies at the start.
 #pragma once
 
 #include "engine/scene/real/solid_shape.h"
@@ -11,10 +11,9 @@ namespace plumb {
 
 class StartOverlaps {
   public:
-    // The depth of the deepest contact of any two shapes that collide with each other (m; 0
-    // when they are apart, but by less than `margin`); empty if all are farther.
-    // In single precision, about the bodies' own place. Meshes and height fields are not looked at.
-    // Both must outlive this.
+    // The deepest penetration of any two shapes that collide with each other (m; 0 when separated
+    // by less than `margin`); empty if all are farther apart. In single precision, relative to the
+    // bodies' own position. Meshes and height fields are skipped. Both bodies must outlive this.
     std::optional<double> deepest(const BodyDesc &a, const BodyDesc &b, double margin);
 
   private:

@@ -12,7 +12,7 @@ namespace plumb {
 
 namespace {
 
-// Rounded outwards, so that boxes which touch still do.
+// Rounded outwards, so that touching boxes still touch.
 f32::Aabb rounded_out(const BoundsDesc &box) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     f32::Aabb rounded;

@@ -1,4 +1,4 @@
-// Which of many axis-aligned boxes touch, in double precision. Not for users of the engine.
+// Finds touching pairs among many AABBs, in double precision. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/shape_desc.h"
@@ -9,8 +9,8 @@
 
 namespace plumb {
 
-// Calls visit(i, j) for each two boxes i > j that have a point in common, by ascending i and then
-// j, until it returns false. Coordinates must be finite and at most 1e15 in magnitude.
+// Calls visit(i, j) for each pair of boxes i > j with a common point, ascending by i, then j, until
+// it returns false. Coordinates must be finite and at most 1e15 in magnitude.
 void for_touching_boxes(std::span<const BoundsDesc> boxes,
                         const std::function<bool(std::size_t, std::size_t)> &visit);
 

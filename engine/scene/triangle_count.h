@@ -1,4 +1,4 @@
-// Triangles of the surfaces of a scene. Not for users of the engine.
+// Triangle counts of a scene's surfaces. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/shape_desc.h"

@@ -49,7 +49,7 @@ struct ColliderDef {
     Material material;
     Filter filter;
     bool sensor = false;    // is touched, pushes nothing
-    Real density = Real(0); // kg/m^3; 0: the default density
+    Real density = Real(0); // kg/m^3; 0: 1000
 };
 
 // What a body is made from. A dynamic body without `mass` gets it from its colliders' densities.
@@ -101,8 +101,7 @@ struct Body {
     std::uint32_t generation = 0;
     std::uint32_t first_collider = 0;
     std::uint32_t collider_count = 0;
-    std::uint32_t collider_room =
-        0; // including unused slots behind the first that a successor may take
+    std::uint32_t collider_room = 0; // slots from the first, counting unused ones
     // The centre of mass and the principal axes, in the body's frame. The identity for bodies that
     // are not dynamic.
     Transform mass_frame;

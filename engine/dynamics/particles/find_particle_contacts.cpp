@@ -1,5 +1,5 @@
-// Where particles touch bodies, or may within the step: spheres against the colliders that the tree
-// has near their way.
+// Finds where particles touch bodies, or may within the step: spheres against the colliders that
+// the tree finds near their paths.
 #include "engine/dynamics/contacts/approach.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
@@ -20,8 +20,8 @@ Aabb around(const Vec3 &middle, Real reach) {
 
 } // namespace
 
-// `manifold` is that of the particle's sphere with the collider, the normal towards the collider,
-// with the body at `at`.
+// `manifold` is between the particle's sphere and the collider, with the normal towards the
+// collider and the body at `at`.
 void World::add_particle_contact(std::uint32_t particle, std::uint32_t collider,
                                  const Manifold &manifold, const Motion &at,
                                  std::vector<ParticleContact> &out) const {
@@ -40,8 +40,9 @@ void World::add_particle_contact(std::uint32_t particle, std::uint32_t collider,
     contact.restitution = std::max(own.restitution, what.material.restitution);
 }
 
-// One particle against one collider. What goes farther in the step than its radius is met where it
-// will touch: the plane between the two as they are now would stop what flies past.
+// One particle against one collider. A particle that travels farther than its radius in the step
+// gets the contact where it will touch: the plane between particle and collider at their present
+// positions would stop particles that fly past.
 void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::size_t part,
                              std::vector<ParticleContact> &out) const {
     Scratch &s = scratch_;
@@ -114,7 +115,7 @@ void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::s
         });
 }
 
-// One particle against all that is near its way.
+// One particle against all colliders near its path.
 void World::collide_particle(std::uint32_t index, std::size_t part,
                              std::vector<ParticleContact> &out) const {
     Scratch &s = scratch_;

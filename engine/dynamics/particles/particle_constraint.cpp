@@ -33,10 +33,10 @@ Real separation_of(const StepContext &context, const ParticleContact &contact) {
     return glm::dot(gap, contact.normal) - context.model.particles[contact.particle].radius;
 }
 
-// The speed at which they meet, from the one that they have when gravity has acted for `kicked`
-// seconds, and from where they are: by energy, v^2 - 2 a s, so that a bounce neither gains nor
-// loses by where in the substep it comes. Semi-implicit Euler, which has added all of h, goes along
-// a parabola whose speed is halfway between before and after: h / 2 for it, too.
+// The approach speed at impact, from the speed after `kicked` seconds of gravity and the
+// separation: by energy, v^2 - 2 a s, so that a bounce neither gains nor loses energy by when in
+// the substep it happens. Semi-implicit Euler, which has added gravity for all of h, follows a
+// parabola whose speed is halfway between before and after: for it, too, that is h / 2.
 Real approach_of(const StepContext &context, const ParticleContact &contact,
                  const ParticleContactConstraint &row, Real kicked) {
     const Vec3 gravity{context.settings.gravity};
@@ -152,7 +152,7 @@ void solve_particle_contacts(StepContext &context, const ParticlePush &push, Rea
         const bool is_open = row.separation > Real(0);
         if (is_open && push.loaded_only && row.impulse.x == Real(0))
             continue;
-        // The least speed at which they part.
+        // The least separating speed.
         const Real least =
             is_open ? -row.separation / h : std::min(-push.rate * row.separation, push.velocity);
         const Real speed = glm::dot(relative_velocity(context, contact, row), contact.normal);

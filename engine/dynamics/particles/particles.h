@@ -1,8 +1,8 @@
-// Particles and springs: masses without extent that cloth, ropes and nets are made of.
+// Particles and springs: point masses for cloth, ropes and nets.
 //
 // A particle is a point mass. Against bodies it is a sphere of its radius; particles do not collide
-// with each other. A spring pulls two places together or apart along the line between them; each is
-// a particle, a point of a body, or a point of the world.
+// A spring pulls two points together or pushes them apart along the line between them; each is a
+// particle, a point of a body, or a point of the world.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -22,7 +22,7 @@ struct ParticleDef {
     Material material;        // against bodies
 };
 
-// What stays the same of a particle.
+// What does not change about a particle.
 struct Particle {
     Real inv_mass = Real(1); // 1/kg; 0: pinned
     Real mass = Real(1);     // kg
@@ -40,24 +40,24 @@ struct SpringEnd {
     enum class Kind : std::uint8_t { world, particle, body };
     Kind kind = Kind::world;
     std::uint32_t index = 0; // of the particle or body
-    // body: in its own frame (in the model: in its mass frame); world: the point; else not read.
+    // body: in its own frame (in the model: in its mass frame); world: the point; particle: unused.
     Vec3 anchor{Real(0)};
 };
 
 // A force along the line between the ends, towards each other: stiffness (length - rest_length) +
-// damping (rate of the length). Where both ends are at one point there is no line, and no force.
+// damping (rate of the length). Coincident ends have no line, and no force.
 struct SpringDef {
     SpringEnd a;
     SpringEnd b;
     Real rest_length = Real(0); // m, >= 0
     Real stiffness = Real(0);   // N/m, >= 0
     Real damping = Real(0);     // N s/m, >= 0
-    // At the end of a step it tears when longer than (1 + tear_strain) rest_length; 0: never.
+    // Tears at the end of a step if longer than (1 + tear_strain) rest_length; 0: never.
     Real tear_strain = Real(0);
-    bool torn = false; // bears nothing any more
+    bool torn = false; // carries no load any more
 };
 
-// As it is in the model; whether it is torn is in the state.
+// A spring in the model; whether it is torn is part of the state.
 struct Spring {
     SpringEnd a;
     SpringEnd b;
@@ -67,14 +67,14 @@ struct Spring {
     Real tear_strain = Real(0);
 };
 
-// Where a spring's end is, how it moves, and its arm from the body's centre of mass (0 for others).
+// A spring end's position, velocity and arm from the body's centre of mass (0 if not on a body).
 struct SpringPoint {
     Vec3 position{Real(0)};
     Vec3 velocity{Real(0)};
     Vec3 arm{Real(0)};
 };
 
-// `bodies` and `particles` are arrays of what derives from Motion and ParticleMotion.
+// `bodies` and `particles` are arrays of types derived from Motion and ParticleMotion.
 template <typename Bodies, typename Particles>
 SpringPoint spring_point(const SpringEnd &end, const Bodies &bodies, const Particles &particles) {
     if (end.kind == SpringEnd::Kind::particle)
@@ -86,8 +86,8 @@ SpringPoint spring_point(const SpringEnd &end, const Bodies &bodies, const Parti
     return {motion.position + arm, motion.velocity + glm::cross(motion.angular_velocity, arm), arm};
 }
 
-// Where a particle's sphere touches a body, or may within the step. The plane of contact lies on
-// the body for the length of a step.
+// Where a particle's sphere touches a body, or may within the step. The contact plane stays fixed
+// to the body for the whole step.
 struct ParticleContact {
     std::uint32_t particle = 0;
     std::uint32_t body = 0;

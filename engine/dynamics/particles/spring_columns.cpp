@@ -11,7 +11,7 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 constexpr std::size_t colours = 64;
-// What finds no colour is solved alone, in a block of its own.
+// Springs that find no free colour are solved one by one, each in its own block.
 constexpr std::size_t alone = colours;
 constexpr std::uint32_t none = UINT32_MAX;
 
@@ -28,7 +28,7 @@ template <class Use> void for_colours(StepContext &context, Use &&use) {
     for_colours(context.tasks, std::span(schedule.blocks), schedule.colour_ends, use);
 }
 
-// The first colour that neither particle has a spring of, in the order of the model's springs.
+// The first colour free at both particles, in the order of the model's springs.
 void colour(const Model &model, SpringSchedule &schedule) {
     schedule.sizes.assign(colours + 1, 0);
     schedule.colours_of_particle.assign(model.particles.size(), 0);
@@ -46,7 +46,7 @@ void colour(const Model &model, SpringSchedule &schedule) {
     }
 }
 
-// Which spring is in which lane.
+// Assigns springs to lanes.
 void arrange(SpringSchedule &schedule) {
     constexpr auto width = static_cast<std::uint32_t>(column_lanes);
     std::uint32_t block_count = 0;

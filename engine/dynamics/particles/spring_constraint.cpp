@@ -14,22 +14,22 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // Slower springs keep their energy to a thousandth if they pull along the lines before and after
-// the move, which keeps the angular momentum to rounding.
+// the move, which keeps the angular momentum to round-off.
 constexpr Real swift_turn = Real(0.1);
 
-// As many as leave the energy of what swings through `turn` rad a substep right to a hundredth, and
-// angular momentum to 1e-5, over hundreds of steps.
+// Enough passes to keep the energy to a hundredth, and the angular momentum to 1e-5, over hundreds
+// of steps for a load that swings through `turn` rad per substep.
 int passes_for(Real turn) {
     return turn <= swift_turn ? 1 : 2 + static_cast<int>(std::min(Real(2.5) * turn, Real(3)));
 }
 
-// With fewer, energy grows by up to 2e-5 of it a radian; damping takes more.
-constexpr Real least_damping = Real(0.01); // of the rate at which it swings
+// With fewer passes energy grows by up to a fraction of 2e-5 per radian; damping removes more.
+constexpr Real least_damping = Real(0.01); // as a share of the swing rate
 int passes_for_damped(Real turn) {
     return turn <= Real(0.6) ? 1 : turn <= Real(1.5) ? 2 : passes_for(turn);
 }
 
-// What a spring's end is fastened to, as far as impulses move it.
+// What a spring's end is attached to, as impulses see it.
 struct EndMass {
     const StepContext &context;
     const SpringEnd &end;
@@ -83,7 +83,7 @@ Real speed_of(const StepContext &context, const SpringConstraint &row) {
                     row.axis);
 }
 
-// The line between a spring's ends as they are now; its length.
+// Updates the line between a spring's ends; returns its length.
 Real align(const StepContext &context, SpringConstraint &row) {
     const Spring &spring = context.model.springs[row.spring];
     const SpringPoint a = spring_point(spring.a, context.bodies, context.particles);
@@ -108,7 +108,7 @@ Vec2 rates_at(const StepContext &context, const SpringEnd &end) {
     return Vec2{Real(0)};
 }
 
-// The larger of the two ends: none swings or slows down faster than twice that.
+// The larger of both ends' bounds: no mode swings or decays faster than twice that.
 Vec2 rates_of(const StepContext &context, const Spring &spring) {
     return Real(2) * glm::max(rates_at(context, spring.a), rates_at(context, spring.b));
 }
@@ -130,11 +130,11 @@ void solve(StepContext &context, SpringConstraint &row) {
 }
 
 // V = k (l - r)^2 / 2 as a discrete gradient between lengths l0 and l1: the force -k (1 - 2 r / (l0
-// + l1)) times the mean of the two lines does the work V(l0) - V(l1).
+// + l1)) times the mean of both lines does the work V(l0) - V(l1).
 struct Pull {
     Vec3 middle;  // the mean of the lines
-    Real across;  // of the stiffness, so much acts across it
-    Vec3 impulse; // of the spring's share of the substep, on b
+    Real across;  // the share of the stiffness that acts across it
+    Vec3 impulse; // over the spring's share of the substep, on b
 };
 Pull pull_of(const Spring &spring, const Vec3 &line, const Vec3 &half_move, Real time) {
     const Vec3 middle = line + half_move;
@@ -155,7 +155,7 @@ Vec3 relative_velocity(const StepContext &context, const SpringConstraint &row) 
     return velocity_at(context, spring.b, row.r_b) - velocity_at(context, spring.a, row.r_a);
 }
 
-// One step of Newton's method for the impulse, as if nothing else changed the ends' velocities.
+// One Newton step for the impulse, as if nothing else changed the ends' velocities.
 void solve_midpoint(StepContext &context, SpringConstraint &row, Real h) {
     if (!row.time.is_swift)
         return;
@@ -188,7 +188,7 @@ void refresh_midpoint(StepContext &context, SpringConstraint &row, Real h) {
                pull_of(context.model.springs[row.spring], row.line, half_move, ahead).impulse;
 }
 
-// Begins with the impulse of the explicit force at the end of the substep, as far as that is
+// Starts from the impulse of the explicit force at the end of the substep, as far as that is
 // stable.
 void refresh(StepContext &context, SpringConstraint &row) {
     const Spring &spring = context.model.springs[row.spring];
@@ -200,13 +200,13 @@ void refresh(StepContext &context, SpringConstraint &row) {
     row.softness = row.time.softness;
     row.bias = row.time.bias_rate * (length - spring.rest_length);
     set_mass(context, row);
-    // For all springs from the same velocities.
+    // From the same velocities for all springs.
     if (row.mass != Real(0))
         row.impulse = -row.time.guessed * (row.bias + speed_of(context, row)) / row.softness;
 }
 
-// The rest of the impulse; and what the two have done too much or too little, as far as the passes
-// have left that, or contacts or turning bodies have made it.
+// The rest of the impulse, and a correction of the energy error of both impulses that the passes
+// left, or that contacts or turning bodies caused.
 void repeat(StepContext &context, SpringConstraint &row, Real h) {
     const Spring &spring = context.model.springs[row.spring];
     const Vec3 line = align(context, row) * row.axis;
@@ -224,9 +224,9 @@ void repeat(StepContext &context, SpringConstraint &row, Real h) {
           returned_impulse(speed_of(context, row), inverse, glm::dot(move, both - held) / h));
 }
 
-// The damping, over all of the substep: of the velocities that the pulls before and after the move
-// have left, which are 0 where these balance. It takes energy out however few the passes are;
-// within the move it would take away what the pulls hand on.
+// Damping over the whole substep, of the velocities that the pulls before and after the move leave,
+// which are 0 where those balance. It removes energy however few the passes are; within the move it
+// would remove what the pulls pass on.
 void damp(StepContext &context, Real h) {
     const auto for_damped = [&](auto &&use) {
         for (SpringConstraint &row : context.scratch.springs)
@@ -279,7 +279,7 @@ Real returned_impulse(Real speed, Real inverse, Real gained) {
     const Real squared = speed * speed;
     const Real change = Real(2) * inverse * gained;
     const Real root = std::copysign(std::sqrt(std::max(Real(0), squared - change)), speed);
-    const Real sum = speed + root; // the difference of the roots would round
+    const Real sum = speed + root; // the difference of the roots would round off
     if (!(squared + had_for_given * change > Real(0)) || sum == Real(0))
         return Real(0);
     return -(change > squared ? squared / inverse : Real(2) * gained) / sum;

@@ -1,5 +1,5 @@
-// What soft_step does with a block of springs between particles. Compiled once for each instruction
-// set, by including itself.
+// soft_step's work on a block of springs between particles. Compiled once for each instruction set,
+// by including itself.
 #include "engine/dynamics/particles/spring_columns.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,7 +20,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
 
-// The two particles of the springs in the lanes of one vector.
+// Both particles of the springs in one vector's lanes.
 struct Ends {
     Vector a, b; // velocities
 

@@ -1,4 +1,4 @@
-// How fast springs swing what they hold, and slow it down.
+// How fast springs make their loads swing, and how fast they damp them.
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/particles/spring_constraint.h"
 
@@ -23,7 +23,7 @@ void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
         const SpringPoint b = spring_point(spring.b, bodies, particles);
         const Vec3 line = b.position - a.position;
         const Real length = glm::length(line);
-        // Along the line as the spring is, across it as what it bears makes it.
+        // The spring's stiffness along its line, the geometric stiffness of its tension across it.
         const Real across =
             length > spring.rest_length ? Real(1) - spring.rest_length / length : Real(0);
         const Vec3 axis = length > Real(0) ? line / length : Vec3{Real(0)};

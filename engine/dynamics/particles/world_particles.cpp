@@ -1,4 +1,4 @@
-// Particles and springs of a world: edits, measures, and their part in the step's phases.
+// A world's particles and springs: edits, measures, and their part in the phases of a step.
 #include "engine/dynamics/check_value.h"
 #include "engine/dynamics/world.h"
 
@@ -15,14 +15,13 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// What moves slower is at rest: a share of what gravity adds in a 60th of a second, or in a longer
-// step.
+// Slower particles are at rest: a share of the speed that gravity adds in a 60th of a second, or in
+// a step if that is longer.
 constexpr double particle_rest_share = 4e-3;
 
-// Rate of the fastest springs times the substep that is asked for, some short of what they can be
-// followed to (spring_constraint.cpp): they turn and tighten within the step. And how fast they
-// may slow down what they hold, likewise: one pass over strong dampers on light particles loses
-// what these should hand on.
+// The fastest spring's rate times the substep to ask for, a little below the limit that springs can
+// follow (spring_constraint.cpp), since they turn and tighten within the step. And the same for the
+// damping rate: one pass over strong dampers on light particles loses what they should pass on.
 constexpr double followed_swing = 1.25;
 constexpr double followed_damping = 16;
 
@@ -85,12 +84,12 @@ std::uint32_t World::add_spring(const SpringDef &def) {
 void World::set_particle(std::uint32_t index, const Vec3 &position, const Vec3 &velocity) {
     PLUMB_CHECK(index < model_->particles.size(), "there is no particle " << index);
     check_motion(position, velocity);
-    wake_all(); // what rests on it, or hangs on it
+    wake_all(); // bodies that rest on it or hang from it
     const bool pinned = model_->particles[index].inv_mass == Real(0);
     state_.particles[index] = {position, pinned ? Vec3{Real(0)} : velocity};
 }
 
-// As it would be if a body hung on it: what it is tied to by springs comes along.
+// Held like a body of the mass of everything tied to it by springs, which comes along.
 void World::grab_particle(std::uint32_t index, const Vec3 &target, Real max_force,
                           const GrabSpring &pull) {
     PLUMB_CHECK(index < model_->particles.size(), "there is no particle " << index);
@@ -130,14 +129,14 @@ bool World::is_particle_at_rest(const ParticleMotion &motion) const {
     return glm::dot(motion.velocity, motion.velocity) <= limit * limit;
 }
 
-// Whether what a spring is fastened to lets what sleeps at its other end sleep on.
+// Whether a spring end is still enough for a body asleep at the other end to stay asleep.
 bool World::is_spring_end_still(const SpringEnd &end) const {
     if (is(end, SpringEnd::Kind::particle))
         return is_particle_at_rest(state_.particles[end.index]);
     return is(end, SpringEnd::Kind::world) || scratch_.still[end.index] != 0;
 }
 
-// Marks what sleeps where particles that move touch it, or where a spring's other end moves.
+// Marks sleeping bodies that moving particles touch, or whose spring's other end moves.
 bool World::mark_touched_by_particles() const {
     Scratch &s = scratch_;
     bool any = false;
@@ -164,7 +163,7 @@ bool World::mark_touched_by_particles() const {
     return any;
 }
 
-// The step's copies. Bodies that sleep are loaded where particles meet them, as static ones.
+// The step's copies. Sleeping bodies that particles meet are loaded as static ones.
 void World::load_particles() {
     Scratch &s = scratch_;
     s.particles = state_.particles;
@@ -183,8 +182,8 @@ void World::load_particles() {
                 load(end.index);
 }
 
-// All particles and springs are one island, with the bodies that they touch or are fastened to. Its
-// place is behind that of the bodies.
+// All particles and springs form one island, with the bodies that they touch or are attached to.
+// Its index comes after those of the bodies.
 void World::join_particles() {
     Scratch &s = scratch_;
     const auto particles = static_cast<std::uint32_t>(model_->bodies.size());
@@ -198,7 +197,7 @@ void World::join_particles() {
                 s.islands.join(end.index, particles);
 }
 
-// How many substeps a second springs ask for.
+// The number of substeps per second that springs need.
 double World::spring_rate() const {
     Scratch &s = scratch_;
     find_spring_rates(*model_, s.bodies, s.particles, s.torn, s.solver.particle_stiffness,
@@ -210,7 +209,7 @@ double World::spring_rate() const {
                     2 * static_cast<double>(most.y) / followed_damping);
 }
 
-// A spring or a contact of a particle is about an eighth of the work of a joint or contact.
+// A spring or a particle contact is about an eighth of the work of a joint or contact.
 void World::gather_particle_needs() {
     Scratch &s = scratch_;
     Islands::Needs &needs =
@@ -221,7 +220,7 @@ void World::gather_particle_needs() {
                             static_cast<int>(std::min(spring_rate() * settings_.dt, 65535.0)) + 1);
 }
 
-// Of a body that goes; their ends stay behind in the world.
+// Tears the springs of a removed body; their ends stay behind in the world.
 void World::tear_springs_of(std::uint32_t body) {
     for (std::size_t i = 0; i < model_->springs.size(); ++i) {
         Spring &spring = model_->springs[i];
@@ -247,7 +246,7 @@ void World::tear_springs() {
     }
 }
 
-// After the method is done: what tore, and the report.
+// After the method has run: springs that tore, and the report.
 void World::end_particles() {
     Scratch &s = scratch_;
     tear_springs();

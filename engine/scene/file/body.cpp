@@ -16,7 +16,7 @@ void add_body(Reading &reading, BodyDesc body, const FilePosition &at) {
     reading.positions.bodies.push_back(at);
 }
 
-// Of the kinds of the body's shapes, one that cannot move by forces; else the first.
+// The least movable kind among the body's shapes; the first of equals.
 const KindInfo &least_movable(const BodyDesc &body) {
     const KindInfo *least = &kind_info(body.colliders.front().shape);
     for (const ColliderDesc &collider : body.colliders)
@@ -42,7 +42,7 @@ void read_kind(const Table &table, BodyDesc &body) {
                         (info.moves == Moves::as_told ? ", or \"kinematic\"" : ""));
 }
 
-// Moments of inertia about three axes: none is more than the others together.
+// Moments of inertia about three axes; none may exceed the sum of the other two.
 void read_inertia(const Table &table, BodyDesc &body) {
     body.inertia = table.vector("inertia", positive);
     if (!body.inertia)
@@ -151,7 +151,7 @@ void read_velocity(Reading &reading, const Table &table, BodyDesc &body) {
                              suggestion);
 }
 
-// For so many like it.
+// Room for `count` copies of the body.
 bool has_room_for(Reading &reading, const BodyDesc &body, std::size_t count,
                   const FilePosition &at) {
     std::size_t triangles = 0;
@@ -189,7 +189,7 @@ void repeat_body(Reading &reading, const Table &table, const BodyDesc &body, boo
     if (!repeat || reading.report.error_count() != errors ||
         !has_room_for(reading, body, repeat_count(*repeat), table.position("repeat")))
         return;
-    // A sequence of its own for each body, so that adding one leaves the others where they are.
+    // Each body gets its own random sequence, so that adding one leaves the others where they are.
     Random random(reading.scene.world.seed ^ name_hash(body.name));
     const std::vector<Placement> placed = placements(*repeat, body.position, random);
     if (placed.size() < repeat_count(*repeat)) {
@@ -201,7 +201,7 @@ void repeat_body(Reading &reading, const Table &table, const BodyDesc &body, boo
         return;
     }
     if (body.name.empty())
-        return; // that is reported already
+        return; // already reported
     for (std::size_t i = 0; i < placed.size(); ++i) {
         BodyDesc copy = body;
         copy.name += "_" + std::to_string(i);
@@ -310,14 +310,14 @@ std::optional<std::size_t> find_body(Reading &reading, const Table &table, std::
                             std::to_string(group->second.count - 1));
         return std::nullopt;
     }
-    // A repeat that failed would have made it, perhaps.
+    // It may be a copy from a repeat that failed.
     const std::size_t underscore = name->rfind('_');
     if (underscore != std::string::npos) {
         const auto group = reading.groups.find(name->substr(0, underscore));
         if (group != reading.groups.end() && !group->second.is_complete)
             return std::nullopt;
     }
-    // Looking through all names is slow in a large scene; after so many one gets the idea.
+    // Searching all names is slow in a large scene, so only the first errors get a suggestion.
     constexpr int suggested = 100;
     table.error(key, "there is no body " + in_quotes(*name),
                 ++reading.missing_bodies <= suggested ? reading.bodies.suggestion(*name) : "");

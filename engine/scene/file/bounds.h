@@ -1,4 +1,4 @@
-// What a number of a scene file may be, and how to say so.
+// Allowed ranges of a scene file's numbers, and their wording.
 #pragma once
 
 #include "engine/scene/scene_desc.h"

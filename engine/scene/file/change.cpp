@@ -13,7 +13,7 @@ namespace {
 
 using namespace scene_file;
 
-// Follows a path through the tables of a file, a key at a time.
+// Follows a path through a file's tables, one key at a time.
 class Path {
   public:
     explicit Path(std::string_view whole) : whole_(whole), rest_(whole) {}
@@ -25,7 +25,7 @@ class Path {
         return take(dot);
     }
 
-    // A name may have dots of its own: the longest of these that stands here, or empty.
+    // Names may contain dots: takes the longest of these that matches here, or empty.
     std::string_view take_name(std::span<const std::string_view> names) {
         std::string_view longest;
         for (const std::string_view name : names)
@@ -113,7 +113,7 @@ std::vector<std::string_view> keys_of(const toml::table &table) {
     return keys;
 }
 
-// Whole numbers as such, for what counts.
+// Whole values as integers, for keys that need one.
 template <typename Put> void put(double value, const Put &put_in) {
     constexpr double exact = 9007199254740992; // 2^53
     if (value == std::round(value) && std::abs(value) <= exact)
@@ -134,7 +134,7 @@ void put(toml::table &table, std::string_view key, double value) {
     put(value, [&](auto number) { table.insert_or_assign(key, number); });
 }
 
-// Of three numbers in brackets those that are not zero; where all are, all.
+// The nonzero components of an array of three numbers, or all three if all are zero.
 void add_components(const toml::array &array, const std::string &path,
                     std::vector<std::string> &paths) {
     constexpr std::string_view names = "xyz";
@@ -147,7 +147,7 @@ void add_components(const toml::array &array, const std::string &path,
             paths.push_back(path + "." + names[i]);
 }
 
-// Names go before indices, as `element` reads them.
+// Names take precedence over indices, as in `element`.
 void add_paths(const toml::table &table, const std::string &before, std::string_view wanted,
                std::vector<std::string> &paths) {
     for (const auto &[key, value] : table) {
@@ -183,7 +183,7 @@ void change(toml::table &root, const ChangedNumber &number) {
             if (!path.at_end())
                 path.refuse("the file gives no " + std::string(path.taken()) +
                             ", so it has no number to change there; write it into the file");
-            put(*table, key, number.value); // whoever reads the table knows its keys
+            put(*table, key, number.value); // the table's reader checks the key
             return;
         }
         toml::array *array = nullptr;

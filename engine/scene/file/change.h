@@ -1,4 +1,4 @@
-// Scene files with some of their numbers changed: what a map goes through.
+// Scene files with some numbers changed, as in a parameter map.
 #pragma once
 
 #include "engine/scene/scene_file.h"
@@ -12,30 +12,31 @@
 
 namespace plumb {
 
-// One number of a scene file, by its path: what stands in double brackets, the name, the keys, all
+// One number of a scene file, by its path: the word in double brackets, the name and the keys,
 // joined by dots: "body.ball.velocity.x", "material.steel.friction", "body.box.repeat.count",
-// "world.seed". Of an array of three numbers x, y and z, of any other the index from 0.
+// "world.seed". Elements of an array of three numbers are x, y and z, those of any other their
+// index from 0.
 struct ChangedNumber {
     std::string path;
     double value = 0;
 };
 
-// As parse_scene, with these numbers in place of those of the text; a plain number may also be one
-// that the text leaves to its default. Throws std::invalid_argument, saying what would be right,
-// for a path that names no number. What is expected of one of a repeated body's copies that are not
-// there with these numbers is left out. A value that is out of place is an error of the result, as
-// if it stood in the file; whole numbers are taken for such.
+// Like parse_scene, with these numbers replacing those in the text; a plain number may also be one
+// that the text leaves at its default. Throws std::invalid_argument, saying what would be right,
+// for a path that names no number. Expectations of copies of a repeated body that do not exist with
+// these numbers are dropped. An invalid value is an error of the result, just as in the file; whole
+// values count as integers.
 SceneFileResult parse_scene(std::string_view text, const std::string &path,
                             const std::vector<std::string> &known_methods,
                             std::span<const ChangedNumber> changed);
 
-// The paths of all numbers that the text gives under this key: "stiffness" may stand for
-// "spring.left.stiffness" and "spring.right.stiffness", "velocity" for "body.ball.velocity.x": of
-// three numbers in brackets those that are not zero, or all three. None of the camera's. Empty when
-// the text is not TOML.
+// The paths of all numbers that the text gives under this key: "stiffness" may yield
+// "spring.left.stiffness" and "spring.right.stiffness", "velocity" "body.ball.velocity.x". Of an
+// array of three numbers it yields the nonzero ones, or all three if all are zero. Excludes the
+// camera. Empty when the text is not TOML.
 std::vector<std::string> number_paths(std::string_view text, std::string_view key);
 
-// A scene file's text; empty, with the message of load_scene, when it cannot be read.
+// A scene file's text; empty, with load_scene's message, when it cannot be read.
 std::optional<std::string> read_scene_text(const std::filesystem::path &path,
                                            std::vector<SceneMessage> &messages);
 

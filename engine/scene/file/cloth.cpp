@@ -9,7 +9,7 @@ namespace plumb::scene_file {
 
 namespace {
 
-// The first edge without length, or corner at its own place: what no spring can be made of.
+// Describes the first zero-length edge, or else the first vertex used by no triangle.
 std::optional<std::string> flaw_of(const MeshData &mesh) {
     std::vector<bool> is_used(mesh.vertices.size());
     for (const std::array<std::uint32_t, 3> &corners : mesh.triangles)
@@ -28,7 +28,7 @@ std::optional<std::string> flaw_of(const MeshData &mesh) {
     return std::nullopt;
 }
 
-// False, having reported it, when nothing can be made of it.
+// False, with an error reported, when the mesh is unusable.
 bool read_mesh(Reading &reading, const Table &table, ClothDesc &cloth) {
     table.refuse({"cells", "size", "shear"}, "a cloth from a file",
                  "its particles and springs are the file's vertices and edges");
@@ -76,7 +76,7 @@ bool read_grid(const Table &table, ClothDesc &cloth) {
     return is_read;
 }
 
-// One element of an array of pins; none, having reported it, when there is no such particle.
+// One element of an array of pins; empty, with an error reported, when there is no such particle.
 std::optional<std::uint32_t> read_pin(const Table &table, const ClothDesc &cloth,
                                       const toml::node &node, const std::string &name) {
     const auto whole = [&](const toml::node &value, const std::string &of, std::size_t count) {
@@ -101,7 +101,7 @@ std::optional<std::uint32_t> read_pin(const Table &table, const ClothDesc &cloth
                                       static_cast<std::size_t>(*i));
 }
 
-// Those of a grid that a word stands for.
+// The pins of a grid that a word stands for.
 std::vector<std::uint32_t> pins_called(std::size_t word, const ClothDesc &cloth) {
     const int nx = cloth.cells[0];
     const int nz = cloth.cells[1];
@@ -142,7 +142,7 @@ void read_pins(const Table &table, ClothDesc &cloth) {
     cloth.pins.erase(std::unique(cloth.pins.begin(), cloth.pins.end()), cloth.pins.end());
 }
 
-// An array of `count` vectors; null, having reported it, when it is not.
+// The array at `key`; null, with an error reported, unless it has `count` elements.
 const toml::array *vectors_at(const Table &table, std::string_view key, std::size_t count) {
     const toml::array *array = table.node(key)->as_array();
     if (array != nullptr && array->size() == count)
@@ -189,7 +189,7 @@ void read_state_of(const Table &table, ClothDesc &cloth, std::size_t springs) {
     }
 }
 
-// How many springs cloth_parts makes of a grid.
+// How many springs cloth_parts makes for a grid.
 std::size_t grid_springs(const ClothDesc &cloth) {
     const auto nx = static_cast<std::size_t>(cloth.cells[0]);
     const auto nz = static_cast<std::size_t>(cloth.cells[1]);

@@ -28,7 +28,7 @@ void read_filter(const Table &table, ColliderDesc &collider) {
     collider.sensor = table.boolean("sensor").value_or(false);
 }
 
-// One of several. False, having reported it, when the shape cannot be used.
+// Reads one of several shapes. False, with an error reported, when it is unusable.
 bool read_part(Reading &reading, const toml::node &node, const std::string &of, BodyDesc &body) {
     const std::optional<std::size_t> kind =
         read_shape_kind(reading.report, node, "shapes", of, kind_names<ShapeDesc>());

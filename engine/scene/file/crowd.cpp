@@ -24,8 +24,8 @@ SceneMessage refusal(const ScenePositions &positions, std::size_t body, std::str
             std::move(suggestion)};
 }
 
-// What a body may reach in the first step beyond where it is, as the world sees it: shapes whose
-// boxes, grown by that, touch are a pair that it looks at.
+// How far the world grows a body's boxes in the first step; shapes whose grown boxes touch are a
+// broad-phase pair.
 double reach(const StepSettings &settings, const BodyDesc &body) {
     double reach = settings.speculative_distance / 2;
     if (body.kind != BodyKind::static_body)
@@ -53,7 +53,7 @@ std::optional<SceneMessage> too_crowded(const SceneDesc &scene, const ScenePosit
     const StepSettings settings = scene.world.settings.applied();
     std::vector<std::size_t> planes;
     std::vector<BoundsDesc> boxes;
-    std::vector<std::size_t> body_of; // each box
+    std::vector<std::size_t> body_of; // of each box
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const BodyDesc &body = scene.bodies[i];
         if (has_plane(body))

@@ -1,4 +1,4 @@
-// Scenes whose bodies are too many in one place to be run. Not for users of the engine.
+// Detects scenes too crowded to run. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/file/warnings.h"
@@ -7,9 +7,9 @@
 
 namespace plumb {
 
-// Of a scene without other errors: an error at the body with which the planes are more than
-// max_scene_planes (scene_limits.h), or the pairs of bodies that are near each other in the first
-// step more than max_scene_pairs.
+// For a scene without other errors: an error at the body that takes the planes over
+// max_scene_planes (scene_limits.h), or the pairs of nearby bodies in the first step over
+// max_scene_pairs.
 std::optional<SceneMessage> too_crowded(const SceneDesc &scene, const ScenePositions &positions);
 
 } // namespace plumb

@@ -7,7 +7,7 @@ namespace plumb::scene_file {
 
 namespace {
 
-// Of a spring that the scene has; none, having reported it, when it is none of its springs.
+// The name of an existing spring; reports an error when the scene has no such spring.
 std::optional<std::string> read_spring_name(Reading &reading, const Table &table) {
     std::optional<std::string> name = table.string("spring");
     if (name && std::ranges::find(reading.scene.springs, *name, &SpringDesc::name) ==
@@ -55,7 +55,7 @@ void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
             expect.body = reading.scene.bodies[*body].name;
 }
 
-// Whether `equals` is a curve, not a number.
+// Whether `equals` is a curve rather than a number.
 bool is_curve(const Table &table) {
     return table.has("equals") && table.node("equals")->is_array();
 }
@@ -111,7 +111,7 @@ void read_estimate(const Table &table, ExpectDesc &expect) {
                     "--write` refines it");
 }
 
-// Whether it is of one of a repeated body's copies that fewer of them leave out.
+// Whether the expectation is of a repeated body's copy that does not exist with a smaller count.
 bool is_of_missing_copy(const Reading &reading, const Table &table) {
     const toml::node *name = table.node("body");
     if (name == nullptr || !name->is_string())

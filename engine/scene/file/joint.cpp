@@ -41,8 +41,8 @@ glm::dvec3 to_world(const SceneDesc &scene, const std::optional<std::size_t> &in
     return body.position + body.orientation * local;
 }
 
-// The shortest turn of the x axis to a unit direction; to one that points back, by way of its
-// opposite, for the shortest turn there is not well defined.
+// The shortest rotation of the x axis to a unit direction. One that points back goes via its
+// opposite, since the shortest rotation is ill-defined there.
 glm::dquat frame_along(const glm::dvec3 &axis) {
     const bool is_back = axis.x < 0;
     const glm::dvec3 to = is_back ? -axis : axis;
@@ -52,7 +52,7 @@ glm::dquat frame_along(const glm::dvec3 &axis) {
 
 // ---- anchors and frames ----
 
-// `key` is anchor_a or anchor_b; `common` is the point that stands for both.
+// `key` is anchor_a or anchor_b; `common` is the point given for both.
 void read_anchor(Reading &reading, const JointTable &source, const std::string &key, bool is_world,
                  const std::optional<glm::dvec3> &common, JointEnd &end) {
     const Table &table = source.table;
@@ -77,7 +77,7 @@ void read_anchor(Reading &reading, const JointTable &source, const std::string &
         end.anchor_local = chosen == local_key ? *point : to_local(reading.scene, end.body, *point);
 }
 
-// Whether both or neither are there; else an error with the suggestion.
+// Reports an error with the suggestion if only one of the keys is present.
 void need_both(const Table &table, std::string_view a, std::string_view b,
                const std::string &suggestion) {
     if (table.has(a) != table.has(b))
@@ -86,7 +86,7 @@ void need_both(const Table &table, std::string_view a, std::string_view b,
                     suggestion);
 }
 
-// In the world, or of each body in its own.
+// Reads one frame in the world, or a local frame for each body.
 void read_frames(JointTable &source, JointEnd &a, JointEnd &b) {
     const Table &table = source.table;
     if (source.type.frames == Frames::none)
@@ -140,7 +140,7 @@ bool add_joint(Reading &reading, const JointTable &source, const std::string &na
     return true;
 }
 
-// One joint between each of a repeated body's copies and the next.
+// Joins each copy of a repeated body to the next.
 void read_chain(Reading &reading, JointTable &source, std::size_t errors) {
     const Table &table = source.table;
     table.refuse({"body_a", "body_b", "anchor", "anchor_a", "anchor_b"}, "a chain",
@@ -171,7 +171,7 @@ void read_chain(Reading &reading, JointTable &source, std::size_t errors) {
     const std::size_t first = group->second.first;
     const std::size_t count = group->second.count;
     if (!group->second.is_complete)
-        return; // its mistakes are reported already
+        return; // its errors are already reported
     if (count < 2) {
         table.error("chain", "there is only one " + in_quotes(*chain),
                     "a chain needs two bodies at least");
@@ -233,7 +233,7 @@ void read_joint(Reading &reading, const toml::table &toml) {
         read_bodies(reading, table, toml, a, b);
     const JointTypeInfo *type = read_joint_type(table);
     if (type == nullptr)
-        return; // what else there should be depends on it
+        return; // the other keys depend on the type
     JointTable source{table, *type, joint};
     read_joint_values(reading.report, source);
     if (is_chain) {

@@ -1,4 +1,4 @@
-// The table of a joint in a scene file. Not for users of the engine.
+// A joint's table in a scene file. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/file/table.h"
@@ -6,7 +6,7 @@
 
 namespace plumb::scene_file {
 
-// What a joint's table says of one joint or, in a chain, of each.
+// What a joint's table specifies for one joint or, in a chain, for each.
 struct JointTable {
     const Table &table;
     const JointTypeInfo &type;
@@ -15,13 +15,13 @@ struct JointTable {
     glm::dquat frame{1, 0, 0, 0}; // of both bodies, world
 };
 
-Words joint_keys_in_files(); // all that a joint may have, of whatever type
+Words joint_keys_in_files(); // the keys of all joint types
 
-// Null, having reported it, when there is no usable one.
+// Null, with an error reported, when there is no usable type.
 const JointTypeInfo *read_joint_type(const Table &table);
 
-// The keys of the table of joint types, and the remembered impulses. Reports every error, and keys
-// that only other types have.
+// Reads the keys listed in the joint type table, and the saved impulses. Reports every error,
+// including keys that only other types have.
 void read_joint_values(Report &report, JointTable &source);
 
 } // namespace plumb::scene_file

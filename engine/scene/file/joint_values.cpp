@@ -47,7 +47,7 @@ std::string list_of(const std::vector<std::string_view> &names, const std::strin
     return text;
 }
 
-// As it stands in the table, perhaps in degrees; empty when it is not there.
+// The key as written in the table, perhaps in degrees; empty when absent.
 std::string present(const Table &table, const JointKey &key) {
     const std::string degree_key = std::string(key.name) + "_deg";
     return table.has(key.name)                       ? std::string(key.name)
@@ -62,7 +62,7 @@ std::string_view chosen_key(const Table &table, const JointKey &key,
                                  : std::string_view{};
 }
 
-// Both numbers; of an angle in radians.
+// Both numbers, angles in radians.
 std::optional<std::array<double, 2>> read_pair(const Table &table, const JointKey &key) {
     const std::string degree_key = std::string(key.name) + "_deg";
     const std::string_view chosen = chosen_key(table, key, degree_key);
@@ -71,7 +71,7 @@ std::optional<std::array<double, 2>> read_pair(const Table &table, const JointKe
     const double unit = chosen == degree_key ? degree : 1;
     Bounds bounds = key.bounds;
     if (key.is_angle()) {
-        // A grain of tolerance, so that a bound in degrees survives its conversion.
+        // A small tolerance, so that a value at a bound in degrees survives conversion.
         const double scale = (1 + 1e-12) * degree / unit;
         bounds = {scale * bounds.min, scale * bounds.max, bounds.text};
     }
@@ -88,7 +88,7 @@ std::optional<std::array<double, 2>> read_pair(const Table &table, const JointKe
     return pair;
 }
 
-// Reads the value of a key that is there.
+// Reads the value of a key that is present.
 struct ReadKey {
     const Table &table;
     const JointKey &key;
@@ -127,7 +127,7 @@ void read_keys(const Table &table, const std::vector<JointKey> &keys, JointDesc 
     }
 }
 
-// Keys that only other types have.
+// Reports keys that only other types have.
 void refuse_keys_of_others(Report &report, const Table &table, const JointTypeInfo &type) {
     const auto refuse = [&](std::string_view key, const std::vector<std::string_view> &types) {
         if (table.has(key))
@@ -176,7 +176,7 @@ void read_lengths(JointTable &source) {
                     "the anchors are at least min_length and at most max_length apart");
 }
 
-// As many as the type has rows.
+// Reads one value per row of the type.
 void read_rows(JointTable &source, const std::string &key,
                std::array<double, max_joint_rows> &rows) {
     const toml::node *node = source.table.node(key);

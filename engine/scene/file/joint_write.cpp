@@ -26,11 +26,11 @@ std::string pair_text(const JointKey &key, const std::array<double, 2> &pair) {
     return assignment(key, "[" + shortest(lower) + ", " + shortest(upper) + "]");
 }
 
-// The line of a key; empty where a file without it says the same.
+// A key's line; empty where omitting it means the same.
 struct KeyLine {
     const JointKey &key;
     const JointDesc &joint;
-    bool is_needed; // by another key that is said
+    bool is_needed; // by another key that is written
 
     bool is_rod() const { return same_bits(joint.min_length, joint.max_length); }
 

@@ -48,7 +48,7 @@ void Lines::set_value(std::size_t i, std::string_view key, std::string_view valu
     line.replace(at, std::min(last, line.size() - 1) + 1 - at, with_ends(value));
 }
 
-// What is between the array's bracket and the line that has the other goes.
+// Joins an array that spans several lines, dropping everything between its brackets.
 void Lines::join_array(std::size_t i, std::size_t at) {
     std::string &line = lines_[i];
     const auto closing = [](std::string_view text) {

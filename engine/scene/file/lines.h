@@ -1,4 +1,4 @@
-// A scene file as its lines, to change some of them and keep the rest byte for byte.
+// A scene file as lines, to edit some of them and keep the rest byte for byte.
 #pragma once
 
 #include "engine/scene/file/table.h" // toml++
@@ -9,11 +9,11 @@
 
 namespace plumb::scene_file {
 
-// Lines keep their index: removed ones are empty, and what is added stands in one with what it
-// follows.
+// Lines keep their index: removed lines become empty, and added text joins the line it follows (or
+// precedes).
 class Lines {
   public:
-    // `layout` is what set_value throws where a line is not laid out as it needs: it says how.
+    // `layout` is the message set_value throws for a line not laid out as required; it says how to.
     Lines(std::string_view text, std::string_view layout);
 
     std::size_t size() const { return lines_.size(); }
@@ -21,8 +21,8 @@ class Lines {
     std::string take(std::size_t i);
     void add_after(std::size_t i, std::string_view text);
     void add_before(std::size_t i, std::string_view text);
-    // Of a line "key = value # comment"; throws std::invalid_argument of any other. An array of
-    // numbers may go on over the lines that follow.
+    // For a line "key = value # comment"; throws std::invalid_argument for any other. An array of
+    // numbers may span several lines.
     void set_value(std::size_t i, std::string_view key, std::string_view value);
     std::string text() const;
 

@@ -14,15 +14,15 @@ namespace plumb::scene_file {
 
 namespace {
 
-// One end of a spring, as it is at the start.
+// One end of a spring, at the start.
 struct SpringEnd {
     std::string name; // empty: the world
     glm::dvec3 anchor_local{0};
     glm::dvec3 place{0};
-    double inv_mass = 0; // 1/kg; 0 for what never moves
+    double inv_mass = 0; // 1/kg; 0 if it never moves
 };
 
-// A cloth's particle, when the name begins with a cloth's. Reports a particle that it has not.
+// Finds a cloth's particle if the name starts with a cloth's. Reports one that the cloth lacks.
 bool find_cloth_particle(const Reading &reading, const Table &table, std::string_view key,
                          const std::string &name, std::optional<SpringEnd> &end) {
     const std::size_t bracket = name.rfind('[');
@@ -50,7 +50,7 @@ bool find_cloth_particle(const Reading &reading, const Table &table, std::string
     return true;
 }
 
-// Nothing, having reported it, when the name is nobody's.
+// Empty, with an error reported, when the name is unknown.
 std::optional<SpringEnd> find_end(Reading &reading, const Table &table, std::string_view key) {
     if (is_world(table, key))
         return SpringEnd{};
@@ -112,7 +112,7 @@ void read_anchor(const Reading &reading, const Table &table, const std::string &
     end.place = is_local ? desc.position + desc.orientation * *point : *point;
 }
 
-// Of the two ends alone on the spring (kg), the other end of an immovable one infinitely heavy;
+// Reduced mass of the ends alone on the spring (kg), immovable ends being infinitely heavy;
 // infinite when neither moves.
 double reduced_mass(const SpringEnd &a, const SpringEnd &b) {
     return 1 / (a.inv_mass + b.inv_mass);
@@ -150,7 +150,7 @@ void read_pull(const Table &table, double mass, SpringDesc &spring) {
         spring.damping =
             2 * table.number(brake, not_negative).value_or(0) * std::sqrt(spring.stiffness * mass);
     if (!std::isfinite(mass))
-        return; // said already
+        return; // already reported
     for (const auto &[key, value, bounds] : {std::tuple(how, spring.stiffness, positive),
                                              std::tuple(brake, spring.damping, not_negative)})
         if ((key == "frequency" || key == "damping_ratio") &&

@@ -1,4 +1,4 @@
-// What the tables of particles, springs and cloth have in common. Not for users of the engine.
+// Shared by the tables of particles, springs and cloth. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/file/reading.h"
@@ -14,7 +14,7 @@ std::vector<std::string_view> key_names(std::span<const ParticleKey<Desc>> keys)
     return names;
 }
 
-// The values of all keys that have a member.
+// Reads all keys that have a member.
 template <typename Desc>
 void read_members(const Table &table, std::span<const ParticleKey<Desc>> keys, Desc &desc) {
     for (const ParticleKey<Desc> &key : keys) {
@@ -30,11 +30,12 @@ void read_members(const Table &table, std::span<const ParticleKey<Desc>> keys, D
     }
 }
 
-// The table's own name, in a world in which springs name bodies, particles and cloths alike.
+// The table's own name, which must be unique among bodies, particles and cloths, since a spring's
+// ends may name any of them.
 std::string read_end_name(Reading &reading, const Table &table, const std::string &kind,
                           Names &names);
 
-// Whether it names a particle, or one of a cloth.
+// Whether the name is that of a particle, cloth particles included.
 bool is_particle(const Reading &reading, const std::string &name);
 
 } // namespace plumb::scene_file

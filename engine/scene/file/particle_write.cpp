@@ -11,7 +11,7 @@ std::string line(std::string_view key, const std::string &value) {
     return std::string(key) + " = " + value + "\n";
 }
 
-// Of the keys that have a member, those that are not as a file without them says.
+// The lines of all keys that have a member and a non-default value.
 template <typename Desc>
 std::string member_lines(std::span<const ParticleKey<Desc>> keys, const Desc &desc) {
     const Desc plain;

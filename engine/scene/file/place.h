@@ -1,4 +1,4 @@
-// Places in a scene file: [x, y, z], or [x, y] of what is flat. Not for users of the engine.
+// Points in a scene file: [x, y, z], or [x, y] for flat shapes. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/file/table.h"
@@ -16,7 +16,7 @@ std::optional<glm::dvec3> place(const Table &table, const toml::node &node, cons
 std::optional<glm::dvec3> place(const Table &table, std::string_view key, bool flat,
                                 const Bounds &bounds);
 
-// The good ones of an array.
+// The valid points of an array.
 std::vector<glm::dvec3> places(const Table &table, std::string_view key, bool flat);
 
 } // namespace plumb::scene_file

@@ -13,7 +13,7 @@ class ShapeFiles;
 class Table;
 } // namespace scene_file
 
-// Reports every error. A probe that the geometry refuses to answer in that precision is one.
+// Reports every error, including probes that the geometry refuses to answer in that precision.
 std::vector<ProbeDesc> read_probes(scene_file::Report &report, const scene_file::Table &top,
                                    Precision precision, scene_file::ShapeFiles &files);
 

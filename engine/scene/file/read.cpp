@@ -16,7 +16,8 @@ namespace {
 
 using namespace scene_file;
 
-// The end of the file, as toml++ counts it, lies a little behind its last character.
+// Clamps a position to the text: toml++ places the end of the file slightly past its last
+// character.
 FilePosition inside(std::string_view text, FilePosition at) {
     std::size_t line = 1;
     std::size_t start = 0;
@@ -29,7 +30,7 @@ FilePosition inside(std::string_view text, FilePosition at) {
     }
     const std::string_view rest = text.substr(start);
     const std::string_view content = rest.substr(0, std::min(rest.size(), rest.find('\n')));
-    // Columns count characters: the bytes 10xxxxxx continue one.
+    // Columns count characters: bytes 10xxxxxx are continuations.
     const auto characters =
         static_cast<std::size_t>(std::count_if(content.begin(), content.end(), [](char c) {
             return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;

@@ -1,5 +1,4 @@
-// A scene file while it is read: what its tables have brought so far, and who reads which.
-// Not for users of the engine.
+// The state of reading a scene file, and the readers of its tables. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/file/names.h"
@@ -13,16 +12,16 @@
 
 namespace plumb::scene_file {
 
-// The copies of a repeated body: their indices, one after the other.
+// The copies of a repeated body, which have consecutive indices.
 struct BodyGroup {
     std::size_t first = 0;
     std::size_t count = 0;
-    bool is_complete = false; // not when the repeat had errors
+    bool is_complete = false; // false if the repeat had errors
 };
 
 struct Reading {
     Reading() = default;
-    // Of the file of that path.
+    // For the file at `path`.
     Reading(const std::filesystem::path &path, const std::vector<std::string> &methods)
         : known_methods(methods.begin(), methods.end()), files(path.parent_path()) {
         scene.name = path.stem().string();
@@ -47,14 +46,14 @@ struct Reading {
     std::map<std::string, std::size_t> cloths_by_name;
     std::map<std::string, BodyGroup> groups; // by the name of the repeated body
     std::size_t triangles = 0;               // of all bodies
-    std::size_t particle_count = 0;          // those of cloths among them
-    std::size_t spring_count = 0;            // likewise
+    std::size_t particle_count = 0;          // cloth included
+    std::size_t spring_count = 0;            // cloth included
     int missing_bodies = 0;
-    bool counts_may_differ = false; // what is expected of copies that are not there is left out
+    bool counts_may_differ = false; // drop expectations of missing copies
     bool said_too_many = false;
 };
 
-// The text of a file, and its tables; empty, with a message, when there is none.
+// A file's text, and its tables; empty, with a message, on failure.
 std::optional<std::string> read_file(const std::filesystem::path &path,
                                      std::vector<SceneMessage> &messages);
 std::optional<toml::table> parse_toml(std::string_view text, const std::string &path,
@@ -68,7 +67,7 @@ inline constexpr std::array<std::string_view, 15> scene_keys{
 // Reads all tables of a scene, and reports every error.
 void read_scene(Reading &reading, const Table &top);
 
-// Each adds what the table says to the scene, and reports every error.
+// Each adds its table's contents to the scene, and reports every error.
 void read_world(Reading &reading, const toml::table &source);
 void read_methods(Reading &reading, const toml::table &source);
 void read_camera(Reading &reading, const toml::table &source);
@@ -78,28 +77,29 @@ void read_joint(Reading &reading, const toml::table &source);
 void read_attractor(Reading &reading, const toml::table &source);
 void read_particle(Reading &reading, const toml::table &source);
 void read_cloth(Reading &reading, const toml::table &source);
-void read_spring(Reading &reading, const toml::table &source); // after what it may name
+void read_spring(Reading &reading, const toml::table &source); // after everything it may name
 void read_expect(Reading &reading, const toml::table &source);
 void read_state(Reading &reading, const toml::table &source);
 
-// The settings of a table that has nothing else.
+// Reads a table that holds only settings.
 GivenSettings read_settings(Report &report, const toml::table &source, const std::string &title);
 
-// The shape of a body, or its several shapes: one at least, usable even after an error. False when
-// there was one.
+// A body's one shape or its list of shapes: at least one, usable even after an error. False if
+// there was an error.
 bool read_colliders(Reading &reading, const Table &table, BodyDesc &body);
 
-// The name of a material that the scene has; else, having reported it, as it stands, or empty.
+// The name of an existing material; otherwise reports an error and returns the name as written, or
+// empty.
 std::string read_material_name(Reading &reading, const Table &table);
 
-// How the body of that title is repeated; empty, having reported it, when that cannot be said.
+// How the body with that title is repeated; empty, with an error reported, if that is unclear.
 std::optional<Repeat> read_repeat(Report &report, const toml::table &source,
                                   const std::string &title, const BodyDesc &body, bool has_shape);
 
-// The index of the body of that name; empty, having reported it, when there is none.
+// The index of the body named by `key`; empty, with an error reported, when there is none.
 std::optional<std::size_t> find_body(Reading &reading, const Table &table, std::string_view key);
 
-// Whether `count` more fit beside those present; an error, once for a file, when not.
+// Whether `count` more fit beside those present; if not, an error, once per file.
 bool has_room_for(Reading &reading, std::size_t count, std::size_t limit, std::size_t present,
                   const char *what, const FilePosition &at);
 

@@ -24,7 +24,7 @@ constexpr auto command_names = names_of(std::make_index_sequence<std::variant_si
 
 // ---- reading
 
-// Of one [[command]].
+// Reads the fields of one [[command]].
 struct Fields {
     Reading &reading;
     const Table &table;
@@ -58,7 +58,7 @@ struct Fields {
         if (const toml::table *source = table_at(reading.report, table, key))
             field = read_settings(reading.report, *source, "[command.settings]");
     }
-    // As [[body]] has it. By then bodies of the scene may be gone, and their names free.
+    // Like [[body]]. Bodies of the scene may be gone by then, and their names free again.
     void read(std::string_view key, BodyDesc &field) {
         const toml::table *source = table_at(reading.report, table, key);
         if (!source)
@@ -92,7 +92,7 @@ std::optional<Command> read_fields(Fields &fields, std::size_t which) {
     }
 }
 
-// All keys that any command has.
+// The keys of all commands.
 std::vector<std::string_view> command_keys() {
     std::vector<std::string_view> keys{"step", "do"};
     const auto collect = [&](auto... commands) {
@@ -171,7 +171,7 @@ void read_hashes(Reading &reading, const toml::table &source, Recording &recordi
 
 struct PartLines {
     std::string text;
-    std::string tables; // they come after all values
+    std::string tables; // these must follow all values
 
     void operator()(std::string_view key, const std::string &field) { line(key, string(field)); }
     void operator()(std::string_view key, double field, OrDefault = {}) {

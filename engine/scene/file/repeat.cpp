@@ -24,7 +24,7 @@ glm::ivec3 read_counts(const Table &table, std::int64_t most) {
     return counts;
 }
 
-// Wherever the body is, so that rounding does not make copies of one height differ.
+// Independent of the body's position, so that rounding does not make equal bodies differ.
 double height_of(BodyDesc body) {
     body.position = glm::dvec3(0);
     const BoundsDesc around = bounds(body);
@@ -49,7 +49,7 @@ std::optional<Repeat> read_repeat(Report &report, const toml::table &source,
     static constexpr std::array<Words, 6> keys{grid_keys,    stack_keys, line_keys,
                                                pyramid_keys, ring_keys,  scatter_keys};
     std::string name = "repeat of " + title;
-    // Which keys are right depends on the kind, so that is looked up first.
+    // The valid keys depend on the kind, so look that up first.
     const auto *kind_node = source.get_as<std::string>("kind");
     const auto found =
         kind_node ? std::find(kinds.begin(), kinds.end(), kind_node->get()) : kinds.end();

@@ -1,4 +1,4 @@
-// What is said about a scene file while it is read. Not for users of the engine.
+// Messages collected while reading a scene file. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/file/warnings.h"
@@ -18,7 +18,7 @@ inline std::string in_quotes(std::string_view name) {
 
 class Report {
   public:
-    // Of many mistakes the first in the file are kept.
+    // If there are too many errors, the first in file order are kept.
     void error(const FilePosition &at, std::string what, std::string suggestion = {}) {
         messages_.push_back({SceneMessage::Severity::error, at.line, at.column, std::move(what),
                              std::move(suggestion)});
@@ -30,7 +30,7 @@ class Report {
 
     std::size_t error_count() const { return error_count_; }
 
-    // The last of them says how many more mistakes there are.
+    // If some were dropped, the last message says how many.
     std::vector<SceneMessage> in_file_order() {
         keep_first();
         if (error_count_ > max_listed_mistakes)

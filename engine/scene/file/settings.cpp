@@ -20,7 +20,7 @@ using namespace scene_file;
 constexpr std::string_view own_lines = "write [world] and [methods.NAME] as tables, with each key "
                                        "and its value on one line of its own";
 
-// What stands for it in a file.
+// The value as written in a file.
 std::string value_text(const SettingRow &row, const StepSettings &settings) {
     const std::string text = setting_text(row, settings);
     return text.find('/') == std::string::npos ? text : in_quotes(text);
@@ -48,7 +48,7 @@ class Change {
         }
     }
 
-    // A key of [world].
+    // Sets a key of [world].
     void set(std::string_view key, const std::string &value) {
         const toml::table *world = root_["world"].as_table();
         if (world != nullptr && world->contains(key) && !moved_keys_.contains(key))
@@ -105,13 +105,13 @@ class Change {
         const std::size_t at = line.find_first_not_of(" \t");
         if (at == std::string::npos || !std::string_view(line).substr(at).starts_with(begins))
             throw std::invalid_argument(std::string(own_lines));
-        std::erase(line, '\r'); // the end is put back with that of the file
+        std::erase(line, '\r'); // the file's line ending is put back later
         if (line.back() != '\n')
             line += '\n';
         return line;
     }
 
-    // What was said of a table whose lines these were, and one of the blank lines around it.
+    // Removes a table's lines, the comments above it and one of the blank lines around it.
     void take_comments(std::size_t header, std::size_t last) {
         const auto is_blank = [&](std::size_t i) {
             return lines_.line(i).find_first_not_of(" \t\r\n") == std::string_view::npos;
@@ -155,7 +155,7 @@ SceneDesc parsed(std::string_view text, const std::string &path) {
     return std::move(result.scene);
 }
 
-// Whether the text is that of the same scene but for how it runs, and that is as it should be.
+// Whether the text gives the same scene with the intended run.
 bool is_right(const std::string &text, const std::string &path, const SceneDesc &before,
               const ResolvedRun &run) {
     SceneFileResult result = parse_scene(text, path);
@@ -184,7 +184,7 @@ std::string with_run(std::string_view text, const std::string &path, const Resol
         change.move_to_methods(before.world.method);
         change.remove_method(run.method->name);
     }
-    // What the scene would say for this method if nothing were added.
+    // The scene's settings for this method if nothing were added.
     WorldDesc world = before.world;
     world.other_methods.erase(std::string(run.method->name));
     const StepSettings given = settings_of(world, *run.method);

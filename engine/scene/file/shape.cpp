@@ -16,7 +16,7 @@
 
 namespace plumb {
 
-// The header above declares the one in f32; this is its twin, compiled from the same source.
+// The header above declares the f32 version; this is its f64 twin, compiled from the same source.
 namespace f64 {
 HullMeasures measure_hull(std::span<const glm::dvec3>);
 }
@@ -44,7 +44,7 @@ template <typename Shape> const std::vector<std::string_view> &all_keys() {
     return keys;
 }
 
-// Shown a kind's fields, it reads them.
+// A visitor that reads a kind's fields.
 class FieldReader {
   public:
     FieldReader(Report &report, const Table &table, bool is_flat)
@@ -73,7 +73,7 @@ class FieldReader {
         if (read.size() == count)
             std::copy(read.begin(), read.end(), value.begin());
     }
-    // Left null when there are too few or too many.
+    // Left null on error, such as too few or too many points.
     void cloud(std::string_view key, Points &value) {
         const std::size_t errors = report_.error_count();
         std::vector<glm::dvec3> read = points(key, 4, max_shape_points);
@@ -91,8 +91,8 @@ class FieldReader {
         keys_.insert(keys_.end(), {"file", "scale"});
         value.name = table_.string("file").value_or("");
         value.scale = table_.number("scale", positive).value_or(value.scale);
-        // Beside the scene and nowhere else: so a scene from elsewhere reads nothing of one's own,
-        // and a saved one can take its files along.
+        // Only beside the scene: a scene from elsewhere then cannot read the user's files, and a
+        // saved scene can take its files along.
         const std::filesystem::path name(value.name);
         if (table_.node("file")->is_string() &&
             (name.empty() || name.filename() != name || name == "." || name == "..")) {
@@ -125,7 +125,7 @@ class FieldReader {
     void heights(std::string_view key, HeightFieldDesc &field);
     void parts(std::string_view key, std::vector<FlatPartDesc> &value);
 
-    // Says of each of these keys that is there and was not read that it does not belong.
+    // Reports each of these keys that is present but was not read.
     void refuse_others(const KindInfo &info, Words all, std::span<const std::string> own) const {
         for (const std::string_view key : all) {
             const bool is_of_rotation =
@@ -273,13 +273,13 @@ void FieldReader::parts(std::string_view key, std::vector<FlatPartDesc> &value) 
     }
 }
 
-// What is computed from the fields.
+// Computes what is derived from the fields.
 class Completion {
   public:
     Completion(ShapeFiles &files, Precision precision, const Table &table)
         : files_(files), precision_(precision), table_(table) {}
 
-    // Nothing, of most.
+    // Nothing for most shapes.
     template <typename Shape> void operator()(Shape &) const {}
 
     void operator()(HullDesc &hull) const {

@@ -1,4 +1,4 @@
-// The files that shapes of a scene file are read from. Not for users of the engine.
+// Files that a scene's shapes are read from. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/shape_desc.h"
@@ -13,13 +13,13 @@ namespace plumb::scene_file {
 
 class Table;
 
-// Each is read once.
+// Reads each file once.
 class ShapeFiles {
   public:
-    // They are looked for in the folder.
+    // Files are looked up in `folder`.
     explicit ShapeFiles(std::filesystem::path folder = {}) : folder_(std::move(folder)) {}
 
-    // Its triangles with the numbers scaled; null, having reported it, when it cannot be used.
+    // The file's triangles, scaled; null, with an error reported, when it is unusable.
     std::shared_ptr<const MeshData> load(const Table &table, const ShapeFile &file);
 
   private:

@@ -19,7 +19,7 @@ std::string listed(const Fields &values) {
 
 template <typename Shape> Fields fields_of_shape(const Shape &shape);
 
-// Shown a kind's fields, it writes them.
+// A visitor that writes a kind's fields.
 class FieldWriter {
   public:
     FieldWriter(Fields &fields, bool is_flat) : fields_(fields), is_flat_(is_flat) {}
@@ -96,7 +96,7 @@ class FieldWriter {
 };
 
 template <typename Shape> Fields fields_of_shape(const Shape &shape) {
-    Shape copy = shape; // the visitors may change what they are shown
+    Shape copy = shape; // visitors may write
     return std::visit(
         []<typename S>(S &of_kind) {
             Fields fields{"shape = " + string(Kind<S>::info.name)};

@@ -40,7 +40,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string_view nearest_word(std::string_view word, std::span<const std::string_view> candidates) {
-    // A word longer than this was not meant as any of the names.
+    // A longer word was not meant to be any of the names.
     constexpr std::size_t longest = 200;
     if (word.size() > longest)
         return {};

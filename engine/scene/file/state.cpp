@@ -44,7 +44,7 @@ void read_contact(Reading &reading, const toml::table &source) {
     const toml::array *features = array_at(table, "features");
     static constexpr std::array<std::string_view, 3> vectors{"impulses", "cores_a", "cores_b"};
     std::array<const toml::array *, 3> arrays{};
-    // Without the places on the bodies a contact is found anew.
+    // The points on the bodies are optional; without them the contact is found again.
     for (std::size_t i = 0; i < vectors.size(); ++i)
         if (i == 0 || table.has(vectors[i])) {
             arrays[i] = array_at(table, vectors[i]);
@@ -106,10 +106,10 @@ void read_contact(Reading &reading, const toml::table &source) {
     reading.scene.contacts.push_back(std::move(contact));
 }
 
-// Bounds are those of the command that it came of.
+// The same bounds as in the grab command.
 constexpr Bounds no_less_than_0{0, std::numeric_limits<double>::max(), "a number from 0 on"};
 
-// What is not to be held, a static body or a pinned particle, is not, as with a grab.
+// As with the grab commands, static bodies and pinned particles are not held.
 void read_grab(Reading &reading, const toml::table &source) {
     static constexpr std::array<std::string_view, 9> keys{
         "body",      "particle",      "point",   "target",   "max_force",

@@ -13,12 +13,12 @@ namespace plumb::scene_file {
 
 namespace {
 
-// Within this, a rotation of a world in float, as written: the square of its length strays by up to
-// ten roundings (turn in motion.cpp).
+// Covers rotations written from a float world, whose squared length is off by up to ten roundings
+// (turn in motion.cpp).
 constexpr double exactly_unit = 1e-6;
-constexpr double nearly_unit = 1e-3; // within this, it is taken as rounded by hand, and normalised
+constexpr double nearly_unit = 1e-3; // within this: rounded by hand, and normalised
 
-// Keys that one looks for here but that belong elsewhere.
+// Keys that one might expect here but that belong elsewhere.
 std::optional<std::string> misplaced(std::string_view key, std::string_view title) {
     const bool is_body = title.starts_with("[[body]]");
     if (is_body && (key == "friction" || key == "restitution"))
@@ -256,7 +256,7 @@ std::optional<double> Table::angle(std::string_view key, const Bounds &degrees) 
     const std::optional<double> value = number(key, finite);
     if (!value)
         return std::nullopt;
-    // A grain of tolerance, so that a bound in degrees survives its conversion.
+    // A small tolerance, so that a value at a bound in degrees survives conversion.
     const double grain = 1e-12 * std::abs(degrees.max);
     if (*value / degree < degrees.min - grain || *value / degree > degrees.max + grain) {
         error(key, std::string(key) + " is " + shortest(*value) + " (radians)",
@@ -339,7 +339,7 @@ glm::dquat read_rotation(Report &report, const Table &table) {
     const std::optional<double> angle = table.number("angle_deg", moderate);
     if (key == "rotation_deg") {
         if (const std::optional<glm::dvec3> angles = table.vector(key, moderate))
-            // About x, then about the y and the z axis as turned so far: R = Rx Ry Rz.
+            // About x, then about the rotated y and z axes: R = Rx Ry Rz.
             orientation = about({1, 0, 0}, angles->x * degree) *
                           about({0, 1, 0}, angles->y * degree) *
                           about({0, 0, 1}, angles->z * degree);

@@ -1,4 +1,4 @@
-// A table of a scene file, and how its values are read. Not for users of the engine.
+// A table of a scene file, with getters for its values. Not for users of the engine.
 #pragma once
 
 #include "engine/scene/file/bounds.h"
@@ -15,17 +15,16 @@
 #include <string_view>
 #include <vector>
 
-// Compiled once, in table.cpp, whatever the build system says, and reporting errors as
-// values.
+// Compiled once, in table.cpp, regardless of the build system; reports errors as values.
 #undef TOML_HEADER_ONLY
 #undef TOML_SHARED_LIB
 #define TOML_HEADER_ONLY 0
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
 #define TOML_FLOAT_CHARCONV 1 // exact for every double, subnormal ones too
-// toml++ 3.3 asserts (and in release builds lets the compiler assume) that a key begins after "[",
-// before it looks and reports that none does: "[.a]" would end the program. With both off it only
-// looks.
+// toml++ 3.3 asserts (and in release builds lets the compiler assume) that a key follows "[" before
+// checking for it and reporting an error: "[.a]" would end the program. With both disabled it only
+// checks.
 #undef NDEBUG
 #define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/toml.h>
@@ -36,16 +35,16 @@ inline constexpr double degree = std::numbers::pi / 180;
 
 using Words = std::span<const std::string_view>;
 
-std::string_view type_name(const toml::node &node); // with its article
+std::string_view type_name(const toml::node &node); // with article
 
 FilePosition position_of(const toml::source_region &region);
 FilePosition position_of(const toml::node &node);
 
-// One table of the file. Each getter gives nothing when the key is absent, and also, having
-// reported it, when its value is not what it should be.
+// One table of the file. Each getter returns empty when the key is absent, or, with an error
+// reported, when its value is invalid.
 class Table {
   public:
-    // Reports every key that is not among `keys`. `title` is what messages call the table.
+    // Reports every key that is not among `keys`. `title` names the table in messages.
     Table(Report &report, const toml::table &table, std::string title, Words keys);
 
     const std::string &title() const { return title_; }
@@ -61,15 +60,15 @@ class Table {
 
     void error(std::string_view key, std::string what, std::string suggestion = {}) const;
 
-    // Whether the key is there; an error when not.
+    // Whether the key is present; reports an error if not.
     bool require(std::string_view key, std::string suggestion) const;
 
-    // Reports the keys that have no business here.
+    // Reports those of the keys that are present, as they do not belong here.
     void refuse(std::initializer_list<std::string_view> keys, const std::string &what,
                 const std::string &suggestion) const;
 
-    // The one key of these that is there; an error at each further one, and, if `required`, when
-    // there is none. Empty when not exactly one.
+    // Which one of these keys is present. Reports an error for each further one and, if `required`,
+    // when there is none. Empty unless exactly one is present.
     std::string_view one_of(std::initializer_list<std::string_view> keys, bool required,
                             const std::string &suggestion) const;
 
@@ -82,10 +81,10 @@ class Table {
 
     std::optional<std::string> string(std::string_view key) const;
 
-    // Whole numbers from 0 to 2^64 - 1; those that TOML's integers cannot hold as strings.
+    // Whole numbers from 0 to 2^64 - 1; strings for those that TOML integers cannot hold.
     std::optional<std::uint64_t> natural(std::string_view key) const;
 
-    // The index of the word; an error that suggests the nearest when it is none of them.
+    // The index of the word; if it is none of them, an error suggests the nearest.
     std::optional<std::size_t> choice(std::string_view key, Words words) const;
 
     template <std::size_t count>
@@ -122,14 +121,14 @@ class Table {
 
     std::optional<glm::dvec3> unit_vector(std::string_view key) const;
 
-    // [w, x, y, z]; kept bit for bit when it is of unit length already.
+    // [w, x, y, z]; kept bit for bit if already of unit length.
     std::optional<glm::dquat> unit_quaternion(std::string_view key) const;
 
     // [r, g, b] from 0 to 1, or "#rrggbb".
     std::optional<glm::vec3> colour(std::string_view key) const;
 
-    // An angle in radians: from `key`, or in degrees from `key`_deg, one of them at most. The
-    // bounds are in degrees.
+    // An angle in radians, from `key`, or from `key`_deg in degrees, but not both. The bounds are
+    // in degrees.
     std::optional<double> angle(std::string_view key, const Bounds &degrees) const;
 
     std::optional<double> number(const toml::node &value, const std::string &name,
@@ -149,11 +148,11 @@ class Table {
     std::string title_;
 };
 
-// The table of that key; null, with an error, when it is something else.
+// The table at that key; null, with an error reported, when it is something else.
 const toml::table *table_at(Report &report, const Table &parent, std::string_view key,
                             const std::string &example = {});
 
-// Reads each table of an array of tables. `path` is what stands between the double brackets.
+// Reads each table of an array of tables. `path` is the text between the double brackets.
 template <typename Read>
 void for_each(Report &report, const Table &parent, std::string_view key, Read &&read,
               std::string_view path = {}) {
@@ -178,10 +177,10 @@ void for_each(Report &report, const Table &parent, std::string_view key, Read &&
     }
 }
 
-// Whether what the key names, of a joint or a spring, is the world: so it is without the key.
+// Whether a joint's or spring's end is the world, as it also is without the key.
 bool is_world(const Table &table, std::string_view key);
 
-// rotation_deg, or axis and angle_deg, or orientation: one of them at most; by default none.
+// rotation_deg, or axis and angle_deg, or orientation, at most one of them; no rotation by default.
 glm::dquat read_rotation(Report &report, const Table &table);
 
 } // namespace plumb::scene_file

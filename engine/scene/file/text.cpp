@@ -27,7 +27,7 @@ std::string rotation(const glm::dquat &q) {
            shortest(q.z) + "]";
 }
 
-// A character that a basic string must not hold as it is.
+// Appends a character that a basic string cannot hold unescaped.
 void append_escaped(std::string &text, char c) {
     constexpr std::string_view hex = "0123456789ABCDEF";
     const auto code = static_cast<unsigned char>(c);

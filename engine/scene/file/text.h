@@ -20,20 +20,20 @@ bool same_bits(const glm::dvec3 &a, const glm::dvec3 &b);
 template <typename Vector> std::string array3(const Vector &v) {
     return "[" + shortest(v.x) + ", " + shortest(v.y) + ", " + shortest(v.z) + "]";
 }
-// In lines of ten.
+// Ten to a line.
 std::string array_of(std::span<const double> values);
 std::string rotation(const glm::dquat &q);  // [w, x, y, z]
 std::string string(std::string_view value); // in quotes
-// A character that a basic string must not hold as it is.
+// Appends a character that a basic string cannot hold unescaped.
 void append_escaped(std::string &text, char c);
 
-// The degrees that convert to the very angle; empty when there are none.
+// Degrees that convert to exactly this angle; empty when there are none.
 std::optional<double> exact_degrees(double radians);
-// "key_deg = ..." where there are such degrees, and else in radians.
+// "key_deg = ..." if there are such degrees, else in radians.
 std::string angle_in_line(const std::string &key, double radians);
 std::string angle(const std::string &key, double radians); // a line
 
-// Of a table of each kind, what stands under its header.
+// The contents of each kind of table, without its header.
 std::string joint_text(const JointDesc &joint);
 std::string particle_text(const ParticleDesc &particle);
 std::string attractor_text(const AttractorDesc &attractor);

@@ -1,4 +1,4 @@
-// A scene file with truths that refinement found.
+// Writes truths found by refinement into a scene file.
 #pragma once
 
 #include <span>
@@ -9,15 +9,15 @@
 namespace plumb {
 
 struct WrittenTruth {
-    std::string expect;         // its name
-    std::vector<double> values; // one, or those of a curve
-    double estimate = 0;        // less than a tenth of its tolerance
+    std::string expect;         // the expect's name
+    std::vector<double> values; // one, or a curve's
+    double estimate = 0;        // less than a tenth of the tolerance
 };
 
-// The text of a scene file with these in place of `equals` and `estimate`, which it has; all the
-// rest stays byte for byte, but for comments between the values of a curve. `text` must parse
-// without errors; `path` is as in parse_scene. Throws std::invalid_argument when the text is laid
-// out so that it cannot be done.
+// The scene file's text with these in place of its `equals` and `estimate`, which must exist;
+// everything else stays byte for byte, except comments between a curve's values. `text` must parse
+// without errors; `path` is as in parse_scene. Throws std::invalid_argument when the text's layout
+// does not allow it.
 std::string with_truths(std::string_view text, const std::string &path,
                         std::span<const WrittenTruth> truths);
 

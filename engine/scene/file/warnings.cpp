@@ -28,12 +28,12 @@ namespace {
 constexpr double overlap_limit = 0.01;   // of the smaller width
 constexpr double anchor_gap_limit = 0.1; // of the smaller width
 constexpr double mass_ratio_limit = 100;
-// How far apart float's places may be, of a body's width: where a contact may not be deeper than so
-// (substep_tolerance), and a pendulum's energy is 1 % off after a minute at three times as much.
+// Largest spacing of float positions, as a fraction of a body's width: the depth a contact may not
+// exceed (substep_tolerance). At three times this a pendulum's energy is 1 % off after a minute.
 constexpr double coarseness_limit = 3e-4;
 constexpr std::size_t listed_of_a_kind = 10;
 
-// Three digits are enough to see what is the matter.
+// Three digits are enough for a message.
 std::string rounded(double value) {
     std::array<char, 32> buffer{};
     std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
@@ -44,7 +44,7 @@ std::string in_quotes(const std::string &name) {
     return '"' + name + '"';
 }
 
-// The warnings of one kind, cut after the first few.
+// The warnings of one kind, limited to the first few.
 class Group {
   public:
     explicit Group(std::string more) : more_(std::move(more)) {}
@@ -111,7 +111,7 @@ class Checker {
         return scene_.bodies[*body].position + scene_.bodies[*body].orientation * local;
     }
 
-    // How far apart the anchors are that the joint is to keep together.
+    // The gap between anchors that the joint should keep together.
     double start_gap(const JointDesc &joint, const std::optional<std::size_t> &a,
                      const std::optional<std::size_t> &b) const {
         const glm::dvec3 gap =
@@ -125,7 +125,7 @@ class Checker {
             return glm::length(gap - glm::dot(gap, axis) * axis);
         }
         case JointTypeInfo::Anchors::apart:
-            break; // a rod may be put where it is not yet as long as it is
+            break; // a rod may start at another length than its own
         }
         return 0;
     }
@@ -176,7 +176,7 @@ class Checker {
         std::sort(exempt_.begin(), exempt_.end());
     }
 
-    // 1/kg; 0 for what never moves.
+    // 1/kg; 0 for an end that never moves.
     double inv_mass(const SoftParts &parts, const SpringEndInfo &end) const {
         switch (end.kind) {
         case SpringEndInfo::Kind::world:
@@ -203,7 +203,8 @@ class Checker {
                 idle_springs_.add(positions_.springs[i],
                                   "spring " + name + " moves nothing: neither of its ends moves",
                                   "");
-            // As of a pendulum, below. RK4 bears 2.83, and methods with contacts are implicit here.
+            // The limit as for a pendulum, below. RK4 is stable up to 2.83; methods with contacts
+            // are implicit here.
             const double omega = std::sqrt(spring.stiffness * moved);
             if (method && !method->contacts && method->name != "backward_euler" && omega * step > 2)
                 stiff_springs_.add(positions_.springs[i],
@@ -228,7 +229,7 @@ class Checker {
         const std::optional<double> depth = start_overlaps_.deepest(body_a, body_b, limit);
         if (!depth)
             return;
-        // The one further down in the file is the one to move.
+        // Report the body further down in the file: that is the one to move.
         const FilePosition &at = positions_.bodies[b];
         if (*depth > limit)
             overlaps_.add(at,
@@ -239,8 +240,8 @@ class Checker {
             warn_of_mass_ratio(a, b, at, "touch");
     }
 
-    // Two shapes are no deeper in each other than their bounding boxes are along any axis: a pile
-    // of bodies that merely touch needs no closer look.
+    // Shapes cannot penetrate deeper than their bounding boxes overlap along any axis, so a pile of
+    // bodies that merely touch needs no closer look.
     bool may_overlap(std::size_t a, std::size_t b) const {
         const glm::dvec3 depth =
             glm::min(bounds_[a].max - bounds_[b].min, bounds_[b].max - bounds_[a].min);
@@ -258,7 +259,7 @@ class Checker {
                 planes.push_back(i);
                 continue;
             }
-            // Of what is infinitely wide only the other's width counts.
+            // If one body is infinitely wide, only the other's width counts.
             const double near = std::isfinite(widths_[i]) ? overlap_limit * widths_[i] : 0;
             boxes.push_back({bounds_[i].min - near, bounds_[i].max + near});
             bounded.push_back(i);
@@ -333,7 +334,7 @@ class Checker {
         }
     }
 
-    // How far apart the places are that float has there, as a share of the body's width.
+    // Spacing of float positions at the body, as a fraction of its width.
     double coarseness(std::size_t i) const {
         const glm::dvec3 at = glm::abs(scene_.bodies[i].position);
         const auto far = static_cast<float>(std::max({at.x, at.y, at.z}));
@@ -341,7 +342,7 @@ class Checker {
         return static_cast<double>(next - far) / widths_[i];
     }
 
-    // Of many the one that suffers most.
+    // Reports only the worst body.
     void check_places() {
         if (scene_.world.precision != Precision::f32)
             return;

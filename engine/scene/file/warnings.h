@@ -1,4 +1,4 @@
-// What is allowed in a scene, but hardly meant.
+// Warnings about things that are valid in a scene but probably unintended.
 #pragma once
 
 #include "engine/scene/scene_file.h"
@@ -13,7 +13,7 @@ struct FilePosition {
     std::size_t column = 0;
 };
 
-// Where things stand in the file, in the order of the scene.
+// Positions in the file, in scene order.
 struct ScenePositions {
     FilePosition dt;
     std::vector<FilePosition> bodies;
@@ -23,17 +23,16 @@ struct ScenePositions {
     std::vector<FilePosition> cloths;
 };
 
-// Of a scene without errors:
-// - two bodies, one of them dynamic, overlap at the start by more than 1 % of the smaller one's
-// width
+// For a scene without errors:
+// - two bodies, at least one dynamic, overlap at the start by more than 1 % of the smaller width
 //   (unless a joint keeps them from colliding);
 // - two dynamic bodies that touch or are joined differ more than a hundredfold in mass;
-// - the anchors of a ball joint are apart by more than 10 % of the smaller body's width;
-// - a joint or a spring moves nothing, as neither of its ends is dynamic;
+// - a ball joint's anchors are apart by more than 10 % of the smaller body's width;
+// - a joint or spring does nothing because neither end is dynamic;
 // - a spring is too stiff for an explicit method's step;
-// - a body is so far away that float cannot follow it;
+// - a body is so far from the origin that float cannot resolve its motion;
 // - dt is too long: see the messages for the formulas.
-// No more than ten of a kind are listed, the last of them saying how many more there are.
+// At most ten of a kind are listed; the last says how many more there are.
 std::vector<SceneMessage> scene_warnings(const SceneDesc &scene, const ScenePositions &positions);
 
 } // namespace plumb

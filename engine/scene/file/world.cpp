@@ -8,8 +8,8 @@ namespace plumb::scene_file {
 
 namespace {
 
-// Empty, having reported it, when it is not a number in the row's range. A fraction stands in
-// quotes: "1/60".
+// Empty, with an error reported, unless it is a number in the row's range. Fractions are quoted:
+// "1/60".
 std::optional<double> read_number(const Table &table, const SettingRow &row) {
     const std::string wanted = range_text(row) + ", or a fraction in quotes such as \"1/60\"";
     const toml::node *node = table.node(row.name);
@@ -20,7 +20,7 @@ std::optional<double> read_number(const Table &table, const SettingRow &row) {
         const double value = parse_number(text->get());
         if (value >= row.min && value <= row.max)
             return value;
-    } catch (const std::invalid_argument &) { // said below
+    } catch (const std::invalid_argument &) { // reported below
     }
     table.error(row.name, std::string(row.name) + " is " + in_quotes(text->get()),
                 "it must be " + wanted);
@@ -40,7 +40,7 @@ void read_setting(const Table &table, const SettingRow &row, GivenSettings &give
     }
 }
 
-// The names of the settings, those of the world only where they are asked for, and `others`.
+// The names of the settings, the world's only if `of_world`, and `others`.
 std::vector<std::string_view> keys_with(bool of_world, Words others) {
     std::vector<std::string_view> keys;
     for (const SettingRow &row : setting_rows)

@@ -20,7 +20,7 @@ namespace {
 
 using namespace scene_file;
 
-// As several lines where it has several.
+// A multi-line string if it has several lines.
 std::string paragraph(std::string_view value) {
     if (value.find('\n') == std::string_view::npos)
         return string(value);
@@ -142,7 +142,7 @@ class SceneWriter {
             text_ += field + "\n";
     }
 
-    // Of one shape that has nothing of its own that the body does not have too.
+    // Whether a body's only shape has no placement, material or density of its own.
     static bool is_plain(const ColliderDesc &collider) {
         return same_bits(collider.position, {0, 0, 0}) && is_identity(collider.orientation) &&
                collider.material.empty() && !collider.density;

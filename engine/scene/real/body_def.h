@@ -1,4 +1,4 @@
-// A body of a scene as the world wants it.
+// Converts a scene's body to a BodyDef for the world.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -6,10 +6,10 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// The material of that name; the default one when the scene has none.
+// The material with that name; the default one if the scene does not have it.
 const MaterialDesc &material_of(const SceneDesc &scene, const std::string &name);
 
-// Throws std::invalid_argument for points that have no solid hull.
+// Throws std::invalid_argument for points without a solid hull.
 BodyDef body_def(const SceneDesc &scene, const BodyDesc &desc);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -13,8 +13,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Whether the arc from a to b on the sphere of normals crosses that from c to d, all unit vectors
-// (Gregorius 2013, "The Separating Axis Test between Convex Polyhedra").
+// Whether the arcs a-b and c-d on the Gauss sphere cross; all unit vectors (Gregorius 2013, "The
+// Separating Axis Test between Convex Polyhedra").
 bool arcs_cross(const glm::dvec3 &a, const glm::dvec3 &b, const glm::dvec3 &c,
                 const glm::dvec3 &d) {
     const glm::dvec3 ab = glm::cross(a, b);
@@ -37,8 +37,8 @@ double extent_along(const HullMesh &hull, const glm::dvec3 &direction) {
     return high - low;
 }
 
-// The width is least across a face and a corner, or across two edges whose parallel planes hold the
-// hull between them (Houle, Toussaint 1988, "Computing the width of a set").
+// The width is attained between a face and a vertex, or between two edges whose parallel planes
+// enclose the hull (Houle, Toussaint 1988, "Computing the width of a set").
 double width_of(const HullMesh &hull) {
     double width = std::numeric_limits<double>::infinity();
     for (const Plane &plane : hull.planes)
@@ -58,7 +58,7 @@ double width_of(const HullMesh &hull) {
             const glm::dvec3 f_a{hull.vertices[f.a]};
             const glm::dvec3 across = glm::cross(e_along, glm::dvec3{hull.vertices[f.b]} - f_a);
             const double length = glm::length(across);
-            // Asked of all corners before it counts, as rounding may let nearly parallel arcs
+            // Measure over all vertices before it counts: rounding may let nearly parallel arcs
             // cross.
             if (length > 0 && std::abs(glm::dot(across / length, f_a - e_a)) < width)
                 width = std::min(width, extent_along(hull, across / length));

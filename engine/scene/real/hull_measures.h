@@ -1,4 +1,4 @@
-// What a scene wants to know of the convex hull of points.
+// Measures of the convex hull of points.
 #pragma once
 
 #include "engine/core/precision.h"
@@ -12,14 +12,14 @@ namespace plumb {
 struct HullMeasures {
     bool is_solid = false;     // else the others are 0
     double volume = 0;         // m^3
-    double smallest_width = 0; // m, between two parallel planes
+    double smallest_width = 0; // m, between parallel planes
 };
 
 } // namespace plumb
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// The most corners that the hull of a scene may have; see convex_hull.
+// The most vertices that a scene's hull may have; see convex_hull.
 inline constexpr int max_hull_vertices = 256;
 
 HullMeasures measure_hull(std::span<const glm::dvec3> points);

@@ -1,4 +1,4 @@
-// Answers probes in one precision; `answer` of probe.h chooses between the two.
+// Answers probes in one precision; `answer` in probe.h picks the precision.
 #pragma once
 
 #include "engine/core/precision.h"

@@ -1,4 +1,4 @@
-// A probe that is being answered: its shapes, and what is found so far.
+// A probe being answered: its shapes and the answer so far.
 #pragma once
 
 #include "engine/core/precision.h"
@@ -36,7 +36,7 @@ std::string short_number(double value); // three digits
 // Where a ray or segment meets a shape.
 struct RayFound {
     double t = 0;
-    std::optional<double> t_exit; // of solids
+    std::optional<double> t_exit; // for solids
     glm::dvec3 point{0};
     glm::dvec3 normal{0};
     bool starts_inside = false;
@@ -44,10 +44,10 @@ struct RayFound {
 std::optional<RayFound> ray_into(const AskedShape &shape, const ProbeRayDesc &ray);
 
 Ray ray_of(const ProbeRayDesc &ray);
-// As far as what it hits and a little farther, or as far as it reaches.
+// Draws the ray to slightly beyond its hit, or its full length.
 void draw_ray(Asking &ask, const ProbeRayDesc &ray, std::optional<double> hit_t);
 
-// What the probe's ray hits of triangles.
+// Reports the probe ray's hit on triangles.
 template <typename Hit> void show_hit(Asking &ask, const std::optional<Hit> &hit) {
     ask.flag("hit", hit.has_value());
     draw_ray(ask, *ask.probe.ray, hit ? std::optional<double>(hit->t) : std::nullopt);
@@ -57,12 +57,12 @@ template <typename Hit> void show_hit(Asking &ask, const std::optional<Hit> &hit
     ask.answer.points.push_back({wide(hit->point), ProbeTone::result, wide(hit->normal)});
 }
 
-// The places of a scatter, and the boxes that stand there.
+// A scatter's points, and the boxes at them.
 std::vector<glm::dvec3> scattered_points(const ProbeScatterDesc &scatter);
 std::vector<Aabb> scattered_boxes(const ProbeScatterDesc &scatter);
 void draw_item(Asking &ask, const Aabb &box, ProbeTone tone); // one of those boxes
 
-// The questions, in one file for each subject.
+// The questions, one file per subject.
 // probe_vectors.cpp
 void answer_vectors(Asking &ask);
 void answer_basis(Asking &ask);

@@ -1,4 +1,4 @@
-// What is asked of cameras: what their frustums hold, and what lies under a pixel.
+// Camera probes: what a frustum contains, and what lies under a pixel.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"
@@ -42,7 +42,7 @@ void draw_frustum(Asking &ask, const Frustum &frustum) {
         for (const int bit : {1, 2, 4})
             if ((i & bit) == 0)
                 ask.answer.lines.push_back({corner(i), corner(i | bit), ProbeTone::query});
-    // The near face stands for the picture; a tick shows where it is up.
+    // The near face stands for the picture; a tick marks its top.
     const glm::dvec3 top = 0.5 * (corner(2) + corner(3));
     ask.answer.lines.push_back(
         {top, top + 0.25 * (top - 0.5 * (corner(0) + corner(1))), ProbeTone::query});

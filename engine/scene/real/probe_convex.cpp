@@ -1,5 +1,5 @@
-// What is asked of two convex shapes: how far apart they are, how deep in each other, where they
-// touch, and when one that moves meets the other.
+// Probes of two convex shapes: distance, penetration, contacts, and the time of impact of a moving
+// one.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"
@@ -16,7 +16,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The half-space behind a plane and the box that an Aabb is, for the question about contacts.
+// A plane as its half-space and an Aabb as a box, for contact queries.
 template <typename Asked> const Asked &as_solid(const Asked &shape) {
     return shape;
 }
@@ -27,7 +27,7 @@ Box as_solid(const Aabb &box) {
     return {Real(0.5) * (box.min + box.max), identity_rotation, Real(0.5) * (box.max - box.min)};
 }
 
-// Contact points joined around their middle.
+// Connects contact points in order around their middle.
 void draw_outline(ProbeAnswer &answer, std::vector<glm::dvec3> points, const glm::dvec3 &normal) {
     if (points.size() < 2)
         return;
@@ -90,7 +90,7 @@ void answer_penetration(Asking &ask) {
     ask.answer.points.push_back({wide(found->on_b), ProbeTone::result});
     ask.answer.lines.push_back(
         {wide(found->on_a), wide(found->on_b), ProbeTone::result, false, true});
-    // Where B would have to be to touch only.
+    // Where B would only just touch.
     const glm::dvec3 at = ask.probe.shapes[1].position;
     const glm::dvec3 out = wide(found->depth * found->normal);
     ask.answer.lines.push_back({at, at + out, ProbeTone::normal, true, true});
@@ -138,13 +138,13 @@ void answer_cast(Asking &ask) {
                 PLUMB_CHECK(false, "both shapes must be convex, and of space");
         },
         ask.shapes[0].shape, ask.shapes[1].shape);
-    // Where it starts, and where it gets.
+    // Its start and where it ends up.
     const ProbeShapeDesc &from = ask.probe.shapes[0];
     const double t = hit ? static_cast<double>(hit->t) : 1;
     ProbeShapeDesc there = from;
     there.position += t * ask.probe.motion;
     std::visit(
-        [&](auto &shape) { // what its own points place
+        [&](auto &shape) { // shapes placed by their points
             if constexpr (requires { shape.points.size(); })
                 for (glm::dvec3 &point : shape.points)
                     point += t * ask.probe.motion;

@@ -1,4 +1,4 @@
-// What is asked of models: meshes that stand in the frames of others.
+// Model probes: meshes in the frames of other meshes.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"

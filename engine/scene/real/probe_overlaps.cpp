@@ -1,4 +1,4 @@
-// Whether shapes have a point in common, and along which axis two boxes are apart.
+// Overlap probes: whether shapes have a common point, and along which axis two boxes are separated.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"
@@ -27,7 +27,7 @@ template <typename A, typename B> std::optional<bool> common(const A &a, const B
 
 void draw_axis(ProbeAnswer &answer, const glm::dvec3 &a, const glm::dvec3 &b,
                const glm::dvec3 &normal, double separation, const std::string &text) {
-    // Both shapes as they lie along the axis are apart by the separation, about the middle.
+    // Draws the separation of the shapes' projections on the axis, about the middle.
     const glm::dvec3 middle = 0.5 * (a + b);
     answer.lines.push_back({middle - 2.5 * normal, middle + 2.5 * normal, ProbeTone::axis});
     answer.lines.push_back({middle - 0.5 * separation * normal, middle + 0.5 * separation * normal,

@@ -1,4 +1,4 @@
-// What is asked of planes.
+// Plane probes.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"
@@ -41,7 +41,7 @@ void answer_classify(Asking &ask) {
         ask.draw(s, tones[side]);
         last = static_cast<double>(test.distance);
         const ProbeShapeDesc &desc = ask.probe.shapes[s];
-        // At its middle, where its own points place it.
+        // At the middle of its points, for shapes placed by them.
         const glm::dvec3 at = std::visit(
             [&](const auto &shape) {
                 glm::dvec3 middle = desc.position;
@@ -66,7 +66,7 @@ void answer_planes(Asking &ask) {
     const auto draw_line = [&](const std::optional<Line> &line, bool is_answer) {
         if (!line)
             return;
-        // The part about the planes' own middle.
+        // Draws the part nearest the planes' mean position.
         glm::dvec3 middle{0};
         for (const ProbeShapeDesc &shape : ask.probe.shapes)
             middle += shape.position / static_cast<double>(ask.probe.shapes.size());

@@ -1,4 +1,4 @@
-// What is asked of points: whether shapes hold them, where shapes are nearest, what encloses them.
+// Point probes: containment in shapes, closest points on shapes, enclosing volumes.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"

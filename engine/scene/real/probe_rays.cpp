@@ -1,4 +1,4 @@
-// What is asked of rays and segments.
+// Ray and segment probes.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"
@@ -17,7 +17,7 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The ray as the shape's own kind of ray: in space, or in the plane.
+// Casts the ray as the kind a shape needs: in space, or in the plane.
 class RayInto {
   public:
     explicit RayInto(const ProbeRayDesc &ray)
@@ -28,7 +28,7 @@ class RayInto {
                              : std::numeric_limits<Real>::infinity()) {}
 
     template <typename Asked> std::optional<RayFound> operator()(const Asked &shape) const {
-        // A segment of no length is a point: the test for segments knows it, rays do not.
+        // A zero-length segment is a point: the segment test handles it, rays do not.
         if (end_ && *end_ == origin_)
             return point_into(shape);
         const Ray ray{Vec3{origin_}, Vec3{direction_}, max_t_};

@@ -45,7 +45,7 @@ void add_triangle(ProbeSurface &surface, const glm::dvec3 &a, const glm::dvec3 &
     surface.corners.insert(surface.corners.end(), {a, b, c});
 }
 
-// Filled, with its border.
+// Draws it filled, with its border.
 void draw_polygon(ProbeAnswer &answer, const std::vector<glm::dvec3> &corners, ProbeTone tone,
                   std::size_t number) {
     ProbeSurface surface{{}, tone, number};
@@ -63,14 +63,14 @@ void draw_quad(ProbeAnswer &answer, const glm::dvec3 &center, const glm::dvec3 &
                  number);
 }
 
-// The shapes that the app has no solid of its own for.
+// Draws shapes that the app has no solid for.
 class Drawing {
   public:
     Drawing(ProbeAnswer &answer, const ProbeShapeDesc &desc, ProbeTone tone, std::size_t number)
         : answer_(answer), desc_(desc), tone_(tone), number_(number) {}
 
     void operator()(const Plane &plane) const {
-        // A patch of it, with a level side.
+        // A patch of the plane, with a level side.
         constexpr double half = 1.5;
         const glm::dvec3 normal = wide(plane.normal);
         const glm::dvec3 level = std::abs(normal.y) < 0.99
@@ -161,7 +161,7 @@ class Drawing {
     std::size_t number_;
 };
 
-// In Real, where it is placed.
+// Builds the placed shape in Real.
 class Maker {
   public:
     Maker(const ProbeShapeDesc &desc, std::unique_ptr<HullMesh> &hull)

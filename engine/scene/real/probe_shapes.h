@@ -1,4 +1,4 @@
-// The shapes of a probe, made in one precision, and how they are drawn.
+// Builds and draws a probe's shapes in one precision.
 #pragma once
 
 #include "engine/geometry/height_field.h"
@@ -19,13 +19,13 @@ using AskedShape =
 
 struct MadeShape {
     AskedShape shape;
-    std::unique_ptr<HullMesh> hull; // that the shape borrows; null for other kinds
+    std::unique_ptr<HullMesh> hull; // borrowed by the shape; null for other kinds
 };
 
 // Points without a solid hull fail a check.
 MadeShape make_shape(const ProbeShapeDesc &desc);
 
-// Adds the shape as it is to be seen. `number` tells plain ones apart.
+// Draws the shape. `number` tells plain ones apart.
 void draw_shape(ProbeAnswer &answer, const ProbeShapeDesc &desc, const MadeShape &made,
                 ProbeTone tone, std::size_t number);
 

@@ -1,4 +1,4 @@
-// What is asked of trees over many boxes, and of the tree that a mesh carries.
+// Tree probes: trees over many boxes, and a mesh's own tree.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"
@@ -22,7 +22,7 @@ void draw_cell(Asking &ask, const Aabb &box, int depth) {
         draw_edges(ask.answer, box, ProbeTone::faint);
 }
 
-// What a region, a point and a ray find among items, whose boxes are `items`.
+// What a region, a point and a ray find among the items; `items` marks those in the region.
 struct Found {
     std::vector<bool> items;
     std::size_t tested = 0;
@@ -42,7 +42,7 @@ Real distance_to(const Aabb &box, const Vec3 &point) {
     return glm::distance(glm::clamp(point, box.min, box.max), point);
 }
 
-// The entry of a ray into an item, with which it goes on looking for nearer ones.
+// Where the ray enters an item: its new max_t in the search for nearer ones.
 template <typename HalfLine>
 Real enter_item(Found &found, std::uint32_t item, const Aabb &box, const HalfLine &ray) {
     const std::optional<RayInterval> inside = [&] {
@@ -169,7 +169,7 @@ void ask_bvh(Asking &ask, const std::vector<Aabb> &items, Found &found) {
     }
 }
 
-// The tree that a mesh carries.
+// A mesh's own tree.
 void answer_mesh_tree(Asking &ask, const MeshTree &mesh) {
     ask.draw(0, ProbeTone::plain);
     draw_bvh(ask, mesh.tree());

@@ -1,4 +1,4 @@
-// What is asked of vectors, frames and matrices.
+// Probes of vectors, frames and matrices.
 #include "engine/scene/real/probe_asking.h"
 
 #include "engine/core/check.h"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double in_degrees = 180 / std::numbers::pi;
 
-// The name stands at the head; that of a thin one in the middle.
+// The label is at the head, or in the middle of a thin arrow.
 void arrow(ProbeAnswer &answer, const Vec3 &from, const Vec3 &vector, ProbeTone tone,
            const std::string &name, bool is_thick = true) {
     if (vector == Vec3{Real(0)})
@@ -27,7 +27,7 @@ void arrow(ProbeAnswer &answer, const Vec3 &from, const Vec3 &vector, ProbeTone 
         answer.labels.push_back({wide(from + (is_thick ? Real(1) : Real(0.5)) * vector), name});
 }
 
-// One of a matrix's tables: its rows as values, and as labels from a place on.
+// Shows a matrix row by row, as values and as labels starting at `at`.
 void show_entries(Asking &ask, const std::string &name, std::size_t first, const Mat3 &entries,
                   const glm::dvec3 &at) {
     constexpr double column_width = 0.62;
@@ -36,7 +36,7 @@ void show_entries(Asking &ask, const std::string &name, std::size_t first, const
     const std::vector<std::string_view> &names = probe_question(ProbeQuestion::matrix).values;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
-            // A zero whose sign was turned is shown as zero.
+            // Adding 0 turns minus zero into zero.
             const double entry = static_cast<double>(entries[column][row]) + 0.0;
             ask.answer.values.push_back({names[first + static_cast<std::size_t>(3 * row + column)],
                                          entry, ProbeValue::Form::entry});
@@ -68,7 +68,7 @@ void answer_vectors(Asking &ask) {
     ask.number("projection", glm::length(along));
     ask.number("rejection", glm::length(off));
     ask.number("cross", size);
-    // A mirror image is as long as what is mirrored.
+    // Reflection preserves length.
     ask.number("reflection_error", glm::length(mirrored) - glm::length(a));
 }
 
@@ -101,7 +101,7 @@ void answer_transform(Asking &ask) {
     const Vec3 local{ask.probe.points.front()};
     const auto through = [](const Mat4 &m, const Vec3 &p) { return Vec3{m * Vec4{p, Real(1)}}; };
     const Vec3 world = through(matrix, local);
-    // The shape's frame, and where its corners go.
+    // The shape's frame, and the images of its corners.
     constexpr std::array tones{ProbeTone::result, ProbeTone::yes, ProbeTone::normal};
     constexpr std::array names{"x", "y", "z"};
     for (int i = 0; i < 3; ++i) {
@@ -149,7 +149,7 @@ void answer_matrix(Asking &ask) {
         given[column] = Vec3{ask.probe.points[i + 1]} - at;
         arrow(ask.answer, at, given[column], tones[i], std::to_string(i + 1));
     }
-    // Where the unit cube goes: its volume is the determinant's magnitude.
+    // The image of the unit cube; its volume is the determinant's magnitude.
     const std::size_t first = ask.answer.lines.size();
     draw_edges(ask.answer, {Vec3{Real(0)}, Vec3{Real(1)}}, ProbeTone::edge);
     double right = ask.probe.points[0].x;
@@ -162,7 +162,7 @@ void answer_matrix(Asking &ask) {
     const std::optional<Mat3> inverse = try_inverse(given);
     ask.number("determinant", glm::determinant(given));
     ask.flag("invertible", inverse.has_value());
-    // The tables stand to the right of the picture, in a row.
+    // The tables are in a row to the right of the picture.
     const auto table_at = [&](int table) {
         return glm::dvec3(right + 0.5 + 2.3 * table, ask.probe.points[0].y + 1.2,
                           ask.probe.points[0].z);

@@ -1,4 +1,4 @@
-// What is seen of a world, in the terms of scenes (Simulation::read).
+// Reads a world's visible state in scene terms (Simulation::read).
 #pragma once
 
 #include "engine/math/types.h"

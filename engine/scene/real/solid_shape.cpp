@@ -54,7 +54,7 @@ struct MakeSolid {
         return {Cylinder{Vec3{0, -half, 0}, Vec3{0, half, 0}, static_cast<Real>(c.radius)},
                 nullptr};
     }
-    // No shape of a scene needs more corners: a smooth hull of so many is round to 1 %.
+    // No scene shape needs more vertices: a smooth hull with this many is round to 1 %.
     SolidShape operator()(const HullDesc &h) const {
         const std::vector<Vec3> points(h.points->begin(), h.points->end());
         HullResult result = convex_hull(points, max_hull_vertices);

@@ -1,4 +1,4 @@
-// A shape of a scene as the world wants it.
+// Converts a scene's shapes to the world's.
 #pragma once
 
 #include "engine/geometry/hull_mesh.h"
@@ -12,14 +12,14 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 struct SolidShape {
-    std::optional<Shape> shape;           // in a frame of its own
+    std::optional<Shape> shape;           // in its own frame
     std::shared_ptr<const HullMesh> hull; // keeps the mesh of a ConvexHull
 };
 
-// Without a shape: of surfaces, and of points that have no solid hull.
+// Has no shape for surfaces and for points without a solid hull.
 SolidShape solid_shape(const ShapeDesc &desc);
 
-// Null of what is solid.
+// Null for solids.
 std::shared_ptr<const TriangleSurface> triangle_surface(const ShapeDesc &desc);
 
 } // namespace plumb::inline PLUMB_PRECISION

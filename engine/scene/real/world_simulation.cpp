@@ -19,14 +19,14 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// What files know of a world beyond the world itself; shared by saves until an edit.
+// Scene data that the world itself does not hold; shared by saves until an edit.
 struct Book {
-    SceneDesc scene; // bodies by index, holes left as they were; joints by index
+    SceneDesc scene; // bodies by index, holes keep their old value; joints by index
     std::vector<BodyInfo> infos;
     std::map<std::string, std::size_t, std::less<>> index_of;
 };
 
-// Its past steps were of the scene's own dt: another one counts from here on.
+// Past steps used the scene's own dt; a different dt counts from here on.
 StateClock clock_of(const SceneDesc &scene, const ResolvedRun &run) {
     const StateClock own{scene.step_count, scene.dt_since_time, scene.dt_since_step};
     const double dt = settings_of(scene.world, *run.method).dt;
@@ -36,8 +36,8 @@ StateClock clock_of(const SceneDesc &scene, const ResolvedRun &run) {
     return {own.step_count, own.time_before + steps * dt, own.step_count};
 }
 
-// Of a vector along the tangents of a contact's normal what it is for the other body: the opposite
-// one, along the tangents of the opposite normal.
+// Converts a vector from a contact normal's tangent basis to the other body's view: negated, in the
+// opposite normal's tangent basis.
 Vec2 along_opposite_tangents(const Vec3 &normal, Real along_1, Real along_2) {
     const TangentBasis tangents = tangent_basis(normal);
     const TangentBasis opposite = tangent_basis(-normal);
@@ -166,7 +166,7 @@ class WorldSimulation final : public Simulation {
     void obey(const SetMethod &command);
     void obey(const SetSettings &command);
 
-    // The book, to be changed; a copy of its own when saves share it.
+    // The book for writing; copied first if saves share it.
     Book &edit() {
         if (book_.use_count() > 1)
             book_ = std::make_shared<Book>(*book_);
@@ -181,7 +181,7 @@ class WorldSimulation final : public Simulation {
     BodyId id_of(const std::string &name) const {
         return name.empty() ? BodyId{} : id_of(book_->index_of.at(name));
     }
-    // Throws std::invalid_argument when there is no such body.
+    // Throws std::invalid_argument if there is no such body.
     std::size_t index_of(const std::string &name) const;
     void insert(const BodyDesc &desc);
     void insert(const JointDesc &desc);
@@ -547,7 +547,7 @@ void WorldSimulation::describe_soft_parts(SceneDesc &out) const {
     }
     for (std::size_t i = 0; i < out.springs.size(); ++i)
         out.springs[i].torn = state.torn[i] != 0;
-    // Those of removed bodies are gone.
+    // Drop the springs of removed bodies.
     std::erase_if(out.springs, [&](const SpringDesc &spring) {
         const auto is_there = [&](const std::string &end) {
             return end.empty() || book_->index_of.contains(end) || soft_.find_particle(end);

@@ -1,4 +1,4 @@
-// Makes the Simulation of one precision; Simulation::create chooses between the two.
+// Makes the Simulation of one precision; Simulation::create picks the precision.
 #pragma once
 
 #include "engine/core/precision.h"
