@@ -9,7 +9,7 @@
 
 namespace plumb {
 
-// The call fails a check, and its message has `part` in it.
+// Expects `call` to fail a check whose message contains `part`.
 template <typename Call> void says(Call &&call, const std::string &part) {
     try {
         call();

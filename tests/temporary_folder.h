@@ -1,4 +1,4 @@
-// A folder for a test's files, which no other test that runs at the same time has.
+// A folder for one test's files, not shared with tests that run at the same time.
 #pragma once
 
 #include <cerrno>

@@ -1,12 +1,12 @@
-// How many random inputs a test draws, or steps it goes on for.
+// How many random inputs or steps a test runs.
 #pragma once
 
 #include <cstdlib>
 
 namespace plumb {
 
-// `full`, divided by PLUMB_TRIALS_DIVISOR (environment) where instrumented builds run slowly; at
-// least 1.
+// `full` divided by the environment variable PLUMB_TRIALS_DIVISOR, which slow instrumented builds
+// set; at least 1.
 inline int trials(int full) {
     // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets it while tests run
     const char *text = std::getenv("PLUMB_TRIALS_DIVISOR");

@@ -16,7 +16,7 @@ InterruptGuard::InterruptGuard() {
     noted_signal = 0;
     struct sigaction action {};
     action.sa_handler = note_signal;
-    action.sa_flags = static_cast<int>(SA_RESETHAND); // the second ends the program
+    action.sa_flags = static_cast<int>(SA_RESETHAND); // a second signal ends the program
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, &previous_interrupt_);
     sigaction(SIGTERM, &action, &previous_terminate_);

@@ -34,7 +34,7 @@ time_interleaved(const std::vector<std::function<std::uint64_t()>> &works,
                  const TimingOptions &options) {
     const auto stopped = [&] { return options.stop && options.stop(); };
     benchmark::ClearRegisteredBenchmarks();
-#ifndef __clang_analyzer__ // which takes what Benchmark's header keeps for a leak
+#ifndef __clang_analyzer__ // it mistakes what Benchmark's header keeps for a leak
     for (std::size_t i = 0; i < works.size(); ++i)
         benchmark::RegisterBenchmark(std::to_string(i).c_str(), [&, i](benchmark::State &state) {
             if (stopped())

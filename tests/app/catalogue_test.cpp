@@ -1,4 +1,4 @@
-// Every scene of the catalogue with every method that can run it.
+// Every scene in the catalogue with every method that can run it.
 #include "tests/app/program.h"
 #include "tests/trials.h"
 
@@ -39,17 +39,18 @@ SceneDesc loaded(const fs::path &path) {
 
 class Scene : public testing::TestWithParam<fs::path> {};
 
-// Known failings: what a method cannot do by its nature, or at no price that a scene would pay. TGS
-// Soft falls by semi-implicit Euler, and bounces once a step, one contact by itself. What does not
-// look ahead takes the planes of the start of the step for those of all of it. Explicit Euler
-// speeds spins up, and steps so short that it would not are lost in float; orbits grow by it, and
-// shrink by backward Euler. XPBD loses swings and spins, its friction is off by some per cent, and
-// impulses are not propagated. AVBD loses swings more than any, bounces as TGS Soft does, and its
-// passes leave cloth that moves fast with more energy than it had. Under naive impulses nothing
+// Known failings: what a method cannot do by its nature, or only at a cost that no scene would pay.
+// TGS Soft falls by semi-implicit Euler and bounces once a step, one contact at a time. Methods
+// that do not look ahead use the contact planes from the start of the step for all of it. Explicit
+// Euler speeds up spins, and steps short enough to avoid that are lost in float; it makes orbits
+// grow, and backward Euler makes them shrink. XPBD damps swings and spins, its friction is off by a
+// few per cent, and it does not propagate impulses. AVBD damps swings most of all, bounces like TGS
+// Soft, and its passes add energy to fast-moving cloth. Naive impulses never come to rest, and
+// naive spin never tumbles.
 // rests, and under naive spin nothing tumbles.
 //
-// Each with the error that it stays below, of what it misses most, in units of its tolerance: a
-// quarter above what was found. Null for what a method must meet.
+// The number bounds the error of the expectation missed by most, in units of its tolerance: a
+// quarter above the measured one. Null if the method must meet the scene.
 const double *known_failing(const MethodInfo &method, const std::string &scene) {
     static const std::map<std::string_view, std::map<std::string, double>> failing{
         {"tgs_soft",
@@ -137,7 +138,7 @@ double worst_error(const CheckOutcome &outcome) {
     return worst;
 }
 
-// The largest scenes, where there is little time, with their own method alone.
+// Where time is short, the largest scenes run with their own method only.
 TEST_P(Scene, IsWithinItsTolerancesWithEveryMethodThatCanRunIt) {
     const SceneDesc scene = loaded(GetParam());
     const auto own = Simulation::create(scene, {}, nullptr);
@@ -171,7 +172,7 @@ TEST_P(Scene, HasSomethingToHoldItTo) {
                                     [](const ProbeDesc &probe) { return !probe.expects.empty(); }));
 }
 
-// Of the first thing that moves, if any does.
+// Grabs the first dynamic body or free particle, if there is one.
 std::optional<Command> grab_of_first(const SceneDesc &scene) {
     for (const BodyDesc &body : scene.bodies)
         if (body.kind == BodyKind::dynamic)
@@ -183,8 +184,8 @@ std::optional<Command> grab_of_first(const SceneDesc &scene) {
     return std::nullopt;
 }
 
-// The state, written as a scene and loaded again, hashes the same and goes on the same: what is
-// held, too, and the time at which dt was changed.
+// The state, saved as a scene and loaded again, has the same hash and continues the same way,
+// including the grabbed body and the time at which dt was changed.
 TEST_P(Scene, GoesOnTheSameFromASavedFile) {
     const auto together = static_cast<std::uint64_t>(std::max(40, trials(100))); // steps
     const SceneDesc scene = loaded(GetParam());

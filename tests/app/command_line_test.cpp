@@ -1,4 +1,4 @@
-// Every command and exit code, through the program itself.
+// Every command and exit code, by running the program itself.
 #include "tests/app/program.h"
 
 #include "app/render/image.h"
@@ -23,7 +23,7 @@ std::set<std::string> names_in(const fs::path &folder) {
     return names;
 }
 
-// A ball that falls freely, and is asked to be at `height` after one second.
+// A freely falling ball that should be at `height` after one second.
 std::string falling_ball(const std::string &height) {
     return R"([[body]]
 name = "ball"
@@ -44,7 +44,7 @@ source = "closed form: h - g t^2 / 2"
 )";
 }
 
-// Too fast to turn for the finest step: no longer finite after one.
+// Spins too fast for the finest step: not finite after one.
 constexpr const char *diverging = R"([world]
 dt = 1
 method = "rk4"
@@ -161,7 +161,7 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
     }
 }
 
-// Its value would else be taken for a second scene.
+// Otherwise its value would be taken for a second scene.
 TEST(CommandLine, AnOptionOfAnotherCommandIsAnsweredWithItsOwn) {
     const ProgramResult result = run_program("measure pendulum --methods rk4");
     EXPECT_EQ(result.exit_code, 2);
@@ -170,7 +170,7 @@ TEST(CommandLine, AnOptionOfAnotherCommandIsAnsweredWithItsOwn) {
               "plumb: plumb list has no option --nonsense; plumb list --help tells which it has\n");
 }
 
-// No number comes of it, and nothing diverged.
+// There is no number to report, and nothing diverged.
 TEST(CommandLine, APeriodThatNothingHasIsMissed) {
     const TemporaryFolder folder;
     folder.write("still.toml", R"(
@@ -314,7 +314,7 @@ TEST(CommandLine, ABadSceneIsExitCode2WithAllItsErrors) {
 TEST(CommandLine, AMapIsPrintedAndWritten) {
     const TemporaryFolder folder;
     folder.write("fall.toml", falling_ball("5.095"));
-    // Free fall is missed by more than the tolerance with large steps only, and not by RK4.
+    // Only large steps miss free fall by more than the tolerance, and RK4 never does.
     const ProgramResult map = run_program("map fall.toml --x dt=1/960..1/15:4log --y substeps=1,2 "
                                           "--methods semi_implicit_euler,rk4 --csv map.csv "
                                           "--image map.png --threads 2",
@@ -332,7 +332,7 @@ TEST(CommandLine, WhatIsTunedIsWrittenAndNothingElse) {
     const std::string world = "# as it falls\n[world]\nmethod = \"semi_implicit_euler\"\n"
                               "substeps = 64 # far too many\ndt = \"1/60\"\n\n";
     const fs::path file = folder.write("fall.toml", world + falling_ball("5.095"));
-    // It falls g h t / 2 too far, by 0.082 m with one substep; 0.8 of 0.2 m are allowed.
+    // It falls g h t / 2 too far: 0.082 m with one substep; 0.8 of 0.2 m is allowed.
     const std::string tune = "tune fall.toml --methods semi_implicit_euler --dt 1/60 ";
     const ProgramResult looked = run_program(tune + "--explain", folder.path());
     EXPECT_EQ(looked.exit_code, 0) << looked.err;
@@ -353,7 +353,7 @@ TEST(CommandLine, WhatIsTunedIsWrittenAndNothingElse) {
     EXPECT_TRUE(has(again.out, "Nothing to write")) << again.out;
     EXPECT_EQ(run_program("check fall.toml", folder.path()).exit_code, 0);
 
-    // What is given and meets the scene is written, too.
+    // Settings given on the command line that meet the scene are written too.
     const ProgramResult other =
         run_program("tune fall.toml --methods semi_implicit_euler --dt 1/120 --substeps 2 --write "
                     "--precision float",
@@ -370,7 +370,7 @@ TEST(CommandLine, WhatIsTunedIsWrittenAndNothingElse) {
 
 TEST(CommandLine, WhatCannotBeTunedIsExitCode1AndIsNotWritten) {
     const TemporaryFolder folder;
-    const fs::path file = folder.write("fall.toml", falling_ball("7")); // it is not
+    const fs::path file = folder.write("fall.toml", falling_ball("7")); // not its actual height
     const ProgramResult result =
         run_program("tune fall.toml --methods rk4 --substeps 1 --write", folder.path());
     EXPECT_EQ(result.exit_code, 1) << result.err;
@@ -395,7 +395,7 @@ TEST(CommandLine, ADivergingWorldIsExitCode3) {
                                [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
         EXPECT_TRUE(has(said, "diverged")) << command << '\n' << said;
     }
-    // As far as it went.
+    // The pictures up to there.
     EXPECT_TRUE(fs::exists(folder.path() / "out" / "top-00000.png"));
     EXPECT_TRUE(fs::exists(folder.path() / "out" / "top-00001.png"));
     EXPECT_FALSE(fs::exists(folder.path() / "out" / "top-00009.png"));

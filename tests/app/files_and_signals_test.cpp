@@ -1,4 +1,4 @@
-// What the program writes, reads and is told to stop, through the program itself.
+// What the program writes and reads, and how it stops on request, by running the program itself.
 #include "tests/app/program.h"
 
 #include "app/render/png.h"
@@ -31,19 +31,19 @@ std::vector<std::string> files_in(const fs::path &folder) {
     return names;
 }
 
-// Waits for a minute at most.
+// Waits for up to a minute.
 template <typename Condition> bool comes(const Condition &condition) {
     for (int i = 0; i < 600 && !condition(); ++i)
         std::this_thread::sleep_for(100ms);
     return condition();
 }
 
-// Whether the program that runs there says how far it is.
+// Whether the program running in that folder reports its progress.
 bool shows_progress(const fs::path &folder) {
     return comes([&] { return has(text_of(folder / "err"), " %"); });
 }
 
-// Those count what is reserved beside what is used.
+// Sanitizers count reserved memory along with used memory.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool memory_can_be_limited = false;
 #elif defined(__has_feature)
@@ -121,7 +121,7 @@ TEST(Output, GoesThroughPipesLinksAndStandardOutput) {
     EXPECT_EQ(printed.exit_code, 0);
     EXPECT_TRUE(printed.out.starts_with("step,time_s,")) << printed.out;
     EXPECT_TRUE(has(printed.out, "\n2,")) << printed.out;
-    EXPECT_TRUE(has(printed.out, "2 steps, ")) << printed.out; // the summary after it
+    EXPECT_TRUE(has(printed.out, "2 steps, ")) << printed.out; // followed by the summary
 }
 
 TEST(Output, TwoRunsMayWriteTheSameFile) {
@@ -320,7 +320,7 @@ points = [[0, 1, 0]]
 shapes = [{ shape = "height_field", half_extents = [1, 1, 200000] }]
 )");
     for (const char *command : {"check", "hash --steps 1", "measure", "snapshot"}) {
-        // Below what either took before.
+        // Less than either used before.
         const char *little = with_memory("prlimit --as=2000000000");
         const ProgramResult crowd =
             run_program(std::string(command) + " heap.toml", folder.path(), little);

@@ -32,7 +32,7 @@ ProgramResult run_program(const std::string &arguments, const std::filesystem::p
     const std::string command = "cd '" + folder.string() +
                                 "' && env -u DISPLAY -u WAYLAND_DISPLAY " + before +
                                 " timeout 100 '" PLUMB_PROGRAM "' >'" + out + "' 2>'" + err +
-                                "' </dev/null " + arguments; // which may redirect again
+                                "' </dev/null " + arguments; // which may redirect it again
     const int status = std::system(command.c_str());
     ProgramResult result;
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;

@@ -13,13 +13,13 @@ struct ProgramResult {
     std::string out, err;
 };
 
-// Runs `plumb` with arguments as one would type them to a shell, without a display, in a folder.
-// `before` stands before the program: variables of the environment, say.
+// Runs `plumb` in a folder, without a display, with arguments as typed into a shell. `before` goes
+// in front of the program: environment variables, say.
 ProgramResult run_program(const std::string &arguments, const std::filesystem::path &folder = ".",
                           const std::string &before = {});
 
-// One that is still running. `folder` must be one of its own: what it prints lies there in the
-// files "out" and "err".
+// A program that is still running. `folder` must be its own: it receives the output, in the files
+// "out" and "err".
 class RunningProgram {
   public:
     RunningProgram(const std::string &arguments, std::filesystem::path folder);
@@ -28,7 +28,7 @@ class RunningProgram {
     RunningProgram &operator=(const RunningProgram &) = delete;
 
     void send(int signal) const;
-    // As a shell has it: 128 and the signal's number when one ended it.
+    // As in a shell: 128 plus the signal's number if a signal ended it.
     ProgramResult wait();
 
   private:
@@ -37,7 +37,7 @@ class RunningProgram {
 };
 
 bool has(const std::string &text, const std::string &part);
-// The whole of a file.
+// A file's whole text.
 std::string text_of(const std::filesystem::path &path);
 
 } // namespace plumb

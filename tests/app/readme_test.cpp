@@ -1,4 +1,4 @@
-// What the README repeats of the program is what the program says.
+// What the README quotes from the program is what the program says.
 #include "tests/app/program.h"
 
 #include "app/sandbox/keys.h"

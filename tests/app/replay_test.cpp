@@ -1,4 +1,4 @@
-// `plumb run --record` and `plumb replay`, through the program itself.
+// `plumb run --record` and `plumb replay`, by running the program itself.
 #include "tests/app/program.h"
 
 #include "engine/scene/recording.h"
@@ -43,8 +43,8 @@ TEST(Replay, EndsWithTheHashThatWasRecorded) {
     }
 }
 
-// Of a run from whose middle on was recorded, after bodies had gone; and of one that goes on from
-// the scene that was written then.
+// A recording that starts mid-run, after bodies were removed, and one of a run resumed from the
+// scene that was saved then.
 TEST(Replay, OfTheMiddleOfARunAfterABodyWasRemoved) {
     const TemporaryFolder folder;
     const SceneFileResult read = parse_scene(stack, "stack.toml");
@@ -87,7 +87,7 @@ TEST(Replay, SaysAtWhichStepItFirstDiffers) {
     ASSERT_EQ(run_program(record, folder.path()).exit_code, 0);
     Recording recording = load_recording(folder.path() / "run.toml").recording;
     ASSERT_EQ(recording.hashes.size(), 31U);
-    // As if a push that was recorded had not been there.
+    // Adds a push that was not in the recorded run.
     recording.commands.push_back({12, ApplyImpulse{"crate_1", {10, 0, 0}, {0, 1.6, 0}}, 0});
     folder.write("pushed.toml", write_recording(recording));
     const ProgramResult pushed = run_program("replay --no-window pushed.toml", folder.path());

@@ -1,4 +1,4 @@
-// The batch forms beside a loop over the scalar ones.
+// Batch queries against a loop over the scalar ones.
 #include "engine/geometry/batch.h"
 #include "engine/geometry/overlap.h"
 #include "engine/geometry/raycast.h"

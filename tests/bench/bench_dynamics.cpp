@@ -1,5 +1,5 @@
-// `plumb bench dynamics`: the same scenes by several engines, which take each step in turns, so
-// that a machine that slows down does so for all.
+// `plumb bench dynamics`: runs the same scenes in several engines, which take each step in turn, so
+// that a machine that slows down slows down for all of them.
 #include "tests/bench/benches.h"
 
 #include "app/files/output_file.h"
@@ -23,21 +23,21 @@ namespace plumb {
 
 namespace {
 
-// Of how many steps the poses are measured.
+// Poses are measured once in this many steps.
 constexpr int measured_every = 6;
 
 struct Run {
     EngineKind kind;
-    std::unique_ptr<Engine> engine; // null: it cannot run the scene, or diverged
+    std::unique_ptr<Engine> engine; // null if it cannot run the scene or diverged
     bool diverged = false;
-    // Of each step (s): the thread's own time; the wall's. With several threads the latter counts.
+    // For each step (s): the thread's CPU time, and wall time, which counts with several threads.
     std::vector<double> cpu, wall;
     std::vector<double> collide; // share of the step
-    std::vector<double> a_pass;  // s, a contact or joint and pass
+    std::vector<double> a_pass;  // s per contact or joint and pass
     double bytes_bodies = 0, bytes_contacts = 0;
     std::size_t most_contacts = 0;
     std::vector<BodyState> states;
-    double deepest = 0, drift = 0; // of all that was measured
+    double deepest = 0, drift = 0; // worst of all measurements
     Depth depth;                   // at the end
     double kinetic = 0;
 
@@ -130,7 +130,7 @@ void report(const Line &line, bool stands, const std::vector<Run> &runs,
             std::printf("  %-14s cannot run it\n", name.c_str());
             continue;
         }
-        // Threads are compared by the wall, engines by their own time.
+        // Threads are compared by wall time, engines by CPU time.
         const double ratio = run.kind.threads > 1 ? median_ratio(run.wall, ours.wall)
                                                   : median_ratio(run.cpu, ours.cpu);
         const double contacts = std::max(1.0, static_cast<double>(run.most_contacts));
@@ -180,7 +180,7 @@ void report(const Line &line, bool stands, const std::vector<Run> &runs,
     std::fflush(stdout);
 }
 
-// Steps done, fewer where it was interrupted.
+// Returns the number of steps taken, fewer if interrupted.
 std::size_t go(const EngineScene &scene, std::size_t steps, std::vector<Run> &runs,
                const PoseMeasures &measures, const std::function<void(double)> &progress) {
     for (Run &run : runs) {
@@ -193,7 +193,7 @@ std::size_t go(const EngineScene &scene, std::size_t steps, std::vector<Run> &ru
         for (Run &run : runs) {
             if (!run.engine)
                 continue;
-            if (at_end) // for how it moves in the last step
+            if (at_end) // to measure its motion in the last step
                 run.states = run.engine->states();
             else
                 run.states.clear();

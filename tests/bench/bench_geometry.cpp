@@ -1,4 +1,4 @@
-// `plumb bench geometry`: the same questions put to several libraries, timed in turns.
+// `plumb bench geometry`: the same queries in several libraries, timed in turns.
 #include "tests/bench/benches.h"
 
 #include "app/files/output_file.h"
@@ -20,7 +20,7 @@ namespace plumb {
 
 namespace {
 
-// The machine's cores hardly ever run at one speed, so only figures of one run are compared.
+// The cores hardly ever run at a constant speed, so only numbers from one run are compared.
 void print_contests(const std::vector<Contest> &contests,
                     const std::vector<std::vector<double>> &times, std::ostream &csv_out) {
     CsvWriter csv(csv_out);

@@ -1,5 +1,5 @@
-// The scenes of `plumb bench dynamics`: what engines are usually timed on, in code because the
-// largest would be files of 30 MB.
+// The scenes of `plumb bench dynamics`: the usual engine benchmarks, in code because the largest
+// would be 30 MB files.
 #pragma once
 
 #include "engine/scene/scene_desc.h"
@@ -12,9 +12,9 @@ namespace plumb {
 
 struct BenchScene {
     std::string name;
-    double seconds = 0;  // of the world, that it is run
-    bool stands = false; // how far its top went says something
-    // About `size` times as many bodies as in full, at least a few.
+    double seconds = 0;  // simulated time
+    bool stands = false; // how far its top moved is meaningful
+    // With about `size` times the full number of bodies, but at least a few.
     std::function<SceneDesc(double size)> make;
 };
 

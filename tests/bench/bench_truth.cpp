@@ -1,4 +1,4 @@
-// `plumb bench truth`: the table of small problems, the aim and what each engine reaches.
+// `plumb bench truth`: a table of small problems, with the aim and each engine's result.
 #include "tests/bench/benches.h"
 
 #include "app/files/output_file.h"

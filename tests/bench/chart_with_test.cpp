@@ -1,4 +1,4 @@
-// The other engines on a chart of a scene file, judged as ours.
+// Other engines on a scene file's chart are judged like ours.
 #include "app/lab/chart/chart.h"
 #include "app/lab/engines/other_engines.h"
 #include "engine/scene/scene_file.h"
@@ -38,7 +38,7 @@ TEST(ChartWith, BulletAndOdeKeepAStackOfTenBoxes) {
         EXPECT_GT(run.error, 0);
         EXPECT_GT(run.cost, 0);
         EXPECT_GT(run.constraint_passes, 0);
-        // Ten boxes rest on each other: by our geometry they penetrate, but little.
+        // Ten boxes rest on each other: by our geometry they penetrate slightly.
         EXPECT_LT(run.run.max_penetration, 0.05) << engine->info.name;
     }
 }

@@ -1,4 +1,4 @@
-// The same questions put to several libraries.
+// The same queries in several libraries.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace plumb {
 
 struct Entrant {
     std::string name;
-    // Answers the whole batch; returns how many answers were yes, so that it can be seen whether
-    // all were asked the same.
+    // Answers the whole batch; returns the number of yes answers, to show that all libraries were
+    // asked the same.
     std::function<std::uint64_t()> answer_all;
 };
 
@@ -20,14 +20,14 @@ struct Contest {
     std::size_t batch = 0;
     Entrant ours;
     std::vector<Entrant> others;
-    double aim = 0; // how many times faster than each other we mean to be; 0: no aim
+    double aim = 0; // target speedup over each of the others; 0: none
 };
 
-// What they borrow lives as long as the program.
+// The inputs that contests refer to live as long as the program.
 [[nodiscard]] std::vector<Contest> ray_contests();   // one ray, one shape
 [[nodiscard]] std::vector<Contest> pair_contests();  // two shapes
 [[nodiscard]] std::vector<Contest> batch_contests(); // one against many
-// Rays against meshes of up to so many triangles.
+// Rays against meshes of up to `largest` triangles.
 [[nodiscard]] std::vector<Contest> mesh_contests(std::size_t largest);
 
 } // namespace plumb

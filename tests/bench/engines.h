@@ -1,4 +1,4 @@
-// The engines that scenes are compared on.
+// The engines compared on the bench scenes.
 #pragma once
 
 #include "app/lab/engines/engine.h"
@@ -14,14 +14,15 @@ namespace plumb {
 struct EngineKind {
     std::string name;
     int threads = 1;
-    // What it cannot run gives null. The scene outlives the engine.
+    // Null if the engine cannot run the scene. The scene outlives the engine.
     std::function<std::unique_ptr<Engine>(const EngineScene &)> create;
 };
 
-// All at their defaults, with sleeping off.
+// Plumb at its defaults, with sleeping off.
 [[nodiscard]] std::unique_ptr<Engine> plumb_engine(const EngineScene &scene, TaskPool *tasks);
 
-// Those that were built, Plumb with one thread first; with `tasks`, Plumb on those threads second.
+// The engines in this build: Plumb with one thread first; with `tasks`, Plumb on those threads
+// second.
 [[nodiscard]] std::vector<EngineKind> engines(TaskPool *tasks);
 
 } // namespace plumb

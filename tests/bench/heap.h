@@ -1,4 +1,4 @@
-// How much of the heap is in use.
+// Heap usage.
 #pragma once
 
 #include <malloc.h>

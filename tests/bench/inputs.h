@@ -1,4 +1,4 @@
-// Random inputs of contests: of a size of about a metre, meeting each other about half of the time.
+// Random inputs for contests: about a metre in size, hitting each other about half of the time.
 #pragma once
 
 #include "engine/core/random.h"
@@ -23,9 +23,9 @@ Cylinder cylinder(Random &random, double reach);
 Triangle triangle(Random &random, double reach);
 const HullMesh &rock(); // 32 points on a sphere
 ConvexHull hull(Random &random, double reach);
-Ray ray(Random &random); // from outside, towards about the origin; 8 m long
+Ray ray(Random &random); // from outside, roughly towards the origin; 8 m long
 
-// `count` of what make(random) makes.
+// `count` results of make(random).
 template <typename Make> auto many(std::uint64_t seed, const Make &make) {
     Random random(seed);
     std::vector<decltype(make(random))> result;
@@ -34,7 +34,7 @@ template <typename Make> auto many(std::uint64_t seed, const Make &make) {
     return result;
 }
 
-// The same, for as long as the program runs.
+// The same, kept for the lifetime of the program.
 template <typename Make> auto kept(std::uint64_t seed, const Make &make) {
     // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): kept to the end on purpose
     static const auto *inputs = new auto(many(seed, make));

@@ -1,5 +1,5 @@
-// plumb-bench: `plumb bench` runs it, and checks what is passed on. Arguments: WHAT ROUNDS OUT_DIR
-// SHADER_DIR SECONDS SIZE THREADS ONLY..., with SECONDS 0 for each scene's own.
+// plumb-bench: run by `plumb bench`, which checks the arguments: WHAT ROUNDS OUT_DIR SHADER_DIR
+// SECONDS SIZE THREADS ONLY..., with SECONDS 0 for each scene's own.
 #include "app/lab/interrupt.h"
 #include "tests/bench/benches.h"
 

@@ -1,4 +1,4 @@
-// Rays against triangle meshes, beside Embree 3 in its robust mode, one ray at a time.
+// Rays against triangle meshes, one ray at a time, against Embree 3 in robust mode.
 #include "engine/space/mesh_tree.h"
 #include "tests/bench/contest.h"
 #include "tests/bench/inputs.h"
@@ -92,7 +92,7 @@ class EmbreeMesh {
 
 constexpr std::size_t ray_count = 1 << 14;
 
-// Through the pixels of a picture, row by row.
+// Primary rays through the pixels of an image, row by row.
 std::vector<Ray> coherent_rays() {
     std::vector<Ray> rays;
     const Vec3 eye{0.6f, 2.2f, 2.4f};

@@ -1,4 +1,4 @@
-// Of things with names, those that were asked for.
+// Picks named things by name.
 #pragma once
 
 #include "engine/scene/file/spelling.h"
@@ -12,8 +12,9 @@
 
 namespace plumb {
 
-// All when no names are given, else those whose name is one of them; for a name that is nobody's,
-// those that begin with it. Throws std::invalid_argument when none does.
+// All of them if no names are given, otherwise those with one of the names. A name that matches
+// nothing exactly selects everything it is a prefix of. Throws std::invalid_argument if it is not a
+// prefix either.
 template <typename Named>
 std::vector<Named> chosen(std::vector<Named> all, const std::vector<std::string> &names) {
     if (names.empty())

@@ -114,7 +114,7 @@ std::vector<Contest> pair_contests() {
     contests.push_back(distance_contest("cylinder, cylinder: distance", cylinders, more_cylinders));
     contests.push_back(distance_contest("hull, hull: distance", hulls, more_hulls));
 
-    // Distance, or depth where they overlap: what Bullet's pair detector answers.
+    // Distance, or penetration depth if they overlap, as Bullet's pair detector computes.
     const auto signed_contest = [&]<typename A, typename B>(std::string name, std::span<const A> a,
                                                             std::span<const B> b) {
         contests.push_back(

@@ -75,7 +75,8 @@ Placed placed(const ConvexHull &hull) {
     return {std::move(shape), btTransform(of(hull.rotation), of(hull.position))};
 }
 
-// Margins, which Bullet adds around some shapes, are set to nothing: the same shapes for all.
+// The margins that Bullet adds around some shapes are set to zero, so that all engines see the same
+// shapes.
 struct Object {
     Placed placed_shape;
     btCollisionObject object;
@@ -98,7 +99,7 @@ template <typename Solid> Objects objects(std::span<const Solid> solids) {
     return result;
 }
 
-// Pairs with their algorithms and manifolds, which Bullet keeps from step to step.
+// Pairs with the algorithms and manifolds that Bullet keeps between steps.
 class Pairs {
   public:
     Pairs(Objects a, Objects b) : a_(std::move(a)), b_(std::move(b)) {

@@ -1,4 +1,4 @@
-// FCL's answers, to be timed beside ours.
+// FCL's queries, to time against ours.
 #pragma once
 
 #include "engine/geometry/hull_mesh.h"
@@ -12,10 +12,10 @@ namespace plumb::fcl_peer {
 
 using Work = std::function<std::uint64_t()>;
 
-// fcl::collide without contacts: yes or no. In float, with the solver that is its default (libccd).
+// fcl::collide without contacts: yes or no, in float, with its default solver (libccd).
 template <typename A, typename B> Work overlaps(std::span<const A> a, std::span<const B> b);
 
-// fcl::distance, with nearest points, not signed.
+// fcl::distance with nearest points, unsigned.
 template <typename A, typename B> Work distances(std::span<const A> a, std::span<const B> b);
 
 } // namespace plumb::fcl_peer

@@ -1,4 +1,4 @@
-// What is measured of poses, against what follows from how they were made.
+// Pose measures against values that follow from how the poses were made.
 #include "app/lab/engines/pose_measures.h"
 #include "tests/bench/scene_parts.h"
 
@@ -18,8 +18,8 @@ std::vector<BodyState> states_at_start(const SceneDesc &scene) {
 
 TEST(PoseMeasures, DepthsAreThoseOfThePoses) {
     SceneDesc desc = on_ground();
-    add(desc, "low", BoxDesc{}, {0, 0.49, 0});          // four points 10 mm in the ground
-    add(desc, "high", BoxDesc{}, {0, 1.49 - 0.002, 0}); // four 2 mm in the one below
+    add(desc, "low", BoxDesc{}, {0, 0.49, 0});          // four points 10 mm deep in the ground
+    add(desc, "high", BoxDesc{}, {0, 1.49 - 0.002, 0}); // four 2 mm deep in the box below
     add(desc, "apart", SphereDesc{0.5}, {3, 0.501, 0});
     const EngineScene scene(desc);
     const Depth depth = PoseMeasures(scene).depth(states_at_start(desc));

@@ -22,7 +22,7 @@ SceneDesc on_ground() {
 }
 
 void set_material(SceneDesc &scene, double friction, double restitution) {
-    scene.materials.clear(); // what was said before
+    scene.materials.clear(); // replaced
     MaterialDesc &material = scene.materials.emplace_back();
     material.name = "all";
     material.friction = friction;
@@ -36,7 +36,7 @@ void add_joint(SceneDesc &scene, JointType type, std::size_t a, std::size_t b,
     JointDesc &joint = scene.joints.emplace_back();
     joint.name = "joint_" + std::to_string(scene.joints.size() - 1);
     joint.type = type;
-    const glm::dquat frame(std::sqrt(0.5), 0, -std::sqrt(0.5), 0); // its x is the world's z
+    const glm::dquat frame(std::sqrt(0.5), 0, -std::sqrt(0.5), 0); // maps x to the world's z
     const auto attach = [&](std::size_t index, std::string &name, glm::dvec3 &anchor,
                             glm::dquat &local) {
         anchor = at;

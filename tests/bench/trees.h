@@ -1,4 +1,4 @@
-// What it costs to build and to refit trees, from a thousand leaves to a million.
+// The cost of building and refitting trees, from a thousand leaves to a million.
 #pragma once
 
 #include "app/lab/chart/chart_layout.h"
@@ -16,7 +16,7 @@ struct TreeCost {
     std::vector<double> timings; // s
 };
 
-// Boxes of about the size that makes each touch a few others.
+// Boxes sized so that each touches a few others.
 [[nodiscard]] std::vector<TreeCost> time_trees(std::size_t largest, const TimingOptions &options);
 
 void print(std::ostream &out, const std::vector<TreeCost> &costs);

@@ -1,4 +1,4 @@
-// Small problems whose answer is known, put to an engine at its defaults, 60 Hz.
+// Small problems with a known answer, run by each engine at its defaults, 60 Hz.
 #pragma once
 
 #include "app/lab/engines/pose_measures.h"
@@ -11,7 +11,8 @@
 
 namespace plumb {
 
-// Poses or velocities are not finite any more, or the engine cannot run the scene.
+// Poses or velocities are no longer finite, the engine cannot run the scene, or the user
+// interrupted.
 struct Diverged : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -33,14 +34,14 @@ class Trial {
     [[nodiscard]] double time() const { return static_cast<double>(steps_) * scene_.dt(); } // s
     [[nodiscard]] const std::vector<BodyState> &states() const { return states_; }
     [[nodiscard]] const BodyState &body(std::size_t index) const { return states_[index]; }
-    // By the velocities that the engine has: of all dynamic bodies, J.
+    // Energy of all dynamic bodies (J), from the velocities the engine reports.
     [[nodiscard]] double energy() const;
-    [[nodiscard]] glm::dvec3 angular_momentum() const; // likewise, about the origin
+    [[nodiscard]] glm::dvec3 angular_momentum() const; // the same, about the origin
 
-    // So many seconds on, calling `each` after every step. Throws Diverged and Interrupted.
+    // Runs for `seconds`, calling `each` after every step. Throws Diverged and Interrupted.
     void go(
         double seconds, const std::function<void()> &each = [] {});
-    // Likewise; the largest of what `measure` gives after each step.
+    // Runs for `seconds`; returns the largest value of `measure` over the steps.
     [[nodiscard]] double worst(double seconds, const std::function<double()> &measure);
 
   private:
@@ -53,7 +54,7 @@ class Trial {
 
 struct Problem {
     std::string name;
-    std::string what; // what is measured, and against what
+    std::string what; // what is measured, against what
     std::string unit;
     double aim = 0; // at most
     std::function<double(const EngineKind &)> error;
@@ -61,7 +62,7 @@ struct Problem {
 
 [[nodiscard]] std::vector<Problem> motion_problems(); // free bodies and contacts
 [[nodiscard]] std::vector<Problem> joint_problems();
-[[nodiscard]] std::vector<Problem> standing_problems(); // stacks, pyramids, unlike masses
-[[nodiscard]] std::vector<Problem> fast_problems();     // what passes through, or should have
+[[nodiscard]] std::vector<Problem> standing_problems(); // stacks, pyramids, mass ratios
+[[nodiscard]] std::vector<Problem> fast_problems();     // tunnelling and ghost collisions
 
 } // namespace plumb

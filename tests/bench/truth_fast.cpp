@@ -1,4 +1,4 @@
-// What is fast for its size: it passes through nothing, and strikes nothing that it passes by.
+// Bodies that are fast for their size: no tunnelling, and no ghost hits on bodies they pass by.
 #include "tests/bench/scene_parts.h"
 #include "tests/bench/truth.h"
 
@@ -21,7 +21,7 @@ SceneDesc weightless() {
     return scene;
 }
 
-// In how many of so many phases of the step the second body ends behind the first, a wall.
+// In how many of `phases` step phases the second body ends up behind the first, a wall.
 int through(const EngineKind &kind, int phases, double seconds,
             const std::function<void(SceneDesc &, double phase)> &add_bodies) {
     int count = 0;
@@ -35,7 +35,7 @@ int through(const EngineKind &kind, int phases, double seconds,
     return count;
 }
 
-// A ball of 0.2 m against a wall of 5 cm.
+// A ball of radius 0.2 m against a 5 cm wall.
 double bullet(const EngineKind &kind) {
     return through(kind, 20, 0.2, [](SceneDesc &scene, double phase) {
         add(scene, "wall", BoxDesc{{0.025, 2, 2}}, {0, 0, 0}).kind = BodyKind::static_body;
@@ -43,7 +43,7 @@ double bullet(const EngineKind &kind) {
     });
 }
 
-// A ball at rest before a wall of 1 cm, struck at 20 m/s by one ten times as heavy.
+// A ball at rest in front of a 1 cm wall, hit at 20 m/s by one ten times as heavy.
 double struck(const EngineKind &kind) {
     return through(kind, 40, 1, [](SceneDesc &scene, double phase) {
         add(scene, "wall", BoxDesc{{0.005, 2, 2}}, {0, 0, 0}).kind = BodyKind::static_body;
@@ -54,7 +54,8 @@ double struck(const EngineKind &kind) {
     });
 }
 
-// The largest speed, over 12 phases, of a ball at rest that another passes at 10 m/s, 2 cm aside.
+// The largest speed, over 12 phases, of a resting ball that another passes at 10 m/s with 2 cm
+// clearance.
 double passing(const EngineKind &kind) {
     double worst = 0;
     for (int phase = 0; phase < 12; ++phase) {
@@ -68,8 +69,9 @@ double passing(const EngineKind &kind) {
     return worst;
 }
 
-// How often a rod that turns by a quarter a step is beyond a post after that step, of posts at 20
-// angles from 20 to 60 degrees. A struck rod turns on about the post, whose near side it keeps.
+// A rod turning 90 degrees a step: how often it is past a post after that step, for posts at 20
+// angles from 20 to 60 degrees. A rod that hits the post turns on about it and stays on the near
+// side.
 double rod(const EngineKind &kind) {
     constexpr double degree = std::numbers::pi / 180, away = 0.7, half = 0.05;
     int passed = 0;
@@ -88,9 +90,9 @@ double rod(const EngineKind &kind) {
     return passed;
 }
 
-// Two balls of 0.1 m and 1 kg, one of them at rest, struck at 20 m/s at `offset` of their diameter
-// aside; the step begins `phase` of its length before.
-// What `measure` makes of it afterwards.
+// A ball hits a resting one at 20 m/s, off centre by `offset` of their diameter; both have radius
+// 0.1 m and mass 1 kg. Impact comes `phase` of a step later than at phase 0. Returns what `measure`
+// gives afterwards.
 template <typename Measure>
 double after_collision(const EngineKind &kind, double friction, double restitution, double offset,
                        double phase, const Measure &measure) {
@@ -116,8 +118,8 @@ template <typename Error> double worst_collision(const Error &error) {
     return worst;
 }
 
-// Smooth and elastic: the struck ball leaves along the line of centres, the other square to it. The
-// larger of the two angles by which they are off, in degrees.
+// Smooth and elastic: the struck ball leaves along the line of centres, the other at right angles
+// to it. Returns the larger of the two angle errors, in degrees.
 double oblique(const EngineKind &kind) {
     return worst_collision([&](double offset, double phase) {
         return after_collision(kind, 0, 1, offset, phase, [&](const Trial &trial) {
@@ -132,19 +134,19 @@ double oblique(const EngineKind &kind) {
     });
 }
 
-// Rough ones, that bounce at 0.5: angular momentum, against that before, m v times half the
-// offset about their common centre.
+// Rough balls with restitution 0.5: the error of the angular momentum about the origin, against
+// that before the impact (%).
 double oblique_momentum(const EngineKind &kind) {
     return 100 * worst_collision([&](double offset, double phase) {
                return after_collision(kind, 0.5, 0.5, offset, phase, [&](const Trial &trial) {
-                   // About the resting ball, as about the origin.
+                   // About the resting ball's centre, which is the origin.
                    const double before = -20 * 0.2 * offset;
                    return std::abs(trial.angular_momentum().z / before - 1);
                });
            });
 }
 
-// 36 elastic boxes without friction in a room of 4 m, with neither gravity nor losses.
+// 36 elastic, frictionless boxes in a 4 m room without gravity: the worst energy error (%).
 double gas(const EngineKind &kind) {
     SceneDesc scene = weightless();
     set_material(scene, 0, 1);

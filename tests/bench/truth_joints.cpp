@@ -1,4 +1,4 @@
-// Pendulums, cradles, chains, nets, tops.
+// Pendulums, cradles, chains, nets and tops.
 #include "tests/bench/scene_parts.h"
 #include "tests/bench/truth.h"
 
@@ -15,7 +15,7 @@ using namespace parts;
 constexpr double g = 9.81;
 constexpr double degree = std::numbers::pi / 180;
 
-// A ball of 1 kg and 0.1 m on a ball joint a metre above, `angle` off the vertical.
+// A 1 kg ball of radius 0.1 m on a ball joint 1 m from its centre, `angle` off the vertical.
 std::size_t hang(SceneDesc &scene, const glm::dvec3 &pivot, double angle) {
     const glm::dvec3 arm(-std::sin(angle), -std::cos(angle), 0);
     BodyDesc &ball = add(scene, "ball", SphereDesc{0.1}, pivot + arm);
@@ -24,7 +24,7 @@ std::size_t hang(SceneDesc &scene, const glm::dvec3 &pivot, double angle) {
     return scene.bodies.size() - 1;
 }
 
-// Of a ball and its arm, which turn as one: 4 K(sin(amplitude / 2)) / w, by the
+// Period of a ball rigidly attached to its arm: 4 K(sin(amplitude / 2)) / w, by the
 // arithmetic-geometric mean.
 double period(double amplitude) {
     const double w = std::sqrt(g / (1 + 0.4 * 0.1 * 0.1));
@@ -41,18 +41,18 @@ double pendulum_energy(const EngineKind &kind) {
     SceneDesc scene;
     hang(scene, {0, 1, 0}, 60 * degree);
     Trial trial(kind, scene);
-    const double begin = trial.energy(); // 0 at the lowest
+    const double begin = trial.energy(); // zero at the lowest point
     return 100 * trial.worst(60, [&] { return std::abs(trial.energy() / begin - 1); });
 }
 
-// One that hangs at x = `away`.
+// Error (%) of the period of a pendulum that hangs at x = `away`.
 double pendulum_period(const EngineKind &kind, double away, Precision precision) {
     SceneDesc scene;
     scene.world.precision = precision;
     hang(scene, {away, 1, 0}, 60 * degree);
     Trial trial(kind, scene);
     double before = -1, first = 0, last = 0;
-    int crossings = 0; // upward ones of x = 0
+    int crossings = 0; // upward, through x = 0
     trial.go(60, [&] {
         const double now = trial.body(0).position.x - away;
         if (before < 0 && now >= 0) {
@@ -66,7 +66,8 @@ double pendulum_period(const EngineKind &kind, double away, Precision precision)
     return 100 * std::abs((last - first) / (crossings - 1) / period(60 * degree) - 1);
 }
 
-// The worst angle, in degrees, of any ball at the instant when those that were struck have risen.
+// The worst angle error of any ball, in degrees, when the struck balls are at their highest; with
+// gaps, of the last ball.
 double cradle(const EngineKind &kind, int balls, int raised, double gap) {
     SceneDesc scene;
     set_material(scene, 0, 1);
@@ -74,8 +75,8 @@ double cradle(const EngineKind &kind, int balls, int raised, double gap) {
     for (int i = 0; i < balls; ++i)
         hang(scene, pivot(i), i < raised ? 30 * degree : 0);
     Trial trial(kind, scene);
-    // With gaps each ball but the last is struck off and stops where the next hangs: it keeps what
-    // energy that place has.
+    // With gaps, every ball but the last stops where it hits the next, and keeps the potential
+    // energy of that place.
     const double stopped = 1 - std::sqrt(1 - gap * gap);
     const double risen =
         std::acos(std::cos(30 * degree) + (gap > 0 ? (balls - 1) * stopped : 0)) / degree;
@@ -102,7 +103,7 @@ double cradles(const EngineKind &kind, int balls) {
     return worst;
 }
 
-// Ten links of 1 kg and a ball of 100 kg, let go at 45 degrees.
+// Ten 1 kg links and a 100 kg ball, released at 45 degrees.
 double heavy_chain(const EngineKind &kind) {
     SceneDesc scene;
     const glm::dvec3 along(std::sqrt(0.5), -std::sqrt(0.5), 0);
@@ -126,8 +127,8 @@ double net(const EngineKind &kind, int side) {
     return 1e3 * trial.worst(10, [&] { return trial.measures().joint_drift(trial.states()); });
 }
 
-// A plate on a ball joint at its side, spun so that it goes round without sinking: the steady
-// solution of the heavy top.
+// A plate on a ball joint at its side, spun to precess without sinking: the steady solution of the
+// heavy top.
 double precession(const EngineKind &kind) {
     SceneDesc scene;
     BodyDesc &plate = add(scene, "plate", BoxDesc{{0.2, 0.02, 0.2}}, {0.3, 0, 0});
@@ -141,7 +142,7 @@ double precession(const EngineKind &kind) {
     return 1e3 * trial.worst(5, [&] { return std::abs(trial.body(0).position.y); });
 }
 
-// A rod that turns about its end.
+// A rod spinning about its end.
 double spun_rod(const EngineKind &kind) {
     SceneDesc scene;
     BodyDesc &rod = add(scene, "rod", BoxDesc{{0.5, 0.05, 0.05}}, {0.5, 0, 0});

@@ -1,4 +1,4 @@
-// Free bodies, and bodies on a plane.
+// Free bodies and bodies on a plane.
 #include "tests/bench/scene_parts.h"
 #include "tests/bench/truth.h"
 
@@ -25,8 +25,9 @@ double projectile(const EngineKind &kind) {
     return 1e3 * glm::distance(trial.body(0).position, glm::dvec3(20, 20 - 2 * g, 0));
 }
 
-// The energy of a parabola through three poses between two bounces: exact for any integrator that
-// moves by a parabola, whatever it says of its velocities.
+// Error of the energy after elastic bounces (%). The energy is that of the parabola through three
+// poses between two bounces: exact for any integrator that moves along parabolas, whatever
+// velocities it reports.
 double bounce(const EngineKind &kind) {
     SceneDesc scene = on_ground();
     set_material(scene, 0, 1);
@@ -47,8 +48,8 @@ double bounce(const EngineKind &kind) {
     return 100 * std::abs(energy / (5 * g) - 1);
 }
 
-// A box of 1 m, friction 0.5, on a slope so many times as steep as it holds: gravity is what is
-// tilted. How far it slides, along (x, z) of unit length (m).
+// How far (m) a 1 m box with friction 0.5 slides along the unit vector (x, z) on a slope
+// `steepness` times as steep as friction can hold. Gravity is tilted, not the slope.
 double slid(const EngineKind &kind, double steepness, double x, double z, double seconds) {
     SceneDesc scene = on_ground();
     add(scene, "box", BoxDesc{}, {0, 0.5, 0});
@@ -84,7 +85,7 @@ double rolling(const EngineKind &kind) {
     return std::abs(trial.body(1).velocity.x / (5.0 * 5 / 7) - 1);
 }
 
-// A book of unlike sides, spun about its middle axis.
+// A book with three different sides, spun about its middle axis.
 SceneDesc spinning_book() {
     SceneDesc scene;
     BodyDesc &book = add(scene, "book", BoxDesc{{0.11, 0.02, 0.15}}, {0, 0, 0});
@@ -107,7 +108,7 @@ double spin_momentum(const EngineKind &kind) {
         60, [&] { return glm::distance(trial.angular_momentum(), begin) / glm::length(begin); });
 }
 
-// How often the book turns over, against Euler's equations by RK4 in 0.1 ms.
+// Error in how often the book turns over, against Euler's equations by RK4 in 0.1 ms steps.
 double spin_flips(const EngineKind &kind) {
     Trial trial(kind, spinning_book());
     const glm::dvec3 inertia = trial.scene().masses[0].inertia;
@@ -133,7 +134,7 @@ double spin_flips(const EngineKind &kind) {
     return std::abs(flips - truth);
 }
 
-// A frictionless box over the seams of flush tiles.
+// A frictionless box sliding over the seams of flush tiles.
 double seams(const EngineKind &kind) {
     SceneDesc scene;
     set_material(scene, 0, 0);

@@ -1,4 +1,4 @@
-// What should stand, and how deep it sinks.
+// Structures that should stand, and how deep they sink.
 #include "tests/bench/scene_parts.h"
 #include "tests/bench/truth.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace parts;
 
-// How far its top is from where it was after 30 s, in mm.
+// How far the scene's top has moved after 30 s (mm).
 double top(const EngineKind &kind, SceneDesc scene) {
     Trial trial(kind, std::move(scene));
     trial.go(30);
@@ -34,7 +34,7 @@ SceneDesc pyramid(int base) {
     return scene;
 }
 
-// Kinetic energy after 30 s against the potential; a heap that fell is not at rest.
+// Kinetic over potential energy after 30 s; infinite if the heap fell.
 double unrest(const EngineKind &kind, SceneDesc scene) {
     Trial trial(kind, std::move(scene));
     trial.go(30 - trial.scene().dt());
@@ -49,7 +49,8 @@ double unrest(const EngineKind &kind, SceneDesc scene) {
     return trial.measures().kinetic_energy(before, trial.states(), trial.scene().dt()) / potential;
 }
 
-// The deepest of the last second of five, or how far the upper box went where it fell off.
+// The deepest penetration in the last of five seconds, or how far the upper box moved if it fell
+// off.
 double unlike_masses(const EngineKind &kind, double ratio) {
     SceneDesc scene = on_ground();
     add(scene, "light", BoxDesc{}, {0, 0.5, 0}).density = 1000;
@@ -62,14 +63,14 @@ double unlike_masses(const EngineKind &kind, double ratio) {
     return 1e3 * (moved > 0.5 ? moved : deepest);
 }
 
-// Cards of 1 m that lean on each other at 20 degrees to the vertical, in storeys of tents with
-// level cards between: how far any card went in 10 s.
+// Storeys of 1 m cards leaning on each other at 20 degrees to the vertical, with level cards
+// between them: how far any card moved in 10 s.
 double card_house(const EngineKind &kind) {
     SceneDesc scene = on_ground();
     set_material(scene, 0.7, 0);
     constexpr double half = 0.5, thin = 0.01, wide = 0.35;
     const double lean = 0.349066, rise = 2 * half * std::cos(lean) + 2 * thin * std::sin(lean);
-    // From the middle of a tent to that of a card, so that the cards just touch at their tops.
+    // From a tent's middle to a card's, so that the cards just touch at the top.
     const double aside = half * std::sin(lean) + thin * std::cos(lean);
     const double across = 2 * (2 * aside + 0.02);
     double floor = 0;
@@ -98,9 +99,9 @@ double card_house(const EngineKind &kind) {
     return 1e3 * worst;
 }
 
-// Thirteen stones of a half circle, from 2 to 2.6 m: how far any went in 10 s. It stands by its
-// shape alone, as long as it is thicker than 0.107 of its radius (Milankovitch 1907), with friction
-// enough at its feet.
+// A semicircular arch of thirteen stones, from 2 to 2.6 m: how far any stone moved in 10 s. With
+// enough friction at its feet it stands by its shape alone if it is thicker than 0.107 of its
+// radius (Milankovitch 1907).
 double arch(const EngineKind &kind) {
     SceneDesc scene = on_ground();
     set_material(scene, 0.7, 0);
@@ -108,7 +109,7 @@ double arch(const EngineKind &kind) {
     constexpr double inner = 2, outer = 2.6, deep = 0.3;
     const double half = 0.5 * std::numbers::pi / stones;
     const auto width = [&](double radius) { return 2 * radius * std::sin(half); };
-    // A trapezium's centre; y points away from the arch's middle.
+    // The trapezium's centroid; y points away from the arch's middle.
     const double tall = (outer - inner) * std::cos(half);
     const double centre =
         tall / 3 * (width(inner) + 2 * width(outer)) / (width(inner) + width(outer));
@@ -133,7 +134,7 @@ double arch(const EngineKind &kind) {
     return 1e3 * worst;
 }
 
-// How far the top of a stack of small cubes is from its place after 30 s, in per cent of its side.
+// How far the top of a stack of small cubes has moved after 30 s, as a percentage of their side.
 double small_stack(const EngineKind &kind, int count, double side) {
     SceneDesc scene = on_ground();
     for (int i = 0; i < count; ++i)

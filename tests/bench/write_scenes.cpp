@@ -1,4 +1,5 @@
-// `plumb bench scenes`: what `plumb bench dynamics` times as scene files, to run, chart and map.
+// `plumb bench scenes`: writes the scenes of `plumb bench dynamics` to files, to run, chart and
+// map.
 #include "tests/bench/benches.h"
 
 #include "app/files/output_file.h"

@@ -1,4 +1,4 @@
-// What `plumb bench scenes` writes, read again.
+// The output of `plumb bench scenes`, read back.
 #include "engine/scene/scene_file.h"
 #include "tests/app/program.h"
 #include "tests/bench/bench_scenes.h"

@@ -38,14 +38,14 @@ TEST(StateHash, SeesBitsNotValues) {
     EXPECT_NE(hash_of(0.0F), hash_of(-0.0F));
     EXPECT_NE(hash_of(1.0), hash_of(std::nextafter(1.0, 2.0)));
     EXPECT_NE(hash_of(1.0F), hash_of(std::nextafter(1.0F, 2.0F)));
-    // NaN differs from itself as a value, but not in its bits.
+    // NaN is unequal to itself as a value, but not in its bits.
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(hash_of(nan), hash_of(nan));
 }
 
 // A good mixer flips each of the 64 bits with probability 1/2 when one input bit flips. Over n
-// trials the mean share of one (input, output) pair has standard deviation 1/(2 sqrt n); six of
-// them are passed by one of the 4096 pairs with a chance of 1e-5.
+// trials the mean share of one (input, output) pair has standard deviation 1/(2 sqrt n); the chance
+// that any of the 4096 pairs is off by six of them is 1e-5.
 TEST(StateHash, OneBitChangesHalfOfThem) {
     constexpr int n = 2000;
     Random random(1);
@@ -65,7 +65,7 @@ TEST(StateHash, OneBitChangesHalfOfThem) {
                 << "input bit " << in << ", output bit " << out;
 }
 
-// 100,000 neighbouring words: two 64-bit hashes alike have a chance of 3e-10.
+// 100,000 neighbouring words: the chance that two 64-bit hashes collide is 3e-10.
 TEST(StateHash, NeighboursDoNotCollide) {
     std::set<std::uint64_t> seen;
     for (std::uint64_t i = 0; i < 100'000; ++i)

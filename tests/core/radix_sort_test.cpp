@@ -18,7 +18,7 @@ struct Item {
 TEST(RadixSort, IsTheStableSort) {
     Random random(1);
     std::vector<Item> scratch;
-    // Of few bits, of many, and of some at either end.
+    // Keys with few bits, with many, and with some at either end.
     for (const std::uint64_t mask :
          {std::uint64_t{0}, std::uint64_t{7}, UINT64_MAX, std::uint64_t{0xFF000000000000FF}})
         for (const int count : {0, 1, 2, 300}) {

@@ -36,8 +36,8 @@ TEST(Random, CopiesGoOnAlike) {
         EXPECT_EQ(random.next_u64(), copy.next_u64());
 }
 
-// n draws of a uniform number: the mean has standard deviation 1/sqrt(12 n), the mean square
-// sqrt(4/45/n). Five of them are passed by one seed in a million; this seed is fixed.
+// n uniform draws: the mean has standard deviation 1/sqrt(12 n), the mean square sqrt(4/45/n). One
+// seed in a million is off by five of them; this seed is fixed.
 TEST(Random, UnitIsUniform) {
     Random random(42);
     constexpr int n = 100'000;
@@ -65,12 +65,12 @@ TEST(Random, InStaysInItsRange) {
         low = std::min(low, x);
         high = std::max(high, x);
     }
-    // The chance that none of 10,000 comes within 1/500 of an end is e^-20.
+    // The chance that none of 10,000 draws is within 1/500 of an end is e^-20.
     EXPECT_LT(low, -2 + 7.0 / 500);
     EXPECT_GT(high, 5 - 7.0 / 500);
 }
 
-// Chi-squared with 6 degrees of freedom is above 35.9 once in a million.
+// Chi-squared with 6 degrees of freedom exceeds 35.9 once in a million.
 TEST(Random, IndexIsUniform) {
     Random random(11);
     constexpr int n = 70'000;
@@ -90,7 +90,7 @@ TEST(Random, IndexOfOneAndOfMost) {
     Random random(5);
     for (int i = 0; i < 100; ++i)
         EXPECT_EQ(random.next_index(1), 0U);
-    // count 2^32 - 1 gives nearly the upper half of the word itself.
+    // With count 2^32 - 1 the index is nearly the word's upper half.
     Random one(9);
     Random other(9);
     for (int i = 0; i < 100; ++i) {

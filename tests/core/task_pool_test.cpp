@@ -21,7 +21,7 @@ TEST(TaskPool, EachItemOnce) {
         EXPECT_EQ(tasks.threads(), threads);
         for (const std::size_t count : {0U, 1U, 2U, 7U, 64U, 1000U})
             for (const std::size_t grain : {0U, 1U, 3U, 64U, 5000U}) {
-                std::vector<int> done(count, 0); // plain ints: a part is one thread's alone
+                std::vector<int> done(count, 0); // plain ints: each part belongs to one thread
                 tasks.for_parts(count, grain, [&](std::size_t begin, std::size_t end) {
                     for (std::size_t i = begin; i < end; ++i)
                         ++done[i];
@@ -42,14 +42,14 @@ TEST(TaskPool, PartsAreNotEmptyAndNoLargerThanTheGrain) {
     EXPECT_EQ(bad, 0);
 }
 
-// The same thread's share comes to the same items, loop after loop, and what is left over goes to
-// who is free: nobody is waited for.
+// Each thread gets the same items loop after loop, and free threads take over the parts of a busy
+// one rather than wait for it.
 TEST(TaskPool, FreeThreadsHelpOthers) {
     TaskPool tasks(4);
     std::atomic<int> done{0};
     tasks.for_parts(64, 1, [&](std::size_t begin, std::size_t) {
         ++done;
-        while (begin == 0 && done < 64) // the first part's share waits until others did the rest
+        while (begin == 0 && done < 64) // the first part waits until others have done the rest
             std::this_thread::yield();
     });
     EXPECT_EQ(done, 64);
@@ -64,7 +64,7 @@ TEST(TaskPool, LoopsOfOneItemAPartToLookForRacesWith) {
     EXPECT_EQ(TaskPool(3).equal_grain(100, 64), 64U);
 }
 
-// A pool that is kept awake works as one that sleeps between loops, and goes back to sleep.
+// A pool kept awake works like one that sleeps between loops, and goes back to sleep.
 TEST(TaskPool, StaysAwakeWhileItIsAsked) {
     TaskPool tasks(4);
     for (int turn = 0; turn < 50; ++turn) {
@@ -84,8 +84,8 @@ TEST(TaskPool, NothingToDoCallsNothing) {
     EXPECT_EQ(calls, 0);
 }
 
-// What the caller reads after for_parts is what the parts wrote, round after round: a data race or
-// a round lost shows here, and under ThreadSanitizer at once.
+// After for_parts the caller reads what the parts wrote, round after round: a data race or a lost
+// round shows here, and under ThreadSanitizer immediately.
 TEST(TaskPool, ManyRounds) {
     TaskPool tasks(4);
     std::vector<std::uint64_t> values(97);

@@ -14,8 +14,8 @@ struct Elliptic {
     long double sn = 0, cn = 1, dn = 1;
 };
 
-// Jacobi's functions of u with the parameter m = k^2, 0 <= m < 1, by the arithmetic-geometric mean
-// (descending Landen; Abramowitz and Stegun, 16.4.1 to 16.4.4).
+// Jacobi's elliptic functions of u with the parameter m = k^2, 0 <= m < 1, by the
+// arithmetic-geometric mean (descending Landen; Abramowitz and Stegun, 16.4.1 to 16.4.4).
 inline Elliptic jacobi(long double u, long double m) {
     constexpr int halvings = 8; // each doubles the digits
     std::array<long double, halvings + 1> a{1};
@@ -45,8 +45,9 @@ inline long double quarter_period(long double m) {
     return std::numbers::pi_v<long double> / (2 * a);
 }
 
-// A top with three different moments that at time zero has no spin about its middle axis and some
-// about both others (Landau and Lifshitz 1976, "Mechanics", sec. 37, where the moments are sorted).
+// A top with three different moments whose spin at time zero has no component about its middle axis
+// and some about both others (Landau and Lifshitz 1976, "Mechanics", sec. 37, where the moments are
+// sorted).
 class FreeTop {
   public:
     FreeTop(const WideVec &moments, const WideVec &spin) : moments_(moments), start_(spin) {
@@ -54,7 +55,7 @@ class FreeTop {
         std::ranges::sort(order, {}, [&](int i) { return moments[i]; });
         middle_ = order[1];
         momentum_ = glm::length(moments * spin);
-        // Whether M^2 > 2 E I2: then it turns about the axis of the greatest moment.
+        // If M^2 > 2 E I2, it turns about the axis of the greatest moment.
         const long double twice_energy = glm::dot(spin, moments * spin);
         const bool above = momentum_ * momentum_ > twice_energy * moments[middle_];
         turns_ = above ? order[2] : order[0];
@@ -68,7 +69,7 @@ class FreeTop {
         parameter_ = across * of_swing / (aside * of_turn);
         const long double size =
             std::sqrt(of_swing * (aside + across) / (moments[middle_] * aside));
-        // From Euler's equation for the middle axis, if the axes follow each other as x, y, z.
+        // From Euler's equation for the middle axis, when the axes are in the order x, y, z.
         is_even_ = (middle_ + 1) % 3 == turns_;
         const long double pull = (aside + across) * spin[turns_] * spin[swings_];
         middle_spin_ = std::copysign(size, is_even_ ? pull : -pull);
@@ -77,7 +78,7 @@ class FreeTop {
     // Eq. (37.12), s.
     long double period() const { return 4 * quarter_period(parameter_) / rate_; }
 
-    // Eq. (37.10), in the body's axes.
+    // Eq. (37.10), in body axes.
     WideVec spin_at(long double time) const {
         const Elliptic e = jacobi(rate_ * time, parameter_);
         WideVec spin{0};
@@ -88,7 +89,7 @@ class FreeTop {
     }
 
     // The rotation in a world frame whose axis `turns` is along the angular momentum. The
-    // precession about that axis is zero at `from`.
+    // precession about that axis starts from zero at `from`.
     WideQuat rotation_at(long double time, long double from) const {
         const WideVec momentum = moments_ * spin_at(time);
         const int first = is_even_ ? swings_ : middle_;

@@ -1,4 +1,4 @@
-// Torque-free tops in closed form, and the methods that turn them beside each other.
+// Torque-free tops: the spin methods against the closed form and each other.
 #include "tests/dynamics/free_top.h"
 #include "tests/dynamics/worlds.h"
 
@@ -33,11 +33,11 @@ TEST(Jacobi, InvertsTheEllipticIntegral) {
     EXPECT_NEAR(double(quarter_period(0.99L)), 3.695637362989875, 1e-15);
 }
 
-// Tops that turn about the axis of the greatest and of the least moment, and one near the middle
+// Tops spinning about the axis of the greatest and of the least moment, and one near the middle
 // axis; each in two orders of the axes.
 struct Top {
     V half_extents;
-    V spin; // body axes, with none about the middle
+    V spin; // body axes, zero about the middle
 };
 constexpr double near_middle = 0.2;
 const std::array tops{Top{{0.1, 0.2, 0.4}, {4, 0, 2}},           Top{{0.1, 0.2, 0.4}, {1, 0, 5}},
@@ -54,7 +54,7 @@ BodyId add_top(World &world, const Top &top) {
     return world.add_body(def);
 }
 
-// What turns from the first rotation to the second, in the body's axes of the first.
+// The rotation from `from` to `to`, in the body axes of `from`.
 WideQuat turn_between(const WideQuat &from, const WideQuat &to) {
     return product({from.w, -from.x, -from.y, -from.z}, to);
 }
@@ -76,12 +76,12 @@ TEST(FreeTop, TheReferenceBySmallStepsAgrees) {
     }
 }
 
-// The greatest errors over three periods, by the end of each step.
+// The greatest errors at step ends over three periods.
 struct TopError {
-    double spin = 0;     // as a share of the greatest
+    double spin = 0;     // relative to the greatest
     double rotation = 0; // rad
-    double momentum = 0; // in the world, as a share of it
-    double energy = 0;   // likewise
+    double momentum = 0; // in the world, relative to it
+    double energy = 0;   // relative, too
 };
 
 TopError error_of(const std::string &method, const Top &top, double dt) {
@@ -116,7 +116,7 @@ TopError error_of(const std::string &method, const Top &top, double dt) {
     return worst;
 }
 
-// At |w| h of 0.05 to 0.1; single precision drifts along the way besides.
+// At |w| h of 0.05 to 0.1; single precision also drifts along the way.
 TEST(FreeTop, ImplicitSplitAndRungeKuttaSpinsFollowIt) {
     const double rounding = is_double ? 1e-7 : 1e-2;
     for (const Top &top : tops) {
@@ -129,7 +129,7 @@ TEST(FreeTop, ImplicitSplitAndRungeKuttaSpinsFollowIt) {
         EXPECT_LE(split.spin, 0.18 + rounding);
         EXPECT_LE(split.rotation, 0.18 + rounding);
         EXPECT_LE(split.momentum, 2000 * epsilon);
-        EXPECT_LE(split.energy, 0.02); // bounded, not kept
+        EXPECT_LE(split.energy, 0.02); // bounded, not conserved
         const TopError rk4 = error_of("rk4", top, 1.0 / 64);
         EXPECT_LE(rk4.spin, 3e-6 + rounding);
         EXPECT_LE(rk4.rotation, 1e-5 + rounding);
@@ -138,8 +138,8 @@ TEST(FreeTop, ImplicitSplitAndRungeKuttaSpinsFollowIt) {
     }
 }
 
-// A known failing: without the gyroscopic term no step is short enough, neither for the spin nor
-// for what is conserved; the others get better by their order.
+// Known failing: without the gyroscopic term no step is short enough, for either the spin or the
+// conserved quantities; the other methods improve with their order.
 TEST(FreeTop, NaiveSpinIsAsWrongAtAnyStep) {
     if (!is_double)
         GTEST_SKIP() << "orders do not stand out of single precision";

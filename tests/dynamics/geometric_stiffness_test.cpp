@@ -13,14 +13,14 @@ struct Pull {
     V force, arm;
 };
 
-// Moments that some body can have: none is larger than the sum of the others.
+// Principal moments that a body can have: none exceeds the sum of the other two.
 V any_inertia(Random &random) {
     const V sides{random.next_in(0.05, 1), random.next_in(0.05, 1), random.next_in(0.05, 1)};
     const V squares = sides * sides;
     return V{squares.y + squares.z, squares.x + squares.z, squares.x + squares.y};
 }
 
-// The second derivative of -F (R r) by a turn about an axis, by differences.
+// The second derivative of -F (R r) in the angle about an axis, by finite differences.
 double stiffness_about(const V &axis, const std::vector<Pull> &pulls) {
     constexpr double small = 1e-4;
     const auto potential = [&](double angle) {
@@ -47,7 +47,7 @@ TEST(GeometricStiffness, IsTheSecondDerivativeOfThePotential) {
     }
 }
 
-// A body that has the bound for its inertia turns no faster than at 1 rad/s, about any axis.
+// A body with the bound for its inertia turns at 1 rad/s at most, about any axis.
 TEST(GeometricStiffness, IsNowhereAboveItsBound) {
     Random random(2);
     for (int trial = 0; trial < 300; ++trial) {

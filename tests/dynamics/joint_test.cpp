@@ -31,8 +31,8 @@ struct Pendulum {
     }
 };
 
-// A body that hangs from the origin by a ball joint in itself, `arm` from its centre, let go at
-// `amplitude` in the xy plane.
+// A body hung from the origin by a ball joint `arm` from its centre, released at `amplitude` in the
+// xy plane.
 Pendulum hung(const std::string &method, const StepSettings &settings, const Shape &shape,
               double mass, double arm, double amplitude) {
     World world(method, settings);
@@ -45,7 +45,7 @@ Pendulum hung(const std::string &method, const StepSettings &settings, const Sha
     return {std::move(world), joint.b, arm};
 }
 
-// The mean of the first swings, from the times at which it passes the bottom, interpolated.
+// The mean period of the first swings, from interpolated times of passing the bottom.
 double measured_period(Pendulum &pendulum, int swings) {
     std::vector<double> crossings;
     double before = pendulum.angle();
@@ -64,8 +64,8 @@ double ball_rate(double mass, double arm, double radius) {
     return std::sqrt(mass * gravity * arm / moment);
 }
 
-// Both methods at fine substeps. soft_step is of second order: (w h)^2 of the period; sequential
-// impulses loses w^2 h of its energy a second, and with the amplitude the period.
+// At fine substeps. soft_step is second order: (w h)^2 of the period. Sequential impulses loses
+// w^2 h of its energy per second, and the period shortens with the amplitude.
 TEST_P(Joints, PendulumPeriod) {
     for (const double amplitude : {0.1, 1.0, 2.0}) {
         StepSettings settings = settings_for(GetParam());
@@ -76,8 +76,8 @@ TEST_P(Joints, PendulumPeriod) {
         const double h = substep_of(pendulum.world);
         const bool second = GetParam() == "soft_step";
         // Single precision: a thousand roundings of the fixing a substep, at random.
-        // XPBD loses more of it: the swing's, and the bob's own. So does AVBD, whose gravity, too,
-        // is that at the substep's end.
+        // XPBD loses more energy: the swing's, and the bob's own. So does AVBD, whose gravity also
+        // acts at the substep's end.
         const double first = GetParam() == "xpbd" || GetParam() == "avbd" ? 5 : 3;
         const double tolerance =
             (second ? 4 * rate * rate * h * h : first * rate * rate * h) + 1000 * epsilon;
@@ -85,7 +85,7 @@ TEST_P(Joints, PendulumPeriod) {
     }
 }
 
-// A long rod on its end and a brick: the moment of inertia counts.
+// A long rod hung by its end, and a brick: the moment of inertia counts.
 TEST_P(Joints, CompoundPendulumPeriod) {
     for (const V &half : {V{0.02, 0.5, 0.02}, V{0.3, 0.2, 0.1}}) {
         StepSettings settings = settings_for(GetParam());
@@ -117,11 +117,11 @@ TEST(SoftStep, PendulumEnergyConvergesToSecondOrder) {
     const double coarse = std::abs(energy_change("soft_step", 2, 10));
     const double middle = std::abs(energy_change("soft_step", 8, 10));
     EXPECT_LT(coarse, 0.05);
-    EXPECT_LT(middle, coarse / 8 + 2000 * epsilon); // 16 by the order, and half of that to spare
+    EXPECT_LT(middle, coarse / 8 + 2000 * epsilon); // second order gives 16; 8 leaves slack
 }
 
-// A known failing: sequential impulses takes the joint at the old poses, which costs energy in
-// proportion to the substep: 8.7 % in 4 s at one substep, as measured.
+// Known failing: sequential impulses evaluates the joint at the old poses, which costs energy in
+// proportion to the substep: a measured 8.7 % in 4 s at one substep.
 TEST(SequentialImpulses, LosesAPendulumsEnergy) {
     const double at_1 = -energy_change("sequential_impulses", 1, 4);
     const double at_8 = -energy_change("sequential_impulses", 8, 4);
@@ -137,18 +137,17 @@ TEST_P(Joints, DriftIsBounded) {
         pendulum.world.step(nullptr);
         worst = std::max(worst, pendulum.world.measure().max_joint_drift);
     }
-    // The path of a substep strays from its chord by (v h)^2 / 2 r, with v = 5.9 m/s at the bottom;
-    // Baumgarte takes a fifth back in each, so lets five of them stand.
+    // In a substep the path strays from its chord by (v h)^2 / 2 r, with v = 5.9 m/s at the bottom.
+    // Baumgarte corrects a fifth of the drift per substep, so five such errors remain.
     const double h = substep_of(pendulum.world);
     const double stray = 5.9 * h * 5.9 * h / 2;
-    // TGS Soft, whose softness takes back less, was seen to let ten and a half of them stand.
-    // XPBD moves an anchor along its error alone, and with it the body turns: seen to let 140
-    // stand.
+    // TGS Soft is softer and corrects less: ten and a half remained when measured. XPBD moves an
+    // anchor along its error only and turns the body with it: 140 remained.
     const double left = GetParam() == "tgs_soft" ? 12 : GetParam() == "xpbd" ? 200 : 6;
     EXPECT_LE(worst, left * stray + 1e-5);
 }
 
-// Hanging still, a ball joint carries the weight, and nothing sideways.
+// Hanging still, a ball joint carries the weight and no sideways load.
 TEST_P(Joints, CarryTheWeight) {
     for (const JointType type : {JointType::ball, JointType::distance}) {
         World world(GetParam(), settings_for(GetParam()));
@@ -163,7 +162,7 @@ TEST_P(Joints, CarryTheWeight) {
         const V impulse = impulse_of(world, 0);
         const V force = impulse / substep_of(world);
         const double weight = 3 * gravity;
-        // XPBD's force is a change of place over h^2: two roundings of a metre.
+        // XPBD's force is a displacement over h^2: two roundings of a metre.
         const double h = substep_of(world);
         const double noise = GetParam() == "xpbd" ? 3 * 2 * epsilon / (h * h) : 0;
         const double tolerance = weight * (1e-4 + 1000 * epsilon) + noise;
@@ -176,7 +175,7 @@ TEST_P(Joints, CarryTheWeight) {
     }
 }
 
-// Going round in zero gravity: m w^2 r, on the centre, and forever at the same speed.
+// Circling in zero gravity: a force of m w^2 r towards the centre, and constant speed forever.
 TEST_P(Joints, CarryTheCentripetalForce) {
     StepSettings settings = weightless(settings_for(GetParam()));
     settings.substeps = 16;
@@ -191,21 +190,21 @@ TEST_P(Joints, CarryTheCentripetalForce) {
     const double force = glm::length(impulse_of(world, 0)) / substep_of(world);
     const double speed = glm::length(velocity_of(world, joint.b));
     const double h = substep_of(world);
-    // In single precision Baumgarte's pull on the rounding of the anchors is felt: 0.2 m / h^2
-    // times a few roundings of a metre.
+    // In single precision Baumgarte's bias picks up the rounding of the anchors: 0.2 m / h^2 times
+    // a few roundings of a metre.
     const double noise = 0.2 * 3 / (h * h) * 4 * epsilon;
-    // Known failing: XPBD's force swings about its mean, by as much, where the anchor is far from
-    // the centre: the error's direction is that of a mean of two very different masses.
+    // Known failing: XPBD's force swings about its mean by as much as the mean where the anchor is
+    // far from the centre: the error's direction is that of a mean of two very different masses.
     EXPECT_NEAR(force, 3 * speed * speed, GetParam() == "xpbd" ? 12 : 0.01 * 12 + noise);
     if (GetParam() == "soft_step") {
         EXPECT_NEAR(speed, 2, 2 * (60 * 16 * 2 * h * 2 * h * 2 * h + 1000 * epsilon));
     } else {
         const double share = GetParam() == "xpbd" ? 2 : 1;
-        EXPECT_NEAR(speed, 2, share * 2 * 2 * 2 * h); // w^2 h a second, as above
+        EXPECT_NEAR(speed, 2, share * 2 * 2 * 2 * h); // w^2 h per second, as above
     }
 }
 
-// The far end of a distance joint: a pendulum of a point-like bob, whose spin stays its own.
+// At the far end of a distance joint: a pendulum with a point-like bob, which keeps its own spin.
 TEST_P(Joints, DistancePendulumPeriod) {
     StepSettings settings = settings_for(GetParam());
     settings.substeps = 16;
@@ -227,8 +226,8 @@ TEST_P(Joints, DistancePendulumPeriod) {
     EXPECT_EQ(spin_of(pendulum.world, joint.b), V{0});
 }
 
-// Ten links of 1 kg, held out level and let go, with a weight at the end. The largest drift in 10
-// s; infinite when the world diverged.
+// Ten 1 kg links, held out level and released, with a weight at the end. The largest drift in 10 s;
+// infinite if the world diverges.
 double chain_drift(const std::string &method, const StepSettings &settings, const Shape &link,
                    double weight) {
     World world(method, settings);
@@ -255,7 +254,7 @@ double chain_drift(const std::string &method, const StepSettings &settings, cons
     return worst;
 }
 
-// A tenth of a link is the most that passes for holding together.
+// A tenth of a link is the most drift that counts as holding together.
 TEST(SoftStep, HoldsAChainWithAHeavyEnd) {
     const StepSettings settings = settings_for("soft_step");
     const Shape link = block(V{0.25, 0.05, 0.05});
@@ -264,8 +263,8 @@ TEST(SoftStep, HoldsAChainWithAHeavyEnd) {
     EXPECT_LT(chain_drift("soft_step", settings, link, 100), 0.1);
 }
 
-// Links that are balls far smaller than their joints' lever: their forces turn them faster than
-// four substeps follow, and then they give way; eight hold them.
+// Links that are balls far smaller than the joints' lever arms: the joint forces turn them faster
+// than four substeps can follow, and the chain gives way; eight hold it.
 TEST(SoftStep, HoldsAChainOfSmallBalls) {
     StepSettings settings = settings_for("soft_step");
     EXPECT_LT(chain_drift("soft_step", settings, ball(0.1), 100), 0.1);
@@ -273,7 +272,7 @@ TEST(SoftStep, HoldsAChainOfSmallBalls) {
     EXPECT_LT(chain_drift("soft_step", settings, ball(0.1), 100), 0.02);
 }
 
-// A known failing: a hundredfold weight tears the chain of sequential impulses.
+// Known failing: a hundredfold weight tears the chain of sequential impulses.
 TEST(SequentialImpulses, AHeavyEndTearsAChain) {
     StepSettings settings = settings_for("sequential_impulses");
     const Shape link = block(V{0.25, 0.05, 0.05});

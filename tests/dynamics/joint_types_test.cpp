@@ -1,4 +1,4 @@
-// Hinges, sliders, fixed joints, ropes, springs, motors, limits: against closed forms.
+// Hinges, sliders, fixed joints, ropes, springs, motors and limits against closed forms.
 #include "engine/core/check.h"
 #include "tests/dynamics/avbd_passes.h"
 #include "tests/dynamics/worlds.h"
@@ -11,7 +11,7 @@ using namespace trial;
 class JointTypes : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, JointTypes, testing::ValuesIn(joint_methods()), name_of);
 
-// The turn that takes x to the axis.
+// The rotation that takes x to the axis.
 Quat axis_frame(const V &axis) {
     const V from{1, 0, 0};
     const V half = glm::normalize(from + axis);
@@ -25,7 +25,7 @@ struct Joined {
     std::uint32_t joint = 0;
 };
 
-// A body on a joint to the world at the origin, about or along an axis.
+// A body jointed to the world at the origin, about or along an axis.
 Joined joined(const std::string &method, StepSettings settings, JointDef def, const BodyDef &body,
               const V &axis) {
     World world(method, settings);
@@ -85,7 +85,7 @@ TEST_P(JointTypes, AHingePendulumKeepsItsPeriod) {
     EXPECT_LE(double(j.world.joint_error(j.joint)), 2e-3);
 }
 
-// A substep's turn of 3e-8 rad is less than single precision can add to a quaternion.
+// A turn of 3e-8 rad in a substep is less than single precision can add to a quaternion.
 TEST(SlowTurn, IsNotLostToRounding) {
     for (const char *method : {"soft_step", "tgs_soft"}) {
         StepSettings settings = weightless(fine(method, 64));
@@ -100,7 +100,7 @@ TEST(SlowTurn, IsNotLostToRounding) {
     }
 }
 
-// A motor with a bounded torque spins a disc up by w = torque t / I, and then keeps its speed.
+// A motor with a bounded torque spins a disc up by w = torque t / I, then holds its speed.
 TEST_P(JointTypes, AMotorSpinsUpByItsTorque) {
     JointDef def;
     def.type = JointType::hinge;
@@ -111,16 +111,16 @@ TEST_P(JointTypes, AMotorSpinsUpByItsTorque) {
                       dynamic_body(ball(radius), mass, V{0}), V{0, 1, 0});
     run(j.world, 60);
     const double reached = 0.5 / inertia; // after 1 s
-    // Known failing: AVBD halves what is missing of a motor's speed in each of its ten passes.
+    // Known failing: each of AVBD's ten passes only halves a motor's speed error.
     const double lost = GetParam() == "xpbd" ? spin_lost_by_xpbd(j.world, std::pow(reached, 3) / 4)
                         : GetParam() == "avbd" ? left_by_avbd(j.world) * reached
                                                : 0;
     EXPECT_NEAR(spin_of(j.world, j.id).y, reached - lost, reached * (1e-4 + 500 * epsilon));
-    run(j.world, 240); // 10 rad/s are reached after 4 s
+    run(j.world, 240); // it reaches 10 rad/s after 4 s
     EXPECT_NEAR(spin_of(j.world, j.id).y, 10, 1e-3);
 }
 
-// A motor stronger than its load reaches its speed at once.
+// A motor stronger than its load reaches its speed immediately.
 TEST_P(JointTypes, ASliderMotorHoldsItsSpeedAgainstGravity) {
     JointDef def;
     def.type = JointType::slider;
@@ -132,7 +132,7 @@ TEST_P(JointTypes, ASliderMotorHoldsItsSpeedAgainstGravity) {
     EXPECT_NEAR(place_of(j), 0.5, 0.02);
 }
 
-// On a rail at an angle a body falls by g sin(a) t^2 / 2, and keeps to the rail.
+// On an inclined rail a body falls by g sin(a) t^2 / 2 and stays on the rail.
 TEST_P(JointTypes, ASliderFallsFreely) {
     for (const double angle : {pi / 2, pi / 6, 0.0}) {
         JointDef def;
@@ -166,7 +166,7 @@ TEST_P(JointTypes, LimitsStopASliderAndAHinge) {
             least = std::min(least, place_of(j));
             most = std::max(most, place_of(j));
         }
-        // One pass does not share a blow between the stop and the anchor to the last bit.
+        // One pass does not split an impact exactly between the stop and the anchor.
         EXPECT_LE(most, 0.5 + 0.02);
         EXPECT_GE(least, -0.25 - 0.02);
         EXPECT_NEAR(place_of(j), 0.5, 0.005); // rests on the stop
@@ -174,7 +174,7 @@ TEST_P(JointTypes, LimitsStopASliderAndAHinge) {
     }
 }
 
-// A distance joint with a frequency is a spring: x'' = -w^2 x, by w of the mass that hangs on it.
+// A distance joint with a frequency is a spring: x'' = -w^2 x, with w for the mass hanging on it.
 TEST(Springs, SwingWithTheirFrequencyAndKeepTheirEnergy) {
     StepSettings settings = weightless(settings_for("soft_step"));
     World world("soft_step", settings);
@@ -190,12 +190,12 @@ TEST(Springs, SwingWithTheirFrequencyAndKeepTheirEnergy) {
     for (int i = 1; i <= 600; ++i) {
         world.step(nullptr);
         const double t = i / 60.0;
-        // The midpoint rule turns the phase by 2 atan(w h / 2) a substep.
+        // The midpoint rule advances the phase by 2 atan(w h / 2) a substep.
         const double phase = 2 * std::atan(w * h / 2) / h * t;
         ASSERT_NEAR(position_of(world, def.b).x, 2 + 0.2 * std::cos(phase), 2e-4 + 600 * epsilon)
             << t;
     }
-    // And that is within (w h)^2 / 12 of the true one.
+    // This phase is within (w h)^2 / 12 of the true one.
     EXPECT_LE(std::abs(2 * std::atan(w * h / 2) / (w * h) - 1), w * h * w * h / 12);
 }
 
@@ -218,7 +218,7 @@ TEST(Springs, DieAwayWithTheirDampingRatio) {
     }
 }
 
-// However stiff, a spring without damping gains nothing.
+// However stiff, an undamped spring gains no energy.
 TEST(Springs, AreStableAtAnyStiffness) {
     for (const double frequency : {1e-30, 1.0, 30.0, 300.0, 3000.0, 1e9}) {
         World world("soft_step", weightless(settings_for("soft_step")));
@@ -237,10 +237,10 @@ TEST(Springs, AreStableAtAnyStiffness) {
     }
 }
 
-// Two bodies that tumble on one another's spring for a minute: what turns one turns the other back,
-// and together they have no more than they began with. Where its force acted at two anchors, and
-// its stiffness turned with both, they changed their angular momentum by as much as there was, and
-// some doubled their energy.
+// Two bodies tumbling on a spring between them for a minute: the torques on them are opposite, and
+// together they never have more energy than at the start. When the force acted at two anchors and
+// the stiffness turned with both, their angular momentum changed by as much as there was, and some
+// doubled their energy.
 TEST(Springs, BetweenFreeBodiesKeepWhatThereIs) {
     Random random(8);
     for (const JointType type : {JointType::ball, JointType::hinge, JointType::slider,
@@ -276,7 +276,7 @@ TEST(Springs, BetweenFreeBodiesKeepWhatThereIs) {
                     lost = std::max(lost,
                                     glm::distance(now.angular_momentum, before.angular_momentum));
                 }
-                // Its rows are linear in a step, which undamped ones do not quite make up for.
+                // The rows are linear in a step, which undamped springs do not quite make up for.
                 EXPECT_LT(most, (damping > 0 ? 1 : 1.3) * before.kinetic_energy)
                     << int(type) << ' ' << damping << ' ' << trial;
                 EXPECT_LT(lost, 5e-3 * glm::length(before.angular_momentum))
@@ -284,7 +284,7 @@ TEST(Springs, BetweenFreeBodiesKeepWhatThereIs) {
             }
 }
 
-// A rope is not there until it is taut.
+// A rope does nothing until it is taut.
 TEST_P(JointTypes, ARopeIsSlackUntilItIsTaut) {
     World world(GetParam(), settings_for(GetParam()));
     JointDef def;
@@ -309,7 +309,7 @@ TEST_P(JointTypes, ARopeIsSlackUntilItIsTaut) {
     EXPECT_NEAR(position_of(world, def.b).y, -1, 5e-3);
 }
 
-// Two boxes that are one: thrown, they keep their places in each other.
+// Two boxes that act as one: thrown, they keep their relative pose.
 TEST_P(JointTypes, FixedBodiesMoveAsOne) {
     World world(GetParam(), fine(GetParam(), 8));
     BodyDef left = dynamic_body(block(V{0.5, 0.2, 0.3}), 2, V{-0.5, 0, 0});
@@ -356,7 +356,7 @@ TEST_P(JointTypes, TellTheirLoad) {
     EXPECT_LE(glm::distance(wide(load.torque), V{0, 0, 0.5 * 2 * gravity}), 0.05 * gravity);
 }
 
-// A hand lifts what it can, and lets go of nothing but what it is too weak for.
+// A grab lifts what it can, and only lets go of loads it is too weak for.
 TEST_P(JointTypes, AGrabHoldsWithItsForceAndNoMore) {
     for (const double strength : {0.9, 5.0}) {
         World world(GetParam(), settings_for(GetParam()));
@@ -372,7 +372,7 @@ TEST_P(JointTypes, AGrabHoldsWithItsForceAndNoMore) {
     }
 }
 
-// What it holds sags by g / w^2; without damping it swings about there at first by as much.
+// A held body sags by g / w^2; without damping it first swings about that by as much.
 TEST_P(JointTypes, AGrabPullsWithItsOwnSpring) {
     for (const double frequency : {1.0, 3.0}) {
         World world(GetParam(), settings_for(GetParam()));
@@ -380,7 +380,7 @@ TEST_P(JointTypes, AGrabPullsWithItsOwnSpring) {
         world.grab(id, Vec3{Real(0)}, Vec3{Real(0)}, Real(1e4), {frequency, 0});
         const double sag = gravity / std::pow(2 * pi * frequency, 2);
         double lowest = 0;
-        for (int i = 0; i < 60 / frequency; ++i) { // a period
+        for (int i = 0; i < 60 / frequency; ++i) { // one period
             world.step(nullptr);
             lowest = std::min(lowest, position_of(world, id).y);
         }

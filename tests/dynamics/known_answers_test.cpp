@@ -1,6 +1,6 @@
-// Every method that holds bodies apart, at its own settings and 60 Hz, on problems whose answer is
-// known: how wrong it is, within a bound that is stated for each. Known failings are pinned from
-// below, too.
+// Every method that holds bodies apart, at its default settings and 60 Hz, on problems with known
+// answers: how wrong it is, within a stated bound for each. Known failings are bounded from below,
+// too.
 #include "tests/dynamics/particles.h"
 
 #include <map>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace trial;
 
-// A ball thrown for a second: how far from x0 + v0 t + g t^2 / 2 (m).
+// A ball thrown for a second: its distance from x0 + v0 t + g t^2 / 2 (m).
 double thrown(const std::string &method) {
     World world(method, settings_for(method));
     const BodyId id = world.add_body(dynamic_body(ball(0.1), 1, V{0, 5, 0}, V{3, 4, 0}));
@@ -19,8 +19,8 @@ double thrown(const std::string &method) {
     return glm::distance(position_of(world, id), V{3, 5 + 4 - gravity / 2, 0});
 }
 
-// A ball dropped from 1 m onto its restitution of a half: how far the top of its first rebound is
-// from a quarter of that, as a share.
+// A ball dropped from 1 m with a restitution of a half: the error of its first rebound height of a
+// quarter of that, as a share.
 double rebound(const std::string &method) {
     World world(method, settings_for(method));
     world.add_body(ground(0, 0.5));
@@ -45,7 +45,7 @@ World box_on_slope(const std::string &method, double slope, double mu) {
     return world;
 }
 
-// A box on a slope that friction holds: how far it creeps in five seconds (m).
+// A box that friction holds on a slope: how far it creeps in five seconds (m).
 double creep(const std::string &method) {
     World world = box_on_slope(method, 0.35, 0.4);
     run(world, 60);
@@ -54,7 +54,7 @@ double creep(const std::string &method) {
     return glm::distance(position_of(world, world.body_id(1)), settled);
 }
 
-// On one too steep: its speed after a second against g (sin a - mu cos a), as a share.
+// On a slope too steep for that: its speed after a second against g (sin a - mu cos a), as a share.
 double slide(const std::string &method) {
     World world = box_on_slope(method, 0.6, 0.4);
     run(world, 60);
@@ -62,7 +62,7 @@ double slide(const std::string &method) {
     return std::abs(glm::length(velocity_of(world, world.body_id(1))) / exact - 1);
 }
 
-// A ball laid on the ground: how deep it is at most in five seconds (m).
+// A ball resting on the ground: its greatest penetration in five seconds (m).
 double sunken_ball(const std::string &method) {
     World world(method, settings_for(method));
     world.add_body(ground(0.5, 0));
@@ -75,7 +75,7 @@ double sunken_ball(const std::string &method) {
     return depth;
 }
 
-// Five cubes of a metre stood on each other: how far the topmost is from where it stood (m).
+// A stack of five 1 m cubes: how far the top one ends up from its starting position (m).
 double leaning_stack(const std::string &method) {
     World world(method, settings_for(method));
     world.add_body(ground(0.5, 0));
@@ -85,8 +85,7 @@ double leaning_stack(const std::string &method) {
     return glm::distance(position_of(world, world.body_id(5)), V{0, 4.5, 0});
 }
 
-// Two balls that meet off centre: the momentum that is lost or gained, as a share of what the
-// faster had.
+// Two balls in an off-centre impact: the momentum lost or gained, as a share of the faster ball's.
 double lost_momentum(const std::string &method) {
     World world(method, weightless(settings_for(method)));
     world.add_body(with_material(dynamic_body(ball(0.2), 1, V{-1, 0.1, 0}, V{3, 0, 0}), 0.5, 0.5));
@@ -96,8 +95,8 @@ double lost_momentum(const std::string &method) {
     return glm::distance(wide(world.measure().linear_momentum), V{3, 0, 0}) / 3;
 }
 
-// A bob on a rod of a metre, let go at 60 degrees: the swing's energy that is lost or gained in ten
-// seconds, as a share.
+// A bob on a 1 m rod, released at 60 degrees: the swing energy lost or gained in ten seconds, as a
+// share.
 double pendulum_energy(const std::string &method) {
     World world(method, settings_for(method));
     JointDef rod;
@@ -110,7 +109,7 @@ double pendulum_energy(const std::string &method) {
     return std::abs(world.measure().energy() - before) / (gravity * (1 - std::cos(pi / 3)));
 }
 
-// Ten balls on rods, the last a hundred times as heavy, hung straight.
+// Ten balls on rods, hung straight, the last a hundred times as heavy.
 World heavy_chain(const std::string &method) {
     World world(method, settings_for(method));
     BodyId above;
@@ -126,15 +125,15 @@ World heavy_chain(const std::string &method) {
     return world;
 }
 
-// The worst of its joints after five seconds (m).
+// The worst drift of its joints after five seconds (m).
 double torn_chain(const std::string &method) {
     World world = heavy_chain(method);
     run(world, 300);
     return world.measure().max_joint_drift;
 }
 
-// A mass on a spring of 1 Hz, undamped, let go at its rest length: how far it is from where it
-// should be after two and a quarter periods, as a share of its swing.
+// A mass on an undamped 1 Hz spring, released at its rest length: its position error after two and
+// a quarter periods, as a share of the amplitude.
 double swinging_spring(const std::string &method) {
     StepSettings settings = weightless(settings_for(method));
     World world(method, settings);
@@ -145,7 +144,7 @@ double swinging_spring(const std::string &method) {
     return std::abs(particle_position(world, p).x - 1) / 0.2;
 }
 
-// `least`: a known failing, which is at least so wrong.
+// `least`: for a known failing, the error is at least this.
 struct Bound {
     double most = 0;
     double least = 0;
@@ -153,7 +152,7 @@ struct Bound {
 struct Problem {
     std::string name;
     double (*error)(const std::string &method);
-    std::map<std::string, Bound> bounds; // of every method that can run it
+    std::map<std::string, Bound> bounds; // for every method that can run it
 };
 void PrintTo(const Problem &problem, std::ostream *out) {
     *out << problem.name;
@@ -275,7 +274,8 @@ TEST_P(KnownAnswers, AreMetWithinTheMethodsBound) {
     }
 }
 
-// The greatest energy of a chain let go aside, over what it began with, in units of its fall.
+// A chain released off to one side: the greatest energy above its initial energy, in units of the
+// energy of its fall.
 double energy_gained(int split_impulse, double dt) {
     StepSettings settings = settings_for("sequential_impulses");
     settings.split_impulse = split_impulse;
@@ -312,13 +312,13 @@ TEST(KnownFailings, SequentialImpulsesGainEnergyThroughBaumgartesBias) {
         EXPECT_LT(energy_gained(2, dt), 0.01) << dt;
 }
 
-// Its rate does not grow as the step shrinks, so what it gives fades.
+// The bias rate does not grow as the step shrinks, so the energy it adds fades.
 TEST(SequentialImpulses, GainLessAndLessEnergyAsTheStepShrinks) {
     EXPECT_LT(energy_gained(1, 1.0 / 960), 0.02);
     EXPECT_LT(energy_gained(1, 1.0 / 1920), 0.002);
 }
 
-// Torn, it whips about: what it has come to at the end says little of what it went through.
+// The torn chain whips about: its final state says little about the worst on the way.
 TEST(KnownFailings, SequentialImpulsesTearAChainByMetres) {
     World world = heavy_chain("sequential_impulses");
     double worst = 0;

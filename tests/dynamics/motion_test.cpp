@@ -32,8 +32,8 @@ SolverBody moving(const Body &body, const V &velocity, const V &spin, const glm:
     return motion;
 }
 
-// Column by column: R I^-1 R^T e. The matrix has entries of at most |I^-1|, made of about a dozen
-// roundings, and a quaternion's rounding of its length counts four times.
+// Column by column: R I^-1 R^T e. The matrix entries are at most |I^-1| and come from about a dozen
+// roundings; the rounding of a quaternion's length counts four times.
 TEST(InverseInertia, AgainstWideArithmetic) {
     Random random(1);
     for (int trial = 0; trial < 5000; ++trial) {
@@ -80,8 +80,8 @@ TEST(SpinMomentum, AgainstWideArithmetic) {
     }
 }
 
-// The quaternion (cos(x/2), sin(x/2) axis) * rotation. The angle x is rounded, which turns the
-// result by x epsilon / 2; a dozen roundings of a unit quaternion besides.
+// The quaternion (cos(x/2), sin(x/2) axis) * rotation. Rounding the angle x turns the result by
+// x epsilon / 2; add a dozen roundings of a unit quaternion.
 TEST(Turned, AgainstTheExponentialMap) {
     Random random(4);
     for (int trial = 0; trial < 20000; ++trial) {
@@ -104,7 +104,7 @@ TEST(Turned, AgainstTheExponentialMap) {
     }
 }
 
-// A small turn must not get lost: its axis and size are exact to rounding relative to itself.
+// Small turns must not get lost: axis and angle are accurate to relative rounding.
 TEST(Turned, ByVerySmallAngles) {
     const Vec3 spin{Real(3e-5), Real(-4e-5), Real(1.2e-4)}; // 1.3e-4 rad/s
     const Quat q = turned(identity_rotation, spin, Real(0.01));
@@ -119,7 +119,7 @@ double spin_energy(const V &inertia, const V &spin) {
     return 0.5 * glm::dot(inertia * spin, spin);
 }
 
-// The midpoint rule keeps w . I w and |I w|^2 for any step for which Newton's method finds the
+// The midpoint rule conserves w . I w and |I w|^2 for any step at which Newton's method finds the
 // root: with enough iterations, up to two radians.
 TEST(GyroscopicSpin, KeepsEnergyAndMomentum) {
     Random random(5);
@@ -142,8 +142,8 @@ TEST(GyroscopicSpin, KeepsEnergyAndMomentum) {
     }
 }
 
-// Beyond, Newton's method may miss: the energy is kept to the stated 32 epsilon (and what rounding
-// adds) for any step and any number of iterations, so that no spin can explode.
+// Beyond that Newton's method may miss. Energy is still conserved to the stated 32 epsilon (plus
+// rounding) for any step and number of iterations, so no spin can explode.
 TEST(GyroscopicSpin, KeepsEnergyForAnyStep) {
     Random random(5);
     int momentum_lost = 0;
@@ -163,10 +163,10 @@ TEST(GyroscopicSpin, KeepsEnergyForAnyStep) {
                 ++momentum_lost;
         }
     }
-    EXPECT_GT(momentum_lost, 0); // a known failing: at such steps the spin is not true any more
+    EXPECT_GT(momentum_lost, 0); // known failing: at such steps the spin is no longer accurate
 }
 
-// The default of three iterations reaches rounding for turns of up to 0.3 rad in a substep: 12
+// The default of three iterations converges to rounding for turns of up to 0.3 rad per substep: 12
 // turns a second at four substeps of a sixtieth.
 TEST(GyroscopicSpin, ThreeIterationsAreEnoughForUsualSpins) {
     Random random(6);
@@ -196,7 +196,7 @@ INSTANTIATE_TEST_SUITE_P(Kicks, Flight, testing::Values(Kick::before, Kick::arou
                              return kick.param == Kick::before ? "before" : "around";
                          });
 
-// The sums of n substeps are roundings of values of at most the farthest place and speed.
+// The sums of n substeps round values up to the farthest position and speed.
 TEST_P(Flight, FollowsTheParabola) {
     const Body body = brick({0.1, 0.2, 0.3}, 2);
     const V start_velocity{3, 10, -1};
@@ -214,9 +214,9 @@ TEST_P(Flight, FollowsTheParabola) {
     }
 }
 
-// A tumbling brick for 10 000 substeps: nothing may drift but by roundings, of which each substep
-// makes some ten in the turn and the spin. They are of either sign; a tenth of their worst sum is
-// many times a random walk.
+// A tumbling brick for 10 000 substeps: nothing may drift beyond rounding. Each substep rounds the
+// rotation and the spin some ten times, with either sign; a tenth of the worst-case sum is many
+// times a random walk.
 TEST_P(Flight, KeepsEnergyAndAngularMomentum) {
     Random random(7);
     for (int trial = 0; trial < 10; ++trial) {
@@ -255,18 +255,18 @@ TEST_P(Flight, TorqueFreeSpinIsOfSecondOrder) {
         errors.push_back(double(glm::length(widened(motion.angular_velocity) - spin)) +
                          angle_between(widened(motion.rotation), exact.rotation));
     }
-    // The next term is two orders down: at the coarsest step (|w| h)^2 = 0.08 of the ratio.
+    // The next term is two orders higher: at the coarsest step (|w| h)^2 = 0.08 of the ratio.
     for (std::size_t i = 0; i + 1 < errors.size(); ++i)
         EXPECT_NEAR(std::log2(errors[i] / errors[i + 1]), 2, 0.12) << errors[i];
 }
 
-// A symmetric top's axis goes round its angular momentum at |L| / I_across. The midpoint rule turns
-// each angle x of a substep by 2 atan(x / 2), so is off by x^3 / 12: of the turn itself, w h, and
-// of the spin's own precession in the body's axes, (1 - I_along / I_across) w_along h.
+// A symmetric top's axis precesses about its angular momentum at |L| / I_across. The midpoint rule
+// turns each angle x in a substep into 2 atan(x / 2), an error of x^3 / 12: in the turn itself,
+// w h, and in the spin's own precession in body axes, (1 - I_along / I_across) w_along h.
 TEST_P(Flight, SymmetricTopPrecesses) {
     const Body body = brick({0.1, 0.3, 0.1}, 1);
     ASSERT_EQ(body.inertia.x, body.inertia.z);
-    // Spin about y mostly, tilted: w = (1, 10, 0) in the body.
+    // Spin mostly about y, tilted: w = (1, 10, 0) in the body.
     const V start{1, 10, 0};
     SolverBody motion = moving(body, V{0}, start, glm::dquat(1, 0, 0, 0));
     const V momentum = wide(body.inertia) * start;
@@ -292,7 +292,7 @@ TEST_P(Flight, SymmetricTopPrecesses) {
     EXPECT_NEAR(angle, rate * steps * h, steps * (allowed + 10 * epsilon));
 }
 
-// What a solver touched moves with the solver's velocities, and nothing else.
+// A body touched by a solver moves with the solver's velocities and nothing else.
 TEST_P(Flight, ATouchedBodyFollowsTheSolver) {
     const Body body = brick({0.1, 0.2, 0.3}, 2);
     SolverBody motion = moving(body, V{0}, V{0}, glm::dquat(1, 0, 0, 0));

@@ -21,7 +21,7 @@ ParticleDef grain_at(const V &position, const V &velocity = V{0}) {
     return def;
 }
 
-// A flat square of 4 m, of 8 x 8 cells.
+// A flat 4 m square of 8 x 8 cells.
 BodyDef flat_body(bool as_field) {
     constexpr int n = 8;
     constexpr double cell = 0.5;
@@ -85,7 +85,7 @@ std::vector<Stand> stands() {
     return all;
 }
 
-// Let fall from 30 cm, a particle comes to rest on the surface.
+// Dropped from 30 cm, a particle comes to rest on the surface.
 TEST_P(ParticleContacts, ComeToRestOnEveryShape) {
     for (const Stand &stand : stands()) {
         World world(GetParam(), settings_for(GetParam()));
@@ -97,8 +97,8 @@ TEST_P(ParticleContacts, ComeToRestOnEveryShape) {
     }
 }
 
-// At 100 m/s, 1.7 m a step, against walls of 1 cm: from ahead and at an angle, boxes and triangles,
-// and walls that come the other way.
+// At 100 m/s, 1.7 m a step, against 1 cm walls: head-on and at an angle, boxes and triangles, and
+// walls moving the other way.
 TEST_P(ParticleContacts, FastOnesDoNotPassAThinWall) {
     Random random(3);
     for (int trial = 0; trial < 60; ++trial) {
@@ -122,7 +122,7 @@ TEST_P(ParticleContacts, FastOnesDoNotPassAThinWall) {
     }
 }
 
-// What flies past a ball 1 cm away is not turned aside.
+// A particle that passes a ball 1 cm away is not deflected.
 TEST_P(ParticleContacts, FastOnesPassWhatTheyMiss) {
     World world(GetParam(), weightless(settings_for(GetParam())));
     world.add_body(static_body(ball(0.3)));
@@ -132,7 +132,7 @@ TEST_P(ParticleContacts, FastOnesPassWhatTheyMiss) {
     EXPECT_NEAR(particle_position(world, 0).y, 0.36, 1e-5);
 }
 
-// Below the angle of friction a particle stays to the micrometre; above it slides by
+// Below the friction angle a particle stays put to the micrometre; above it, it slides
 // x = (sin - mu cos) g t^2 / 2.
 TEST_P(ParticleContacts, FrictionHoldsAndSlidesOnASlope) {
     constexpr double mu = 0.5;
@@ -146,8 +146,8 @@ TEST_P(ParticleContacts, FrictionHoldsAndSlidesOnASlope) {
         run(world, 60);
         const V down{std::cos(angle), -std::sin(angle), 0};
         const double way = glm::dot(particle_position(world, 0) - particle_radius * normal, down);
-        // Known failing: AVBD's contacts of particles begin anew in each substep, and slip by what
-        // its passes leave of gravity's way.
+        // Known failing: AVBD's particle contacts start from scratch in each substep, and slip by
+        // what its passes leave of gravity's motion.
         const double left = GetParam() == "avbd" ? left_by_avbd(world) * gravity : 0;
         const double h = substep_of(world);
         if (angle < std::atan(mu)) {
@@ -163,14 +163,15 @@ TEST_P(ParticleContacts, FrictionHoldsAndSlidesOnASlope) {
         }
         const double a = gravity * (std::sin(angle) - mu * std::cos(angle));
         // Semi-implicit Euler is a h t / 2 ahead.
-        // Known failing: XPBD's static friction slips wholly or not at all, so it begins otherwise.
+        // Known failing: XPBD's static friction slips fully or not at all, so the slide starts
+        // differently.
         EXPECT_NEAR(way, 0.5 * a, GetParam() == "xpbd" ? 0.01 : 0.5 * a * h + 1e-4);
         EXPECT_NEAR(glm::dot(particle_velocity(world, 0), down), a,
                     1e-3 * a + left * std::sin(angle));
     }
 }
 
-// Both feel it: momenta stay when particles strike spinning bodies that nothing holds.
+// Contacts act on both: momenta are conserved when particles strike spinning free bodies.
 TEST_P(ParticleContacts, KeepMomenta) {
     Random random(11);
     for (int trial = 0; trial < 20; ++trial) {
@@ -189,15 +190,15 @@ TEST_P(ParticleContacts, KeepMomenta) {
         run(world, 120);
         const Measures after = world.measure();
         EXPECT_NE(spin_of(world, world.body_id(0)), spin);
-        // Known failing: AVBD puts one after the other where it should be, so momenta are kept only
-        // as far as its passes end: each particle brings 3 m/s, and is sent back.
+        // Known failing: AVBD positions bodies one after the other, so momenta are conserved only
+        // as far as its passes converge: each particle brings 3 m/s and is sent back.
         const double left =
             GetParam() == "avbd" ? left_by_avbd(world) * 6 * 2 * 3 * particle_mass : 0;
         EXPECT_LT(glm::distance(after.linear_momentum, before.linear_momentum),
                   200 * epsilon + left);
-        // XPBD loses spin, and corrects poses by arms and turns of first order: 9e-5 at most here,
-        // of some 0.3 (kg m^2/s). AVBD's are of first order, too, in a substep twenty times as
-        // long.
+        // XPBD loses spin, and corrects poses with first-order lever arms and rotations: at most
+        // 9e-5 here, of some 0.3 (kg m^2/s). AVBD's are first order too, in a substep twenty times
+        // as long.
         const double first = 1.4e-4;
         const double bound = GetParam() == "xpbd"   ? first
                              : GetParam() == "avbd" ? 20 * first
@@ -218,8 +219,9 @@ TEST_P(ParticleContacts, BounceAtTheirRestitution) {
     }
 }
 
-// It comes back up by the square of its restitution, time and again, wherever in a substep it
-// strikes. Published methods fall by semi-implicit Euler, whose heights are g h of the speed off.
+// It rebounds to its height times the square of its restitution, every time, wherever in a substep
+// it strikes. Published methods fall by semi-implicit Euler, whose heights are off by g h of the
+// speed.
 TEST_P(ParticleContacts, ComeBackToTheirHeight) {
     const double fall = 0.5;
     for (const double e : {0.7, 1.0})
@@ -248,7 +250,7 @@ TEST_P(ParticleContacts, ComeBackToTheirHeight) {
         }
 }
 
-// A net over the ground with a ball in it.
+// A net above the ground with a ball in it.
 World trampoline(const std::string &method, int iterations, double damping) {
     StepSettings settings = settings_for(method);
     settings.iterations = iterations;
@@ -264,7 +266,7 @@ World trampoline(const std::string &method, int iterations, double damping) {
     return world;
 }
 
-// The pull of the springs on the frame, as a share of the weight of ball and net.
+// The springs' pull on the frame, as a share of the weight of ball and net.
 double borne(const World &world) {
     double pull = 0, weight = 3 * gravity;
     const std::vector<Particle> &particles = world.model().particles;
@@ -283,10 +285,10 @@ double borne(const World &world) {
     return pull / weight;
 }
 
-// At rest the springs bear the ball. It takes passes: what a heavy ball leans on are light
-// particles between stiff springs. Known failings: with one pass a substep TGS Soft's net is
-// stretched until it would bear more than twice the weight; and so, if less, is that of sequential
-// impulses with sixteen, whose substep is the whole step.
+// At rest the springs carry the ball. That takes passes: a heavy ball rests on light particles
+// between stiff springs. Known failings: with one pass per substep TGS Soft stretches the net until
+// it would carry more than twice the weight; so, to a lesser degree, does sequential impulses with
+// sixteen, whose substep is the whole step.
 TEST_P(ParticleContacts, ANetBearsABall) {
     World world = trampoline(GetParam(), 16, 5);
     run(world, 1200);
@@ -297,7 +299,7 @@ TEST_P(ParticleContacts, ANetBearsABall) {
     const double speed = glm::length(velocity_of(world, world.body_id(1)));
     if (GetParam() == "nncg") { // sixteen conjugated passes leave the ball bobbing
         EXPECT_GT(speed, 0.03);
-        // On average it bears the ball, and some hundredths that only take overlap back.
+        // On average it carries the ball, plus a few hundredths that only push out penetration.
         const int steps = 600;
         double sum = 0, height = 0;
         for (int i = 0; i < steps; ++i) {
@@ -319,8 +321,8 @@ TEST_P(ParticleContacts, ANetBearsABall) {
     }
 }
 
-// A ball that bounces on a net, and on stiffer, lighter, and longer steps: the net takes as many
-// substeps as its springs ask for, and nothing gains energy.
+// A ball bouncing on a net, and on stiffer and lighter nets and with other steps: the net takes as
+// many substeps as its springs need, and nothing gains energy.
 TEST(SoftStepNet, GainsNoEnergy) {
     struct Net {
         double stiffness, mass, dt;
@@ -367,8 +369,8 @@ TEST_P(ParticleContacts, SameBitsSavedRestoredAndWithThreads) {
     EXPECT_GT(contacts, 4U);
 }
 
-// What particles touch or springs hold sleeps when all particles are at rest, and wakes when they
-// move.
+// Bodies that particles touch or springs hold sleep when all particles are at rest, and wake when
+// they move.
 TEST(ParticleSleep, FollowsTheParticles) {
     World world("soft_step", settings_for("soft_step"));
     world.add_body(ground(0.5, 0));
@@ -395,7 +397,7 @@ TEST(ParticleSleep, FollowsTheParticles) {
     EXPECT_TRUE(sleeps(box) && !sleeps(tied));
 }
 
-// A thousand particles over five hundred bodies: each meets what is near it.
+// A thousand particles over five hundred bodies: each only meets nearby bodies.
 TEST(ParticleContactCount, IsOfWhatIsNear) {
     World world("soft_step", settings_for("soft_step"));
     for (int i = 0; i < 500; ++i)

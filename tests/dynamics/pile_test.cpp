@@ -1,4 +1,4 @@
-// Piles of bodies of any shape, in a pen: no step adds energy, however the bodies are squeezed.
+// Piles of bodies of any shape in a pen: no step adds energy, however hard the bodies are squeezed.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -15,8 +15,8 @@ std::shared_ptr<const HullMesh> any_rock(Random &random, double radius) {
     return std::make_shared<const HullMesh>(*convex_hull(points, 64).mesh);
 }
 
-// A box, ball, capsule, cylinder, hull or cross of about the given size at a height, turned any
-// way.
+// A box, ball, capsule, cylinder, hull or cross of about the given size, at a height, with a random
+// rotation.
 BodyDef any_piece(Random &random, double size, double height) {
     const std::uint32_t kind = random.next_index(6);
     const double a = size * random.next_in(0.2, 0.5), b = size * random.next_in(0.1, 0.4);
@@ -44,8 +44,8 @@ BodyDef any_piece(Random &random, double size, double height) {
     return def;
 }
 
-// The most that one step adds to the energy of ten pieces that fall into a pen, in parts of what
-// they have at first.
+// The most energy that one step adds to ten pieces falling into a pen, as a share of their initial
+// energy.
 double worst_gain(std::uint32_t seed, double size, double rate, double friction) {
     Random random(seed);
     StepSettings settings = settings_for("soft_step");

@@ -1,4 +1,4 @@
-// Saving, restoring, and what a step may not do.
+// Saving, restoring, and what a step must not do.
 #include "engine/core/check.h"
 #include "tests/dynamics/all_sorts.h"
 
@@ -11,7 +11,7 @@
 namespace {
 
 std::atomic<std::uint64_t> allocations{0};
-// How many more allocations succeed; the one after those fails.
+// How many more allocations succeed before one fails.
 std::atomic<std::int64_t> allocations_left{std::numeric_limits<std::int64_t>::max()};
 
 void *counted(std::size_t size, std::size_t alignment = alignof(std::max_align_t)) {
@@ -26,7 +26,7 @@ void *counted(std::size_t size, std::size_t alignment = alignof(std::max_align_t
 
 } // namespace
 
-// Counts what this program allocates, and fails when asked.
+// Counts this program's allocations, and fails them on demand.
 void *operator new(std::size_t size) {
     return counted(size);
 }
@@ -78,7 +78,7 @@ World heap(const std::string &method, int bodies) {
     for (int i = 0; i < bodies; ++i) {
         const V at{0.7 * (i % 10), 0.4 + 0.8 * (i / 100), 0.7 * (i / 10 % 10)};
         BodyDef def = dynamic_body(any_shape(random), 1, at);
-        def.linear_damping = def.angular_damping = Real(0.5); // or balls would roll on
+        def.linear_damping = def.angular_damping = Real(0.5); // keeps balls from rolling on forever
         const BodyId id = world.add_body(def);
         if (i % 8 == 1 && find_method(method)->info.joints) {
             JointDef joint;
@@ -112,7 +112,7 @@ TEST_P(Saves, RestoringGivesTheSameBits) {
     }
 }
 
-// A save outlives edits of the world that it was made of.
+// A save is unaffected by later edits of its world.
 TEST_P(Saves, EditsDoNotReachWhatWasSaved) {
     World world = heap(GetParam(), 20);
     run(world, 10);
@@ -133,7 +133,7 @@ TEST_P(Saves, EditsDoNotReachWhatWasSaved) {
     ASSERT_EQ(world.hash(), expected);
 }
 
-// What has not changed since the save before is shared with it, and nothing else is.
+// Data unchanged since the previous save is shared with it, and nothing else is.
 TEST_P(Saves, ShareWhatRests) {
     World world = heap(GetParam(), 20);
     run(world, 10);
@@ -151,7 +151,7 @@ TEST_P(Saves, ShareWhatRests) {
     SavedWorld third;
     world.save(third, &second);
     EXPECT_GT(third.bytes_beside(&second), 0U);
-    // A save into the memory of one whose columns another shares leaves that as it was.
+    // Saving over a save that shares its columns with another leaves the other intact.
     world.save(first);
     world.restore(second);
     EXPECT_EQ(world.hash(), before);
@@ -161,7 +161,7 @@ TEST_P(Saves, ShareWhatRests) {
     }
 }
 
-// Lets a world fall until nobody's substeps have changed for a second.
+// Lets a world fall until no body's substep count has changed for a second.
 bool settles(World &world) {
     run(world, 240);
     int still = 0;
@@ -176,8 +176,8 @@ bool settles(World &world) {
     return still == 60;
 }
 
-// A heap, boxes that rest on a mesh and a height field, a sensor, a platform that turns by itself,
-// and where the method knows them joints, and a net that holds a body.
+// A heap, boxes resting on a mesh and a height field, a sensor, a platform that turns by itself
+// and, where the method supports them, joints and a net that holds a body.
 World settling(const std::string &method) {
     const MethodInfo &info = find_method(method)->info;
     World world = heap(method, 60);
@@ -245,7 +245,7 @@ TEST_P(SettledSteps, AllocateNothing) {
     world.set_settings(settings);
     TaskPool one(1), two(2), three(3);
     ASSERT_TRUE(settles(world));
-    run(world, 1200); // what leans and rocks, and the nets
+    run(world, 1200); // until leaning and rocking bodies and the nets settle
     SavedWorld saved;
     for (TaskPool *tasks : {static_cast<TaskPool *>(nullptr), &one, &two, &three}) {
         for (int i = 0; i < 10; ++i)
@@ -268,7 +268,7 @@ TEST_P(SettledSteps, AllocateNothing) {
     }
 }
 
-// Nor does one of particles, springs and what they touch.
+// Nor does a step with particles, springs and the bodies they touch.
 TEST_P(Saves, AStepOfParticlesAllocatesNothing) {
     const MethodInfo &method = find_method(GetParam())->info;
     if (!method.springs)
@@ -304,8 +304,8 @@ TEST_P(Saves, AStepOfParticlesAllocatesNothing) {
     EXPECT_EQ(allocations - before, 0U);
 }
 
-// Takes a step that runs out of memory at each allocation in turn: the world is as it was, and the
-// step, taken at last, is the step that it would have been. How often it failed.
+// Runs out of memory at each allocation of a step in turn: the world stays as it was, and the step
+// that finally succeeds is the one it would have been. Returns how often it failed.
 int fail_at_each_allocation(const World &start, TaskPool *tasks) {
     World whole = start;
     whole.step(tasks);
@@ -314,7 +314,7 @@ int fail_at_each_allocation(const World &start, TaskPool *tasks) {
     SavedWorld saved;
     start.save(saved);
     World world(start.method().info.name, start.settings());
-    world.restore(saved); // the state alone: all memory of steps is yet to be found
+    world.restore(saved); // the state alone: a step must allocate all its memory again
     const std::uint64_t before = world.hash();
     EXPECT_EQ(before, start.hash());
     int failures = 0;
@@ -349,14 +349,14 @@ TEST_P(FailedSteps, ForWantOfMemoryLeaveTheStateAsItWas) {
     for (TaskPool *tasks : {static_cast<TaskPool *>(nullptr), &three}) {
         World world = world_of_all_sorts(GetParam(), 24);
         EXPECT_GE(fail_at_each_allocation(world, tasks), 5);
-        run(world, 5); // what is remembered of contacts
+        run(world, 5); // fills the contact memory
         if (world.method().info.springs)
             world.grab_particle(7, narrow(V{0, 3, 0}), Real(20));
         EXPECT_GE(fail_at_each_allocation(world, tasks), 5);
     }
 }
 
-// What sleeps is woken in a step that fails: it sleeps on.
+// A failed step that would have woken a sleeping body leaves it asleep.
 TEST_P(FailedSteps, LetSleepWhatSlept) {
     World world(GetParam(), settings_for(GetParam()));
     StepSettings settings = world.settings();
@@ -376,7 +376,7 @@ TEST_P(FailedSteps, LetSleepWhatSlept) {
     EXPECT_EQ(std::ranges::count_if(world.state().paces, &Pace::is_asleep), sleeps ? 3 : 0);
 }
 
-// More pairs come near each other than a step takes.
+// More candidate pairs than a step accepts.
 TEST_P(FailedSteps, ForTooManyPairsLeaveTheStateAsItWas) {
     if (!find_method(GetParam())->info.contacts)
         GTEST_SKIP() << "no contacts";
@@ -405,7 +405,7 @@ TEST_P(FailedSteps, ForTooManyPairsLeaveTheStateAsItWas) {
     EXPECT_EQ(world.hash(), twin.hash());
 }
 
-// What rests takes little to save: 300 bytes a body, contacts and all.
+// Resting bodies take little to save: 300 bytes each, contacts included.
 TEST(Saves, AreSmall) {
     World world("soft_step", settings_for("soft_step"));
     world.add_body(ground(0.6, 0));

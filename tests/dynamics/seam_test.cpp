@@ -1,4 +1,4 @@
-// Static bodies that lie flush beside each other are as one.
+// Static bodies lying flush side by side act as one.
 #include "tests/dynamics/rest_methods.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -28,7 +28,7 @@ std::shared_ptr<const TriangleSurface> flat_tile(bool as_field) {
 
 enum class Tile { box, mesh, field };
 
-// A floor of 30 x 3 tiles of a metre, from x = -1 on, with its top at y = 0.
+// A floor of 30 x 3 tiles of a metre, starting at x = -1, with its top at y = 0.
 void add_floor(World &world, Tile kind, double friction) {
     for (int i = 0; i < 30; ++i)
         for (int j = -1; j <= 1; ++j) {
@@ -45,7 +45,7 @@ void add_floor(World &world, Tile kind, double friction) {
 }
 
 struct Ride {
-    double kept = 0;   // of the speed
+    double kept = 0;   // as a share of the speed
     double hop = 0;    // m
     double swerve = 0; // m
 };
@@ -95,7 +95,7 @@ TEST_P(Seams, ABallRollsOverTilesAsOverOneSlab) {
         }
 }
 
-// At other steps, and turned by some angle against the tiles. Known failing: two substeps of 1/60 s
+// With other steps, and rotated by some angle to the tiles. Known failing: two substeps of 1/60 s
 // keep 99.5 %.
 TEST(SoftStepSeams, DoNotDependOnStepOrAngle) {
     for (const int substeps : {2, 4, 8})
@@ -116,7 +116,7 @@ TEST(SoftStepSeams, DoNotDependOnStepOrAngle) {
             }
 }
 
-// Along a wall of blocks, pressed against it.
+// Sliding along a wall of blocks, pressed against it.
 TEST_P(Seams, AWallOfBlocksIsOneWall) {
     World world(GetParam(), settings_for(GetParam()));
     for (int i = 0; i < 20; ++i)
@@ -132,7 +132,7 @@ TEST_P(Seams, AWallOfBlocksIsOneWall) {
     EXPECT_LE(glm::distance(velocity_of(world, id), V{2, 0.1, 0}), 2e-3);
 }
 
-// What is not flush still stops, and what is a corner still holds.
+// A step that is not flush still stops a body, and a real corner still holds.
 TEST_P(Seams, AStepUpIsStillInTheWay) {
     for (const double height : {0.02, 0.1}) {
         World world(GetParam(), settings_for(GetParam()));
@@ -159,7 +159,7 @@ TEST_P(Seams, ABoxAtTheFootOfAWallRests) {
     }
 }
 
-// A plank that leans with its foot in the corner of a floor and a wall stays out of both.
+// A plank leaning with its foot in the corner of a floor and a wall penetrates neither.
 TEST_P(Seams, AFootInACornerIsHeld) {
     World world(GetParam(), settings_for(GetParam()));
     world.add_body(with_material(static_body(block(V{2, 0.25, 2}), V{-2, -0.25, 0}), 0, 0));
@@ -174,7 +174,7 @@ TEST_P(Seams, AFootInACornerIsHeld) {
     }
 }
 
-// Two slabs that meet in a ridge: it can be balanced on.
+// Two slabs meet in a ridge that a body can balance on.
 TEST(SoftStepSeams, ARidgeHolds) {
     World world("soft_step", settings_for("soft_step"));
     for (const double side : {-1.0, 1.0}) {

@@ -25,8 +25,8 @@ std::vector<std::string> ordered_methods() {
 class SmoothMethods : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, SmoothMethods, testing::ValuesIn(ordered_methods()), name_of);
 
-// Two particles and a ball, tied to each other and to the world by damped springs, one of them at
-// the ball's side: they swing and turn in space under gravity.
+// Two particles and a ball joined to each other and to the world by damped springs, one of them
+// attached to the ball's side: they swing and turn in space under gravity.
 World swinging(const std::string &method, double dt, bool damped = true) {
     StepSettings settings = settings_for(method);
     settings.dt = dt;
@@ -37,7 +37,7 @@ World swinging(const std::string &method, double dt, bool damped = true) {
     world.add_particle(moving_particle(V{1.5, 1, 0}, V{0, -0.5, 0.3}, 0.8));
     BodyDef def = dynamic_body(ball(0.3), 2, V{2.5, 0, 0}, V{0, 0.2, -0.4});
     def.angular_velocity = narrow(V{0.3, 1, -0.5});
-    def.colliders.front().sensor = true; // nothing strikes it
+    def.colliders.front().sensor = true; // no contacts
     def.inertia = Vec3{Real(0.4 * 2 * 0.3 * 0.3)};
     if (damped) {
         def.linear_damping = Real(0.3);
@@ -87,7 +87,7 @@ TEST_P(SmoothMethods, ConvergeWithTheirOrder) {
     EXPECT_NEAR(std::log2(second / third), order, 0.1) << second << ' ' << third;
 }
 
-// A mass on a spring, omega dt as given; by how much its energy has grown after some steps.
+// How much the energy of a mass on a spring grows over some steps, for a given omega dt.
 double growth(const std::string &method, double omega_dt, int steps) {
     StepSettings settings = weightless(settings_for(method));
     settings.dt = 0.01;
@@ -105,8 +105,8 @@ double growth(const std::string &method, double omega_dt, int steps) {
     return most / before;
 }
 
-// A spring is stable up to omega dt = 2 by semi-implicit Euler and Verlet, to 2 sqrt(2) by
-// Runge-Kutta 4, never by explicit Euler, always by backward Euler.
+// A spring is stable up to omega dt = 2 with semi-implicit Euler and Verlet, up to 2 sqrt(2) with
+// Runge-Kutta 4, never with explicit Euler, always with backward Euler.
 TEST(Stability, LimitsAreThoseOfTheory) {
     const std::map<std::string, double> limits{{"semi_implicit_euler", 2},
                                                {"stormer_verlet", 2},
@@ -116,7 +116,7 @@ TEST(Stability, LimitsAreThoseOfTheory) {
         EXPECT_LT(growth(method, 0.99 * limit, 2000), 200) << method;
         EXPECT_GT(growth(method, 1.01 * limit, 400), 1e4) << method;
     }
-    // |1 + i w h|^2 = 1 + (w h)^2 each step.
+    // |1 + i w h|^2 = 1 + (w h)^2 per step.
     EXPECT_NEAR(std::log(growth("explicit_euler", 0.05, 2000)), 2000 * std::log1p(0.0025), 0.1);
     EXPECT_GT(growth("explicit_euler", 0.1, 2000), 1e6);
     for (const double omega_dt : {0.1, 1.0, 3.0, 30.0, 1000.0})
@@ -142,7 +142,7 @@ TEST(Energy, ExplicitGainsSymplecticIsBoundedImplicitLoses) {
     EXPECT_LT(drift("backward_euler").second, -1);
 }
 
-// Ten thousand times stiffer than a step could follow: a net that hangs still.
+// A hanging net ten thousand times stiffer than the step could otherwise follow.
 TEST(Stability, BackwardEulerHoldsAStiffNet) {
     StepSettings settings = settings_for("backward_euler");
     World world("backward_euler", settings);
@@ -162,7 +162,7 @@ TEST(Stability, BackwardEulerHoldsAStiffNet) {
         }
     run(world, 1200);
     EXPECT_TRUE(world.report().finite);
-    // A column hangs straight down, each link stretched by what is below it.
+    // A column hangs straight down, each link stretched by the weight below it.
     double length = 0;
     for (std::uint32_t i = 1; i < n; ++i)
         length += 0.1 + (n - i) * 0.01 * gravity / 1e4;

@@ -7,7 +7,7 @@ namespace {
 
 using namespace trial;
 
-// A square of n x n cells of the given size, flat but for `height`, as a mesh.
+// A mesh of n x n square cells of the given size, with its heights from `height`.
 template <typename Height> TriangleMesh grid(int n, double cell, Height &&height) {
     TriangleMesh mesh;
     for (int row = 0; row <= n; ++row)
@@ -65,8 +65,8 @@ TEST(Surface, FlatEdgesAreInnerAndRidgesOuter) {
         return count;
     };
     EXPECT_EQ(outer(level), 16);   // the border
-    EXPECT_EQ(outer(ditch), 8);    // likewise
-    EXPECT_EQ(outer(roof), 8 + 4); // and both sides of two ridge edges
+    EXPECT_EQ(outer(ditch), 8);    // the border
+    EXPECT_EQ(outer(roof), 8 + 4); // the border, and both sides of two ridge edges
 }
 
 TEST(Surface, EverythingRestsAtItsHeight) {
@@ -95,7 +95,7 @@ TEST(Surface, EverythingRestsAtItsHeight) {
     }
 }
 
-// A seam is nothing: what slides without friction keeps its speed, and does not hop.
+// Seams do not matter: a body sliding without friction keeps its speed and does not hop.
 TEST(Surface, ABoxSlidesOverSeamsUnchanged) {
     for (const bool as_field : {false, true})
         for (const double speed : {0.5, 3.0, 8.0})
@@ -147,9 +147,8 @@ TEST(Surface, OneSidedLetsPassFromBehindAndTwoSidedDoesNot) {
     }
 }
 
-// Into a bowl: whatever falls in stays in, and comes to rest at the bottom.
-// Each face's deepest point may lie over the other: neither would hold what comes down on the
-// ridge.
+// Each face's deepest point may lie over the other face, so neither would hold a body coming down
+// on the ridge.
 TEST(Surface, NothingFallsThroughHills) {
     const auto hills = [](double x, double z) { return std::sin(0.9 * x) * std::cos(0.8 * z); };
     for (const bool as_field : {false, true}) {
@@ -178,8 +177,8 @@ TEST(Surface, NothingFallsThroughHills) {
     }
 }
 
-// What lands on one edge slaps down within the step, and by its end the other edge is deeper than
-// the body is thick.
+// A body landing on one edge slaps down within the step, so by its end the other edge is in deeper
+// than the body is thick.
 TEST(Surface, NothingThinFallsThrough) {
     const std::vector<std::pair<std::string, std::shared_ptr<const TriangleSurface>>> grounds{
         {"field", std::make_shared<const TriangleSurface>(field(8, 1, flat), Sides::front)},
@@ -209,7 +208,8 @@ TEST(Surface, NothingThinFallsThrough) {
             }
 }
 
-// A bar with one edge along a gutter, sunk below both of its faces: at least one of them has it.
+// A bar with one edge along a gutter, sunk below both of its faces: it touches at least one of
+// them.
 TEST(Surface, AnEdgeInAGutterTouchesAFace) {
     for (const double steep : {0.1, 0.4, 0.8})
         for (const double depth : {1e-4, 1e-3, 1e-2, 0.05})
@@ -243,7 +243,7 @@ TEST(Surface, ABallComesToRestInABowl) {
     EXPECT_NEAR(at.y, 0.25, 0.02);
 }
 
-// On a mesh whose ground is tilted: no creep below the friction angle, the closed form above it.
+// On a tilted mesh: no creep below the friction angle, the closed form above it.
 TEST(Surface, SlopesGripAndSlide) {
     for (const double friction : {0.8, 0.2}) {
         World world("soft_step", settings_for("soft_step"));
@@ -267,8 +267,8 @@ TEST(Surface, SlopesGripAndSlide) {
     }
 }
 
-// What comes down a hilly field rolls and tumbles over its ridges, and lands with a far end on the
-// next face: no more of it goes in than little pushes out.
+// A body coming down a hilly field rolls and tumbles over the ridges and lands with a far end on
+// the next face: it penetrates so little that pushing it out adds little energy.
 TEST(Surface, WhatTumblesDownHillsGainsLittleEnergy) {
     const auto hills = [](double x, double z) { return 0.3 * std::sin(x) * std::cos(z); };
     const auto surface =

@@ -1,5 +1,5 @@
-// Steps shared out to many threads: the same bits as with one. Under ThreadSanitizer this is what
-// it looks at.
+// Steps split over many threads give the same bits as with one. These are the tests to run under
+// ThreadSanitizer.
 #include "tests/dynamics/all_sorts.h"
 
 #include <array>
@@ -12,8 +12,8 @@ using namespace trial;
 class Threads : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Threads, testing::ValuesIn(contact_methods()), name_of);
 
-// A heap that falls together, under nets: many times more pairs, joints and springs than a part of
-// the loop over them takes.
+// A heap collapsing under nets: many times more pairs, joints and springs than one part of the
+// parallel loop over them takes.
 World heap(const std::string &method) {
     Random random(9);
     World world(method, settings_for(method));
@@ -56,7 +56,7 @@ void share_steps(const std::string &method, TaskPool::Parts parts) {
         shared.step(&tasks);
         ASSERT_EQ(shared.hash(), alone.hash()) << "step " << step;
         most_pairs = std::max<std::uint64_t>(most_pairs, shared.report().pairs);
-        // Between steps: what edits, saves and restores leave is there for all threads.
+        // Between steps: all threads see the results of edits, saves and restores.
         if (step == 2)
             shared.save(saved);
         if (step == 4)
@@ -126,8 +126,7 @@ TEST_P(ThreadsOfAllSorts, GiveTheSameBits) {
     }
 }
 
-// With sleep, and islands of their own substeps: bodies fall asleep, and are woken by what falls
-// on them.
+// With sleep and per-island substeps: bodies fall asleep, and are woken by others falling on them.
 TEST_P(ThreadsOfAllSorts, GiveTheSameBitsWhereBodiesSleep) {
     World alone(GetParam(), settings_for(GetParam()));
     StepSettings settings = alone.settings();

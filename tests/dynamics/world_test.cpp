@@ -14,7 +14,7 @@ World plain_world() {
     return World("soft_step", settings_for("soft_step"));
 }
 
-// The message of the check that `action` fails; empty when it fails none.
+// The message of the check that `action` fails; empty if it fails none.
 std::string failure_of(const std::function<void()> &action) {
     try {
         action();
@@ -98,7 +98,7 @@ TEST(World, ARemovedBodyTakesItsContactsAndJointsAlong) {
     EXPECT_FALSE(world.is_alive(with_low));
     EXPECT_TRUE(world.is_alive(without_low));
     run(world, 60);
-    EXPECT_NEAR(position_of(world, high).y, 0.5, 0.01); // it fell to where the other was
+    EXPECT_NEAR(position_of(world, high).y, 0.5, 0.01); // it fell to the other's place
     EXPECT_EQ(world.report().joints, 1U);
 }
 
@@ -141,7 +141,7 @@ TEST(World, MisuseIsNamedWithItsValue) {
     joint.a = id;
     joint.b = id;
     expect_failure("two different bodies", [&] { world.add_joint(joint); });
-    // Between bodies that do not move it is idle.
+    // Between bodies that cannot move a joint is idle.
     joint.b = BodyId{};
     joint.a = wall;
     world.remove_joint(world.add_joint(joint));
@@ -212,7 +212,8 @@ TEST(World, JoinedBodiesCollideOnlyWhenAsked) {
         world.step(nullptr);
         EXPECT_EQ(world.report().pairs, collide ? 1U : 0U);
         EXPECT_EQ(world.contacts().size(), collide ? 1U : 0U);
-        // A second joint between the two keeps them apart after the first has gone.
+        // A second joint between the same bodies keeps them from colliding after the first is
+        // removed.
         const JointId second = world.add_joint(joint);
         world.remove_joint(id);
         world.step(nullptr);
@@ -262,14 +263,14 @@ TEST(World, RaycastFindsTheNearestAndOfTwoTheFirst) {
     EXPECT_EQ(hit->hit.t, Real(0.5));
     EXPECT_FALSE(world.raycast({Vec3{0, Real(1), 0}, Vec3{0, Real(-2), 0}, Real(0.25)}));
     EXPECT_FALSE(world.raycast({Vec3{0, Real(1), 0}, Vec3{0, Real(1), 0}}));
-    // At the present poses, before any step.
+    // At the current poses, before any step.
     world.set_motion(far, {Vec3{0, Real(20), 0}, identity_rotation}, Vec3{Real(0)}, Vec3{Real(0)});
     hit = world.raycast({Vec3{0, Real(1), 0}, Vec3{0, Real(1), 0}});
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->body, far);
 }
 
-// A static body may be put elsewhere; it gets no velocity, which would drive what rests on it.
+// A static body may be moved, but gets no velocity, which would drive bodies resting on it.
 TEST(World, AStaticBodyHasNoVelocity) {
     World world("soft_step", StepSettings{});
     BodyDef def = static_body(block(V{1, 0.5, 1}));
@@ -334,7 +335,7 @@ TEST_P(AnyMethodWorld, OneBodyLooksForNoPairs) {
     EXPECT_EQ(world.report().moving_bodies, 1U);
 }
 
-// Removed bodies are not advanced, whatever they were.
+// Removed bodies are not advanced, whatever they were before.
 TEST_P(AnyMethodWorld, HolesStayWhereTheyAre) {
     World world(GetParam(), settings_for(GetParam()));
     const BodyId a = world.add_body(dynamic_body(ball(0.5), 1, V{1, 2, 3}, V{1, 1, 1}));
@@ -378,7 +379,7 @@ TEST(StepReport, Counts) {
     EXPECT_NEAR(world.energy(), measures.energy(), 1e-12 * measures.energy());
 }
 
-// A method without contacts makes none, whatever touches.
+// A method without contacts reports none, whatever touches.
 TEST(StepReport, MethodsWithoutContactsLookForNone) {
     for (const Method &method : methods()) {
         World world(method.info.name, settings_for(std::string(method.info.name)));
@@ -398,12 +399,13 @@ TEST(StepReport, ABounceIsCounted) {
     EXPECT_EQ(world.report().unresolved_impacts, 0U);
 }
 
-// More sweeps are needed than allowed: the report says so.
+// The report says when more sweeps are needed than allowed.
 TEST(StepReport, UnresolvedImpactsAreCounted) {
     StepSettings settings = weightless(settings_for("soft_step"));
     settings.impact_sweeps = 1;
     World world("soft_step", settings);
-    // Laid out against the order in which contacts are visited, so that each sweep hands on once.
+    // Laid out against the order in which contacts are visited, so that each sweep passes the
+    // impulse on only once.
     for (int i = 0; i < 6; ++i)
         world.add_body(with_material(
             dynamic_body(ball(0.5), 1, V{-1.0 * i, 0, 0}, V{i == 5 ? 1.0 : 0.0, 0, 0}), 0, 1));
@@ -437,12 +439,13 @@ TEST(StepReport, SaysWhenTheWorldIsNotFinite) {
         for (int i = 0; i < 200; ++i)
             world.step(nullptr);
         EXPECT_FALSE(world.report().finite) << name;
-        world.measure(); // and neither measuring nor hashing fails
+        world.measure(); // measuring and hashing do not fail either
         world.hash();
     }
 }
 
-// What has diverged and is put back goes on from there: no joint, contact or grab remembers it.
+// Diverged bodies that are put back carry on from there: no joint, contact or grab remembers the
+// divergence.
 TEST(World, WhatHasDivergedCanBePutBack) {
     int diverged = 0;
     for (const std::string &name : joint_methods()) {
@@ -469,7 +472,7 @@ TEST(World, WhatHasDivergedCanBePutBack) {
     EXPECT_GT(diverged, 0);
 }
 
-// A lift, and a conveyor belt: a box on a kinematic body goes where that goes.
+// A lift and a conveyor belt: a box on a kinematic body moves with it.
 class Carried : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Methods, Carried, testing::ValuesIn(rest_methods()), name_of);
 
@@ -485,16 +488,16 @@ TEST_P(Carried, AKinematicBodyCarriesABox) {
     EXPECT_EQ(velocity_of(world, lift), V(0.5, 0.25, 0));
     EXPECT_LE(glm::distance(position_of(world, lift), V(2, 0.9, 0)), 960 * 2 * epsilon * 2);
     EXPECT_LE(glm::distance(velocity_of(world, box), V(0.5, 0.25, 0)), 1e-3);
-    // It slips until it has the platform's speed: v^2 / (2 mu g) = 1.6 cm, where velocity and
-    // position of one substep differ by half of it; and rests within the slop.
+    // The box slips until it reaches the platform's speed: v^2 / (2 mu g) = 1.6 cm, give or take
+    // half a substep between velocity and position. It rests within the slop.
     const double lag = 0.5 * substep_of(world) / 2;
-    // XPBD's friction is off by some per cent of those 1.6 cm.
+    // XPBD's friction is off by a few per cent of those 1.6 cm.
     EXPECT_NEAR(position_of(world, box).x, 2 - 0.25 / (2 * 0.8 * gravity),
                 GetParam() == "xpbd" ? 4e-3 : 1.1 * lag);
     EXPECT_NEAR(position_of(world, box).y, 1.25, 2e-3);
 }
 
-// A rising floor reaches further in a step than the body above it looks.
+// A floor that rises further in a step than the body above it looks ahead.
 TEST_P(Carried, AKinematicHalfSpacePushes) {
     World world(GetParam(), settings_for(GetParam()));
     BodyDef floor = ground(0.5, 0);

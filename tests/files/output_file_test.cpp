@@ -89,7 +89,7 @@ TEST_F(OutputFileTest, WhatIsInterruptedIsKeptBeside) {
     EXPECT_EQ(entries(), 2U);
 }
 
-// Beside what the link leads to; and a link in the partial file's place stays one.
+// The partial file lies beside the link's target; a link in its place stays one.
 TEST_F(OutputFileTest, WhatIsInterruptedFollowsLinks) {
     fs::create_directory(folder_ / "below");
     fs::create_symlink("below/a.csv", folder_ / "link.csv");
@@ -183,7 +183,7 @@ TEST_F(OutputFileTest, WritesStraightThroughToPipes) {
     EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
-// /dev/stdout where standard output is a file: what follows there comes after it.
+// /dev/stdout when standard output is a file: later output is appended after it.
 TEST_F(OutputFileTest, WritesToItsOwnDescriptorsWhereTheyAre) {
     const fs::path path = folder_ / "log";
     const int log = open(path.c_str(), O_CREAT | O_WRONLY, 0600);
@@ -206,7 +206,7 @@ TEST_F(OutputFileTest, SaysWhyItCannotBegin) {
     EXPECT_EQ(text_of(folder_ / "file"), "text");
 }
 
-// A full disk, or as good as one: files may not grow.
+// Simulates a full disk: files may not grow beyond a limit.
 TEST_F(OutputFileTest, AFailedWriteThrowsAndLeavesTheOldFile) {
     const fs::path path = folder_ / "a.csv";
     std::ofstream(path) << "old";

@@ -1,5 +1,5 @@
-// libFuzzer target: GJK, EPA, casts and manifolds end, and do not contradict each other, whatever
-// the shapes.
+// libFuzzer target: GJK, EPA, casts and manifolds terminate and do not contradict each other,
+// whatever the shapes.
 #include "engine/geometry/manifold.h"
 #include "engine/geometry/quickhull.h"
 #include "engine/geometry/shape_cast.h"
@@ -72,8 +72,7 @@ bool is_unit(const Vec3 &v) {
     return std::abs(glm::dot(v, v) - Real(1)) < Real(1e-3);
 }
 
-// The distance and the penetration of the two, and how far apart they are: negative when in each
-// other.
+// Checks distance and penetration; returns the separation, negative if the shapes overlap.
 template <typename A, typename B> Real check_pair(const A &a, const B &b) {
     const ClosestPoints apart = distance(a, b);
     FUZZ_ASSERT(apart.distance >= Real(0) && std::isfinite(apart.distance));
@@ -99,7 +98,7 @@ template <typename A, typename B> void check_collision(const A &a, const B &b, R
     constexpr Real margin = Real(0.25);
     const Manifold manifold = collide(a, b, margin);
     FUZZ_ASSERT(manifold.count >= 0 && manifold.count <= 4);
-    // In each other, they touch.
+    // Overlapping shapes touch.
     FUZZ_ASSERT(manifold.count > 0 || separation > Real(0));
     FUZZ_ASSERT(manifold.count == 0 || is_unit(manifold.normal));
     for (int i = 0; i < manifold.count; ++i) {
@@ -128,7 +127,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
                 check_collision(first, second, separation);
         },
         a, b);
-    // Searches end by themselves.
+    // No search runs into its limit.
     for (const char *limit : {"gjk: iteration limit", "epa: vertex limit", "cast: step limit"})
         FUZZ_ASSERT(oddity(limit).met == 0U);
     return 0;

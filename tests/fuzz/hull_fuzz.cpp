@@ -1,4 +1,4 @@
-// libFuzzer target: the hull of any points is convex and closed, or there is a reason why not.
+// libFuzzer target: the hull of any points is convex and closed, or the reason why not is given.
 #include "engine/geometry/hull_queries.h"
 #include "engine/geometry/quickhull.h"
 #include "tests/fuzz/input.h"
@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     for (const Plane &plane : mesh.planes)
         for (const Vec3 &vertex : mesh.vertices)
             FUZZ_ASSERT(glm::dot(plane.normal, vertex) - plane.offset <= rounding);
-    // What is asked of it has an answer, and the answers agree.
+    // Queries succeed, and their answers agree.
     const ConvexHull hull{&mesh, Vec3{Real(0)}, identity_rotation};
     FUZZ_ASSERT(contains(hull, mesh.vertices.front()));
     const Vec3 p = input.point();

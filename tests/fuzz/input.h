@@ -1,5 +1,5 @@
-// Numbers and shapes out of a fuzzer's bytes: mostly small and likely to coincide, now and then
-// anything that a float can be within the sizes that queries are for.
+// Numbers and shapes from a fuzzer's bytes: mostly small and likely to coincide, now and then any
+// float within the size limits of queries.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -24,7 +24,7 @@ class FuzzInput {
     }
     std::uint32_t below(std::uint32_t count) { return byte() % count; }
 
-    // Of magnitude at most 1e5.
+    // Magnitude at most 1e5.
     Real number() {
         const std::uint8_t kind = byte();
         if (kind < 160)
@@ -66,7 +66,7 @@ class FuzzInput {
 
 } // namespace plumb
 
-// What a target was not meant to find: an answer that contradicts itself.
+// Traps when an answer contradicts itself.
 #define FUZZ_ASSERT(condition)                                                                     \
     do {                                                                                           \
         if (!(condition))                                                                          \

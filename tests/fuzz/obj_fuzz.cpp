@@ -1,4 +1,4 @@
-// libFuzzer target: whatever the bytes, read_obj gives a mesh that is sound or one message.
+// libFuzzer target: whatever the bytes, read_obj gives a sound mesh or one message.
 #include "engine/scene/obj_file.h"
 
 #include <cmath>
@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     std::istringstream in(std::string(reinterpret_cast<const char *>(data), size));
     const plumb::ObjResult result = plumb::read_obj(in, "fuzz.obj");
     if (!result.ok()) {
-        // One line, and nothing half read beside it.
+        // One line, and no partial mesh with it.
         if (result.error.find('\n') != std::string::npos ||
             !result.error.starts_with("fuzz.obj:") || !result.mesh.vertices.empty() ||
             !result.mesh.triangles.empty())

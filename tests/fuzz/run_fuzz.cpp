@@ -1,6 +1,6 @@
-// libFuzzer target: any scene and any commands to its run. A command or a step that is refused
-// changes nothing; what was recorded replays to the same hashes, also through a file and from the
-// middle on; a scene written in mid-run goes on as the run does.
+// libFuzzer target: any scene, and any commands during its run. A refused command or step changes
+// nothing; a recording replays to the same hashes, also through a file and from mid-run; a scene
+// written in mid-run goes on as the run does.
 #include "engine/core/check.h"
 #include "engine/scene/recording.h"
 #include "engine/scene/scene_file.h"
@@ -25,7 +25,7 @@ constexpr std::size_t most_bodies = 12;
 constexpr int most_steps = 20;
 constexpr int steps_beside = 3;
 
-// A file that was written reads without a mistake.
+// A written file reads without errors.
 template <typename Result> void check_read(const Result &read, const std::string &text) {
     if (read.ok())
         return;
@@ -66,11 +66,11 @@ class Run {
     glm::dquat rotation() { return glm::normalize(glm::dquat{input_.rotation()}); }
     std::string method() {
         const auto all = method_infos();
-        // The first ones can do everything.
+        // The first ones support everything.
         const std::size_t count = input_.below(4) == 0 ? all.size() : 6;
         return std::string(all[input_.below(static_cast<std::uint32_t>(count))].name);
     }
-    // Now and then one that is not there.
+    // Occasionally one that does not exist.
     std::string body() { return "b" + std::to_string(input_.below(next_body_ + 1)); }
 
     // ---- the scene
@@ -146,7 +146,7 @@ class Run {
             collider.sensor = input_.below(8) == 0;
             collider.filter = {static_cast<int>(input_.below(3)), input_.below(8)};
         }
-        if (body.kind == BodyKind::dynamic) // that of its volume could be beyond a file's limits
+        if (body.kind == BodyKind::dynamic) // from its volume it could exceed a file's limits
             body.mass = size();
         body.position = point();
         body.orientation = rotation();
@@ -350,7 +350,7 @@ class Run {
         }
     }
 
-    // Files hold what is within a scene's limits.
+    // Files only hold values within the scene limits.
     bool can_be_written() const {
         const auto is_small = [](const glm::dvec3 &v) {
             return std::abs(v.x) < 1e8 && std::abs(v.y) < 1e8 && std::abs(v.z) < 1e8;

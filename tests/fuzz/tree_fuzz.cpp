@@ -1,4 +1,4 @@
-// libFuzzer target: any stream of changes leaves the trees sound, and all of them find the same; a
+// libFuzzer target: any stream of changes leaves the trees valid, and all of them find the same; a
 // mesh is hit exactly where one of its triangles is.
 #include "engine/geometry/raycast.h"
 #include "engine/space/bvh.h"
@@ -31,7 +31,7 @@ bool touch(const Aabb &a, const Aabb &b) {
     return true;
 }
 
-// What each tree finds in a box, beside what there is.
+// Each tree must find the same items in a box as a list.
 void compare(const std::vector<Item> &items, const DynamicTree &tree, const Octree &octree,
              const Aabb &box) {
     std::vector<std::uint32_t> expected, found;
@@ -56,7 +56,7 @@ void compare(const std::vector<Item> &items, const DynamicTree &tree, const Octr
     std::vector<Aabb> boxes;
     for (const Item &item : items)
         boxes.push_back(item.box);
-    // Its leaves hold several items: some of what it visits may be beside the box.
+    // Its leaves hold several items, so it may visit some outside the box.
     Bvh(boxes).query(box, [&](std::uint32_t index) {
         if (touch(boxes[index], box))
             found.push_back(items[index].user);
@@ -123,7 +123,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
         } else if (which == 2) {
             Item &item = items[input.below(static_cast<std::uint32_t>(items.size()))];
             item.box = input.aabb();
-            // A leaf keeps a box that still holds the new one: put it in anew for equal answers.
+            // A leaf keeps its box if that still holds the new one; reinsert for equal answers.
             tree.remove(item.leaf);
             item.leaf = tree.insert(item.box, item.user);
             octree.update(item.item, item.box);

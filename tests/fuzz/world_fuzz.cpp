@@ -1,6 +1,6 @@
-// libFuzzer target: any sequence of calls leaves a world sound. The same calls give the same
-// states, with threads too; what was saved comes back and goes on the same; a call that is refused
-// changes nothing.
+// libFuzzer target: any sequence of calls leaves a world valid. The same calls give the same
+// states, with threads too; a saved world restores and goes on the same; a refused call changes
+// nothing.
 #include "engine/core/check.h"
 #include "engine/dynamics/world.h"
 #include "engine/geometry/quickhull.h"
@@ -24,7 +24,7 @@ class Caller {
     Caller(const std::uint8_t *data, std::size_t size, TaskPool *tasks)
         : input_(data, size), tasks_(tasks), world_(method(), StepSettings{}) {}
 
-    // Of all states on the way.
+    // A hash of all states along the way.
     std::uint64_t play() {
         while (!input_.is_empty()) {
             const std::uint64_t before = world_.hash();
@@ -42,7 +42,7 @@ class Caller {
     std::string_view method() {
         return methods()[input_.below(static_cast<std::uint32_t>(methods().size()))].info.name;
     }
-    // Now and then one that is no longer alive, or never was.
+    // Occasionally one that is dead or never existed.
     BodyId body() {
         return ids_.empty() ? BodyId{}
                             : ids_[input_.below(static_cast<std::uint32_t>(ids_.size()))];
@@ -295,12 +295,12 @@ class Caller {
         settings.substep_tolerance = input_.below(2) == 0 ? 3e-4 : 0.5;
         if (input_.below(4) == 0)
             settings.gravity = glm::dvec3{input_.point()};
-        // Any setting, to either end of its range or anything else.
+        // Any setting, at either end of its range or anything else.
         if (input_.below(2) == 0) {
             const std::span<const SettingNumber> all = setting_numbers();
             const SettingNumber number = all[input_.below(static_cast<std::uint32_t>(all.size()))];
             const SettingRow &row = number.setting();
-            // A step of ten thousand substeps is dear.
+            // A step of ten thousand substeps is too slow.
             const bool is_dear = is_whole(row) && row.max > 100;
             const double value = input_.below(3) == 0   ? row.min
                                  : is_dear              ? input_.below(16)
@@ -313,7 +313,7 @@ class Caller {
         world_.set_settings(settings);
     }
 
-    // Taken twice from the same state, a step is the same step.
+    // A step taken twice from the same state gives the same result.
     void step() {
         if (++steps_ > most_steps)
             return;
@@ -334,7 +334,7 @@ class Caller {
     FuzzInput input_;
     TaskPool *tasks_;
     World world_;
-    std::vector<BodyId> ids_; // all that there ever were
+    std::vector<BodyId> ids_; // every body ever created
     std::vector<JointId> joints_;
     SavedWorld saved_;
     std::uint64_t saved_hash_ = 0;

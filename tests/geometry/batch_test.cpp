@@ -26,7 +26,7 @@ using namespace oracle;
 constexpr Real nan_value = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
-// --- Columns, each of exactly its length, so that reading past the end is seen by a sanitizer.
+// --- Columns of exactly the length needed, so that a sanitizer sees reads past the end.
 
 struct Columns {
     std::vector<std::vector<Real>> columns;
@@ -93,7 +93,7 @@ TriangleBatch triangles_of(const Columns &c) {
     return {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8]};
 }
 
-// --- Room for answers, with a word behind it that must stay as it is.
+// --- Room for answers, followed by a guard word that must not change.
 
 constexpr std::uint64_t untouched = 0xDEADBEEFDEADBEEFULL;
 
@@ -104,7 +104,7 @@ struct BitRoom {
     explicit BitRoom(std::size_t n) : words(bit_words(n) + 1, untouched), count(n) {}
     std::span<std::uint64_t> span() { return std::span(words).first(bit_words(count)); }
     bool at(std::size_t i) const { return bit_at(words, i); }
-    // The rest of the last word is zero, and nothing is written behind it.
+    // The unused bits of the last word are zero, and nothing is written past it.
     void expect_tidy() const {
         EXPECT_EQ(words.back(), untouched);
         if (count % 64 != 0) {
@@ -152,8 +152,8 @@ template <typename Scalar> void expect_bits(const BitRoom &room, Scalar &&scalar
         ASSERT_EQ(room.at(i), scalar(i)) << i;
 }
 
-// --- Inputs: small integers, where touching is exact and frequent; sizes of all magnitudes; zeros
-// of both signs.
+// --- Inputs: small integers, where exact touching is common; sizes of all magnitudes; zeros of
+// both signs.
 
 struct Source {
     Random random;
@@ -186,7 +186,7 @@ struct Source {
     }
     Aabb aabb() {
         Vec3 a = point(), b = point();
-        if (random.next_index(16) != 0) { // else perhaps empty
+        if (random.next_index(16) != 0) { // otherwise empty, perhaps
             const Vec3 low = glm::min(a, b);
             b = glm::max(a, b);
             a = low;
@@ -245,14 +245,14 @@ struct Source {
     }
 };
 
-// Makes every batch use one instruction set; 0 the best again.
+// Makes every batch use one instruction set; 0 selects the best again.
 void use_target(std::int64_t target) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-// Runs body(source, count) with every instruction set that this machine has, for all lengths up to
-// two of the longest vectors and more, a million elements in all.
+// Runs body(source, count) with every instruction set this machine has, for every length up to more
+// than two of the longest vectors: a million elements in all.
 template <typename Body> void for_every_width(std::uint64_t seed, Body &&body) {
     const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
     ASSERT_FALSE(targets.empty());
@@ -434,7 +434,7 @@ TEST(Batch, Frustum) {
             const Aabb box = source.aabb();
             return Aabb{glm::min(box.min, box.max), glm::max(box.min, box.max)};
         };
-        // Many in the very planes: through corners of the frustum.
+        // Many exactly on the planes: through corners of the frustum.
         const auto points = source.many(count, [&] {
             if (source.random.next_index(2) == 0)
                 return source.point();

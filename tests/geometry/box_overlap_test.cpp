@@ -11,8 +11,8 @@ namespace {
 
 using namespace wide;
 
-// Whether the boxes, of which `a` is grown by `grow` on all sides, have a common point: what is
-// left of the faces of each when cut by the planes of the other.
+// Whether box `a`, grown by `grow` on all sides, meets box `b`: clips each box's faces by the
+// other's planes and looks for anything left.
 bool boxes_meet(Frame a, const Frame &b, W grow) {
     a.half += W3{grow};
     if (a.signed_distance(b.center) <= W(0) || b.signed_distance(a.center) <= W(0))
@@ -39,7 +39,7 @@ bool boxes_meet(Frame a, const Frame &b, W grow) {
     return false;
 }
 
-// The point of the box furthest along n; where n is at right angles to an axis, anywhere along it.
+// The box's support point along n; where n is perpendicular to an axis, any point along it.
 W3 any_support(Random &random, const Frame &box, const W3 &n) {
     W3 local{W(0)};
     for (int i = 0; i < 3; ++i) {
@@ -50,8 +50,8 @@ W3 any_support(Random &random, const Frame &box, const W3 &n) {
     return box.point(local);
 }
 
-// Two boxes that are near to touching along a normal of a face of one, across an edge of each, or
-// along anything.
+// Two boxes that almost touch along a face normal of one, across an edge of each, or along a random
+// direction.
 struct Pair {
     Box a, b;
     W3 n{W(0)};
@@ -64,7 +64,7 @@ Pair any_pair(Random &random, bool is_aligned) {
     pair.a = {narrowed(any_position(random)), turn, any_half_extents(random, size)};
     pair.b = {{}, oracle::awkward_rotation(random), any_half_extents(random, other)};
     const std::uint32_t likeness = random.next_index(4);
-    if (likeness == 0) // parallel to the last bit, or nearly so
+    if (likeness == 0) // parallel to the last bit, or nearly
         pair.b.rotation = pair.a.rotation;
     else if (likeness == 1)
         pair.b.rotation = glm::normalize(
@@ -87,7 +87,7 @@ Pair any_pair(Random &random, bool is_aligned) {
     if (glm::length(pair.n) == W(0))
         pair.n = a.axis[i];
     pair.n = glm::normalize(pair.n) * (random.next_index(2) == 0 ? W(1) : W(-1));
-    // b's point goes to a's, and beyond by the gap.
+    // Moves b's point to a's, and past it by the gap.
     const W3 from = any_support(random, a, pair.n), to = any_support(random, b, -pair.n);
     pair.b.center =
         narrowed(from - (to - b.center) + pair.n * any_gap(random, std::min(size, other)));
@@ -101,12 +101,12 @@ struct Counts {
 void judge(bool answer, const Frame &a, const Frame &b, const W3 &n, W bound, Counts &counts) {
     answer ? ++counts.overlapping : ++counts.apart;
     const W gap = std::abs(glm::dot(b.center - a.center, n)) - a.reach(n) - b.reach(n);
-    if (gap > bound) { // n itself shows it
+    if (gap > bound) { // n itself proves it
         ASSERT_FALSE(answer) << "gap " << gap << ", bound " << bound;
         return;
     }
-    // A box grown by g meets what is within g of it, and nothing further away than sqrt(3) g; one
-    // that is smaller by g misses nothing that is deeper in it than that.
+    // A box grown by g meets everything within g of it, and nothing further than sqrt(3) g; shrunk
+    // by g, it still meets everything that penetrates deeper than that.
     ++counts.cut;
     const W g = bound / std::sqrt(W(3));
     if (answer) {

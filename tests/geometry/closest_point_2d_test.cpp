@@ -27,8 +27,8 @@ W ray_distance(const Ray2 &ray, const Vec2 &p) {
     return length(from_origin - (t < 0 ? W(0) : W(ray.max_t)) * d);
 }
 
-// The result is in the shape, and no further from the point than the shape is, both but for
-// rounding. With convex shapes that leaves one point.
+// Up to rounding, the result is in the shape and no further from the point than the shape is. For
+// convex shapes only one point qualifies.
 void check_closest(W distance_of_result, W distance_of_point, const Vec2 &point, const Vec2 &result,
                    W size) {
     const W bound = 8 * W(epsilon) * size;
@@ -73,7 +73,7 @@ TEST(ClosestPoint2, IsInTheShapeAndAsFarAsTheShapeIs) {
 
         if (a == b)
             continue;
-        // The same segment as a ray, the direction of any length.
+        // The same segment as a ray with a direction of any length.
         const Real scale = any_magnitude(random, -6.0, 6.0);
         const Ray2 ray{a, (b - a) * scale,
                        random.next_index(2) == 0 ? Real(1) / scale : Real(1e30)};
@@ -84,7 +84,7 @@ TEST(ClosestPoint2, IsInTheShapeAndAsFarAsTheShapeIs) {
 }
 
 TEST(ClosestPoint2, OfARectangleIsExact) {
-    // By trying all points of a small grid.
+    // Tries every point of a small grid.
     Random random(0x2d12);
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec2 a = any_whole_point(random, 4), b = any_whole_point(random, 4);

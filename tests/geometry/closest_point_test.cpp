@@ -14,11 +14,10 @@ namespace {
 
 using namespace wide;
 
-// What is true of the closest point q of a convex set and of no other point: q is in the set, and
-// the set is behind the plane through q across the way to p. `height` is that of q over the surface
-// and `support` how far the set reaches along `p - q`, both computed apart from the engine. If q is
-// off by `bound`, the plane is off by as much and tilted by that over |p - q|, over a set of that
-// diameter.
+// The closest point q of a convex set is the only point in the set with the whole set behind the
+// plane through q perpendicular to p - q. `height` is q's height above the surface and `support`
+// how far the set reaches along `p - q`, both computed independently of the engine. If q is off by
+// `bound`, the plane is off by as much and tilts by bound / |p - q| over the set's diameter.
 void expect_closest(const W3 &p, const W3 &q, W height, W support, W diameter, W bound, int trial) {
     ASSERT_LE(height, bound) << "not in the set, trial " << trial;
     ASSERT_LE(support - glm::dot(p - q, q), bound * (diameter + W(2) * glm::length(p - q)))
@@ -80,7 +79,7 @@ TEST(ClosestPoint, BoxAndAabb) {
                            std::max(W(0), frame.signed_distance(p))),
                   16 * epsilon * (glm::length(p - frame.center) + glm::length(frame.half)));
 
-        // An Aabb's closest point is exact, and its distance comes from differences.
+        // The closest point of an Aabb is exact; its distance comes from differences.
         const Aabb aabb{box.center - box.half_extents, box.center + box.half_extents};
         const Vec3 clamped = closest_point(aabb, point);
         W squared = 0;

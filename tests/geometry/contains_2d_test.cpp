@@ -14,15 +14,15 @@ namespace {
 
 using namespace oracle_2d;
 
-// A point near the border: the border is sought along a random direction from the centre, and the
-// point moved off by some roundings.
+// A point near the border: finds the border along a random direction from the centre and moves off
+// it by a few roundings.
 template <typename Shape> Vec2 near_border(Random &random, const Shape &shape, const Vec2 &center) {
     const Wide u = any_unit(random);
     const W size = size_of(shape);
     W low = 0;
     W high = 2 * size;
     for (int i = 0; i < 9; ++i) {
-        // Never too far: the border is at least that much nearer.
+        // Never steps past the border, which is at least that close.
         const Wide p = wide(center) + high * u;
         const W outside =
             signed_distance(shape, Vec2{static_cast<Real>(p.x), static_cast<Real>(p.y)});
@@ -36,7 +36,7 @@ template <typename Shape> Vec2 near_border(Random &random, const Shape &shape, c
 struct Tally {
     int wrong = 0;
     int near = 0;
-    double worst = 0.0; // of the bound
+    double worst = 0.0; // as a share of the bound
 };
 
 template <typename Shape>
@@ -62,7 +62,8 @@ TEST(Contains2, IsWrongOnlyWithinTheStatedBound) {
         check_point(rectangles, rectangle, near_border(random, rectangle, rectangle.center),
                     4.0 * epsilon * double(size_of(rectangle)));
     }
-    // That close to the border some must be wrong, or the test looks elsewhere.
+    // Some points this close to the border must come out wrong, or the test is looking in the wrong
+    // place.
     EXPECT_GT(circles.near, count / 8);
     EXPECT_GT(rectangles.near, count / 8);
     EXPECT_GT(circles.wrong + rectangles.wrong, 0);
@@ -105,7 +106,7 @@ TEST(Contains2, IsExactOnSegmentsAndRays) {
         const Vec2 p = near_line(random, a, b);
         const Whole along = whole(b) - whole(a);
         const Whole from_a = whole(p) - whole(a);
-        // On the line, between the ends by their distances along it.
+        // On the line, and between the ends by distance along it.
         const bool on_line = cross(along, from_a) == 0;
         const bool between = dot(along, from_a) >= 0 && dot(from_a, from_a) <= dot(along, along);
         ASSERT_EQ(contains(Segment2{a, b}, p), on_line && between);
@@ -121,7 +122,7 @@ TEST(Contains2, IsExactOnSegmentsAndRays) {
 }
 
 TEST(Contains2, SegmentsScaledAndMovedByPowersOfTwo) {
-    // The same points, small and far away: nothing but exponents changes.
+    // The same points, tiny and far away: only exponents change.
     Random random(0x2d04);
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Real scale = std::ldexp(Real(1), int(random.next_index(40)) - 20);

@@ -145,7 +145,7 @@ Int scaled_distance(const Int3 &a, const Int3 &b, const Int3 &p, Int &scale) {
 TEST(Contains, WholeNumbersAreExact) {
     Random random(5);
     const Real h = Real(0.5);
-    // Turns by half and by a third, whose quaternions are exact; each permutes the axes.
+    // Half turns and third turns have exact quaternions; each permutes the axes.
     const std::array<Quat, 4> turns{identity_rotation, Quat{Real(0), Real(1), Real(0), Real(0)},
                                     Quat{h, h, h, h}, Quat{h, -h, h, -h}};
     int on_surface = 0;
@@ -186,7 +186,7 @@ TEST(Contains, WholeNumbersAreExact) {
     EXPECT_GT(on_surface, trials(1'000'000) / 1000);
 }
 
-// Numbers with all bits of the mantissa in use, as whole multiples of a power of two.
+// Numbers that use every bit of the mantissa, as integer multiples of a power of two.
 __extension__ typedef __int128 Huge; // NOLINT(modernize-use-using): __extension__ needs it
 constexpr int bits = sizeof(Real) == sizeof(float) ? 20 : 36;
 
@@ -209,8 +209,8 @@ TEST(Contains, LinesWithoutThicknessAreExact) {
     int on_line = 0, on_plane = 0;
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Huge3 a{any_huge(random), any_huge(random), any_huge(random)};
-        // A direction with small components, so that whole multiples of it are on the line; then
-        // the last bit of one coordinate may be off.
+        // A direction with small components, so that its integer multiples lie on the line; one
+        // coordinate may then be off by its last bit.
         const Int steps = any_int(random, 1 << 12);
         const Int length = Int(random.next_index(1 << 12));
         const Int3 d = any_int3(random, 1 << 6);
@@ -234,13 +234,13 @@ TEST(Contains, LinesWithoutThicknessAreExact) {
                                             : is_forward && along <= whole * length;
         ASSERT_EQ(contains(Segment{real(a), real(b)}, real(p)), on_segment) << "trial " << trial;
         ASSERT_EQ(contains(Ray{real(a), real(d)}, real(p)), is_forward) << "trial " << trial;
-        // The same direction, longer and shorter by a power of two, and an end on a step.
+        // The same direction scaled by a power of two, with an end on a step.
         const Real factor = std::ldexp(Real(1), int(any_int(random, 18)));
         const Ray ray{real(a), real(d) * factor, Real(length) / factor};
         ASSERT_EQ(contains(ray, real(p)), is_forward && along <= whole * length)
             << "trial " << trial;
-        // A plane with a normal in whole multiples of 2^-12, and a point that is on it or off by
-        // the last bit, where the rounded height may be anything.
+        // A plane whose normal is in multiples of 2^-12, and a point that is on it or off by the
+        // last bit, where the rounded height can be anything.
         const double angle = random.next_in(0.0, 6.28);
         const Int one = 1 << 12;
         const Int3 m{Int(double(one) * std::cos(angle)), Int(double(one) * std::sin(angle)),

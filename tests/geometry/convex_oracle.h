@@ -1,5 +1,5 @@
-// Convex shapes in double, to hold GJK, EPA and casts against: support values and distances to
-// points in closed form, and hulls and pairs of shapes to ask about.
+// Convex shapes in double as a reference for GJK, EPA and casts: closed-form support values and
+// distances to points, and hulls and pairs of shapes to test with.
 #pragma once
 
 #include "engine/geometry/support.h"
@@ -57,8 +57,8 @@ inline HullMesh mesh_of(const std::vector<V> &vertices,
     return mesh;
 }
 
-// A prism over a polygon of `sides` corners on an ellipse, drawn together to `top` of its width at
-// the top (1: upright).
+// A prism over a `sides`-gon inscribed in an ellipse, tapered to `top` of its width at the top
+// (1: straight).
 inline HullMesh prism(int sides, const V &half, double top) {
     std::vector<V> vertices;
     std::vector<std::vector<std::uint32_t>> faces(2);
@@ -95,13 +95,13 @@ inline W to_wide(const Vec3 &v) {
     return {Wide(v.x), Wide(v.y), Wide(v.z)};
 }
 
-// Any convex shape as corners (of a polytope, or of a core) and a radius, or as a cylinder.
+// Any convex shape as the corners of a polytope or core plus a radius, or as a cylinder.
 struct Body {
     std::vector<W> corners;
-    std::vector<std::array<W, 2>> planes; // of the faces: outward unit normal, a point
+    std::vector<std::array<W, 2>> planes; // of the faces: outward unit normal and a point
     std::vector<std::array<W, 2>> edges;  // of a polytope
-    bool is_solid = false;                // planes say what is inside
-    bool is_cylinder = false;             // around the segment of its two corners
+    bool is_solid = false;                // the planes bound its inside
+    bool is_cylinder = false;             // around the segment between its two corners
     Wide radius = 0.0;
 
     Wide support(const W &u) const { // along a unit vector
@@ -113,7 +113,7 @@ struct Body {
         const W axis = glm::normalize(corners[1] - corners[0]);
         return most + radius * glm::length(u - axis * glm::dot(axis, u));
     }
-    // How far a point is outside (hulls: outside of the farthest plane, which is no more).
+    // How far a point is outside. For hulls, its height over the farthest plane, a lower bound.
     Wide outside(const W &p) const {
         if (is_solid) {
             Wide most = -1e300;
@@ -193,7 +193,7 @@ inline Body points_body(std::vector<W> corners, Wide radius) {
     body.corners = std::move(corners);
     return body;
 }
-// Seen from `o`: subtracted first, so that the oracle is as exact far out as near the origin.
+// Relative to `o`, subtracted first so that the oracle is as exact far out as near the origin.
 inline Body body_of(const Vec3 &p, const W &o) {
     return points_body({to_wide(p) - o}, 0.0);
 }
@@ -262,13 +262,13 @@ inline Body body_of(const ConvexHull &hull, const W &o) {
     return body;
 }
 
-// How far B must go along u to be clear of A; negative when they are apart along it.
+// How far B must move along u to be clear of A; negative when they are separated along u.
 inline Wide overlap_along(const Body &a, const Body &b, const W &u) {
     return a.support(u) + b.support(-u);
 }
 
-// Visits the directions from A to B that a face of the difference of two polytopes can have: the
-// normals of all faces, and the cross products of all edges both ways.
+// Visits every direction from A to B that can be a face normal of the Minkowski difference of two
+// polytopes: all face normals, and the cross products of all edges with both signs.
 template <typename Visit> void for_all_axes(const Body &a, const Body &b, const Visit &visit) {
     for (const auto &plane : a.planes)
         visit(plane[0]);
@@ -286,8 +286,8 @@ template <typename Visit> void for_all_axes(const Body &a, const Body &b, const 
         }
 }
 
-// The separation of two polytopes: the greatest over these directions; the signed distance when
-// they overlap.
+// The separation of two polytopes: the greatest over these directions. It is the signed distance
+// when they overlap.
 inline Wide polytope_separation(const Body &a, const Body &b) {
     Wide most = -1e300;
     for_all_axes(a, b, [&](const W &u) { most = std::max(most, -overlap_along(a, b, u)); });
@@ -301,9 +301,9 @@ inline std::string text(const Vec3 &v) {
     return out.str();
 }
 
-// --- Pairs to ask about --------------------------------------------------------------------------
+// --- Pairs to test with --------------------------------------------------------------------------
 
-// Every pair of kinds once, some kinds first and some second: check.operator()<A, B>().
+// Every pair of kinds once, in mixed order: check.operator()<A, B>().
 inline constexpr int kinds_of_pairs = 44;
 
 template <typename... Kinds> struct KindList {};
@@ -323,7 +323,7 @@ template <typename Check> void for_all_pairs(const Check &check) {
     with(KindList<ConvexHull, Vec3, Triangle, Capsule, ConvexHull>{});
 }
 
-// Sizes of one pair: alike and ordinary, or anything from 1e-3 to 1e5.
+// The sizes in one pair: similar and ordinary, or anything from 1e-3 to 1e5.
 struct Scale {
     double size_a = 1.0, size_b = 1.0;
     double reach = 1.0;      // of positions
@@ -420,7 +420,7 @@ template <> struct Any<Aabb> {
 };
 template <> struct Any<ConvexHull> {
     static ConvexHull make(Random &random, const Vec3 &at, double size, const Scale &s) {
-        // Meshes of unit size are kept; each decade has its own.
+        // Unit-size meshes are shared; each decade has its own.
         static const std::vector<HullMesh> meshes = [] {
             Random shapes(5);
             std::vector<HullMesh> result;
@@ -472,13 +472,13 @@ template <typename Shape> Shape moved(Shape shape, const Vec3 &by) {
     return shape;
 }
 
-// What the proofs need to know of a pair, whatever its kinds.
+// What the proofs need to know about a pair of any kinds.
 struct WidePair {
-    Body wide_a, wide_b; // relative to the place of A
-    W place;             // of A
-    double size = 0.0;   // the largest coordinate, relative to the place of A
-    double far = 0.0;    // the largest in the world
-    bool is_curved;      // one is a cylinder: EPA follows it within 4e-3 only
+    Body wide_a, wide_b; // relative to A's place
+    W place;             // A's place
+    double size = 0.0;   // largest coordinate, relative to A's place
+    double far = 0.0;    // largest in the world
+    bool is_curved;      // one is a cylinder, which EPA follows to 4e-3 only
 
     WidePair(Body a, Body b, const W &place_)
         : wide_a(std::move(a)), wide_b(std::move(b)), place(place_),
@@ -499,10 +499,10 @@ template <typename A, typename B> struct Pair : WidePair {
           a(a_), b(b_) {}
 };
 
-// Where B goes from where it is concentric with A.
+// How B is moved from being concentric with A.
 struct Displacement {
     Vec3 apart{Real(0)};
-    Vec3 across{Real(0)}; // zero every other time: coplanar faces and parallel edges stay so
+    Vec3 across{Real(0)}; // zero every other time: keeps faces coplanar and edges parallel
 };
 inline Displacement any_displacement(Random &random, const Scale &scale, const Body &a,
                                      const Body &b) {
@@ -545,7 +545,8 @@ inline Displacement any_displacement(Random &random, const Scale &scale, const B
     return result;
 }
 
-// Two shapes apart, near each other, touching as well as rounding allows, or one in the other.
+// Two shapes apart, near each other, touching as closely as rounding allows, or one inside the
+// other.
 template <typename A, typename B> Pair<A, B> any_pair_of(Random &random) {
     const Scale scale = any_scale(random);
     const Vec3 at = any_place(random, scale);

@@ -22,17 +22,17 @@ struct WideCircle {
     W radius = 0;
 };
 
-// The smallest circle is the largest of the smallest circles of all triples (Helly), and that of
-// three points is over two of them, or through all.
+// The smallest circle is the largest of the smallest circles of all triples (Helly). That of a
+// triple has two of its points as a diameter, or goes through all three.
 WideCircle smallest_of_three(const Wide &a, const Wide &b, const Wide &c) {
     const std::array<Wide, 3> p{a, b, c};
     for (std::size_t i = 0; i < 3; ++i) {
-        // The angle at i is right or more: the circle is over the other two.
+        // The angle at i is right or obtuse: the other two points are a diameter.
         const Wide u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
         if (glm::dot(u, v) <= 0)
             return {(p[(i + 1) % 3] + p[(i + 2) % 3]) / W(2), length(u - v) / 2};
     }
-    // R = abc / 4F, with the cross product from the corner of the largest angle.
+    // R = abc / 4F, with the cross product taken at the corner of the largest angle.
     const W x = length(b - c), y = length(c - a), z = length(a - b);
     const std::size_t i = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     const W twice_area = std::abs(cross(p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]));
@@ -53,7 +53,7 @@ W smallest_radius(const std::vector<Vec2> &points) {
 }
 
 struct Tally {
-    double worst = 0.0; // of the bound
+    double worst = 0.0; // as a share of the bound
 };
 
 void check_circle(Tally &tally, const std::vector<Vec2> &points) {
@@ -83,7 +83,7 @@ TEST(Enclosing2, CircleIsTheSmallest) {
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec2 center = any_position(random);
         const Real size = any_size(random);
-        // Few, mostly: there are n^3 / 6 triples.
+        // Usually few: there are n^3 / 6 triples.
         const std::uint32_t count = 1 + random.next_index(random.next_index(8) == 0 ? 9 : 4);
         const std::uint32_t family = random.next_index(7);
         const Wide u = any_unit(random);
@@ -96,13 +96,13 @@ TEST(Enclosing2, CircleIsTheSmallest) {
             case 0: // anywhere
                 p = {s, W(random.next_in(-1.0, 1.0))};
                 break;
-            case 1: // on one circle, but for roundings
+            case 1: // on one circle, up to rounding
                 p = any_unit(random);
                 break;
             case 2: // nearly on one circle
                 p = any_unit(random) * (1 + flat * s);
                 break;
-            case 3: // on one line, but for roundings
+            case 3: // on one line, up to rounding
                 p = u * s;
                 break;
             case 4: // nearly on one line
@@ -124,7 +124,7 @@ TEST(Enclosing2, CircleIsTheSmallest) {
 }
 
 TEST(Enclosing2, CircleAroundManyPoints) {
-    // Against the corners of their hull alone, by brute force; a circle is determined by those.
+    // Brute force over the corners of the hull alone, which determine the circle.
     Random random(0x2d42);
     for (int trial = 0; trial < trials(300); ++trial) {
         const Real size = any_size(random);
@@ -133,7 +133,7 @@ TEST(Enclosing2, CircleAroundManyPoints) {
             corners.push_back(rounded(any_unit(random) * W(size)));
         std::vector<Vec2> points = corners;
         for (int i = 0; i < 3000; ++i) {
-            // Between two corners, and drawn in, so that rounding leaves it inside.
+            // Between two corners, pulled in so that rounding leaves it inside.
             const Wide a = wide(corners[random.next_index(12)]);
             const Wide b = wide(corners[random.next_index(12)]);
             const Wide c = wide(corners[random.next_index(12)]);
@@ -151,7 +151,7 @@ TEST(Enclosing2, CircleAroundManyPoints) {
 }
 
 TEST(Enclosing2, NoRoundsAreMissing) {
-    // A circle full of points on it, and a line: never out of rounds, here or above.
+    // A circle covered in points, and a line: the iteration limit is never reached, here or above.
     Random random(0x2d43);
     for (const int count : {1'000, trials(1'000'000)}) {
         std::vector<Vec2> points;

@@ -1,5 +1,5 @@
-// Hulls so round that EPA meets its limit: the depth against all directions that a face of the
-// difference can have, in wide numbers.
+// Hulls so round that EPA runs into its limit: checks the depth in wide numbers along every
+// possible face normal of the Minkowski difference.
 #include "engine/core/check.h"
 #include "engine/geometry/epa.h"
 #include "engine/geometry/quickhull.h"
@@ -71,18 +71,18 @@ TEST(EpaOfRoundHulls, FindsTheLeast) {
                  "500 points and a box");
     expect_least(Aabb{-near, near}, ConvexHull{&large, zero, turn(0.25)},
                  "500 points and an aligned box, flat");
-    EXPECT_GE(oddity("epa: vertex limit").met, limits + 6U); // this is what was meant
+    EXPECT_GE(oddity("epa: vertex limit").met, limits + 6U); // the limit was indeed reached
 }
 
-// As many pairs of edges as the oracle takes a second for.
+// As many pairs of edges as the oracle can do in a second.
 TEST(EpaOfRoundHulls, FindsTheLeastOfFiveHundredPoints) {
     const HullMesh large = fibonacci_hull(500);
     const ConvexHull a{&large, Vec3{Real(0)}, identity_rotation};
     const ConvexHull b{&large, Vec3{Real(0.1), Real(0), Real(0)}, identity_rotation};
     const std::optional<Penetration> found = penetration(a, b);
     ASSERT_TRUE(found);
-    // The oracle prunes: an arc of one hull and a normal of the other that are not within the
-    // largest angle between neighbouring normals of it cannot cross.
+    // The oracle prunes: an arc of one hull and a normal of the other cannot cross unless they are
+    // within the largest angle between neighbouring normals of that hull.
     const Pair<ConvexHull, ConvexHull> pair(a, b);
     const Wide depth = Wide(found->depth);
     for (const auto &plane : pair.wide_a.planes)
@@ -100,8 +100,8 @@ TEST(EpaOfRoundHulls, FindsTheLeastOfFiveHundredPoints) {
                 1e-5);
 }
 
-// A cylinder is followed within 4e-3; where the limit comes first, by how much less is possible is
-// said.
+// A cylinder is followed to within 4e-3; if the limit comes first, the result states how much
+// smaller the depth could be.
 TEST(EpaOfRoundHulls, SaysWhatACylinderMayMiss) {
     const HullMesh large = fibonacci_hull(500);
     int limited = 0;

@@ -13,9 +13,9 @@ using namespace oracle;
 
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 
-// The depth is proved from above by the overlap along the normal in wider arithmetic, and from
-// below by all the directions that the least depth of two polytopes can have, or, where the cores
-// are apart, by the distance of points in them. For cylinders directions are sampled.
+// The overlap along the normal, in wider arithmetic, bounds the depth from above. From below it is
+// bounded by all possible directions of least depth of two polytopes or, where the cores are apart,
+// by the distance between points in them. For cylinders directions are sampled.
 std::string complaint(const WidePair &pair, const Penetration &found, Random &random) {
     std::ostringstream out;
     out.precision(12);
@@ -97,7 +97,7 @@ TEST(Epa, ProvesEachDepth) {
                 if (found && (both.separation != -found->depth || both.normal != found->normal ||
                               both.on_a != found->on_a || both.on_b != found->on_b))
                     text += "another penetration as proximity";
-                // What is apart by rounding may count as either.
+                // Shapes apart by a rounding error may count either way.
                 if (!found &&
                     std::max(both.separation, Real(0)) != distance(pair.a, pair.b).distance)
                     text += "another distance as proximity";
@@ -112,8 +112,8 @@ TEST(Epa, ProvesEachDepth) {
     EXPECT_EQ(oddity("epa: vertex limit").met, 0U);
 }
 
-// Shapes that touch within rounding, and are a last digit apart: the depth is then a rounding below
-// zero, and the search must end all the same.
+// Shapes that touch within rounding, or are one ulp apart: the depth is then a rounding error below
+// zero, and the search must still terminate.
 TEST(Epa, EndsWhereTouchingIsRounding) {
     const Triangle triangle{
         {Real(-39.839759826660156), Real(25.809856414794922), Real(-0.74999427795410156)},
@@ -137,8 +137,8 @@ TEST(Epa, EndsWhereTouchingIsRounding) {
     }
 }
 
-// The difference is a cylinder swept along 1574 m: in float the normals of its ends' slivers are
-// rounding, and their planes seem to pass the origin nearer than those that matter.
+// The difference is a cylinder swept along 1574 m: in float the normals of the slivers at its ends
+// are pure rounding, and their planes seem to pass closer to the origin than the faces that matter.
 TEST(Epa, EndsOnLongNeedles) {
     const Cylinder cylinder{Vec3{Real(-2), Real(-0.75), Real(-2)},
                             Vec3{Real(0.125), Real(0.125), Real(0.125)}, Real(0.125)};
@@ -154,7 +154,7 @@ TEST(Epa, EndsOnLongNeedles) {
     EXPECT_EQ(oddity("epa: vertex limit").met, limits);
 }
 
-// Cores closer than what has a square still have a way out.
+// Cores so close that the squared distance underflows still have a way out.
 TEST(Epa, CoresCloserThanANumberPart) {
     const Real tiny = std::sqrt(std::numeric_limits<Real>::min()) / Real(16);
     const Capsule capsule{Vec3{Real(-1), Real(0), Real(0)}, Vec3{Real(1), Real(0), Real(0)},

@@ -1,4 +1,5 @@
-// Exact rational arithmetic for oracles: what the engine's numbers say, with nothing rounded.
+// Exact rational arithmetic for oracles: takes the engine's numbers at face value, with nothing
+// rounded.
 #pragma once
 
 #include "engine/math/types.h"
@@ -55,8 +56,8 @@ inline bool is_zero(const Rational3 &v) {
     return v.x == 0 && v.y == 0 && v.z == 0;
 }
 
-// The side of a plane that a point is on, by the plane's numbers as they are: in long double where
-// that is enough.
+// The side of the plane that the point is on, taking the plane's numbers at face value: in long
+// double where that is enough.
 inline int side_of(const Vec3 &normal, Real offset, const Vec3 &p) {
     long double height = -static_cast<long double>(offset), size = std::abs(height);
     for (int i = 0; i < 3; ++i) {
@@ -65,19 +66,19 @@ inline int side_of(const Vec3 &normal, Real offset, const Vec3 &p) {
         height += term;
         size += std::abs(term);
     }
-    // The error is below 2^-64 a rounding, of which there are six.
+    // Six roundings, each below 2^-64.
     if (std::abs(height) > 0x1p-60L * size)
         return height > 0 ? 1 : -1;
     return Rational(dot(rational(normal), rational(p)) - rational(offset)).sign();
 }
 
-// Normals that floats do not hold but for rounding, and that they do.
+// Unit normals that are only rounded in floats, and ones that are exact.
 inline constexpr std::array<Vec3, 4> plane_normals{{{Real(0), Real(1), Real(0)},
                                                     {Real(-1), Real(0), Real(0)},
                                                     {Real(0.6), Real(0), Real(-0.8)},
                                                     {Real(0.48), Real(-0.6), Real(0.64)}}};
 
-// --- Polytopes of whole coordinates, by separating axes. Nothing is rounded or overflows where
+// --- Separating axes of polytopes with integer coordinates. Nothing rounds or overflows while
 // coordinates stay below 2^12 for 64 bits, or 2^24 for 128.
 
 __extension__ typedef __int128 Int128;
@@ -95,7 +96,7 @@ template <typename Whole> struct Whole3 {
     friend bool is_zero(const Whole3 &v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 };
 
-// v * scale - offset, which must be whole.
+// v * scale - offset, which must come out an integer.
 template <typename Whole> Whole3<Whole> whole(const Vec3 &v, double scale, int offset = 0) {
     const auto component = [&](Real x) {
         return Whole(static_cast<long long>(double(x) * scale) - offset);
@@ -103,7 +104,7 @@ template <typename Whole> Whole3<Whole> whole(const Vec3 &v, double scale, int o
     return {component(v.x), component(v.y), component(v.z)};
 }
 
-// The hull of points, and the directions of its edges (at least).
+// The hull of points, with the directions of its edges (and perhaps more).
 template <typename Whole> struct Polytope {
     std::array<Whole3<Whole>, 8> points;
     std::size_t point_count;
@@ -141,11 +142,10 @@ bool separates(const Whole3<Whole> &axis, const Polytope<Whole> &a, const Polyto
     return of_a.second < of_b.first || of_b.second < of_a.first;
 }
 
-// Whether closed polytopes have a common point, whatever their dimensions. They have none when the
-// origin is not in their Minkowski difference, whose edges are parallel to theirs: then a facet of
-// it is between, with the normal u x v; or, when it is a polygon in the origin's plane, an edge,
-// with the normal u x (u x v); or, when it is a segment or a point, an end (u), its side, or itself
-// (w).
+// Whether closed polytopes of any dimension meet. They do not when the origin is outside their
+// Minkowski difference, whose edges are parallel to theirs. Then it is separated by a facet, with
+// the normal u x v; for a polygon in the origin's plane by an edge, with the normal u x (u x v);
+// for a segment or point by an end (u), its side, or the point itself (w).
 template <typename Whole> bool polytopes_meet(const Polytope<Whole> &a, const Polytope<Whole> &b) {
     const Whole3<Whole> w = b.points[0] - a.points[0];
     if (separates(w, a, b))

@@ -20,8 +20,8 @@ using namespace wide;
 using W4 = glm::vec<4, W, glm::defaultp>;
 using WideMatrix = glm::mat<4, 4, W, glm::defaultp>;
 
-// A camera anywhere, its frustum by the engine, and the clip volume of the very same matrix in
-// wider numbers: a point is inside when -w <= x, y, z <= w.
+// A camera anywhere, the engine's frustum for it, and the clip volume of the same matrix in wider
+// numbers: a point is inside when -w <= x, y, z <= w.
 struct View {
     Mat4 matrix{Real(1)};
     WideMatrix wide_matrix{W(1)};
@@ -45,7 +45,7 @@ struct View {
             projection = glm::perspective(W(random.next_in(0.2, 2.5)), W(random.next_in(0.4, 2.5)),
                                           near, near * ratio);
             break;
-        case 1: { // off the middle, as for a part of a picture
+        case 1: { // off-centre, as for a tile of a picture
             const W left = near * W(random.next_in(-1, 1)),
                     width = near * W(random.next_in(0.1, 2));
             projection =
@@ -75,20 +75,20 @@ struct View {
                          wide_matrix[j][3];
             planes[std::size_t(face)] = row / glm::length(W3{row});
         }
-        // Rounded to float it is what double had; in double the far plane is a small difference.
+        // In float the result is double's, rounded; in double the far plane is a small difference.
         bound = 8 * epsilon * scale * (sizeof(Real) == sizeof(float) ? W(1) : W(4) * ratio);
     }
     W height(std::size_t face, const W3 &p) const {
         return glm::dot(W3{planes[face]}, p) + planes[face].w;
     }
-    // The largest height over a face: negative inside.
+    // The largest height over any face: negative inside.
     W worst(const W3 &p) const {
         W most = height(0, p);
         for (std::size_t face = 1; face < 6; ++face)
             most = std::max(most, height(face, p));
         return most;
     }
-    // A point by its clip coordinates over w.
+    // The point with the given clip coordinates divided by w.
     W3 at(const W3 &clip) const {
         const W4 p = glm::inverse(wide_matrix) * W4{clip, W(1)};
         return W3{p} / p.w;
@@ -100,7 +100,7 @@ struct View {
             for (int i = 0; i < 3; ++i)
                 if (random.next_index(2) == 0)
                     parts[i] = W(random.next_index(2));
-        // Between the corners: in an affine frame, so beyond them nothing turns around.
+        // Between the corners, in an affine frame, so that nothing flips beyond them.
         W3 p{W(0)};
         for (int k = 0; k < 8; ++k)
             p += corners[std::size_t(k)] *
@@ -108,7 +108,7 @@ struct View {
                   ((k & 4) != 0 ? parts.z : 1 - parts.z));
         return p;
     }
-    // A direction that leads out of the frustum from most points near its surface.
+    // A direction that leaves the frustum from most points near its surface.
     W3 any_outward(Random &random, const W3 &from) const {
         const W3 middle = (corners[0] + corners[7]) * W(0.5);
         return glm::normalize(glm::normalize(from - middle) + any_unit(random) * W(0.7));
@@ -172,8 +172,8 @@ TEST(Frustum, PointsAgainstTheClipVolume) {
     EXPECT_GT(inside, trials(1'000'000) / 10);
 }
 
-// What the plane tests must say of a shape that reaches from `lowest` to `highest` over each face;
-// nothing where one of these is within the bound of zero.
+// What the plane tests must say about a shape that spans from `lowest` to `highest` over each face;
+// nothing where either is within the bound of zero.
 struct Expected {
     FrustumSide side = FrustumSide::inside;
     bool is_certain = true;
@@ -200,11 +200,11 @@ void judge_planes(const View &view, const Shape &shape, W bound, const Reach &re
     }
 }
 
-// Whether the frustum meets the box, each of whose half extents is larger by `grow`: what is left
-// of the faces of each when cut by the planes of the other.
+// Whether the frustum meets the box with each half extent grown by `grow`: clips each one's faces
+// by the other's planes and looks for anything left.
 bool meets(const View &view, Frame box, W grow) {
     box.half += W3{grow};
-    // What a corner shows needs no cutting.
+    // A corner inside settles it without clipping.
     std::array<W3, 8> of_box_at;
     for (int k = 0; k < 8; ++k) {
         of_box_at[std::size_t(k)] = box.corner(k);
@@ -236,7 +236,7 @@ bool meets(const View &view, Frame box, W grow) {
 struct Counts {
     int overlapping = 0;
     int apart = 0;
-    int apart_but_across = 0; // what the plane tests alone do not tell
+    int apart_but_across = 0; // cases the plane tests alone cannot tell
 };
 
 template <typename AnyBox>
@@ -252,7 +252,7 @@ void judge_box(const View &view, const AnyBox &box, W box_scale, Counts &counts)
             highest = std::max(highest, view.height(face, frame.corner(k)));
         }
     });
-    // A box grown by g on all sides overlaps what is within g of it, and nothing further away than
+    // A box grown by g on all sides overlaps everything within g of it, and nothing further than
     // sqrt(3) g.
     const W g = bound / std::sqrt(W(3));
     const bool answer = overlaps(view.frustum, box);
@@ -277,7 +277,7 @@ template <typename AnyBox> void check_boxes(std::uint64_t seed) {
             const W size = view.size() * any_power(random, -2, 0.3);
             const W3 near = view.any_near(random);
             const W3 u = view.any_outward(random, near);
-            // Moved out from a point of the frustum until they touch, or not quite.
+            // Moved outwards from a point of the frustum until they touch, or not quite.
             Box box{{}, oracle::awkward_rotation(random), any_half_extents(random, size)};
             const Frame frame(box);
             box.center = narrowed(near + u * (frame.reach(u) * W(random.next_in(0.5, 1.5)) +
@@ -332,7 +332,7 @@ TEST(Frustum, SpheresCapsulesAndClosestPoints) {
             });
 
             // The closest point is in the frustum, and the frustum is behind the plane through it
-            // across the way to the centre.
+            // perpendicular to the direction to the centre.
             const W3 q = widened(closest_point(view.frustum, center));
             const W at_edges = bound / view.sharpest();
             ASSERT_LE(view.worst(q), bound);
@@ -343,7 +343,7 @@ TEST(Frustum, SpheresCapsulesAndClosestPoints) {
             if (view.worst(c) < -bound) {
                 ASSERT_EQ(distance, W(0));
             }
-            // So the distance is known, to that plane's tilt over the frustum.
+            // So the distance is known, up to that plane's tilt across the frustum.
             W shortfall = 0;
             for (const W3 &corner : view.corners)
                 shortfall = std::max(shortfall, glm::dot(way, corner - q));
@@ -377,8 +377,8 @@ TEST(Frustum, UnprojectAndPick) {
                                                        static_cast<Real>(random.next_unit())};
             const Real depth = static_cast<Real>(random.next_unit());
             const Vec3 point = unproject(pixel, depth, inverse, viewport);
-            // Projected again it is at the pixel it came from. Roundings of the point and of the
-            // pixel are worth so many pixels there.
+            // Projecting the point again gives its original pixel, to within what the roundings of
+            // the point and the pixel are worth in pixels there.
             const auto project = [&](const W3 &p) {
                 const W4 clip = back * W4{p, W(1)};
                 return W3{W(viewport.origin.x) + W(viewport.size.x) * (clip.x / clip.w + 1) / 2,
@@ -431,7 +431,7 @@ TEST(Frustum, MisuseNamesTheValue) {
     Mat4 bad = good;
     bad[2][1] = nan;
     says([&] { frustum_of(bad); }, "nan in column 2, row 1");
-    Mat4 flat = good; // y given up
+    Mat4 flat = good; // y collapsed
     flat[1][1] = Real(0);
     says([&] { frustum_of(flat); }, "corner 0");
     says([&] { frustum_of(-good); }, "corner 0");

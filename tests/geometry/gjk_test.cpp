@@ -13,8 +13,8 @@ using namespace oracle;
 
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 
-// A distance is proved, not computed again: points of A and B that far apart bound it from above,
-// and a slab that wide between A and B from below.
+// Proves a distance rather than recomputing it: points of A and B that far apart bound it from
+// above, and a slab that wide between A and B bounds it from below.
 std::string complaint(const WidePair &pair, const ClosestPoints &found) {
     std::ostringstream out;
     out.precision(12);
@@ -76,7 +76,7 @@ TEST(Gjk, ProvesEachDistance) {
     EXPECT_EQ(oddity("gjk: iteration limit").met, 0U);
 }
 
-// Where along a needle the closest point is, the areas in it do not say; it must be on it still.
+// The areas in a needle do not say where along it the closest point is, but it must still be on it.
 TEST(Gjk, PointsAreOnNeedles) {
     const Capsule capsule{{Real(0.23897179961204529), Real(-0.25), Real(0.25)},
                           {Real(0.26102820038795471), Real(-0.25), Real(0.25)},
@@ -89,7 +89,7 @@ TEST(Gjk, PointsAreOnNeedles) {
     EXPECT_EQ(complaint(pair, distance(capsule, needle)), "");
 }
 
-// Closer than what has a square: no direction is left, and none is made up.
+// So close that the squared distance underflows: there is no direction left, and none is invented.
 TEST(Gjk, CloserThanANumberOverlaps) {
     const Real tiny = std::sqrt(std::numeric_limits<Real>::min()) / Real(16);
     const Segment segment{Vec3{Real(-1), Real(0), Real(0)}, Vec3{Real(1), Real(0), Real(0)}};
@@ -99,7 +99,7 @@ TEST(Gjk, CloserThanANumberOverlaps) {
     EXPECT_EQ(found.normal, Vec3{Real(0)});
 }
 
-// Small integers: what touches at a face, an edge or a corner overlaps, and one unit apart does
+// Small integers: shapes that touch at a face, edge or corner overlap, and shapes one unit apart do
 // not.
 TEST(Gjk, TouchingIsOverlapping) {
     const Box cube{Vec3{Real(3), Real(-2), Real(5)}, identity_rotation, Vec3{Real(1)}};
@@ -126,7 +126,7 @@ TEST(Gjk, TouchingIsOverlapping) {
     EXPECT_FALSE(overlaps(hull, Sphere{Vec3{Real(4), Real(4), Real(0)}, Real(2)}));
 }
 
-// On a ground 200 km wide, a gap is measured by the rounding of heights, not of widths.
+// On a ground 200 km wide, the error of a gap is the rounding of heights, not of widths.
 TEST(Gjk, SmallOnLarge) {
     const Aabb ground{Vec3{Real(-1e5), Real(-1), Real(-1e5)}, Vec3{Real(1e5), Real(0), Real(1e5)}};
     Random random(7);

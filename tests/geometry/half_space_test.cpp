@@ -13,7 +13,7 @@ using namespace oracle;
 
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 
-// Height of the lowest point over the surface, in wider numbers, for all the answers at once.
+// The lowest point's height above the surface, in wider numbers, checked against all queries.
 template <typename A> std::string complaint(Random &random) {
     const Scale scale = any_scale(random);
     const Vec3 at = any_place(random, scale);
@@ -23,7 +23,7 @@ template <typename A> std::string complaint(Random &random) {
     const Vec3 normal =
         glm::normalize(Vec3{Real(direction.x), Real(direction.y), Real(direction.z)});
     const W n = to_wide(normal);
-    // Around touching, or anywhere.
+    // Close to touching, or anywhere.
     const double reach = double(body.support(-n));
     const Real offset =
         Real(-reach + scale.size_a * (random.next_index(2) == 0 ? random.next_in(-2.0, 2.0)
@@ -115,7 +115,7 @@ TEST(HalfSpaces, WithEachOther) {
         overlaps(HalfSpace{up, Real(1)}, HalfSpace{-up, std::nextafter(Real(-1), Real(-2))}));
     EXPECT_FALSE(overlaps(HalfSpace{third, Real(1)}, HalfSpace{-third, Real(-1.5)}));
     EXPECT_TRUE(overlaps(HalfSpace{third, Real(1)}, HalfSpace{up, Real(-100)}));
-    // Parallel but for the last place they meet, far away.
+    // Parallel up to the last bit, so they meet far away.
     Vec3 tilted = -third;
     tilted.x = std::nextafter(tilted.x, Real(0));
     EXPECT_TRUE(overlaps(HalfSpace{third, Real(1)}, HalfSpace{tilted, Real(-1.5)}));

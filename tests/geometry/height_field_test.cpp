@@ -19,7 +19,7 @@ using namespace oracle;
 
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 
-// Rough or stepped or flat ground, of any size, near or far.
+// Rough, stepped or flat ground of any size, near or far.
 HeightField any_field(Random &random, int rows, int columns) {
     HeightField field;
     field.rows = rows;
@@ -38,7 +38,7 @@ HeightField any_field(Random &random, int rows, int columns) {
     return field;
 }
 
-// Few, mostly: the oracle asks all triangles.
+// Usually small: the oracle tests every triangle.
 int any_side(Random &random) {
     return 2 + int(random.next_index(random.next_index(4) == 0 ? 6 : 3));
 }
@@ -139,8 +139,8 @@ TEST(HeightField, NothingFallsBetweenTriangles) {
             target = glm::mix(corner, sample_point(field, row - 1, column), s);
         else if (kind == 3)
             target = glm::mix(corner, sample_point(field, row - 1, column - 1), s);
-        // The ground rises by at most two spacings along both axes, by 2.83 for 1 across. These
-        // rays fall by at least 3.5 for 1, so they come from above and meet it once.
+        // The ground rises by at most two spacings along each axis, a slope of 2.83. These rays
+        // drop with a slope of at least 3.5, so they come from above and hit once.
         const Real drop = field.spacing * Real(random.next_in(3.0, 30.0));
         const Real slant = kind == 4 ? Real(0) : Real(0.2);
         const Vec3 up{slant * drop * Real(random.next_in(-1.0, 1.0)), drop,
@@ -152,7 +152,7 @@ TEST(HeightField, NothingFallsBetweenTriangles) {
         if (trial % 4 == 0) {
             ASSERT_TRUE(linetest(field, target + up, target - up)) << "trial " << trial;
         }
-        // The ray passes the target within the rounding of its origin and direction.
+        // The ray passes the target to within the rounding of its origin and direction.
         const V o = wide(ray.origin);
         const double size = std::abs(o.x) + std::abs(o.y) + std::abs(o.z);
         const auto height = height_at(field, hit->point.x, hit->point.z);
@@ -162,7 +162,7 @@ TEST(HeightField, NothingFallsBetweenTriangles) {
     }
 }
 
-// A field over an inclined plane is that plane.
+// A field sampled from an inclined plane is that plane.
 TEST(HeightField, InclinedPlane) {
     Random random(3);
     for (int trial = 0; trial < trials(20000); ++trial) {
@@ -202,7 +202,7 @@ TEST(HeightField, HeightsAgainstWideArithmetic) {
         const Vec3 p = glm::clamp(any_point_of(random, field), all.min, all.max);
         const auto height = height_at(field, p.x, p.z);
         ASSERT_TRUE(height) << "trial " << trial;
-        // By the triangles that have p in them as seen from above; at least one has.
+        // Against the triangles that contain p as seen from above; there is at least one.
         bool is_right = false;
         double most = 0.0;
         const Aabb column{{p.x, Real(-1e30), p.z}, {p.x, Real(1e30), p.z}};
@@ -218,7 +218,7 @@ TEST(HeightField, HeightsAgainstWideArithmetic) {
             const L y = (wa * L(t.a.y) + wb * L(t.b.y) + wc * L(t.c.y)) / size;
             const double largest = std::max(
                 {std::abs(double(t.a.y)), std::abs(double(t.b.y)), std::abs(double(t.c.y))});
-            // u and v are rounded, which counts once more for the place in a cell far away.
+            // u and v are rounded, which adds an error for the place in a far-away cell.
             is_right |= std::abs(double(y) - double(*height)) <= 8 * epsilon * largest;
             most = std::max(most, std::abs(double(y) - double(*height)) / (epsilon * largest));
             return true;
@@ -245,8 +245,8 @@ TEST(HeightField, PointsAndSolidsAgainstAllTriangles) {
                            any_vector(random, std::pow(10.0, random.next_in(-2.0, 1.0)));
         const Vec3 closest = closest_point(field, p);
         const double distance = glm::length(wide(p) - wide(closest));
-        // A triangle's point may be rounded to outside of its box, and be nearer than that: then
-        // the cell need not be looked at.
+        // A triangle's closest point may round to outside its box and so be nearer; then the cell
+        // may be skipped.
         double least = 1e300, least_in_box = 1e300;
         for (std::uint32_t i = 0; i < triangle_count(field); ++i) {
             const Triangle t = triangle(field, i);

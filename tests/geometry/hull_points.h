@@ -1,4 +1,4 @@
-// Points to build hulls of, and the exact hull of points on the integer lattice.
+// Points to build hulls from, and the exact hull of points on the integer lattice.
 #pragma once
 
 #include "tests/geometry/oracle.h"
@@ -13,13 +13,12 @@
 namespace plumb::inline PLUMB_PRECISION {
 namespace oracle {
 
-// --- Exact: all planes through three of the points
-// --------------------------------------------------
+// --- Exact: all planes through three of the points ----------------------------------------------
 
 using Lattice = std::array<std::int64_t, 3>;
 
 struct ExactHull {
-    // Facets by the primitive normal and the offset; of each the points that are corners.
+    // Facets by primitive normal and offset, each with those of the points that are corners.
     std::map<std::array<std::int64_t, 4>, std::set<Lattice>> facets;
     std::set<Lattice> vertices;
 };
@@ -47,7 +46,7 @@ inline ExactHull exact_hull(const std::vector<Lattice> &points) {
                     any_behind |= h < 0;
                 }
                 if (any_front == any_behind)
-                    continue; // not supporting, or everything in one plane
+                    continue; // not supporting, or all points coplanar
                 const std::int64_t sign = any_front ? -divisor : divisor;
                 for (std::int64_t &x : n)
                     x /= sign;
@@ -58,7 +57,7 @@ inline ExactHull exact_hull(const std::vector<Lattice> &points) {
     for (const auto &[facet, on] : on_facet)
         for (const Lattice &point : on)
             ++facets_at[point];
-    // In an edge of the hull lie two facets, in a corner at least three.
+    // A point on an edge of the hull is in two facets, a corner in at least three.
     for (const auto &[point, count] : facets_at)
         if (count >= 3)
             hull.vertices.insert(point);
@@ -69,8 +68,7 @@ inline ExactHull exact_hull(const std::vector<Lattice> &points) {
     return hull;
 }
 
-// --- Awkward points
-// ---------------------------------------------------------------------------------
+// --- Awkward points ------------------------------------------------------------------------------
 
 inline std::vector<V> any_points(Random &random, int family) {
     std::vector<V> points;
@@ -84,7 +82,7 @@ inline std::vector<V> any_points(Random &random, int family) {
         for (int i = 0; i < 100; ++i)
             points.push_back(in_ball());
         break;
-    case 2: // a cube full of a grid
+    case 2: // a cube filled with a grid
         for (int i = 0; i < 216; ++i)
             points.push_back(V{double(i % 6), double(i / 6 % 6), double(i / 36)} / 2.5 - V{1.0});
         break;
@@ -100,7 +98,7 @@ inline std::vector<V> any_points(Random &random, int family) {
             points.push_back({p.x, 1e-3 * p.y, 1e-3 * p.z});
         }
         break;
-    case 5: // a prism of many sides
+    case 5: // a many-sided prism
         for (int i = 0; i < 64; ++i) {
             const double angle = double(i / 2) * 3.14159265358979323846 / 16.0;
             points.push_back({std::cos(angle), i % 2 == 0 ? -0.5 : 0.5, std::sin(angle)});

@@ -18,8 +18,7 @@ using namespace oracle;
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 constexpr int no_limit = 1 << 20;
 
-// --- Exact, on the lattice
-// --------------------------------------------------------------------------
+// --- Exact, on the lattice -----------------------------------------------------------------------
 
 struct LatticeHull {
     ExactHull exact;
@@ -64,8 +63,8 @@ bool exact_contains(const ExactHull &hull, const Lattice &p) {
     return true;
 }
 
-// Whether a + t (b - a) is in the hull for some 0 <= t (<= 1 for a segment): the interval of t by
-// fractions of integers.
+// Whether a + t (b - a) is in the hull for some t >= 0 (and <= 1 for a segment): clips the interval
+// of t with integer fractions.
 bool exact_meets(const ExactHull &hull, const Lattice &a, const Lattice &d, bool is_segment) {
     std::int64_t enter_up = 0, enter_down = 1; // t >= up / down
     std::int64_t exit_up = 1, exit_down = is_segment ? 1 : 0;
@@ -109,7 +108,7 @@ TEST(HullQueries, ExactOnTheLattice) {
         Lattice b = any_lattice(random, 5);
         if (trial % 16 == 0)
             b = a;
-        if (trial % 16 < 4) // along an axis, or in a face of that direction
+        if (trial % 16 < 4) // along an axis, or within a face in that direction
             b[std::size_t(trial % 3)] = a[std::size_t(trial % 3)];
         const Lattice d{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
         const bool meets = exact_meets(hull.exact, a, d, true);
@@ -127,11 +126,10 @@ TEST(HullQueries, ExactOnTheLattice) {
     EXPECT_GT(on_border, count / 50);
 }
 
-// --- Against heights in double
-// ----------------------------------------------------------------------
+// --- Against heights in double -------------------------------------------------------------------
 
 // The hull in the world in wide numbers, with the planes through the three corners of each face.
-// The normals of needles need the width.
+// The normals of needles need the extra width.
 using L = glm::vec<3, long double, glm::defaultp>;
 
 using WideQuat = glm::qua<long double, glm::defaultp>;
@@ -148,8 +146,8 @@ void place_vertices(const ConvexHull &hull, std::vector<L> &vertices) {
         vertices.push_back(turn * L(vertex) + L(hull.position));
 }
 
-// What hull_queries.h calls the doubt, with the rounding into the frame of the mesh: of a
-// difference, and of a product with a quaternion (a dozen roundings).
+// The doubt of hull_queries.h, plus the rounding into the mesh frame: a difference and a product
+// with a quaternion (a dozen roundings).
 double doubt_of(const ConvexHull &hull, const L &p) {
     const Aabb &box = hull.mesh->box;
     const Vec3 far = glm::max(glm::abs(box.min), glm::abs(box.max));
@@ -175,8 +173,8 @@ class WideHull {
     }
     double height(const L &p) const { return double(highest(p).height); }
     // Whether the line origin + t u is deeper than `depth` at some 0 <= t <= length. Its height is
-    // convex in t and made of straight parts, so the parts at both ends are followed to where they
-    // cross, and the part there taken for one of them (Kelley 1960), until the answer is known.
+    // convex and piecewise linear in t: extends the pieces at both ends to where they cross and
+    // replaces one of them by the piece there (Kelley 1960), until the answer is known.
     bool dips_below(const L &origin, const L &u, long double length, long double depth) const {
         long double at_low = 0.0L, at_high = length;
         Part low = highest(origin), high = highest(origin + length * u);
@@ -190,7 +188,7 @@ class WideHull {
             const long double step =
                 (high.height - low.height - climb * (at_high - at_low)) / (fall - climb);
             if (low.height + fall * step >= -depth)
-                return false; // nothing lies below the crossing
+                return false; // nothing is lower than the crossing
             const long double t = at_low + step;
             const Part here = highest(origin + t * u);
             const bool is_falling = glm::dot(normals_[here.face], u) < 0.0L;
@@ -200,8 +198,8 @@ class WideHull {
         ADD_FAILURE() << "no end of parts";
         return true;
     }
-    // The least that the distance of p can be, from the plane through q across the way to p: no
-    // vertex lies beyond it by more than what is subtracted.
+    // A lower bound on the distance of p, from the plane through q perpendicular to p - q: no
+    // vertex lies beyond the plane by more than what is subtracted.
     double distance_beyond(const L &p, const L &q) const {
         const L way = glm::normalize(p - q);
         long double beyond = 0.0L;
@@ -209,7 +207,7 @@ class WideHull {
             beyond = std::max(beyond, glm::dot(way, vertex - q));
         return double(glm::length(p - q) - beyond);
     }
-    // By looking at all edges and at all faces that it is right above.
+    // Looks at all edges, and at all faces with p directly above.
     double distance(const L &p) const {
         const HullMesh &mesh = *hull_.mesh;
         if (height(p) <= 0.0)
@@ -243,7 +241,7 @@ class WideHull {
         long double height = -1e300L;
         std::size_t face = 0;
     };
-    // Over the faces' planes, the highest.
+    // The greatest height over the planes of the faces.
     Part highest(const L &p) const {
         Part greatest;
         for (std::size_t i = 0; i < bases_.size(); ++i) {
@@ -263,7 +261,7 @@ struct AnyHull {
     ConvexHull hull;
 };
 
-// Of `family`, of any number of vertices up to 64, in place of size about `size`.
+// A hull of the given family, with up to 64 vertices, placed anywhere, of size about `size`.
 void make_hull(Random &random, int family, double size, AnyHull &result) {
     for (;;) {
         const std::vector<Vec3> points =
@@ -314,8 +312,8 @@ TEST(HullQueries, PointsAgainstHeightsInWideNumbers) {
             continue;
         }
         ASSERT_LE(oracle_hull.height(L(closest)), doubt) << "trial " << trial;
-        // Where a plane proves that nothing is nearer, looking at all edges and faces can be left
-        // out, mostly.
+        // Where a plane proves that nothing is nearer, the search over all edges and faces is
+        // mostly skipped.
         const L q(closest);
         if (trial % 4 != 0 &&
             oracle_hull.distance_beyond(p, q) >= double(glm::length(p - q)) - doubt)
@@ -337,7 +335,7 @@ TEST(HullQueries, RaysAgainstHeightsInWideNumbers) {
         const WideHull wide_hull(any.hull);
         const std::uint32_t n = std::uint32_t(wide_hull.vertices.size());
         for (int i = 0; i < 1000; ++i, ++trial) {
-            // Aimed at a vertex, an edge or a chord, or a little beside.
+            // Aimed at a vertex, an edge or a chord, or just beside it.
             V target(wide_hull.vertices[random.next_index(n)]);
             if (random.next_index(3) != 0)
                 target = glm::mix(target, V(wide_hull.vertices[random.next_index(n)]),
@@ -417,7 +415,7 @@ TEST(HullQueries, SupportAndFaces) {
     }
 }
 
-// Of any number of vertices, with equals among them: whatever the processor's width.
+// With any number of vertices, duplicates among them, whatever the processor's vector width.
 TEST(HullQueries, TheSupportVertexIsTheFirstOfTheFarthest) {
     Random random(7);
     const auto whole = [&] { return static_cast<Real>(random.next_index(7)) - Real(3); };
@@ -504,7 +502,7 @@ TEST(HullQueries, MisuseNamesTheValue) {
     says([&] { ray_interval(good, Ray{o, o}); }, "(0, 0, 0)");
     says([&] { ray_interval(good, Ray{o, x, nan}); }, "nan");
     says([&] { classify(Plane{Real(3) * x, Real(0)}, good); }, "3");
-    // What a ray tells from the start.
+    // Whether the ray starts inside.
     const auto hit = raycast(good, Ray{Vec3{Real(0.125)}, x});
     ASSERT_TRUE(hit);
     EXPECT_TRUE(hit->starts_inside);

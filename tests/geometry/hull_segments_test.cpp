@@ -23,15 +23,15 @@ TEST(HullSegments, ThatCrossAnEdgeExactlyMeet) {
     ASSERT_TRUE(mesh.has_flat_faces);
     EXPECT_TRUE(linetest(hull, Vec3{Real(0.5), Real(-0.1), Real(0.3)},
                          Vec3{Real(0.5), Real(0.2), Real(-0.6)}));
-    // Through (x, 0, 0) with both ends outside: from -k (0, y, z) to l (0, y, z), each product
-    // exact. The directions are rounded, the crossing is not.
+    // Through (x, 0, 0) with both ends outside: from -k (0, y, z) to l (0, y, z), where each
+    // product is exact. The directions are rounded, the crossing is not.
     Random random(1);
     int lost = 0;
     const int trial_count = trials(200'000);
     for (int i = 0; i < trial_count; ++i) {
         const Real x = Real(random.next_in(0.01, 0.99));
         Real y = Real(random.next_in(0.01, 1.0)), z = Real(-random.next_in(0.01, 1.0));
-        // 16 bits (40) of y and z leave room for k and l.
+        // 16 bits (40 in double) for y and z leave room for k and l.
         const Real grid = sizeof(Real) == 4 ? Real(0x1p16) : Real(0x1p40);
         y = std::round(y * grid) / grid;
         z = std::round(z * grid) / grid;
@@ -41,18 +41,18 @@ TEST(HullSegments, ThatCrossAnEdgeExactlyMeet) {
         const Vec3 a{x, -k * y, -k * z}, b{x, l * y, l * z};
         const bool is_met = linetest(hull, a, b) && linetest(hull, b, a);
         lost += is_met ? 0 : 1;
-        // A hair to the outside they miss.
+        // A hair further out they miss.
         const Real off = -Real(0x1p-60);
         ASSERT_FALSE(linetest(hull, Vec3{x, a.y, off}, Vec3{x, b.y, off}));
     }
     EXPECT_EQ(lost, 0) << "of " << trial_count;
 }
 
-// Against whole numbers: the segment is on a lattice, and so is the hull.
+// Against integers: segment and hull are both on a lattice.
 TEST(HullSegments, ExactOnAFineLattice) {
     const HullMesh mesh = unit_tetrahedron();
     const ConvexHull hull{&mesh, Vec3{Real(0)}, identity_rotation};
-    __extension__ using Exact = __int128; // which ISO C++ does not know
+    __extension__ using Exact = __int128; // not in ISO C++
     Random random(2);
     int met = 0, touching = 0;
     const Real unit_length = sizeof(Real) == 4 ? Real(0x1p-12) : Real(0x1p-24);
@@ -68,7 +68,7 @@ TEST(HullSegments, ExactOnAFineLattice) {
             for (std::size_t c = 0; c < 3; ++c)
                 b[c] = (c == 0 ? x : 0) - k * (a[c] - (c == 0 ? x : 0));
         }
-        // Clipping by x, y, z >= 0 and x + y + z <= size, in fractions: t = p / q.
+        // Clips by x, y, z >= 0 and x + y + z <= size in fractions t = p / q.
         Exact enter_p = 0, enter_q = 1, exit_p = 1, exit_q = 1;
         bool is_met = true;
         const auto clip = [&](Exact from, Exact to) { // heights in front of a face at both ends

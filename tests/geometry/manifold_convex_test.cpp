@@ -14,8 +14,8 @@ using namespace oracle;
 
 constexpr double margin = 0.1;
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
-// A face may be taken that is worse than the best direction by 1e-4 m, and its points are found
-// within another 2 of that; coordinates are below 8 m.
+// The chosen face may be worse than the best direction by 1e-4 m, and its points are found within
+// another 2e-4; coordinates are below 8 m.
 constexpr double preference = 3e-4 + 32 * 8 * epsilon;
 
 double deepest(const Manifold &m) {
@@ -25,7 +25,7 @@ double deepest(const Manifold &m) {
     return least;
 }
 
-// Distance and depth are proved in the tests of GJK and EPA; here they are taken from there.
+// The tests of GJK and EPA prove distance and depth; here both are taken as given.
 template <typename A, typename B> double signed_distance_of(const Pair<A, B> &pair) {
     const auto deep = penetration(pair.a, pair.b);
     return deep ? -double(deep->depth) : double(distance(pair.a, pair.b).distance);
@@ -43,7 +43,7 @@ std::string complaint(const WidePair &pair, double signed_distance, const Manifo
     const W n = to_wide(m.normal);
     if (!(std::abs(double(glm::length(n)) - 1.0) <= 4.0 * epsilon))
         out << "normal of length " << glm::length(n) << "; ";
-    // As manifold.h says.
+    // The bound stated in manifold.h.
     if (!(std::abs(deepest(m) - signed_distance) <= allowed - 1e-4))
         out << "deepest " << deepest(m) << ", signed distance " << signed_distance << "; ";
     const double along = -double(overlap_along(pair.wide_a, pair.wide_b, n));
@@ -74,7 +74,7 @@ template <typename A, typename B> Pair<A, B> near_pair(Random &random) {
     scale.is_awkward = random.next_index(2) == 0;
     const Vec3 at = any_place(random, scale);
     const auto make = [&]<typename Shape>() {
-        // Contacts are for solids: no needles, nothing flat.
+        // Contacts are between solids: no needles, nothing flat.
         Scale round = scale;
         round.is_awkward = false;
         if constexpr (std::same_as<Shape, Box>)
@@ -128,14 +128,14 @@ TEST(ManifoldConvex, KeepsTheContract) {
     check.operator()<ConvexHull, ConvexHull>();
     check.operator()<ConvexHull, Triangle>();
     check.operator()<Triangle, Triangle>();
-    check.operator()<Cylinder, Box>(); // the other way around
+    check.operator()<Cylinder, Box>(); // in the other order
     check.operator()<Triangle, ConvexHull>();
     std::cout << "mean: points 0 to 4: " << counts[0] << ' ' << counts[1] << ' ' << counts[2] << ' '
               << counts[3] << ' ' << counts[4] << '\n';
 }
 
-// About the right normal, and any other: the contract is the same; with the right one a face
-// decides of every fourth.
+// With a guess near the right normal or anywhere, the contract is the same. With the right one, a
+// face decides one case in four.
 TEST(ManifoldConvex, KeepsTheContractWithAGuess) {
     std::uint64_t seed = 450;
     const auto check = [&]<typename A, typename B>() {
@@ -171,12 +171,12 @@ TEST(ManifoldConvex, KeepsTheContractWithAGuess) {
     check.operator()<ConvexHull, ConvexHull>();
 }
 
-// Of all kinds, each with each, in either order.
+// Every kind with every other, in either order.
 template <typename A, typename... Bs> constexpr bool collides_with_all = (Collidable<A, Bs> && ...);
 template <typename... Kinds>
 constexpr bool all_collide = (collides_with_all<Kinds, Kinds...> && ...);
 static_assert(all_collide<Sphere, Box, Capsule, Cylinder, ConvexHull, Triangle, HalfSpace>);
-static_assert(!Collidable<Sphere, Segment>); // what is not known does not compile
+static_assert(!Collidable<Sphere, Segment>); // unknown shapes do not compile
 
 TEST(ManifoldConvex, TrianglesOnAHalfSpace) {
     const HalfSpace ground{};

@@ -15,12 +15,11 @@ using namespace oracle;
 
 constexpr double margin = 0.1;
 
-// Inputs are below 4 m, and a result takes some 30 roundings on its longest way, each of at most
-// half an epsilon of that size.
+// Inputs are below 4 m, and a result goes through at most some 30 roundings, each at most half an
+// epsilon of that size.
 constexpr double rounding = 30 * 0.5 * 4 * double(std::numeric_limits<Real>::epsilon());
-// A face may be chosen that is worse than the best feature by the 1e-4 m stated in the engine, and
-// is accepted when its points are within another two of that; corners as far outside of a face
-// count as on it.
+// The chosen face may be worse than the best feature by the engine's stated 1e-4 m, and is accepted
+// when its points are within another 2e-4 m; corners that far outside a face count as on it.
 constexpr double preference = 3e-4 + rounding;
 
 constexpr const char *kind_names[] = {"sphere", "box", "capsule"};
@@ -41,7 +40,7 @@ struct Pair {
     Shape a, b;
 };
 
-// Pairs near each other: overlapping, touching, or a little apart.
+// Shapes near each other: overlapping, touching, or slightly apart.
 Pair any_pair(Random &random, std::uint32_t kind_a, std::uint32_t kind_b, bool is_awkward,
               bool may_be_deep) {
     const Vec3 at = any_vector(random, 1.0);
@@ -65,7 +64,7 @@ double deepest(const Manifold &m) {
     return least;
 }
 
-// The whole contract of one manifold against the oracle. Returns a description of what is wrong.
+// Checks one manifold's whole contract against the oracle. Returns a description of what is wrong.
 std::string complaint(const Pair &pair, const Manifold &m, Random &random) {
     std::ostringstream out;
     const Solid a(pair.a), b(pair.b);
@@ -82,19 +81,19 @@ std::string complaint(const Pair &pair, const Manifold &m, Random &random) {
     if (separation > margin + rounding)
         out << "separation " << separation << " beyond the margin; ";
 
-    // Moved along the normal until 5 cm apart, the shapes are 5 cm apart: not less (the depth is
-    // enough) and not more (nor too much).
+    // Moved along the normal until 5 cm apart, the shapes are 5 cm apart: no less (the depth is
+    // enough) and no more (it is not too much).
     Solid moved = b;
     moved.move(n * (0.05 - separation));
     const double left = distance(a, moved);
-    // A face's normal may lean by 8 degrees against the edges' when its points are as deep.
+    // A face normal may lean 8 degrees from the edges' normal when its points are as deep.
     const double lean = a.is_box && b.is_box ? 0.05 * (1.0 - 0.99) : 0.0;
     if (left - 0.05 > preference || left - 0.05 < -preference - lean)
         out << "moved to be 0.05 apart, is " << left << " (separation " << separation << "); ";
-    // When the cores are disjoint the separation is the distance.
+    // When the cores are disjoint, the separation is the distance.
     if (apart > -a.radius - b.radius + preference && std::abs(apart - separation) > preference)
         out << "separation " << separation << " at distance " << apart << "; ";
-    // No direction gets the shapes apart sooner.
+    // No direction separates the shapes sooner.
     double best = 1e300;
     for (int i = 0; i < 24; ++i) {
         V u = any_direction(random);
@@ -114,8 +113,8 @@ std::string complaint(const Pair &pair, const Manifold &m, Random &random) {
         const V half = n * (0.5 * double(p.separation));
         const double off_a = a.signed_distance(wide(p.position) - half);
         const double off_b = b.signed_distance(wide(p.position) + half);
-        // A point is on the balls around two axis points. On a capsule that is tilted against the
-        // normal, the ball touches the side where it is r (1 - cos) above the capsule's surface.
+        // A point is on the spheres around two axis points. On a capsule tilted to the normal, the
+        // sphere touches the side where it is r (1 - cos) above the capsule's surface.
         const auto tilted = [&](const Solid &s) {
             if (s.is_box || s.a == s.b || m.count == 1)
                 return 0.0;
@@ -184,15 +183,15 @@ TEST(Manifold, HalfSpaceAgainstSupportHeights) {
         for (int i = 0; i < m.count; ++i) {
             const ManifoldPoint &p = m.points[std::size_t(i)];
             const V half = 0.5 * double(p.separation) * n;
-            // On the plane, and no deeper in the solid than a ball's lowest point under the side of
-            // a tilted capsule.
+            // On the plane, and no deeper in the solid than a sphere's lowest point below the side
+            // of a tilted capsule.
             const double height = glm::dot(wide(p.position) - half, n) - double(ground.offset);
             ASSERT_NEAR(height, 0.0, rounding);
             const double off = wide_solid.signed_distance(wide(p.position) + half);
             ASSERT_LE(off, rounding);
             ASSERT_GE(off, -wide_solid.radius - rounding);
         }
-        // Every corner and every end within the margin, as far as there is room.
+        // Every corner and end within the margin, as far as there is room.
         int in_reach = 0;
         if (wide_solid.is_box) {
             for (int k = 0; k < 8; ++k)
@@ -211,7 +210,7 @@ TEST(Manifold, HalfSpaceAgainstSupportHeights) {
     }
 }
 
-// The stated 0.2 mm, where the tolerances count: boxes nearly parallel to each other.
+// The stated 0.2 mm where the tolerances matter: nearly parallel boxes.
 TEST(Manifold, BoxesAreWithinTheStatedTolerance) {
     Random random(12);
     double worst = 0.0;
@@ -230,7 +229,7 @@ TEST(Manifold, BoxesAreWithinTheStatedTolerance) {
         place[up] = half_a[up];
         Box b{place, turn, half_b};
         const Box a{Vec3{Real(0)}, identity_rotation, half_a};
-        // From 0.3 mm deep to as much apart.
+        // From 0.3 mm deep to 0.3 mm apart.
         const Real separation = separating_axis(a, b).separation;
         b.center[up] += any_real(random, -3e-4, 3e-4) - separation;
         const SatResult truth = separating_axis(a, b);
@@ -252,8 +251,8 @@ TEST(Manifold, HalfSpacesGiveNone) {
     EXPECT_EQ(collide(HalfSpace{}, HalfSpace{}, Real(1)).count, 0);
 }
 
-// The larger box is the reference whichever comes first; of boxes of one size it is the first,
-// which can be seen only where two features serve equally well.
+// The larger box is the reference whichever comes first; between boxes of one size it is the first,
+// which only shows where two features serve equally well.
 TEST(Manifold, SwappedArgumentsGiveTheMirroredManifold) {
     Random random(3);
     int differing = 0;
@@ -265,7 +264,7 @@ TEST(Manifold, SwappedArgumentsGiveTheMirroredManifold) {
         bool same = ab.count == ba.count && ab.normal == -ba.normal;
         if (kind_a == 0 && kind_b == 0 &&
             std::get<Sphere>(pair.a).center == std::get<Sphere>(pair.b).center) {
-            ASSERT_EQ(ab.normal, ba.normal); // +Y, both ways
+            ASSERT_EQ(ab.normal, ba.normal); // +Y in both orders
             continue;
         }
         for (int i = 0; same && i < ab.count; ++i) {
@@ -306,8 +305,8 @@ TEST(Manifold, MovesWithTheShapes) {
         }
         differing += !same;
     }
-    // Where two features are equally good to within rounding, the choice may turn out otherwise: on
-    // a stretch of 1e-4 m (the tolerances) or of rounding, out of some 0.1 m.
+    // Where two features tie to within rounding, the choice may go either way: over 1e-4 m (the
+    // tolerances) or a rounding error, out of some 0.1 m.
     EXPECT_GT(looked, 40000);
     EXPECT_LT(differing, looked / 100);
 }
@@ -330,18 +329,18 @@ TEST(Manifold, FeaturesPersistUnderSmallMotions) {
         differing += !same;
     }
     EXPECT_GT(looked, 40000);
-    EXPECT_LT(differing, looked / 200); // a motion of 1e-5 m crosses a border some 1e-5 / 0.1 often
+    EXPECT_LT(differing, looked / 200); // a 1e-5 m motion crosses a border 1e-5 / 0.1 of the time
 }
 
-// A box face-on on a box, any angle about the vertical: always four points with one set of
-// features, however the solver makes them tremble.
+// A box face-on on a box, at any angle about the vertical: always four points with the same feature
+// ids, however much the solver jitters the boxes.
 TEST(Manifold, StackedBoxesKeepFourPoints) {
     Random random(6);
     for (int trial = 0; trial < 2000; ++trial) {
         const Real size = any_real(random, 0.2, 1.0);
         const Vec3 half_a{any_real(random, 0.2, 1.0), any_real(random, 0.2, 1.0),
                           any_real(random, 0.2, 1.0)};
-        // Of one size and aligned (every corner on a border), or smaller and turned.
+        // The same size and aligned (every corner on a border), or smaller and turned.
         const bool is_aligned = trial % 2 == 0;
         const Vec3 half_b = is_aligned ? half_a : Real(0.3) * size * half_a;
         const double angle = is_aligned ? 0.0 : random.next_in(0.0, 6.28);
@@ -349,7 +348,7 @@ TEST(Manifold, StackedBoxesKeepFourPoints) {
         const Box lower{Vec3{Real(0)}, identity_rotation, half_a};
         std::array<std::uint32_t, 4> features{};
         for (int shake = 0; shake < 50; ++shake) {
-            // Below half of the tolerance of 1e-4 m at the corners.
+            // Below half the 1e-4 m tolerance at the corners.
             const Vec3 at = Vec3{Real(0), half_a.y + half_b.y, Real(0)} + any_vector(random, 1e-5);
             const Box upper{at, tilt(random, 1e-5) * turn, half_b};
             const Manifold m = collide(lower, upper, Real(0.01));
@@ -365,8 +364,8 @@ TEST(Manifold, StackedBoxesKeepFourPoints) {
     }
 }
 
-// Two squares at 45 degrees meet in an octagon of eight points: the four kept span at least the
-// square that fits into it, and the deepest of the eight is among them.
+// Two squares at 45 degrees meet in an octagon. The four points kept span at least the inscribed
+// square and include the deepest of the eight.
 TEST(Manifold, KeepsTheDeepestAndASpread) {
     Random random(7);
     for (int trial = 0; trial < 2000; ++trial) {
@@ -378,10 +377,10 @@ TEST(Manifold, KeepsTheDeepestAndASpread) {
         const Manifold m = collide(lower, upper, Real(0.05));
         ASSERT_EQ(m.count, 4);
         const double depth = translation_along(Solid(lower), Solid(upper), V{0, 1, 0});
-        // The deepest corner of the upper box is at most 0.2 outside the lower face, and the tilt
-        // lifts the octagon there by no more than 5e-3 * 0.21.
+        // The upper box's deepest corner is at most 0.2 outside the lower face, where the tilt
+        // lifts the octagon by no more than 5e-3 * 0.21.
         EXPECT_NEAR(-deepest(m), depth, 5e-3 * 0.21 + 3e-4);
-        // Shoelace area in the plane, of the four in angular order.
+        // Shoelace area in the plane, with the four points in angular order.
         std::array<V, 4> p{};
         V middle{0.0};
         for (std::size_t i = 0; i < 4; ++i) {
@@ -398,13 +397,13 @@ TEST(Manifold, KeepsTheDeepestAndASpread) {
             const V &t = p[(i + 1) % 4];
             area += 0.5 * (s.x * t.z - t.x * s.z);
         }
-        EXPECT_GT(std::abs(area), 0.5); // the octagon has 0.83
+        EXPECT_GT(std::abs(area), 0.5); // the octagon's area is 0.83
     }
 }
 
 TEST(Manifold, IsAsAccurateFarFromTheOrigin) {
-    // Positions that are exact in both precisions, far out: the answer there is the answer here,
-    // but for the rounding of the world positions of the points.
+    // Far out, at positions exact in both precisions: the answer is the one at the origin, up to
+    // the rounding of the points' world positions.
     Random random(8);
     const Vec3 far{Real(8192), Real(-16384), Real(4096)};
     const double grid = 1.0 / 256; // a float at 16384 has steps of 1/512
@@ -429,8 +428,8 @@ TEST(Manifold, IsAsAccurateFarFromTheOrigin) {
     }
 }
 
-// Capsules and spheres with nearly one axis: the difference of their closest points is mostly
-// rounding, but the way out is at right angles to the axis.
+// Nearly coaxial capsules and spheres: the difference of their closest points is mostly rounding,
+// but the way out is perpendicular to the axis.
 TEST(Manifold, NearlyCoaxialCapsulesPartSideways) {
     Random random(9);
     for (int trial = 0; trial < 100000; ++trial) {

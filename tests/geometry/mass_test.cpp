@@ -21,12 +21,12 @@ using namespace oracle;
 
 using L = long double;
 
-// Three places and weights in [-1, 1] that integrate every polynomial up to the fifth degree
-// exactly (Gauss and Legendre).
+// Three nodes and weights in [-1, 1] that integrate polynomials up to degree 5 exactly
+// (Gauss-Legendre).
 const std::array<std::pair<L, L>, 3> slices{
     {{-std::sqrt(0.6L), 5.0L / 9.0L}, {0.0L, 8.0L / 9.0L}, {std::sqrt(0.6L), 5.0L / 9.0L}}};
 
-// The sum of term(x) dx from `low` to `high`.
+// The integral of term(x) dx from `low` to `high`.
 template <typename Term> void slice(L low, L high, Term &&term) {
     for (const auto &[place, weight] : slices)
         term(0.5L * (low + high) + 0.5L * (high - low) * place, 0.5L * (high - low) * weight);
@@ -36,9 +36,9 @@ struct Moments {
     L volume = 0, along = 0, across = 0;
 };
 
-// Volume and moments, per unit of volume, of a solid of revolution about y by slices: a disc of
-// radius R at height y has the volume pi R^2 dy, and per unit of volume the moments R^2 / 2 about y
-// and R^2 / 4 + y^2 about x and z. R^2 is of the second degree between two of `borders`.
+// Volume, and moments per unit volume, of a solid of revolution about y by slices. A disc of radius
+// R at height y has the volume pi R^2 dy, and per unit volume the moments R^2 / 2 about y and
+// R^2 / 4 + y^2 about x and z. R^2 is quadratic between consecutive `borders`.
 template <typename Squared>
 Moments by_slices(std::initializer_list<L> borders, Squared &&squared_radius_at) {
     Moments sum;
@@ -53,7 +53,7 @@ Moments by_slices(std::initializer_list<L> borders, Squared &&squared_radius_at)
     return {sum.volume, sum.along / sum.volume, sum.across / sum.volume};
 }
 
-// All terms are positive, so some ten roundings are as many of the result.
+// All terms are positive, so some ten roundings are ten roundings of the result.
 constexpr double relative = 16 * double(std::numeric_limits<Real>::epsilon());
 
 void expect_moments(Real volume, const Vec3 &inertia, double mass, const Moments &expected) {
@@ -99,7 +99,7 @@ TEST(Mass, BoxAgainstSlices) {
         const Vec3 half = glm::abs(any_vector(random, size)) + Vec3{Real(1e-3 * size)};
         const Box box{any_vector(random, size), awkward_rotation(random), half};
         const double mass = random.next_in(0.1, 9.0);
-        // The mean of x^2, y^2 and z^2.
+        // The means of x^2, y^2 and z^2.
         std::array<L, 3> squared{};
         L expected_volume = 1;
         for (int axis = 0; axis < 3; ++axis) {
@@ -122,7 +122,7 @@ TEST(Mass, BoxAgainstSlices) {
 TEST(Mass, LimitsOfTheCapsule) {
     const Vec3 a{Real(0)};
     const Vec3 b{Real(0), Real(3), Real(0)};
-    // Without length a sphere, without radius a rod.
+    // A sphere when the length is zero, a rod when the radius is.
     const Vec3 ball = principal_inertia(Capsule{a, a, Real(0.5)}, Real(1));
     const Vec3 sphere = principal_inertia(Sphere{a, Real(0.5)}, Real(1));
     for (int i = 0; i < 3; ++i)
@@ -134,7 +134,7 @@ TEST(Mass, LimitsOfTheCapsule) {
     EXPECT_EQ(volume(HalfSpace{}), std::numeric_limits<Real>::infinity());
 }
 
-// The surface of a box, of two triangles a face.
+// The surface of a box, two triangles per face.
 std::vector<Triangle> box_surface(const V &center, const V &half, const glm::dquat &turn) {
     std::vector<Triangle> surface;
     for (int axis = 0; axis < 3; ++axis)
@@ -143,7 +143,7 @@ std::vector<Triangle> box_surface(const V &center, const V &half, const glm::dqu
             const auto corner = [&](double u, double v) {
                 V p{0.0};
                 p[axis] = side * half[axis];
-                p[j] = u * side * half[j]; // mirrored for the other side
+                p[j] = u * side * half[j]; // mirrored on the opposite side
                 p[k] = v * half[k];
                 return Vec3(center + turn * p);
             };
@@ -164,7 +164,7 @@ TEST(Mass, SurfaceOfABox) {
         const glm::dquat turn =
             glm::normalize(glm::dquat(double(q.w), double(q.x), double(q.y), double(q.z)));
         const MassProperties mass = mass_properties(box_surface(center, half, turn));
-        // Corners are rounded by epsilon / 2 of up to 6 sizes, a side is at least a fifth of one.
+        // Corners are rounded by epsilon / 2 of up to 6 sizes; a side is at least a fifth of one.
         const double band = 32.0 * double(std::numeric_limits<Real>::epsilon());
         const double volume = 8.0 * half.x * half.y * half.z;
         ASSERT_NEAR(double(mass.volume), volume, 3.0 * 5.0 * band * volume);
@@ -197,13 +197,13 @@ TEST(Mass, SurfaceOfABox) {
 }
 
 // Any closed surface by the divergence theorem: the integral of x^k over the solid is that of
-// x^(k + 1) / (k + 1) times the normal's x over the surface, and for products of two coordinates
-// likewise; over a triangle by a rule that is exact to the fifth degree (Radon's seven points).
+// x^(k + 1) / (k + 1) times the normal's x over the surface, and so on for products of two
+// coordinates. Over a triangle, by a rule exact to degree five (Radon's seven points).
 TEST(Mass, HullsAgainstTheDivergenceTheorem) {
     Random random(4);
     std::vector<Vec3> points;
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
-        // One in each octant, or in each other one: none is flat.
+        // One point in each octant, or in every other octant: never flat.
         points.clear();
         for (const int i : {0, 3, 5, 6, 1, 2, 4, 7})
             if (points.size() < 4 || trial % 8 == 0)
@@ -270,7 +270,7 @@ TEST(Mass, SurfacesAroundNothing) {
     const Triangle t{{Real(1), Real(0), Real(0)}, {Real(0), Real(1), Real(0)}, Vec3{Real(0)}};
     const std::array sheet{t, Triangle{t.a, t.c, t.b}};
     EXPECT_EQ(mass_properties(sheet).volume, Real(0));
-    // Already diagonal: no turning, whatever the moments.
+    // Already diagonal: no rotation, whatever the moments.
     const PrincipalFrame frame = principal_frame(Mat3(Real(2)));
     EXPECT_EQ(frame.moments, Vec3{Real(2)});
     EXPECT_EQ(frame.rotation, identity_rotation);

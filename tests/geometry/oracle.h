@@ -1,6 +1,5 @@
-// Slow and simple answers in double, to hold the engine's against. Nothing here shares a method
-// with the engine: distances come from bisection, overlap from clipping, depth from sampled
-// directions.
+// Slow, simple answers in double as a reference for the engine. Shares no method with it: distances
+// come from bisection, overlap from clipping, depth from sampled directions.
 #pragma once
 
 #include "engine/core/random.h"
@@ -24,7 +23,7 @@ inline V wide(const Vec3 &v) {
     return {double(v.x), double(v.y), double(v.z)};
 }
 
-// A box in double; its axes come from the same numbers, made orthonormal.
+// A box in double, with its axes orthonormalised from the engine's numbers.
 struct WideBox {
     V center{0.0};
     std::array<V, 3> axis{};
@@ -95,7 +94,7 @@ struct Solid {
     double signed_distance(const V &p) const {
         return is_box ? box.signed_distance(p) : glm::length(p - core_closest(p)) - radius;
     }
-    double support(const V &u) const { // of the solid, along a unit vector
+    double support(const V &u) const { // of the whole solid, along a unit vector
         if (!is_box)
             return std::max(glm::dot(a, u), glm::dot(b, u)) + radius;
         return glm::dot(box.center, u) + std::abs(glm::dot(box.axis[0], u)) * box.half.x +
@@ -114,8 +113,8 @@ struct Solid {
     }
 };
 
-// The distance of a segment from a convex core: the derivative of the squared distance along the
-// segment is monotonic, so it is bisected.
+// The distance from a segment to a convex core: the derivative of the squared distance along the
+// segment is monotonic, so bisection finds its root.
 inline double edge_distance(const std::array<V, 2> &edge, const Solid &core) {
     const V d = edge[1] - edge[0];
     double low = 0.0, high = 1.0;
@@ -128,9 +127,9 @@ inline double edge_distance(const std::array<V, 2> &edge, const Solid &core) {
     return glm::length(p - core.core_closest(p));
 }
 
-// Of two polytopes that are apart, one of the closest points may be taken on an edge. Zero when the
-// solids overlap in such a way that an edge meets the other core (any overlapping boxes but nested
-// ones). Without the radii.
+// The distance between cores, without the radii. When two polytopes are apart, one of the closest
+// points can be taken on an edge. Zero when an edge of one solid meets the other core, as in any
+// overlap of boxes unless one is inside the other.
 inline double core_distance(const Solid &a, const Solid &b) {
     double least = 1e300;
     for (const auto &edge : a.edges())
@@ -145,13 +144,13 @@ inline double distance(const Solid &a, const Solid &b) {
     return core_distance(a, b) - a.radius - b.radius;
 }
 
-// How far b must be moved along u to be clear of a.
+// How far b must move along u to be clear of a.
 inline double translation_along(const Solid &a, const Solid &b, const V &u) {
     return a.support(u) + b.support(-u);
 }
 
-// Whether box a, with all half extents grown by `grow`, meets box b: what is left of the faces of
-// each after cutting by the planes of the other, or one box's centre in the other.
+// Whether box a, with all half extents grown by `grow`, meets box b: clips each box's faces by the
+// other's planes and looks for anything left, or for one box's centre inside the other.
 inline bool boxes_meet(WideBox a, const WideBox &b, double grow) {
     a.half += V{grow};
     if (a.signed_distance(b.center) <= 0.0 || b.signed_distance(a.center) <= 0.0)
@@ -230,7 +229,7 @@ inline Quat tilt(Random &random, double angle) {
     return {Real(std::cos(0.5 * angle)), Real(axis.x), Real(axis.y), Real(axis.z)};
 }
 
-// Rotations of which many are quarter turns or nearly so: where edges and faces are parallel.
+// Rotations that are often quarter turns or nearly so, which makes edges and faces parallel.
 inline Quat awkward_rotation(Random &random) {
     const std::uint32_t kind = random.next_index(4);
     if (kind == 0)

@@ -1,6 +1,6 @@
-// Slow and simple answers in the plane, to hold the engine's against: signed distances of polygons
-// in long double, and whole numbers of 128 bits where the answer must be exact. Nothing here shares
-// a method with the engine.
+// Slow, simple answers in the plane as a reference for the engine: signed distances of polygons in
+// long double, and 128-bit integers where the answer must be exact. Shares no method with the
+// engine.
 #pragma once
 
 #include "engine/core/random.h"
@@ -40,19 +40,19 @@ inline W segment_distance(const Wide &a, const Wide &b, const Wide &p) {
     return length(p - a - s * d);
 }
 
-// Counter-clockwise and convex. Relative to `origin`, so that nothing of a small one is lost far
+// Counter-clockwise and convex. Relative to `origin`, so that small polygons lose no digits far
 // away.
 struct Polygon {
     Wide origin{W(0)};
     std::array<Wide, 16> corners{};
     std::size_t count = 0;
-    W size = 0; // the largest distance of a corner from the origin
+    W size = 0; // largest distance of a corner from the origin
 
     void add(const Wide &corner) {
         corners[count++] = corner;
         size = std::max(size, length(corner));
     }
-    // Of a point relative to the origin; negative inside.
+    // For a point relative to the origin; negative inside.
     W signed_distance(const Wide &p) const {
         W least = 1e300L;
         bool is_inside = cross(corners[1] - corners[0], corners[2] - corners[0]) > 0; // not flat
@@ -93,7 +93,7 @@ inline W signed_distance(const auto &rectangle, const Vec2 &p) {
     return outline.signed_distance(wide(p) - outline.origin);
 }
 
-// Two circles, and a circle and a polygon.
+// Two circles, or a circle and a polygon.
 inline W signed_distance(const Circle &a, const Circle &b) {
     return length(wide(b.center) - wide(a.center)) - W(a.radius) - W(b.radius);
 }
@@ -106,7 +106,7 @@ inline W signed_distance(const Circle &a, const OrientedRectangle &b) {
 inline W signed_distance(const auto &a, const Circle &b) {
     return signed_distance(b, a);
 }
-// Two polygons: that of the origin from the hull of all differences of corners (Andrew 1979).
+// Two polygons: the origin's distance from the hull of all corner differences (Andrew 1979).
 inline W polygon_distance(const Polygon &a, const Polygon &b) {
     std::array<Wide, 16> differences{};
     std::size_t count = 0;
@@ -210,7 +210,7 @@ inline Wide any_unit(Random &random) {
     const W angle = W(random.next_in(-3.15, 3.15));
     return {std::cos(angle), std::sin(angle)};
 }
-// Many turned by quarters, or nearly.
+// Often turned by quarters, or nearly.
 inline Vec2 any_axis(Random &random) {
     const std::uint32_t kind = random.next_index(4);
     double angle = random.next_in(-3.15, 3.15);
@@ -255,15 +255,15 @@ inline Vec2 any_whole_point(Random &random, std::int64_t reach) {
     const Real y = any_whole(random, reach);
     return {x, y};
 }
-// Most are small, so that coincidences are frequent; others as large as can be represented with
-// their differences, so that rounded products are wrong.
+// Most are small, so that coincidences are common; others as large as fits with their differences,
+// so that rounded products come out wrong.
 constexpr int whole_bits = std::numeric_limits<Real>::digits == 24 ? 22 : 48;
 inline std::int64_t any_reach(Random &random) {
     if (random.next_index(2) == 0)
         return 1 + random.next_index(6);
     return std::int64_t(1) << (3 + random.next_index(std::uint32_t(whole_bits) - 2));
 }
-// Near the line through a and b, or on it.
+// A point on the line through a and b, or near it.
 inline Vec2 near_line(Random &random, const Vec2 &a, const Vec2 &b) {
     const double s = random.next_index(2) == 0 ? random.next_in(-0.5, 1.5)
                                                : 0.5 * double(random.next_index(4)) - 0.5;

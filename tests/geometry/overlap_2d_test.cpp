@@ -33,10 +33,10 @@ struct Tally {
     int wrong = 0;
     int near = 0;
     int overlapping = 0;
-    double worst = 0.0; // of the bound
+    double worst = 0.0; // as a share of the bound
 };
 
-// A point of the shape that is furthest along n, from its middle; any of those on an edge across n.
+// The shape's support point along n, from its middle; any point of an edge perpendicular to n.
 Wide furthest(Random &, const Circle &circle, const Wide &n) {
     return n * W(circle.radius);
 }
@@ -62,7 +62,7 @@ Wide own_normal(const OrientedRectangle &rectangle, const Wide &) {
     return wide(rectangle.axis) / length(wide(rectangle.axis));
 }
 
-// Moves b to where they touch, corners or edges, but for a little more than roundings, and asks.
+// Moves b until corners or edges touch, up to slightly more than rounding, and queries the overlap.
 template <typename A, typename B>
 void check_near_touch(Random &random, Tally &tally, const A &a, B b, double bound) {
     Wide n = any_unit(random);
@@ -115,7 +115,7 @@ TEST(Overlap2, IsWrongOnlyWithinTheStatedBound) {
     }
 }
 
-// Anywhere: depth and distance as the hull of differences has them.
+// Anywhere: depth and distance agree with the hull of differences.
 TEST(Overlap2, SeparatingAxisGivesDepthAndDistance) {
     Random random(0x2d22);
     int overlapping = 0;
@@ -134,7 +134,7 @@ TEST(Overlap2, SeparatingAxisGivesDepthAndDistance) {
         if (distance <= 0) {
             ++overlapping;
             ASSERT_NEAR(double(result.separation), double(distance), double(bound));
-            // That translation parts them.
+            // The translation separates them.
             OrientedRectangle parted = b;
             const Wide by = wide(result.normal) * -W(result.separation);
             parted.center = Vec2{Real(0)};
@@ -159,7 +159,7 @@ TEST(Overlap2, ConcentricRectanglesPartAlongTheLeastAxis) {
     const Vec2 zero{Real(0)};
     const OrientedRectangle a{zero, {Real(1), Real(0)}, {Real(3), Real(1)}};
     const OrientedRectangle b{zero, {Real(0), Real(1)}, {Real(2), Real(1)}};
-    const SatResult2 result = separating_axis(a, b); // b stands: 1 wide, 2 high
+    const SatResult2 result = separating_axis(a, b); // b is upright: 1 wide, 2 high
     EXPECT_EQ(result.separation, Real(-3));
     EXPECT_EQ(result.normal, (Vec2{Real(0), Real(1)}));
     EXPECT_EQ(result.axis, 1);
@@ -215,7 +215,7 @@ TEST(Overlap2, IsExactForSmallIntegers) {
     EXPECT_GT(touching, trials(1'000'000) / 20);
 }
 
-// Whether two segments of whole ends have a common point, by solving for both parameters.
+// Whether two segments with integer ends meet, by solving for both parameters.
 bool do_meet(const Segment2 &p, const Segment2 &q) {
     const Whole a = whole(p.a), u = whole(p.b) - a;
     const Whole b = whole(q.a), v = whole(q.b) - b;
@@ -227,7 +227,7 @@ bool do_meet(const Segment2 &p, const Segment2 &q) {
     };
     if (determinant != 0)
         return is_share(cross(ab, v), determinant) && is_share(cross(ab, u), determinant);
-    // Parallel, or a point: an end of one is in the other.
+    // Parallel, or one is a point: they meet if an end of one is in the other.
     const auto is_in = [](const Whole &point, const Whole &start, const Whole &along) {
         const Whole d = point - start;
         return cross(along, d) == 0 && dot(along, d) >= 0 && dot(d, d) <= dot(along, along);
@@ -255,7 +255,7 @@ TEST(Overlap2, SegmentsAreExact) {
         if (!expected)
             continue;
         ++meeting;
-        // In both, but for rounding; a stretch is whole, and exactly so.
+        // In both segments up to rounding; a shared stretch has integer ends, exactly.
         const W size = W(reach) * 2 + 1;
         for (const Vec2 &end : {common->a, common->b})
             for (const Segment2 &s : {p, q})
@@ -267,8 +267,7 @@ TEST(Overlap2, SegmentsAreExact) {
             ASSERT_TRUE(do_meet(p, {end, end}));
             ASSERT_TRUE(do_meet(q, {end, end}));
         }
-        // It is the longest: each of its ends is an end of p or q, and no end that is in both lies
-        // beyond.
+        // It is maximal: each end is an end of p or q, and no end that is in both lies beyond.
         for (const Vec2 &end : {p.a, p.b, q.a, q.b})
             if (do_meet(p, {end, end}) && do_meet(q, {end, end})) {
                 ASSERT_TRUE(do_meet(*common, {end, end}));

@@ -16,9 +16,10 @@ namespace {
 
 using namespace wide;
 
-// The least distance of the points of a segment from a convex set, less `radius`, given the set's
-// closest point: the derivative of the squared distance along the segment grows, so it is bisected.
-// Once it is certain on which side of the band [-bound, bound] the answer is, any value there.
+// The least distance from a segment's points to a convex set, less `radius`, given the set's
+// closest-point function: the derivative of the squared distance along the segment increases, so
+// bisection finds its root. Stops early with any value on the right side of the band
+// [-bound, bound].
 template <typename Closest>
 W least_gap(const W3 &a, const W3 &b, W radius, W bound, const Closest &closest) {
     const W3 d = b - a;
@@ -32,7 +33,7 @@ W least_gap(const W3 &a, const W3 &b, W radius, W bound, const Closest &closest)
         if (gap < -bound || i > std::numeric_limits<Real>::digits + 4)
             return gap;
         (slope > W(0) ? high : low) = s;
-        // A convex function is above its tangents.
+        // A convex function lies above its tangents.
         const W least = squared - std::abs(slope) * (high - low);
         if (least > (radius + bound) * (radius + bound))
             return gap;
@@ -49,7 +50,7 @@ TEST(Overlap, SphereWithSphereAndBoxes) {
         if (random.next_index(8) == 0)
             box.rotation *= Real(1) + static_cast<Real>(random.next_in(-7, 7) * double(epsilon));
         const Frame frame(box);
-        // A sphere that touches the box, more or less, at a random point of it.
+        // A sphere that roughly touches the box at a random point of it.
         Sphere sphere{{}, static_cast<Real>(size * any_power(random, -2, 1))};
         const W3 local = glm::clamp(any_offset(random, size), -frame.half, frame.half);
         const W3 u = awkward_unit(random);
@@ -87,7 +88,7 @@ TEST(Overlap, CapsuleWithSphereAndCapsule) {
         Capsule a{narrowed(middle - u * size * W(random.next_in(0, 1))),
                   narrowed(middle + u * size * W(random.next_in(0, 1))),
                   static_cast<Real>(size * any_power(random, -3, 0))};
-        // The other's axis passes at about the sum of the radii; parallel, nearly so, or not.
+        // The other's axis passes at about the sum of the radii: parallel, nearly so, or not.
         W3 v = awkward_unit(random);
         const std::uint32_t kind = random.next_index(4);
         if (kind == 0)
@@ -135,7 +136,7 @@ TEST(Overlap, CapsuleWithBoxes) {
                                                 : oracle::awkward_rotation(random),
                       any_half_extents(random, size)};
         const Frame frame(box);
-        // Past a point of a face, an edge or a corner, at about the radius.
+        // Past a point of a face, edge or corner, at about the radius.
         W3 local = any_offset(random, size), outward{W(0)};
         for (int i = 0; i < 3; ++i)
             if (std::abs(local[i]) > frame.half[i] || random.next_index(3) == 0) {
@@ -184,8 +185,8 @@ TEST(Overlap, CapsuleWithBoxes) {
 
 // Whether the segment from a to b comes within r of the box, by the squared distance
 //   f(t) = sum of max(low - x, x - high, 0)^2,  x = a + t (b - a),
-// which is a parabola between the parameters n / m at which x meets a plane of the box: its least
-// value is at one of those or at a vertex between two of them.
+// which is a parabola between the parameters n / m at which x meets a plane of the box: its minimum
+// is at one of those or at a vertex between two of them.
 bool comes_near(const Int3 &low, const Int3 &high, const Int3 &a, const Int3 &b, Int r) {
     const Int3 d = b - a;
     struct Fraction {
@@ -213,7 +214,7 @@ bool comes_near(const Int3 &low, const Int3 &high, const Int3 &a, const Int3 &b,
             return true;
         if (k + 1 == count)
             break;
-        // Between this break and the next: A t^2 + 2 B t + C, from the sides x is on in the middle.
+        // Between this break and the next: A t^2 + 2 B t + C, by which side x is on in the middle.
         const auto [n2, m2] = breaks[k + 1];
         const Int mid_n = n * m2 + n2 * m, mid_m = 2 * m * m2;
         Int A = 0, B = 0, C = 0;
@@ -226,15 +227,15 @@ bool comes_near(const Int3 &low, const Int3 &high, const Int3 &a, const Int3 &b,
             B += d[i] * (a[i] - side);
             C += (a[i] - side) * (a[i] - side);
         }
-        // The vertex -B / A, if it is between them, has the value C - B^2 / A.
+        // The vertex -B / A, if it is between the breaks, has the value C - B^2 / A.
         if (A > 0 && -B * m > n * A && -B * m2 < n2 * A && A * C - B * B <= r * r * A)
             return true;
     }
     return false;
 }
 
-// Whether two segments come within r of each other: the least value of a quadratic on the unit
-// square, by the normal equations in whole numbers.
+// Whether two segments come within r of each other: the minimum of a quadratic on the unit square,
+// by the normal equations in integers.
 bool come_near(const Int3 &a1, const Int3 &a2, const Int3 &b1, const Int3 &b2, Int r) {
     const auto point_near = [r](const Int3 &p, const Int3 &q1, const Int3 &q2) {
         return comes_near(p, p, q1, q2, r);
@@ -249,7 +250,7 @@ bool come_near(const Int3 &a1, const Int3 &a2, const Int3 &b1, const Int3 &b2, I
     const Int s = uw * vv - vw * uv, t = uw * uv - vw * uu; // over gram
     if (gram <= 0 || s < 0 || s > gram || t < 0 || t > gram)
         return false;
-    // |w + t v - s u|^2 at the least, times gram: the determinant of the Gram matrix of u, v, w.
+    // min |w + t v - s u|^2 times gram: the determinant of the Gram matrix of u, v, w.
     const Int all = uu * (vv * ww - vw * vw) - uv * (uv * ww - vw * uw) + uw * (uv * vw - vv * uw);
     return all <= r * r * gram;
 }
@@ -276,7 +277,7 @@ TEST(Overlap, WholeNumbersAreExact) {
         ASSERT_EQ(overlaps(Sphere{real(a), Real(r)}, Sphere{real(b), Real(q)}),
                   come_near(a, a, b, b, r + q));
 
-        // Boxes that are not turned, or by half a turn, which changes nothing.
+        // Boxes that are not rotated, or by a half turn, which changes nothing.
         const Int3 half = glm::abs(d);
         const Quat turn = random.next_index(2) == 0 ? identity_rotation
                                                     : Quat{Real(0), Real(0), Real(1), Real(0)};
@@ -315,11 +316,11 @@ TEST(Overlap, PlanesAreExact) {
     EXPECT_TRUE(overlaps(Plane{n, Real(2)}, Plane{-n, Real(-2)}));
     EXPECT_FALSE(overlaps(Plane{n, Real(2)}, Plane{-n, Real(2)}));
     EXPECT_FALSE(overlaps(Plane{n, Real(2)}, Plane{n, std::nextafter(Real(2), Real(3))}));
-    // A normal that differs in its last bit meets the other far away.
+    // A normal that differs in its last bit meets the other plane far away.
     Vec3 m = n;
     m.x = std::nextafter(m.x, Real(1));
     EXPECT_TRUE(overlaps(Plane{n, Real(2)}, Plane{m, Real(3)}));
-    // The same plane with normals of two lengths, both within the tolerance.
+    // The same plane with normals of two lengths within the tolerance.
     const Real longer = Real(1) + std::ldexp(Real(1), -11);
     const Vec3 up{Real(0), Real(1), Real(0)};
     EXPECT_TRUE(overlaps(Plane{up, Real(2)}, Plane{longer * up, Real(2) * longer}));

@@ -14,7 +14,7 @@ namespace {
 
 using namespace wide;
 
-// Heights of a shape over a plane, in metres.
+// A shape's heights above a plane, in metres.
 struct Reach {
     W lowest = std::numeric_limits<W>::infinity();
     W highest = -std::numeric_limits<W>::infinity();
@@ -50,7 +50,7 @@ TEST(PlaneClassify, RoundShapesAndBoxesOfAnySize) {
         const W size = any_size(random);
         const W3 n = awkward_unit(random);
         const W off_unit = random.next_index(8) == 0 ? W(random.next_in(-9e-4, 9e-4)) : W(0);
-        // The shape's middle, and the plane at about the distance of its surface.
+        // The shape's middle, with the plane about as far away as its surface.
         const W3 middle = any_position(random);
         const W away = random.next_index(2) == 0 ? W(random.next_in(-3, 3)) * size
                                                  : size + any_gap(random, size);
@@ -90,7 +90,8 @@ TEST(PlaneClassify, RoundShapesAndBoxesOfAnySize) {
 
         const Cylinder cylinder{capsule.a, capsule.b, capsule.radius};
         if (cylinder.a != cylinder.b) {
-            // Two directions across the axis: the rim's highest point is up by their hypotenuse.
+            // Two directions perpendicular to the axis: the rim's highest point is up by their
+            // hypotenuse.
             const W3 axis = glm::normalize(widened(cylinder.b) - widened(cylinder.a));
             const W3 e = std::abs(axis.x) < W(0.6) ? W3{1, 0, 0} : W3{0, 1, 0};
             const W3 e1 = glm::normalize(glm::cross(axis, e)), e2 = glm::cross(axis, e1);
@@ -114,7 +115,7 @@ TEST(PlaneClassify, PointsAreExact) {
         return std::int64_t(random.next_index(std::uint32_t(2 * reach + 1))) - reach;
     };
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
-        // A normal in multiples of 2^-12, and points at most an integer or so off the plane.
+        // A normal in multiples of 2^-12, and points within about an integer of the plane.
         const double angle = random.next_in(0.0, 6.28);
         const std::int64_t mx = std::int64_t(4096.0 * std::cos(angle));
         const std::int64_t my = std::int64_t(4096.0 * std::sin(angle));
@@ -214,12 +215,12 @@ TEST(PlaneIntersection, LineOfTwo) {
             continue;
         const W3 p = widened(line->point), d = widened(line->direction);
         const W offset = std::max(std::abs(W(a.offset)), std::abs(W(b.offset)));
-        if (sine < W(1e-3)) { // cancels; what takes the pains takes its time
+        if (sine < W(1e-3)) { // cancels; the careful product is slow
             cross = full_cross(na, nb);
             sine = glm::length(cross);
         }
         const W3 exact_direction = cross / sine;
-        // In wider numbers; and that is in both planes, and nowhere nearer to the origin.
+        // In wider numbers, checked to be on both planes and the nearest such point to the origin.
         const W3 exact =
             (glm::cross(nb, cross) * W(a.offset) + glm::cross(cross, na) * W(b.offset)) /
             (sine * sine);
@@ -244,7 +245,7 @@ TEST(PlaneIntersection, PointOfThree) {
         const W3 m = random.next_index(2) == 0 ? awkward_unit(random)
                                                : turned(random, n, any_power(random, -4, 0));
         W3 o = awkward_unit(random);
-        if (random.next_index(4) == 0) { // nearly across the line of the other two
+        if (random.next_index(4) == 0) { // nearly perpendicular to the line of the other two
             const W3 mixed = n * W(random.next_in(-1, 1)) + m;
             o = glm::normalize(mixed + o * any_power(random, -8, -1));
         }
@@ -265,7 +266,7 @@ TEST(PlaneIntersection, PointOfThree) {
         none += !point;
         if (!point)
             continue;
-        // Solved by elimination with a column pivot in long double.
+        // Solved in long double by elimination with column pivoting.
         std::array<std::array<W, 4>, 3> rows;
         for (std::size_t i = 0; i < 3; ++i) {
             const W3 normal = widened(planes[i].normal);
@@ -304,7 +305,7 @@ TEST(PlaneIntersection, AxesAreExactAndParallelHasNone) {
     EXPECT_FALSE(intersection(x, x).has_value());
     EXPECT_FALSE(intersection(x, Plane{-x.normal, Real(1)}).has_value());
     EXPECT_FALSE(intersection(x, y, y).has_value());
-    // Three that meet in parallel lines, like a tent.
+    // Three planes that meet in parallel lines, like a tent.
     const Real s = Real(0.6), c = Real(0.8);
     EXPECT_FALSE(intersection(Plane{{s, c, Real(0)}, Real(1)}, Plane{{-s, c, Real(0)}, Real(1)}, y)
                      .has_value());

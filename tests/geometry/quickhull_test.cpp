@@ -22,8 +22,7 @@ using namespace oracle;
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 constexpr int no_limit = 1 << 20;
 
-// --- What every mesh must be, whatever the points
-// --------------------------------------------------
+// --- What holds for every mesh, whatever the points --------------------------------------------
 
 __extension__ typedef __float128 Big; // 113 bits: products of three floats are exact
 
@@ -51,11 +50,11 @@ Big size(const BigVector &v) {
 }
 
 struct Report {
-    double greatest_height = 0.0; // of an input point above a plane
+    double greatest_height = 0.0; // of an input point above a face's plane
     double deepest_corner = 0.0;  // of a face, below its plane
 };
 
-// Closed, convex, of input points, with consistent tables. Nothing here is taken from the engine.
+// Closed, convex, made of input points, with consistent tables. Uses nothing from the engine.
 Report check_mesh(const HullMesh &mesh, const std::vector<Vec3> &points) {
     Report report;
     const std::size_t v = mesh.vertices.size(), f = mesh.faces.size(), e = mesh.edges.size();
@@ -78,7 +77,7 @@ Report check_mesh(const HullMesh &mesh, const std::vector<Vec3> &points) {
     EXPECT_EQ(mesh.box.min, box.min);
     EXPECT_EQ(mesh.box.max, box.max);
 
-    // Each directed edge of a loop is the one side of one edge.
+    // Each directed edge of a loop is one side of exactly one edge.
     std::map<std::array<std::uint32_t, 2>, std::uint32_t> face_at;
     for (std::uint32_t face = 0; face < f; ++face) {
         const HullMesh::Face &loop = mesh.faces[face];
@@ -105,7 +104,7 @@ Report check_mesh(const HullMesh &mesh, const std::vector<Vec3> &points) {
         EXPECT_EQ(static_cast<std::size_t>(last - first), around[i].size());
     }
 
-    // Planes: unit, no vertex in front, outward. The three corners exactly so.
+    // Planes: unit normals pointing outwards, no vertex in front. Exactly so for the three corners.
     for (std::uint32_t face = 0; face < f; ++face) {
         const Plane &plane = mesh.planes[face];
         const BigVector normal(plane.normal);
@@ -122,7 +121,7 @@ Report check_mesh(const HullMesh &mesh, const std::vector<Vec3> &points) {
         EXPECT_GT(double(dot(across, normal)), 0.0);
         for (const Vec3 &vertex : mesh.vertices) {
             const BigVector d = BigVector(vertex) - base;
-            // Exact for floats; for doubles a __float128 leaves some rounding.
+            // Exact for floats; with doubles even __float128 rounds.
             const Big rounding = sizeof(Real) == sizeof(float)
                                      ? Big(0)
                                      : Big(0x1p-108) * size(to_b) * size(to_c) * size(d);
@@ -143,8 +142,8 @@ Report check_mesh(const HullMesh &mesh, const std::vector<Vec3> &points) {
                 std::max(report.greatest_height,
                          glm::dot(wide(plane.normal), wide(point)) - double(plane.offset));
 
-    // Volume by the divergence theorem, a third of height times area for each face. The area of a
-    // loop: that of its corners as seen from the middle of the mesh.
+    // Volume by the divergence theorem: a third of height times area for each face. A loop's area
+    // is taken with its corners relative to the middle of the mesh.
     V middle{0.0};
     for (const Vec3 &vertex : mesh.vertices)
         middle += wide(vertex) / double(v);
@@ -187,7 +186,7 @@ TEST(Quickhull, ExactOnTheLattice) {
             for (std::int64_t &x : p)
                 x = std::int64_t(random.next_index(2 * reach + 1)) - reach;
             lattice.push_back(i > 0 && random.next_index(8) == 0 ? lattice.back() : p);
-            // Now and then all in one plane, a slanting one.
+            // Now and then all points are in one slanting plane.
             if (trial % 50 == 0)
                 lattice.back()[2] = lattice.back()[0] + 2 * lattice.back()[1];
             if (reach <= 4)
@@ -235,13 +234,13 @@ TEST(Quickhull, ExactOnTheLattice) {
     EXPECT_GT(flats, count / 100);
 }
 
-// Up to eight points, as bits of a number.
+// Up to eight points, as bits of an integer.
 struct SmallHull {
-    std::vector<std::uint32_t> facets; // their corners; none when all is in one plane
+    std::vector<std::uint32_t> facets; // their corners; none when all points are coplanar
     std::uint32_t vertices = 0;
 };
 
-// As exact_hull() finds it: a facet is in a plane through three points that has none in front.
+// Like exact_hull(): a facet is in a plane through three points with none in front.
 void find_small_hull(const std::vector<Lattice> &points, SmallHull &hull) {
     hull.facets.clear();
     hull.vertices = 0;
@@ -261,11 +260,11 @@ void find_small_hull(const std::vector<Lattice> &points, SmallHull &hull) {
                     (height > 0 ? front : height < 0 ? behind : on) |= 1U << p;
                 }
                 if ((front == 0) == (behind == 0))
-                    continue; // not supporting; or everything in one plane
+                    continue; // not supporting, or all points coplanar
                 if (std::find(hull.facets.begin(), hull.facets.end(), on) == hull.facets.end())
                     hull.facets.push_back(on);
             }
-    // In an edge of the hull lie two facets, in a corner at least three.
+    // A point on an edge of the hull is in two facets, a corner in at least three.
     for (std::size_t p = 0; p < points.size(); ++p) {
         int facets_at = 0;
         for (const std::uint32_t facet : hull.facets)
@@ -276,13 +275,14 @@ void find_small_hull(const std::vector<Lattice> &points, SmallHull &hull) {
         facet &= hull.vertices;
 }
 
-// Six times the volume of the tetrahedron of three corners and the origin.
+// Six times the volume of the tetrahedron on three corners and the origin.
 std::int64_t six_volumes(const Lattice &a, const Lattice &b, const Lattice &c) {
     return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
            a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-// The mesh of distinct points is closed, faces outward, and has just these faces and this volume.
+// The mesh of distinct points is closed and faces outward, with exactly these faces and this
+// volume.
 void expect_small_hull(const HullMesh &mesh, const std::vector<Lattice> &points,
                        const SmallHull &expected) {
     std::array<std::uint32_t, 8> index{};
@@ -321,7 +321,7 @@ void expect_small_hull(const HullMesh &mesh, const std::vector<Lattice> &points,
         faces_seen |= 1U << (facet - expected.facets.begin());
     }
     ASSERT_EQ(std::size_t(std::popcount(faces_seen)), mesh.faces.size());
-    ASSERT_EQ(sides, turned); // each beside its other side
+    ASSERT_EQ(sides, turned); // each edge has its opposite
     ASSERT_EQ(std::size_t(std::popcount(sides)), 2 * mesh.edges.size());
     ASSERT_GT(volume, 0);
     // As in check_mesh().
@@ -348,13 +348,13 @@ TEST(Quickhull, AMillionSmallSetsAreExact) {
             Lattice p;
             for (std::int64_t &x : p)
                 x = std::int64_t(random.next_index(std::uint32_t(2 * reach + 1))) - reach;
-            if (trial % 50 == 0) // all in one plane, a slanting one
+            if (trial % 50 == 0) // all in one slanting plane
                 p[2] = p[0] + 2 * p[1];
             for (std::int64_t &x : p)
                 x += shift;
             points.push_back({Real(p[0]), Real(p[1]), Real(p[2])});
             if (std::find(lattice.begin(), lattice.end(), p) == lattice.end())
-                lattice.push_back(p); // the oracle's are distinct
+                lattice.push_back(p); // the oracle needs distinct points
         }
         find_small_hull(lattice, expected);
         const HullResult result = convex_hull(points, no_limit);
@@ -388,7 +388,7 @@ TEST(Quickhull, AwkwardPoints) {
             placed_points(random, any_points(random, family), size, offset);
         const HullResult result = convex_hull(points, no_limit);
         if (!result.mesh) {
-            // Flat to rounding, seen from so far.
+            // Flat up to rounding, seen from that far.
             const double thickness =
                 size * (family == 3 || family == 4 || family == 6 || family == 8 ? 2e-3 : 1.0);
             ASSERT_LE(thickness, 8.0 * double(result.tolerance))
@@ -403,9 +403,9 @@ TEST(Quickhull, AwkwardPoints) {
         worst_height = std::max(worst_height, report.greatest_height / double(result.tolerance));
         worst_corner = std::max(worst_corner, report.deepest_corner / double(result.tolerance));
     }
-    // Points left out, and vertices dropped where facets were joined (quickhull.h).
+    // Points left out, and vertices dropped where facets merged (quickhull.h).
     EXPECT_LE(worst_height, 3.0);
-    // In double the normal of a needle may turn by more than the rounding of the points.
+    // In double a needle's normal may turn by more than the points' rounding.
     if (sizeof(Real) == sizeof(float)) {
         EXPECT_LE(worst_corner, 2.0);
     }
@@ -433,8 +433,8 @@ TEST(Quickhull, LimitedVerticesStayInside) {
             const Report report = check_mesh(*result.mesh, points);
             ASSERT_FALSE(HasFailure());
             ASSERT_NEAR(double(result.left_out), report.greatest_height, 2 * epsilon);
-            // Farthest first: what is left out falls as the limit grows, though not evenly. A hull
-            // of n points in a sphere leaves out caps of at least about 2 / n.
+            // Farthest first: the height of the points left out falls as the limit grows, though
+            // not smoothly. A hull of n points in a sphere leaves out caps of at least about 2 / n.
             ASSERT_LT(double(result.left_out), std::min(1.2 * last, 24.0 / limit));
             last = double(result.left_out);
         }
@@ -443,7 +443,7 @@ TEST(Quickhull, LimitedVerticesStayInside) {
     EXPECT_THROW(convex_hull(points, 3), CheckFailure);
 }
 
-// A cube filled with a grid needs its eight corners only, and finds them first.
+// A cube filled with a grid needs only its eight corners, and finds them first.
 TEST(Quickhull, LimitDoesNotGoToPointsInFaces) {
     std::vector<Vec3> points;
     for (int i = 0; i < 1000; ++i)
@@ -464,7 +464,7 @@ TEST(Quickhull, ManyPoints) {
     const HullResult sphere = convex_hull(points, no_limit);
     ASSERT_TRUE(sphere.mesh);
     EXPECT_LE(double(sphere.left_out), 3.0 * double(sphere.tolerance));
-    // The same in a ball and on a rotated cube, of which few are vertices.
+    // The same in a ball and in a rotated cube, where few points are vertices.
     for (Vec3 &point : points)
         point *= Real(std::cbrt(random.next_unit()));
     ASSERT_TRUE(convex_hull(points, no_limit).mesh);
@@ -518,7 +518,7 @@ TEST(Quickhull, SaysWhyNot) {
     EXPECT_EQ(problem({x, x, x, x, x}), HullProblem::all_in_one_point);
     EXPECT_EQ(problem({o, x, Real(2) * x, Real(-3) * x}), HullProblem::all_on_one_line);
     EXPECT_EQ(problem({o, x, y, x + y, x - y}), HullProblem::all_in_one_plane);
-    // In one plane but for rounding.
+    // In one plane up to rounding.
     Random random(6);
     for (int trial = 0; trial < trials(10000); ++trial) {
         const Quat turn = any_rotation(random);
@@ -538,7 +538,7 @@ TEST(Quickhull, SaysWhyNot) {
     EXPECT_EQ(problem({o, tiny * x, tiny * y, tiny * z}), HullProblem::out_of_range);
 }
 
-// Subnormal numbers too, and each coordinate with an exponent of its own.
+// Including subnormal numbers, and a different exponent for every coordinate.
 TEST(Quickhull, EndsForPointsOfAnySize) {
     using Limits = std::numeric_limits<Real>;
     const Real tiny = Real(1e6) * Limits::denorm_min();

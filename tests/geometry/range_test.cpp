@@ -1,5 +1,5 @@
-// The stated range of sizes: scaled by a power of two, which rounds nothing, an answer scales with
-// its question.
+// The stated range of sizes: scaling by a power of two rounds nothing, so the answer scales with
+// the query.
 #include "engine/geometry/epa.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/raycast.h"
@@ -37,7 +37,7 @@ Triangle scaled(const Triangle &t, Real by) {
 class Range : public testing::TestWithParam<int> {};
 
 TEST_P(Range, AnswersScaleWithTheirQuestions) {
-    // Sizes and distances are from 0.25 to 4, and so within the range when scaled.
+    // Sizes and distances are from 0.25 to 4, so they stay in range when scaled.
     const Real by = std::ldexp(Real(1), GetParam());
     Random random(1);
     const auto near = [&](Real small, Real large, const char *what, int trial) {
@@ -57,7 +57,7 @@ TEST_P(Range, AnswersScaleWithTheirQuestions) {
             const auto big_a = scaled(a, by);
             const auto big_b = scaled(b, by);
             const Real apart = distance(a, b).distance;
-            // Nearer than the range allows is not asked.
+            // Smaller distances are out of range.
             if (apart > Real(0.25))
                 near(apart, distance(big_a, big_b).distance, what, trial);
             const auto deep = penetration(a, b), deeper = penetration(big_a, big_b);
@@ -80,7 +80,7 @@ TEST_P(Range, AnswersScaleWithTheirQuestions) {
             const auto one = ray_interval(solid, ray);
             const auto big =
                 ray_interval(scaled(solid, by), Ray{by * ray.origin, by * ray.direction});
-            // Through the middle, not by the skin.
+            // Through the middle, not grazing.
             if (!one || one->t_exit - one->t_enter < Real(0.05))
                 return;
             ASSERT_TRUE(big) << what << ", trial " << trial;
@@ -111,7 +111,7 @@ TEST_P(Range, AnswersScaleWithTheirQuestions) {
 INSTANTIATE_TEST_SUITE_P(Ends, Range,
                          is_float ? testing::Values(-18, 26) : testing::Values(-158, 158));
 
-// Signs are exact down to the least float; the doubles of predicates.h have their own end.
+// Signs are exact down to the least float; the doubles of predicates.h have a limit of their own.
 TEST(RangeOfSigns, AreExactForTheLeastFloats) {
     if (!is_float)
         GTEST_SKIP() << "of floats only";

@@ -19,8 +19,8 @@ constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
 // --- Against signed distances ------------------------------------------------------------------
 
-// Heights above the border at origin + p, the origin relative to the shape; and the least of them
-// over the stretch [0, reach] of the unit vector u.
+// Heights above the border at origin + p, with the origin relative to the shape; and their minimum
+// over the stretch [0, reach] along the unit vector u.
 struct CircleAhead {
     Wide origin;
     W radius;
@@ -40,7 +40,7 @@ struct PolygonAhead {
         : outline(polygon(rectangle)), origin(wide(from) - outline.origin) {}
     W height(const Wide &p) const { return outline.signed_distance(origin + p); }
     W lowest(const Wide &u, W reach) const {
-        // What is left of the stretch after cutting by every edge.
+        // The part of the stretch left after clipping by every edge.
         W low = 0, high = reach;
         W least = 1e300L;
         for (std::size_t i = 0; i < outline.count; ++i) {
@@ -58,17 +58,18 @@ struct PolygonAhead {
                               segment_distance(a, b, origin + reach * u),
                               segment_distance(origin, origin + reach * u, a)});
         }
-        // A flat one is cut at one point, but for roundings.
+        // A flat rectangle is cut at one point, up to rounding.
         if (low > high) {
             const bool is_cut = low - high < 1e-17L * (std::abs(low) + reach);
             return is_cut ? std::min(least, height(low * u)) : least;
         }
-        // Convex along a line, so golden sections find it.
+        // Convex along a line, so a golden-section search finds the minimum.
         const W part = (std::sqrt(W(5)) - 1) / 2;
         W s = high - part * (high - low), t = low + part * (high - low);
         W at_s = height(s * u), at_t = height(t * u);
-        for (int i = 0; i < 52; ++i) { // to 1e-11 of what is left
-            // It changes by no more than the way: well outside, or well within, is enough.
+        for (int i = 0; i < 52; ++i) { // to 1e-11 of the stretch
+            // The height changes by no more than the distance moved: well outside or well inside,
+            // stop.
             const W most_within = std::min(at_s, at_t);
             if (most_within > high - low || most_within < -1e-3L * outline.size)
                 return most_within;
@@ -93,14 +94,14 @@ struct PolygonAhead {
 struct Tally {
     int hits = 0;
     int misses = 0;
-    double worst = 0.0; // of the bound
+    double worst = 0.0; // as a share of the bound
 };
 
 template <typename Shape, typename Ahead>
 void check_interval(Random &random, Tally &tally, const Shape &shape, const Vec2 &center) {
     const W size = size_of(shape);
     const Wide from = wide(center) + any_unit(random) * size * W(random.next_in(0.0, 4.0));
-    // Every fourth ray just touches the furthest reach of the shape, or not.
+    // Every fourth ray just touches, or just misses, the shape's farthest reach.
     const W aside = random.next_index(4) == 0 ? 1 + W(epsilon) * W(random.next_in(-8.0, 8.0))
                                               : W(random.next_in(0.0, 1.2));
     const Wide to = wide(center) + any_unit(random) * size * aside;
@@ -147,8 +148,8 @@ void check_interval(Random &random, Tally &tally, const Shape &shape, const Vec2
         const Wide n = wide(interval->enter_normal);
         ASSERT_NEAR(double(length(n)), 1.0, 4.0 * epsilon);
         ASSERT_LE(double(glm::dot(n, u)), 64.0 * epsilon * double((distance + size) / size));
-        // Outward: a step along it leads out. Off by the bound, a normal of a circle is turned by
-        // bound / radius, or that of the face next to a corner is taken.
+        // A step along the outward normal leads out. An error of `bound` turns a circle's normal by
+        // bound / radius, or picks the adjacent face near a corner.
         const W step = size;
         ASSERT_GE(ahead.height(u * (W(interval->t_enter) * speed) + n * step), step - 12 * bound);
     }
@@ -177,9 +178,9 @@ TEST(Raycast2, EndsAreOnTheBorderWithinTheStatedBound) {
     }
 }
 
-// --- In whole numbers --------------------------------------------------------------------------
+// --- In integers -------------------------------------------------------------------------------
 
-// An interval of fractions, cut by one border after another (Liang and Barsky 1984).
+// An interval of fractions, clipped by one border after another (Liang and Barsky 1984).
 struct Fractions {
     Int enter_over = 0, enter_under = 1;
     Int exit_over = 1, exit_under = 0; // none
@@ -222,7 +223,7 @@ TEST(Raycast2, RectanglesAreExact) {
         const Vec2 p = any_whole_point(random, reach), q = any_whole_point(random, reach);
         const Rectangle rectangle{glm::min(p, q), glm::max(p, q)};
         const Vec2 a = any_whole_point(random, reach);
-        // Towards, or just past, a corner.
+        // Towards a corner, or just past it.
         const Vec2 b = random.next_index(2) == 0
                            ? any_whole_point(random, reach)
                            : near_line(random, a,
@@ -242,7 +243,7 @@ TEST(Raycast2, RectanglesAreExact) {
         ASSERT_FALSE(ray_interval(rectangle, Ray2{a, b - a, Real(-1)}));
         if (reach > 9 || !endless)
             continue;
-        // Small numbers: the ends are the nearest floats, and max_t is compared with them.
+        // Small integers: the ends are the nearest floats, and max_t is compared with them.
         const Fractions whole_line = in_rectangle(rectangle, a, d);
         const auto quotient = [](Int over, Int under) {
             return static_cast<Real>(static_cast<std::int64_t>(over)) /
@@ -272,7 +273,7 @@ TEST(Raycast2, SegmentsAreExact) {
         const Vec2 p = random.next_index(2) == 0 ? any_whole_point(random, reach)
                                                  : near_line(random, origin, target);
         const Vec2 q = random.next_index(16) == 0 ? p : near_line(random, origin, target);
-        // The half-plane ahead, and the two ends on different sides.
+        // The half-plane ahead, with the two ends on opposite sides.
         const Whole d = whole(target) - whole(origin);
         const Whole a = whole(p) - whole(origin), b = whole(q) - whole(origin);
         const Int side_a = cross(d, a), side_b = cross(d, b);
@@ -327,7 +328,7 @@ TEST(Raycast2, CirclesAreExactForSmallIntegers) {
         const Vec2 b = random.next_index(16) == 0 ? a : any_whole_point(random, reach);
         const Whole d = whole(b) - whole(a), m = whole(center) - whole(a);
         const Int r = static_cast<std::int64_t>(radius);
-        // The least of |m - t d|^2 over t >= 0, or over 0 <= t <= 1, times |d|^2.
+        // min |m - t d|^2 over t >= 0, or over 0 <= t <= 1, times |d|^2.
         const Int dd = dot(d, d), md = dot(m, d), mm = dot(m, m);
         const Whole from_b = whole(center) - whole(b);
         const bool at_foot = mm * dd - md * md <= r * r * dd;
@@ -401,7 +402,7 @@ TEST(Raycast2, LinetestsAreWrongOnlyWithinTheStatedBound) {
         const Wide d = wide(b) - wide(a);
         const W reach = length(d);
         const bool answer = linetest(shape, a, b);
-        ASSERT_EQ(answer, linetest(shape, b, a) || answer); // either way, but for roundings
+        ASSERT_EQ(answer, linetest(shape, b, a) || answer); // in either direction, up to rounding
         hits += answer ? 1 : 0;
         const W least = reach > 0 ? ahead.lowest(d / reach, reach) : ahead.height({0, 0});
         if (std::abs(least) > 8 * W(epsilon) * (distance + size)) {
@@ -482,7 +483,7 @@ TEST(Raycast2, StartingInside) {
     EXPECT_EQ(hit->normal, Vec2{Real(0)});
     const auto interval = ray_interval(circle, Ray2{{Real(1), Real(2)}, {Real(2), Real(0)}});
     EXPECT_EQ(interval->t_exit, Real(1.5));
-    // On the border, going out: the point itself.
+    // On the border, leaving: the interval is that one point.
     const auto border = ray_interval(circle, Ray2{{Real(4), Real(2)}, {Real(2), Real(0)}});
     ASSERT_TRUE(border);
     EXPECT_EQ(border->t_exit, Real(0));

@@ -1,4 +1,4 @@
-// Rays of the families that break slab tests, quadratic formulas and epsilons.
+// Families of rays that break slab tests, quadratic formulas and epsilons.
 
 #include "engine/core/random.h"
 #include "engine/geometry/contains.h"
@@ -19,8 +19,7 @@ using namespace wide_triangle;
 
 constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
-// The direction to a target, with components that are zero, negative zero or next to nothing, of
-// any length.
+// The direction to a target, of any length, with some components zero, negative zero or tiny.
 Vec3 awkward_direction(Random &random, const Vec3 &to_target) {
     Vec3 direction = to_target;
     for (int i = 0; i < 3; ++i) {
@@ -91,7 +90,7 @@ TEST(RaycastFamilies, NoRayThatMeetsABoxIsLost) {
         const Vec3 half = glm::abs(any_offset(random, size));
         const Box box{center, identity_rotation, half};
         const Aabb aabb{center - half, center + half};
-        // To a corner, an edge, a face, into it, past it.
+        // To a corner, an edge or a face, into the box, or past it.
         Vec3 target = center + any_offset(random, 1.2 * size);
         for (int i = 0; i < 3; ++i)
             if (random.next_index(2) == 0)
@@ -117,7 +116,7 @@ TEST(RaycastFamilies, NoRayThatMeetsABoxIsLost) {
         }
         if (interval) {
             const long double enter = interval->t_enter, exit = interval->t_exit;
-            // Past the edge by no more than stated.
+            // Past the edge by no more than the stated bound.
             ASSERT_LE(truth.near, truth.far + 8.0L * epsilon * truth.far) << "trial " << trial;
             ASSERT_LE(std::abs(enter - truth.near), 8.0L * epsilon * truth.near)
                 << "trial " << trial;
@@ -153,7 +152,7 @@ TEST(RaycastFamilies, NoRayThatMeetsABoxIsLost) {
     EXPECT_GT(grazes, 0);
 }
 
-// --- Small whole numbers, where nothing is rounded: exactly right in all touching cases.
+// --- Small integers, where nothing rounds: every touching case must be exactly right.
 
 struct WholeRay {
     Vec3 origin, direction;
@@ -179,8 +178,9 @@ long long squared(const Whole &v) {
     return dot(v, v);
 }
 
-// Whether some point o + t d, 0 <= t <= last, is within r of the segment from a along e, of length
-// zero or more: the least over a strip of a quadratic form, by its corners, sides and inside.
+// Whether some point o + t d, 0 <= t <= last, is within r of the segment from a along e, whose
+// length may be zero: the minimum of a quadratic form over a strip, by its corners, sides and
+// interior.
 bool comes_within(const Whole &o, const Whole &d, std::optional<long long> last, const Whole &a,
                   const Whole &e, long long r) {
     const Whole w = o - a;
@@ -247,7 +247,7 @@ TEST(RaycastFamilies, RoundShapesAreExactForSmallIntegers) {
     EXPECT_GT(hits[1], count / 10);
 }
 
-// Along an axis a cylinder is a disc and an interval.
+// Along an axis a cylinder is a disc times an interval.
 TEST(RaycastFamilies, CylindersAreExactForSmallIntegers) {
     Random random(53);
     int hits = 0;
@@ -266,8 +266,7 @@ TEST(RaycastFamilies, CylindersAreExactForSmallIntegers) {
             trial % 4 < 2 ? Cylinder{a, b, Real(radius)} : Cylinder{b, a, Real(radius)};
         const auto interval =
             ray_interval(cylinder, Ray{ray.origin, ray.direction, is_segment ? Real(1) : infinity});
-        // t in [near, far], as fractions of whole numbers over |d_k|; there the disc must come
-        // near.
+        // t is in [near, far], as integer fractions over |d_k|; the disc must be near within that.
         const Whole o = exactly(ray.origin) - exactly(a), d = exactly(ray.direction);
         const long long o_k = k == 0 ? o.x : (k == 1 ? o.y : o.z);
         const long long d_k = k == 0 ? d.x : (k == 1 ? d.y : d.z);
@@ -303,9 +302,9 @@ TEST(RaycastFamilies, CylindersAreExactForSmallIntegers) {
     EXPECT_GT(hits, count / 20);
 }
 
-// --- The bound elsewhere: sizes of 1e-3 to 1e5, up to 1e5 from the origin.
+// --- The bound elsewhere: sizes from 1e-3 to 1e5, up to 1e5 from the origin.
 
-// The round shapes, by the proven distance from a flat triangle, that is, a segment.
+// Round shapes, by the proven distance from a flat triangle, which is a segment.
 TEST(RaycastFamilies, RoundShapesWithinTheBound) {
     Random random(54);
     int hits = 0, sharp = 0;
@@ -353,7 +352,7 @@ TEST(RaycastFamilies, RoundShapesWithinTheBound) {
         ++sharp;
         if (!interval)
             continue;
-        // The ends are on the surface, and the normal leads away from the axis.
+        // The ends are on the surface, and the normal points away from the axis.
         const auto height = [&](Real t) {
             const Wide3 p = from + static_cast<long double>(t) * wide(ray.direction);
             return distance_to_triangle(axis, p).high - static_cast<long double>(radius);
@@ -373,7 +372,7 @@ TEST(RaycastFamilies, RoundShapesWithinTheBound) {
     EXPECT_GT(sharp, count / 3);
 }
 
-// How far a point is outside of a cylinder; negative inside.
+// How far a point is outside a cylinder; negative inside.
 long double height_above(const Cylinder &cylinder, const Wide3 &p) {
     const Wide3 along = wide(cylinder.b) - wide(cylinder.a);
     const long double length = glm::length(along);
@@ -422,7 +421,8 @@ TEST(RaycastFamilies, CylindersWithinTheBound) {
         const long double bound = 16.0L * epsilon * largest;
         const auto interval = ray_interval(cylinder, ray);
         if (!interval) {
-            // The height is convex along the ray: the search finds the least. A few are enough.
+            // The height is convex along the ray, so the search finds the minimum. A few trials are
+            // enough.
             if (trial % 10 != 0)
                 continue;
             long double low = 0.0L, high = ray.max_t;
@@ -518,7 +518,7 @@ TEST(RaycastFamilies, PlanesAndHalfSpaces) {
     EXPECT_GT(inside, count / 50);
 }
 
-// Segments of no length ask for a point; segments inside touch.
+// Segments of zero length query a point; segments inside touch.
 TEST(RaycastFamilies, SegmentsInsideAndWithoutLength) {
     Random random(57);
     int contained = 0;

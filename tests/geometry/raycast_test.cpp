@@ -16,21 +16,21 @@ using namespace oracle;
 
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 
-// How far outside of the shape a point is, in double; negative inside.
+// How far a point is outside the shape, in double; negative inside.
 double height_above(const Shape &shape, const V &p) {
     if (const auto *h = std::get_if<HalfSpace>(&shape))
         return glm::dot(wide(h->normal), p) - double(h->offset);
     return Solid(shape).signed_distance(p);
 }
 
-// The least height over the stretch [0, length] of a ray of unit direction, and where: the height
-// of a convex set is a convex function along a line, so a search by golden sections finds it.
+// The least height over [0, length] of a ray with a unit direction, and where: the height above a
+// convex set is convex along a line, so a golden-section search finds it.
 double lowest(const Shape &shape, const V &origin, const V &u, double length, double &where) {
     const double part = 0.5 * (std::sqrt(5.0) - 1.0);
     double low = 0.0, high = length, s = high - part * high, t = part * high;
     double at_s = height_above(shape, origin + s * u), at_t = height_above(shape, origin + t * u);
     for (int i = 0; i < 80; ++i) { // to 1e-16 of the length
-        // It changes by no more than the way: well outside of the shape, or well within, is enough.
+        // The height changes by no more than the distance moved: well outside or well inside, stop.
         const double least = std::min(at_s, at_t);
         if (least > high - low || least < -1e-3)
             break;
@@ -52,7 +52,7 @@ double lowest(const Shape &shape, const V &origin, const V &u, double length, do
     return std::min(at_s, at_t);
 }
 
-// Half of them boxes: what rays do to the others is also tested exactly, in
+// Half of them are boxes: rays against the other shapes are also tested exactly, in
 // raycast_families_test.cpp.
 std::uint32_t any_kind(Random &random) {
     return random.next_index(2) == 0 ? 1 : random.next_index(4);
@@ -76,11 +76,11 @@ Shape any_solid(Random &random, std::uint32_t kind, const Vec3 &center) {
     }
 }
 
-// The ends of the interval are on the surface, to within what rounding the inputs of that size is
-// worth, and a ray that is reported to miss has no point deeper inside than that.
+// The ends of the interval are on the surface, to within what rounding inputs of that size is
+// worth, and a ray reported as a miss has no point deeper inside than that.
 void check_against_oracle(Random &random, double reach) {
-    // Differences of positions are rounded at the size of the positions, then carried through some
-    // 20 operations at the size of the differences.
+    // Differences of positions are rounded at the size of the positions, then go through some 20
+    // operations at the size of the differences.
     const double band = 20.0 * 0.5 * epsilon * (reach + 8.0);
     int hits = 0;
     const int count = trials(1'000'000);
@@ -119,7 +119,7 @@ void check_against_oracle(Random &random, double reach) {
         const double exit = double(interval->t_exit) * speed;
         const double at_enter = height_above(shape, o + enter * u);
         const double at_exit = height_above(shape, o + exit * u);
-        // A grazing ray is in the band all along; elsewhere the end is on the surface.
+        // A grazing ray stays within the band; otherwise the end is on the surface.
         ASSERT_LE(at_enter, band) << "kind " << kind << " trial " << trial;
         ASSERT_LE(at_exit, band) << "kind " << kind << " trial " << trial;
         if (interval->t_enter > Real(0)) {
@@ -127,9 +127,9 @@ void check_against_oracle(Random &random, double reach) {
             const V n = wide(interval->enter_normal);
             ASSERT_NEAR(glm::length(n), 1.0, 1e-5);
             ASSERT_LE(glm::dot(n, u), band * 8);
-            // Outward: a step along the normal from the surface is that far outside. Positions off
-            // by the band turn the normal of a radius of 0.2 by band / 0.2, or pick the other of
-            // two faces near an edge.
+            // A step along the outward normal from the surface is that far outside. Positions off
+            // by the band turn the normal of a radius of 0.2 by band / 0.2, or pick the other face
+            // near an edge.
             ASSERT_GE(height_above(shape, o + enter * u + 0.1 * n), 0.1 - 12 * band)
                 << "kind " << kind << " trial " << trial;
         } else {
@@ -152,8 +152,8 @@ TEST(Raycast, IntervalFarFromTheOrigin) {
     check_against_oracle(random, 1000.0);
 }
 
-// Spheres of exactly known answers, seen from far away: a discriminant of squares of the distance
-// would lose the radius there.
+// Spheres with exactly known answers seen from far away, where a discriminant with the squared
+// distance in it would lose the radius.
 TEST(Raycast, SphereSeenFromFarAway) {
     const Real far = Real(1 << 20);
     const Sphere sphere{Vec3{Real(0)}, Real(0.5)};
@@ -188,8 +188,8 @@ TEST(Raycast, TangentRaysTouch) {
     EXPECT_EQ(side->t_exit, Real(2));
 }
 
-// Every ray in a face, along an edge or through a corner of a box is in the box: all combinations
-// of sides, axes, signs of zero, on faces at sums that round.
+// Every ray in a face, along an edge or through a corner of a box hits it: all combinations of
+// sides, axes and signs of zero, on faces at rounded sums.
 TEST(Raycast, RaysInFacesAndEdgesAreInside) {
     Random random(3);
     for (int trial = 0; trial < 100000; ++trial) {
@@ -214,7 +214,7 @@ TEST(Raycast, RaysInFacesAndEdgesAreInside) {
             ASSERT_NEAR(double(interval->t_enter) * speed, 2.0, 8 * epsilon);
             ASSERT_EQ(interval->enter_normal[along], is_positive ? Real(-1) : Real(1));
         }
-        // One step outside of the face misses.
+        // One ulp outside the face misses.
         ray.origin[side] = std::nextafter(ray.origin[side],
                                           ray.origin[side] == aabb.max[side] ? Real(9) : Real(-9));
         ASSERT_FALSE(ray_interval(aabb, ray));
@@ -223,10 +223,9 @@ TEST(Raycast, RaysInFacesAndEdgesAreInside) {
 }
 
 TEST(Raycast, RaysThroughCornersTouch) {
-    // Rays that meet the box in one corner only, at t = 3, with coordinates and directions that are
-    // exact, while the differences of the coordinates have two bits too many and are rounded. The
-    // ray comes down along y and leaves along x; the quotients must not lose the corner between
-    // them.
+    // Rays that meet the box at one corner only, at t = 3, with exact coordinates and directions,
+    // while the coordinate differences need two bits too many and round. The ray comes down along y
+    // and leaves along x; the quotients must not lose the corner between them.
     Random random(4);
     const std::int64_t top = std::int64_t(1) << (std::numeric_limits<Real>::digits - 1);
     int rounded = 0;
@@ -248,7 +247,7 @@ TEST(Raycast, RaysThroughCornersTouch) {
         ASSERT_NEAR(double(interval->t_exit), 3.0, 12 * epsilon);
         rounded += (corner.y - origin.y) / direction.y > (corner.x - origin.x) / direction.x;
     }
-    EXPECT_GT(rounded, 1000); // so many would be lost
+    EXPECT_GT(rounded, 1000); // this many could have been lost
 }
 
 TEST(Raycast, StartingInsideAndBeyond) {
@@ -258,10 +257,10 @@ TEST(Raycast, StartingInsideAndBeyond) {
     ASSERT_TRUE(hit);
     EXPECT_TRUE(hit->starts_inside);
     EXPECT_EQ(hit->t, Real(0));
-    // On the surface: going in, and going out (one common point).
+    // On the surface: entering, and leaving (one common point).
     EXPECT_EQ(ray_interval(box, Ray{-x, x})->t_exit, Real(2));
     EXPECT_EQ(ray_interval(box, Ray{x, x})->t_exit, Real(0));
-    // Behind, and too far.
+    // Behind, and too far away.
     EXPECT_FALSE(ray_interval(box, Ray{Real(2) * x, x}));
     EXPECT_FALSE(ray_interval(box, Ray{Real(-3) * x, x, Real(1.5)}));
     EXPECT_TRUE(ray_interval(box, Ray{Real(-3) * x, x, Real(2)}));
@@ -281,7 +280,7 @@ TEST(Raycast, LinetestAgainstTheOracle) {
     for (int trial = 0; trial < count; ++trial) {
         const Vec3 center = any_vector(random, 1.0);
         const Shape shape = any_solid(random, any_kind(random), center);
-        // Some wholly inside, some short, some points.
+        // Some entirely inside, some short, some points.
         const double size = std::pow(10.0, random.next_in(-3.0, 0.6));
         const Vec3 a = center + any_vector(random, 0.9);
         const Vec3 b = trial % 50 == 0 ? a : a + any_vector(random, size);

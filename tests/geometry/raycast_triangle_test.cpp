@@ -22,8 +22,8 @@ Vec3 any_whole(Random &random, int reach) {
     return {coordinate(), coordinate(), coordinate()};
 }
 
-// Whole rays and triangles, in space and in a common plane, along edges, through corners, flat: the
-// ray is a segment that is long enough.
+// Integer rays and triangles, in space and in a common plane, along edges, through corners, flat.
+// The ray is represented by a segment that is long enough.
 TEST(RaycastTriangle, IsExact) {
     Random random(41);
     int hits = 0, inside = 0;
@@ -57,7 +57,7 @@ TEST(RaycastTriangle, IsExact) {
         const long long far = 8192;
         auto segment = Polytope<long long>::segment(
             origin, {origin.x + far * d.x, origin.y + far * d.y, origin.z + far * d.z});
-        segment.edges[0] = d; // of any length, and so no number overflows
+        segment.edges[0] = d; // any length will do, and this one cannot overflow
         const bool is_met = polytopes_meet(
             Polytope<long long>::triangle(exactly(t.a), exactly(t.b), exactly(t.c)), segment);
         ASSERT_EQ(hit.has_value(), is_met) << "trial " << trial;
@@ -70,7 +70,7 @@ TEST(RaycastTriangle, IsExact) {
         inside += hit->starts_inside;
         if (trial % 8 >= 4 || hit->starts_inside)
             continue;
-        // The first common point: it is in the triangle, and nothing before it is.
+        // The first common point is in the triangle, and no earlier point is.
         const Wide3 from = wide(ray.origin), along = wide(ray.direction);
         const long double at = hit->t;
         ASSERT_LT(distance_to_triangle(wide(t), from + at * along).high, 16.0L * epsilon * 2000.0L);
@@ -86,7 +86,7 @@ TEST(RaycastTriangle, IsExact) {
     EXPECT_GT(inside, count / 50);
 }
 
-// Closed surfaces seen from inside, with rays to their corners and edges: none is lost, at any
+// Closed surfaces seen from inside, with rays to their corners and edges: none gets through, at any
 // size, far from the origin, with directions of any length.
 TEST(RaycastTriangle, ClosedSurfacesAreWatertight) {
     Random random(42);
@@ -145,7 +145,7 @@ TEST(RaycastTriangle, ParameterWithinTheBound) {
             continue;
         const long double climb = glm::dot(n, wide(ray.direction));
         if (std::abs(climb) < 1e-12L * glm::length(wide(ray.direction)))
-            continue; // the oracle's own digits
+            continue; // beyond the oracle's own digits
         ++hits;
         const long double truth = glm::dot(n, wide(t.a) - wide(origin)) / climb;
         const long double largest = std::max(largest_of(t), largest_of(origin));

@@ -1,5 +1,5 @@
-// Every public query refuses what has no answer, and names the caller's own value: 4711 or a NaN
-// is put in one place after the other.
+// Every public query refuses arguments that have no answer, and names the caller's own value: 4711
+// or a NaN is put into one place after another.
 #include "engine/plumb.h"
 #include "tests/geometry/convex_oracle.h"
 #include "tests/says.h"
@@ -10,7 +10,7 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real negative = Real(-4711); // no size
+constexpr Real negative = Real(-4711); // not a valid size
 
 const HullMesh &cube() {
     static const HullMesh mesh =
@@ -18,7 +18,7 @@ const HullMesh &cube() {
     return mesh;
 }
 
-// A good one of each kind, and what is not valid of it, with what must be named.
+// A valid value of each kind, and invalid ones with the value the message must name.
 template <typename Shape> struct Bad {
     Shape shape;
     const char *named;
@@ -128,7 +128,7 @@ template <> struct Kind<Transform> {
     }
 };
 
-// The query with each of its arguments bad in turn.
+// Calls the query with each of its arguments bad in turn.
 template <typename... Arguments, typename Query>
 void refuses(const std::string &what, const Query &query) {
     const auto with_bad = [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -147,7 +147,7 @@ void refuses(const std::string &what, const Query &query) {
     EXPECT_NO_THROW((void)query(Kind<Arguments>::good()...)) << what;
 }
 
-// Refuses where there is such a query; counts those.
+// Counts the queries that exist and checks that they refuse.
 #define PLUMB_REFUSES(CALL, ...)                                                                   \
     [&]<typename... Arguments>(std::tuple<Arguments...> *) {                                       \
         const auto query = [](const auto &...args) -> decltype(CALL(args...)) {                    \
@@ -172,7 +172,7 @@ TEST(Refusals, OfOneShape) {
     for_all_kinds([&]<typename A>() {
         if constexpr (!std::same_as<A, Vec3>) {
             PLUMB_REFUSES(placed, A, Transform);
-            if constexpr (!std::same_as<A, HalfSpace>) // has none
+            if constexpr (!std::same_as<A, HalfSpace>) // has no bounds
                 PLUMB_REFUSES(bounds, A);
             PLUMB_REFUSES(contains, A, Vec3);
             PLUMB_REFUSES(closest_point, A, Vec3);

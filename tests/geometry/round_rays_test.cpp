@@ -1,4 +1,4 @@
-// Rays that touch a capsule, and rays that meet what has no radius.
+// Rays tangent to a capsule, and rays against shapes without a radius.
 #include "engine/geometry/raycast.h"
 #include "engine/geometry/raycast_2d.h"
 #include "tests/geometry/oracle.h"
@@ -18,7 +18,7 @@ L wider(const Vec3 &v) {
     return {v.x, v.y, v.z};
 }
 
-// How far a point is from the segment.
+// A point's distance from the segment.
 long double off_axis(const Capsule &capsule, const L &p) {
     const L a = wider(capsule.a), d = wider(capsule.b) - a;
     const long double squared = glm::dot(d, d);
@@ -31,7 +31,7 @@ TEST(RoundRays, TangentsOfACapsuleEndWhereTheyBegin) {
     const auto one =
         ray_interval(Capsule{{Real(0), Real(0), Real(0)}, {Real(0), Real(1), Real(0)}, Real(1)},
                      Ray{{Real(0.6), Real(-0.8), Real(0)}, {Real(0.8), Real(0.6), Real(0)}});
-    if (one) { // on the surface, or a rounding off it
+    if (one) { // on the surface, or off it by a rounding
         EXPECT_LE(double(one->t_exit), 1e-2);
     }
 
@@ -42,7 +42,7 @@ TEST(RoundRays, TangentsOfACapsuleEndWhereTheyBegin) {
                         Real(random.next_in(0.1, 2.0))};
         if (trial % 8 == 0)
             capsule.b = capsule.a;
-        // A point of a cap or of the side, and a direction in the plane that touches there.
+        // A point of a cap or the side, and a direction in the tangent plane there.
         V out = any_direction(random);
         const V along{capsule.b - capsule.a};
         V at{capsule.a};
@@ -59,7 +59,8 @@ TEST(RoundRays, TangentsOfACapsuleEndWhereTheyBegin) {
         if (!inside)
             continue;
         ++on_surface;
-        // The surface of a capsule moved by 16 epsilon: tangents may be in it for a while.
+        // The surface of a capsule may be off by 16 epsilon: tangents can be inside that for a
+        // while.
         const double allowed = 16.0 * epsilon * 8.0;
         ASSERT_LE(inside->t_enter, inside->t_exit);
         for (const Real t : {inside->t_enter, inside->t_exit}) {
@@ -72,7 +73,7 @@ TEST(RoundRays, TangentsOfACapsuleEndWhereTheyBegin) {
     EXPECT_GT(on_surface, trials(500'000) / 4);
 }
 
-// Axes and rays on whole numbers, so that the rays meet lines and points exactly.
+// Integer axes and rays, so that the rays hit lines and points exactly.
 TEST(RoundRays, NormalsOfWhatHasNoRadiusAreAgainstTheRay) {
     Random random(2);
     int lines = 0, points = 0;

@@ -16,7 +16,7 @@ using namespace oracle;
 // Sizes are below 4 m; centre, rotation and projection take some 20 roundings.
 constexpr double rounding = 20 * 0.5 * 4 * double(std::numeric_limits<Real>::epsilon());
 
-// Pairs close to touching, many with parallel or nearly parallel edges.
+// Pairs that nearly touch, many with parallel or nearly parallel edges.
 std::pair<Box, Box> any_boxes(Random &random, bool is_awkward) {
     const auto any = [&] {
         const Vec3 half{any_real(random, 0.05, 0.9), any_real(random, 0.05, 0.9),
@@ -28,7 +28,7 @@ std::pair<Box, Box> any_boxes(Random &random, bool is_awkward) {
     const V u = any_direction(random);
     const double gap = random.next_in(-1.0, 0.3) * std::pow(10.0, -double(random.next_index(8)));
     const double along = std::max(0.0, translation_along(Solid(a), Solid(b), u) + gap);
-    // Closing in from the support distance to where they touch: a random part of the way.
+    // A random part of the separating translation, to close in on touching.
     const V by = u * along * random.next_in(0.6, 1.0);
     b.center += Vec3{Real(by.x), Real(by.y), Real(by.z)};
     return {a, b};
@@ -37,12 +37,12 @@ std::pair<Box, Box> any_boxes(Random &random, bool is_awkward) {
 TEST(Sat, OverlapAgainstClipping) {
     Random random(1);
     int overlapping = 0;
-    const int count = trials(100'000); // the million is in box_overlap_test.cpp
+    const int count = trials(100'000); // box_overlap_test.cpp runs the million
     for (int trial = 0; trial < count; ++trial) {
         const auto [a, b] = any_boxes(random, trial % 2 == 0);
         const bool answer = overlaps(a, b);
         overlapping += answer;
-        // Outside of a band of rounding about touching, the answer is right.
+        // The answer is right outside a rounding band around touching.
         if (answer) {
             ASSERT_TRUE(boxes_meet(WideBox(a), WideBox(b), rounding)) << "trial " << trial;
         } else {
@@ -62,7 +62,7 @@ TEST(Sat, SeparationIsTrueOfItsAxisAndABoundOfTheDistance) {
         const Solid wide_a(a), wide_b(b);
         ASSERT_NEAR(glm::length(n), 1.0, rounding);
         ASSERT_NEAR(double(result.separation), -translation_along(wide_a, wide_b, n), rounding);
-        // No other direction is better by more than rounding when the boxes overlap.
+        // When the boxes overlap, no other direction is better by more than rounding.
         for (int i = 0; i < 6 && result.separation <= Real(0); ++i)
             ASSERT_GE(translation_along(wide_a, wide_b, any_direction(random)),
                       -double(result.separation) - rounding);
@@ -75,12 +75,12 @@ TEST(Sat, SeparationIsTrueOfItsAxisAndABoundOfTheDistance) {
     }
 }
 
-// Two boxes with crossing edges: only an edge-edge axis tells them apart.
+// Two boxes with crossing edges: only an edge-edge axis separates them.
 TEST(Sat, FindsEdgeEdgeAxes) {
     Random random(3);
     const double h = 0.70710678118654752440;
     for (int trial = 0; trial < trials(100'000); ++trial) {
-        // Each box on an edge; the edges cross at a right angle, seen from above.
+        // Each box stands on an edge; seen from above, the edges cross at right angles.
         const Quat on_z{Real(std::cos(0.39269908169872414)), Real(0), Real(0),
                         Real(std::sin(0.39269908169872414))};
         const Quat on_x{Real(std::cos(0.39269908169872414)), Real(std::sin(0.39269908169872414)),
@@ -105,14 +105,14 @@ TEST(Sat, ParallelAndIdenticalBoxes) {
     EXPECT_TRUE(overlaps(a, a));
     EXPECT_EQ(separating_axis(a, a).separation, Real(-1));
     Box b = a;
-    b.center.x = Real(1); // touching: closed sets
+    b.center.x = Real(1); // touching: sets are closed
     EXPECT_TRUE(overlaps(a, b));
     EXPECT_EQ(separating_axis(a, b).separation, Real(0));
     b.center.x = std::nextafter(Real(1), Real(2));
     EXPECT_FALSE(overlaps(a, b));
     b.center = {Real(1), Real(1), Real(1)}; // by a corner
     EXPECT_TRUE(overlaps(a, b));
-    // A point and a plate have no size in some directions.
+    // A point and a plate have zero extent in some directions.
     const Box point{{Real(0.5), Real(0), Real(0)}, identity_rotation, Vec3{Real(0)}};
     EXPECT_TRUE(overlaps(a, point));
     EXPECT_TRUE(overlaps(point, point));

@@ -13,15 +13,15 @@ using namespace oracle;
 
 constexpr double epsilon = double(std::numeric_limits<Real>::epsilon());
 
-// When two polytopes meet: along each axis that can part them the overlap is an interval of time,
-// for the axes do not turn. Empty when low > high.
+// When two polytopes meet: the axes do not rotate, so along each axis that can separate them the
+// overlap is an interval of time. Empty when low > high.
 struct Interval {
     double low = 0.0, high = 1.0;
 };
 Interval meeting(const Body &a, const Body &b, const W &translation, double slack) {
     Interval result;
     const auto consider = [&](const W &u) {
-        // A's farthest point passes B's nearest one, both ways.
+        // A's farthest point passes B's nearest, both ways.
         const double speed = double(glm::dot(u, translation));
         const double gap = -double(overlap_along(a, b, u)) - slack;
         if (speed == 0.0) {
@@ -38,8 +38,8 @@ Interval meeting(const Body &a, const Body &b, const W &translation, double slac
     return result;
 }
 
-// A hit is proved: the point is on both at that time, and the plane there parts them before. A miss
-// of solid polytopes is held against the intervals of all their axes.
+// Proves a hit: the point is on both shapes at that time, and the plane there separates them
+// before. Checks a miss between solid polytopes against the intervals of all their axes.
 std::string complaint(const WidePair &pair, const Vec3 &translation,
                       const std::optional<CastHit> &hit) {
     std::ostringstream out;
@@ -62,7 +62,7 @@ std::string complaint(const WidePair &pair, const Vec3 &translation,
         return "normal of length " + std::to_string(glm::length(n));
     const W point = to_wide(hit->point) - pair.place;
     double in_world = target + rounding + 2.0 * epsilon * pair.far;
-    if (hit->starts_overlapping) { // what epa.h says of its points
+    if (hit->starts_overlapping) { // what epa.h says about its points
         const double relative = pair.is_curved ? 4e-3 : sizeof(Real) == 4 ? 1e-5 : 1e-10;
         in_world += relative * std::max(0.0, double(overlap_along(pair.wide_a, pair.wide_b, n)));
     }
@@ -99,7 +99,7 @@ TEST(ShapeCast, ProvesEachHit) {
         const int trial_count = trials(1'000'000 / kinds_of_pairs);
         for (int i = 0; i < trial_count; ++i) {
             const Pair<A, B> pair = any_pair_of<A, B>(random);
-            // Mostly about towards B, up to and beyond it.
+            // Mostly roughly towards B, up to it and beyond.
             V aim = V(pair.wide_b.corners[0]) * random.next_in(0.0, 2.0) +
                     any_direction(random) * pair.size * std::pow(10.0, random.next_in(-3.0, 0.0));
             if (random.next_index(16) == 0)

@@ -13,7 +13,7 @@ namespace {
 
 using namespace oracle_2d;
 
-// Wide enough for sums of any two doubles used here.
+// Wide enough for the sum of any two doubles used here.
 __extension__ using Quad = __float128;
 
 TEST(Shapes2, BoundsOfACircleAreTheNearestOutwards) {
@@ -42,14 +42,15 @@ TEST(Shapes2, BoundsOfAnOrientedRectangleHoldItsCorners) {
             low = glm::min(low, outline.corners[k]);
             high = glm::max(high, outline.corners[k]);
         }
-        // The corners themselves are known to a rounding of long double.
+        // The corners are only known up to a rounding of long double.
         const W known = 4 * std::numeric_limits<W>::epsilon() * size_of(rectangle);
         for (int i = 0; i < 2; ++i) {
             const W center = W(rectangle.center[i]);
             const W rounding =
                 2 * W(epsilon) * std::max(std::abs(W(box.min[i])), std::abs(W(box.max[i])));
             const W most = 8 * W(epsilon) * size_of(rectangle) + rounding;
-            // Differences to the centre are exact in long double for float, nearly for double.
+            // Differences from the centre are exact in long double for float, and nearly so for
+            // double.
             const W slack = known + 4 * std::numeric_limits<W>::epsilon() * std::abs(center);
             ASSERT_LE(W(box.min[i]) - center, low[i] + slack);
             ASSERT_GE(W(box.min[i]) - center, low[i] - most);

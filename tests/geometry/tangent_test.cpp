@@ -1,5 +1,5 @@
-// Lines that touch a ball, or miss it by the last place: whether a ray, a segment or a point meets
-// a sphere or a circle is exact.
+// Lines that touch a sphere, or miss it by the last bit: whether a ray, segment or point meets a
+// sphere or circle is exact.
 #include "engine/core/random.h"
 #include "engine/geometry/contains.h"
 #include "engine/geometry/contains_2d.h"
@@ -21,8 +21,8 @@ namespace {
 
 using namespace exact_oracle;
 
-// What decides: of the origin, its depth and whether the centre is ahead; of the other end, the
-// same looking back; of the line, whether it comes near enough.
+// The deciding signs: the origin's depth and whether the centre is ahead of it; the same for the
+// other end, looking back; and whether the line comes close enough.
 struct Truth {
     int depth, ahead, end_depth, end_ahead, line;
 
@@ -37,7 +37,7 @@ template <typename Number> int sign_of(const Number &x) {
     return x > 0 ? 1 : (x < 0 ? -1 : 0);
 }
 
-// The five from exact numbers: m from the origin to the centre, d to the other end.
+// The five signs from exact numbers: m from the origin to the centre, d to the other end.
 template <typename Number, typename Vector>
 Truth truth_of(const Vector &m, const Vector &d, const Number &radius) {
     const Number mm = dot(m, m), md = dot(m, d), dd = dot(d, d), rr = radius * radius;
@@ -76,7 +76,7 @@ void check_sphere(const Sphere &sphere, const Ray &ray, const Truth &truth, Tall
     }
 }
 
-// --- Whole numbers, in 128 bits ------------------------------------------------------------------
+// --- Integers, in 128 bits -----------------------------------------------------------------------
 
 using Large = Whole3<Int128>;
 
@@ -84,7 +84,7 @@ std::int64_t any_whole(Random &random, std::int64_t reach) {
     return static_cast<std::int64_t>(random.next_u64() % std::uint64_t(2 * reach + 1)) - reach;
 }
 
-// Whole vectors of whole length.
+// Integer vectors of integer length.
 struct UnitTimes {
     int x, y, z, length;
 };
@@ -97,8 +97,8 @@ struct WholeCase {
     std::int64_t radius;
 };
 
-// A line through a point of the ball's surface and across its radius there; then, perhaps, a ball
-// larger or smaller by one.
+// A line through a point of the sphere's surface, perpendicular to the radius there; then perhaps a
+// sphere larger or smaller by one.
 WholeCase any_tangent(Random &random, std::span<const UnitTimes> units, bool is_plane) {
     const bool is_double = sizeof(Real) == sizeof(double);
     const UnitTimes &unit = units[random.next_index(std::uint32_t(units.size()))];
@@ -153,7 +153,7 @@ TEST(Tangents, SpheresInWholeNumbers) {
         if (is_zero(one.along) || !is_kept(one.origin) || !is_kept(end))
             continue;
         const Truth truth = truth_of(one.center - one.origin, one.along, Int128(one.radius));
-        // The same in all units of length.
+        // The same in any unit of length.
         const Real unit = std::ldexp(Real(1), int(random.next_index(41)) - 20);
         const Real stretch = std::ldexp(Real(1), int(random.next_index(41)) - 20);
         const Sphere sphere{unit * real(one.center), unit * Real(one.radius)};
@@ -202,7 +202,7 @@ TEST(Tangents, CirclesInWholeNumbers) {
 
 // --- Any numbers, in rationals -------------------------------------------------------------------
 
-// Rounded as far as 64 bits are enough.
+// Rounded, for when 64 bits are enough.
 struct Long3 {
     long double x, y, z;
 
@@ -226,8 +226,8 @@ Truth true_signs(const Sphere &sphere, const Vec3 &origin, const Vec3 &direction
     const long double r = sphere.radius;
     const Long3 moment = cross(m, d), beyond = m - d;
     const long double dd = dot(d, d), mm = dot(m, m), away = dot(beyond, beyond);
-    // Fewer than 32 roundings, each below 2^-64 of what bounds the terms; for the line, those of
-    // the moment are worth `off` of its distance.
+    // Fewer than 32 roundings, each below 2^-64 of the bound on the terms; for the line, rounding
+    // the moment is worth `off` of its distance.
     const long double sharp = 0x1p-59L;
     const long double off = sharp * (std::sqrt(mm) + r);
     const bool is_clear =
@@ -255,7 +255,7 @@ Vec3 any_vector(Random &random, double reach) {
     return {x, y, z};
 }
 
-// Balls whose radius is the distance of the line, or of the origin, to the last place.
+// Spheres whose radius is the distance to the line, or to the origin, to the last bit.
 TEST(Tangents, SpheresOfAnySizeAndPlace) {
     Random random(0x7a3);
     Tally tally;

@@ -18,12 +18,12 @@ namespace {
 using namespace exact_oracle;
 using namespace wide_triangle;
 
-// Whole points of a few bits, where coplanar, touching, flat and equal triangles are common; and of
-// 20 bits, close to each other in units of the last, at a size of 1e5 m and of 1e-3 m.
+// Integer points of a few bits, where coplanar, touching, flat and equal triangles are common; and
+// of 20 bits, a few units of the last place apart, at sizes of 1e5 m and 1e-3 m.
 struct Grid {
     int reach;
     int offset;
-    double scale; // so many units are a metre
+    double scale; // units per metre
 
     Vec3 point(Random &random) const {
         const auto coordinate = [&] {
@@ -32,11 +32,11 @@ struct Grid {
         };
         return {coordinate(), coordinate(), coordinate()};
     }
-    // Seen from the middle of the grid.
+    // Relative to the middle of the grid.
     template <typename Whole> Whole3<Whole> whole(const Vec3 &v) const {
         return exact_oracle::whole<Whole>(v, scale, offset);
     }
-    // Calls `ask` with a number large enough for the oracle, to say its type.
+    // Calls `ask` with an integer large enough for the oracle, for its type.
     template <typename Ask> bool in_whole_numbers(const Ask &ask) const {
         return reach < 4096 ? ask(0LL) : ask(Int128(0));
     }
@@ -68,7 +68,7 @@ constexpr Grid grids[] = {
     {1000, -800'000, 8.0}, {40, 0, 0x1p15}, {500'000, 0, 0x1p29},
 };
 
-// Now and then it shares corners with another, has two that are equal, or three in a line.
+// Sometimes shares corners with another triangle, has two equal corners, or three in a line.
 Triangle any_triangle(Random &random, const Grid &grid, const Triangle &other) {
     Triangle t{grid.point(random), grid.point(random), grid.point(random)};
     switch (random.next_index(10)) {
@@ -166,8 +166,8 @@ TEST(TriangleOverlap, PlaneIsExact) {
     Random random(24);
     int meets = 0;
     const int count = trials(1'000'000);
-    // Unit vectors whose components and products are exact as they are, or rounded: the plane is
-    // what its numbers say.
+    // Unit vectors with components and products that are exact, or rounded: the plane is taken at
+    // face value.
     for (int trial = 0; trial < count; ++trial) {
         const Grid &grid = grids[random.next_index(std::size(grids))];
         const Vec3 &n = plane_normals[random.next_index(4)];
@@ -187,8 +187,8 @@ TEST(TriangleOverlap, PlaneIsExact) {
     EXPECT_LT(meets, count - count / 20);
 }
 
-// The distance of whole points below 64 is the root of a fraction n / q with q < 2^32, so it is
-// either a whole radius or at least 2^-32 / (2 r) > 1e-12 away from it.
+// The distance between integer points below 64 is the root of a fraction n / q with q < 2^32, so it
+// is either an integer radius or at least 2^-32 / (2 r) > 1e-12 away from it.
 bool is_at_most(const Range &distance, int radius) {
     EXPECT_LT(distance.high - distance.low, 4e-13L);
     return distance.low < static_cast<long double>(radius) + 4e-13L;
@@ -232,7 +232,7 @@ TEST(TriangleOverlap, CapsuleIsExactForSmallIntegers) {
     EXPECT_GT(touches, count / 200);
 }
 
-// The stated bound, over all sizes and distances from the origin and over narrow triangles.
+// The stated bound, over all sizes and distances from the origin, including narrow triangles.
 TEST(TriangleOverlap, RoundShapesWithinTheBound) {
     Random random(26);
     int meets = 0, sharp = 0;
@@ -249,7 +249,7 @@ TEST(TriangleOverlap, RoundShapesWithinTheBound) {
                                    : distance_of_segment_to_triangle(wide(t), wide(p), wide(q));
         const long double largest = std::max({largest_of(t), largest_of(p), largest_of(q)});
         const long double bound = 8.0L * epsilon * std::max(largest, distance.high);
-        // A radius that touches but for a few bounds, or any.
+        // A radius that touches to within a few bounds, or any.
         Real radius = static_cast<Real>(distance.low);
         radius += random.next_index(2) == 0
                       ? static_cast<Real>(double(bound) * random.next_in(-4.0, 4.0))

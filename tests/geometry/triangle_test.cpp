@@ -30,8 +30,8 @@ Vec3 any_point_near(Random &random, const Triangle &t) {
     }
 }
 
-// The answer is closest if no point of the triangle lies beyond it, as seen from the point: which
-// is a question to the corners. And it is in the triangle.
+// The closest point is in the triangle, and no part of the triangle lies beyond it as seen from the
+// query point, which only needs checking at the corners.
 TEST(Triangle, ClosestPointWithinTheBound) {
     Random random(31);
     const int count = trials(1'000'000);
@@ -62,7 +62,7 @@ TEST(Triangle, ClosestPointKeepsBits) {
         const Triangle t = awkward_triangle(random);
         ASSERT_EQ(closest_point(t, t.a), t.a);
         ASSERT_EQ(closest_point(t, t.c), t.c);
-        // Points on edges, hardly ever exactly; whole ones in whole triangles, often.
+        // Points on edges rarely lie exactly on them; integer points in integer triangles often do.
         const auto whole = [&] {
             return Vec3{Real(random.next_index(5)), Real(random.next_index(5)),
                         Real(random.next_index(5))};
@@ -77,8 +77,8 @@ TEST(Triangle, ClosestPointKeepsBits) {
     EXPECT_GT(kept, count / 50);
 }
 
-// A point is what its weights make of the corners: exact rationals for the weights, and the
-// answer's own weights back to the foot.
+// The weights reproduce a point from the corners: exact rationals for the weights, and the result's
+// own weights back to the foot.
 TEST(Triangle, Barycentric) {
     using namespace exact_oracle;
     Random random(33);
@@ -101,12 +101,12 @@ TEST(Triangle, Barycentric) {
         const long double edges[] = {glm::distance(w[0], w[1]), glm::distance(w[1], w[2]),
                                      glm::distance(w[2], w[0])};
         const long double longest = *std::max_element(edges, edges + 3);
-        const long double twice = glm::length(wide_cross(w)); // the area
+        const long double twice = glm::length(wide_cross(w)); // twice the area
         const long double height = twice / longest;
         const long double distance = glm::distance(w[0], wide(p));
         const long double bound = 8.0L * epsilon * std::max(1.0L, distance / height);
         if (bound > 0.1L)
-            continue; // promises nothing
+            continue; // no promise here
         ASSERT_NEAR(double(area(t)), double(0.5L * twice), double(8.0L * epsilon * twice));
         ASSERT_LE(glm::distance(Wide3(normal(t)), n), 16.0L * epsilon) << "trial " << trial;
         const Wide3 from_b = w[1] - wide(p), from_c = w[2] - wide(p), from_a = w[0] - wide(p);

@@ -1,5 +1,5 @@
-// The shapes again in wider numbers, and random ones of all sizes and places: what the geometry
-// tests hold the engine against.
+// The shapes again in wider numbers, and random ones of all sizes and places: the reference that
+// the geometry tests compare the engine with.
 #pragma once
 
 #include "engine/core/random.h"
@@ -32,7 +32,7 @@ inline W3 widened(const Vec3 &v) {
     return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
 
-// a x b to the last place, by Kahan's differences of products.
+// a x b to the last bit, by Kahan's difference of products.
 inline W3 full_cross(const W3 &a, const W3 &b) {
     const auto part = [](W x, W y, W z, W w) {
         const W zw = z * w;
@@ -87,7 +87,7 @@ struct Frame {
         const W most = std::max({beyond.x, beyond.y, beyond.z});
         return most <= W(0) ? most : glm::length(glm::max(beyond, W3{W(0)}));
     }
-    // Keeps what is inside of all six faces.
+    // Keeps the part inside all six faces.
     template <typename Cut> void cut(Cut &polygon) const {
         for (std::size_t p = 0; p < 6 && polygon.count > 0; ++p) {
             const W3 n = axis[p / 2] * (p % 2 == 0 ? W(-1) : W(1));
@@ -109,16 +109,16 @@ inline W3 closest_on_segment(const W3 &a, const W3 &b, const W3 &p) {
     return a + d * std::clamp(glm::dot(p - a, d) / squared, W(0), W(1));
 }
 
-// The corners of a box's faces in turn.
+// The corners of each face of a box, in order.
 inline constexpr std::array<std::array<std::size_t, 4>, 6> face_corners{
     {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}}};
 
-// A polygon of 4 corners, cut by up to 6 planes.
+// A polygon of 4 corners, clipped by up to 6 planes.
 struct Polygon {
     std::array<W3, 12> corner;
     std::size_t count = 0;
 
-    // Keeps what has dot(n, p) <= offset.
+    // Keeps the part with dot(n, p) <= offset.
     void cut(const W3 &n, W offset) {
         Polygon left;
         for (std::size_t i = 0; i < count; ++i) {
@@ -139,7 +139,7 @@ inline W any_power(Random &random, double low, double high) {
     return W(std::pow(10.0, random.next_in(low, high)));
 }
 
-// Of length below `reach`, some components zero, -0 or tiny.
+// Shorter than `reach`, with some components zero, -0 or tiny.
 inline W3 any_offset(Random &random, W reach) {
     W3 v{reach * W(random.next_in(-1, 1)), reach * W(random.next_in(-1, 1)),
          reach * W(random.next_in(-1, 1))};
@@ -177,12 +177,12 @@ inline W3 awkward_unit(Random &random) {
     return v;
 }
 
-// How far apart two things are put: mostly near to touching, of either sign.
+// A gap between two shapes: mostly close to touching, of either sign.
 inline W any_gap(Random &random, W size) {
     return size * any_power(random, -9, 0) * (random.next_index(2) == 0 ? W(1) : W(-1));
 }
 
-// Half extents of which some are tiny or zero.
+// Half extents, some of them tiny or zero.
 inline Vec3 any_half_extents(Random &random, W size) {
     Vec3 half{Real(0)};
     for (int i = 0; i < 3; ++i) {
@@ -203,7 +203,7 @@ inline W3 any_position(Random &random) {
     return any_offset(random, any_power(random, -3, 5));
 }
 
-// The largest coordinate or size of the arguments: what the stated bounds are multiples of.
+// The largest coordinate or size among the arguments: the stated bounds are multiples of it.
 inline W scale_of(const Vec3 &v) {
     return largest(widened(v));
 }
@@ -247,8 +247,8 @@ inline Vec3 real(const Int3 &v) {
 
 // --- Answers -----------------------------------------------------------------------------------
 
-// The answers, whether something is inside or overlaps, are right but within `bound` of touching,
-// and most inputs are outside of that.
+// Yes/no answers must be right except within `bound` of touching, and most inputs must be outside
+// that.
 class Judge {
   public:
     ~Judge() {

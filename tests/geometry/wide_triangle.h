@@ -1,6 +1,6 @@
-// Distances from triangles, in long double and with a proof: a range, the upper end of which is the
-// distance of two points that are in the shapes, and the lower end that of two planes between them.
-// So it is right however the points and planes were come by.
+// Distances from triangles in long double, with a proof: a range whose upper end is the distance
+// between two points in the shapes, and whose lower end is the distance between two planes
+// separating them. So it is correct however the points and planes were found.
 #pragma once
 
 #include "engine/core/random.h"
@@ -42,7 +42,7 @@ struct Range {
     long double high = std::numeric_limits<long double>::infinity();
 };
 
-// (b - a) x (c - a), in quadruple precision as narrow ones need it.
+// (b - a) x (c - a), in quadruple precision, which narrow triangles need.
 inline Wide3 wide_cross(const WideTriangle &t) {
     __extension__ typedef __float128 Quad;
     const auto component = [&](int i, int j) {
@@ -69,7 +69,7 @@ inline Wide3 nearest_on_segment(const Wide3 &a, const Wide3 &b, const Wide3 &p) 
     return s > 0.5L ? b - (1.0L - s) * e : a + s * e;
 }
 
-// A point of the triangle that is near to the nearest, or is it.
+// A point of the triangle that is the nearest, or close to it.
 inline Wide3 nearest_on_triangle(const WideTriangle &t, const Wide3 &p) {
     Wide3 nearest = nearest_on_segment(t[0], t[1], p);
     const auto consider = [&](const Wide3 &q) {
@@ -78,7 +78,7 @@ inline Wide3 nearest_on_triangle(const WideTriangle &t, const Wide3 &p) {
     };
     consider(nearest_on_segment(t[1], t[2], p));
     consider(nearest_on_segment(t[2], t[0], p));
-    // Inside: along the longest edge, and in the section across it there.
+    // Inside: along the longest edge, and in the cross section there.
     std::size_t k = 0;
     for (std::size_t i = 1; i < 3; ++i)
         if (glm::distance(t[i], t[(i + 1) % 3]) > glm::distance(t[k], t[(k + 1) % 3]))
@@ -98,7 +98,7 @@ inline Wide3 nearest_on_triangle(const WideTriangle &t, const Wide3 &p) {
     return nearest;
 }
 
-// How far apart the planes at right angles to u are that have the points of each between them.
+// The distance between planes perpendicular to u that separate the triangle from p and q.
 inline long double gap_along(const Wide3 &u, const WideTriangle &t, const Wide3 &p,
                              const Wide3 &q) {
     const long double length = glm::length(u);
@@ -135,7 +135,7 @@ inline Range distance_of_segment_to_triangle(const WideTriangle &t, const Wide3 
     const auto consider = [&](long double s) {
         if (is_proven() || !(s >= 0.0L && s <= 1.0L))
             return;
-        // Back and forth between the two sets comes closer.
+        // Alternating between the two sets gets closer.
         Wide3 x = p + s * d;
         for (int i = 0; i < 2; ++i) {
             const Wide3 y = nearest_on_triangle(t, x);
@@ -161,7 +161,7 @@ inline Range distance_of_segment_to_triangle(const WideTriangle &t, const Wide3 
     return range;
 }
 
-// Whether anything of the triangle is left within a box grown by so much (or shrunk).
+// Whether any of the triangle is left inside a box grown (or shrunk) by this much.
 inline bool clipped_by_box(const Triangle &t, const Box &box, long double grown) {
     using WideQuat = glm::qua<long double, glm::defaultp>;
     const WideQuat to_local = glm::normalize(WideQuat(
@@ -197,7 +197,7 @@ inline Vec3 any_offset(Random &random, double size) {
             static_cast<Real>(random.next_in(-size, size))};
 }
 
-// Any, by a quarter turn, by next to nothing.
+// Any rotation, a quarter turn, or a tiny one.
 inline Quat any_rotation(Random &random) {
     const double angle[] = {random.next_in(-3.0, 3.0), 1.5707963267948966,
                             random.next_in(-1.0, 1.0) * 1e-6, 0.7853981633974483};
@@ -208,7 +208,7 @@ inline Quat any_rotation(Random &random) {
         glm::angleAxis(static_cast<Real>(angle[random.next_index(4)]), glm::normalize(axis)));
 }
 
-// Of sizes from 1e-3 to 1e5, up to 1e5 from the origin; many narrow, nearly flat or flat.
+// Sizes from 1e-3 to 1e5, up to 1e5 from the origin; many narrow, nearly flat or flat.
 inline Triangle awkward_triangle(Random &random) {
     const double size = std::pow(10.0, random.next_in(-3.0, 5.0));
     const double narrow = std::pow(10.0, random.next_in(-17.0, 0.0));
@@ -219,10 +219,10 @@ inline Triangle awkward_triangle(Random &random) {
     case 0: // a needle
         t.c = t.b + any_offset(random, size * narrow);
         break;
-    case 1: // the third corner near the line of two
+    case 1: // the third corner near the line through the others
         t.c = t.a + s * (t.b - t.a) + any_offset(random, size * narrow);
         break;
-    case 2: // seen along an axis, flat: exactly so or not
+    case 2: // flat, seen along an axis: exactly or nearly
         t.c = t.a + s * (t.b - t.a);
         t.a.y = t.b.y = t.c.y;
         t.a.z = t.b.z = t.c.z;

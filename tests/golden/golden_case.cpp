@@ -40,9 +40,9 @@ std::string cpu_instruction_sets() {
     return names;
 }
 
-// The sandbox that a person would have, after so many steps.
+// The sandbox a user would see after that many steps.
 Sandbox sandbox_of(const Case &golden) {
-    // A list of its own: a new scene must not change a picture.
+    // A list of its own, so that adding a scene does not change a picture.
     std::vector<SceneEntry> list;
     for (const char *name : {"joints/heavy_chain", "joints/newtons_cradle", "joints/pendulum",
                              "stacking/pyramid", "stacking/ten_box_stack"}) {
@@ -62,7 +62,7 @@ Sandbox sandbox_of(const Case &golden) {
     sandbox.view().bounds = golden.debug.bounds;
     sandbox.view().velocities = golden.debug.velocities;
     sandbox.view().wireframe = golden.debug.wireframe;
-    sandbox.clock().set_paused(true); // the state itself, not what lies between two steps
+    sandbox.clock().set_paused(true); // the state itself, not a blend of two steps
     return sandbox;
 }
 
@@ -126,7 +126,7 @@ Rendering render(const Case &golden, std::optional<std::size_t> without) {
 std::size_t shape_count(const Case &golden) {
     const Sandbox sandbox = sandbox_of(golden);
     const Simulation &simulation = *sandbox.session().simulation();
-    if (!simulation.has_world()) // the shapes of probes
+    if (!simulation.has_world()) // probe shapes
         return sandbox.draw_list().shapes.size();
     std::size_t count = 0; // bodies come first among the shapes
     for (std::size_t body = 0; body < simulation.body_count(); ++body)

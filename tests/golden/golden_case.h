@@ -1,4 +1,4 @@
-// What the golden pictures show, and how each is drawn.
+// What the golden pictures show and how each is drawn.
 #pragma once
 
 #include "app/render/draw_list.h"
@@ -16,24 +16,24 @@
 namespace plumb::golden {
 
 struct Case {
-    std::string name;  // of its files
+    std::string name;  // file name stem
     std::string scene; // below scenes/, without ".toml"
-    // Early: what two builds or solvers make of a long run differs for reasons that are not theirs.
+    // Early: over a long run builds and solvers diverge for reasons that are no fault of theirs.
     std::uint64_t step = 0;
     WorldDrawOptions debug;
-    bool panels = false; // the sandbox around it
+    bool panels = false; // with the sandbox's panels around it
     glm::ivec2 size{400, 250};
 };
 
 const std::vector<Case> &cases();
 std::ostream &operator<<(std::ostream &out, const Case &golden); // its name
 
-// What decides the pixels besides the state: llvmpipe compiles shaders for the CPU that it finds,
-// so that its name and version alone are not enough.
+// What decides the pixels besides the state. llvmpipe compiles shaders for the CPU it finds, so its
+// name and version alone are not enough.
 struct Rasterizer {
     std::string renderer; // GL_RENDERER
     std::string version;  // GL_VERSION
-    std::string cpu;      // those of its instruction sets that change results
+    std::string cpu;      // the CPU's instruction sets that change results
     friend bool operator==(const Rasterizer &, const Rasterizer &) = default;
 };
 
@@ -41,13 +41,13 @@ struct Rendering {
     std::uint64_t state_hash = 0;
     Rasterizer rasterizer;
     Image picture;
-    Image background; // the same view with nothing in it but planes
+    Image background; // the same view with only the planes in it
 };
 
-// Draws off screen, without multisampling. `without` leaves one body out of the picture, counted
-// among those that are drawn as shapes; not for a case with panels.
+// Draws off screen, without multisampling. `without` leaves out one body, counted among those drawn
+// as shapes; not for a case with panels.
 Rendering render(const Case &golden, std::optional<std::size_t> without = {});
-// How many bodies, or shapes of probes, are drawn as shapes.
+// How many bodies, or probe shapes, are drawn as shapes.
 std::size_t shape_count(const Case &golden);
 
 } // namespace plumb::golden

@@ -33,7 +33,7 @@ std::string hash_text(std::uint64_t hash) {
 std::optional<Record> read_record(const Case &golden) {
     if (!fs::exists(picture_path(golden)) && !fs::exists(sidecar_path(golden)))
         return {};
-    // The part of TOML that write_record uses: key = "value", one a line.
+    // The subset of TOML that write_record uses: key = "value", one per line.
     std::map<std::string, std::string> values;
     std::ifstream file(sidecar_path(golden));
     for (std::string line; std::getline(file, line);) {

@@ -1,4 +1,4 @@
-// A golden picture as it is kept: a PNG, and a sidecar that says of what and by what it was drawn.
+// A golden picture on disk: a PNG, and a sidecar that says what it shows and what drew it.
 #pragma once
 
 #include "tests/golden/golden_case.h"
@@ -20,7 +20,7 @@ std::filesystem::path picture_dir();
 std::filesystem::path picture_path(const Case &golden);
 std::filesystem::path sidecar_path(const Case &golden);
 
-// Nothing if there is no picture yet. Throws std::runtime_error when a file is there but broken.
+// nullopt if there is no picture yet. Throws std::runtime_error if a file is there but broken.
 std::optional<Record> read_record(const Case &golden);
 void write_record(const Case &golden, const Rendering &rendering);
 

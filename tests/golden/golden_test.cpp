@@ -1,5 +1,5 @@
-// Each golden picture against the present one. With PLUMB_BLESS=1 in the environment the present
-// ones are kept instead; tests/golden/bless does that.
+// Compares each golden picture with the current one. With PLUMB_BLESS=1 in the environment it keeps
+// the current ones instead; tests/golden/bless does that.
 #include "tests/golden/golden_record.h"
 #include "tests/golden/judge.h"
 #include "tests/golden/report.h"

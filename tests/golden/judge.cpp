@@ -4,22 +4,22 @@
 
 namespace plumb::golden {
 
-// Measured over all cases against llvmpipe of Mesa 22.3.6 on 256 bits with AVX2 and FMA, worst
+// Measured over all cases against llvmpipe of Mesa 22.3.6 on 256 bits with AVX2 and FMA; worst
 // case:
 //
 //                                               mean     99.8th percentile
 //   the same, SSE2 only                         0.002    0.03
 //   the same, no SSE at all                     0.006    0.11
 //   softpipe of Mesa 22.3.6                     0.019    0.10
-//   least of all that must fail (judge_test.cpp):
+//   smallest difference that must fail (judge_test.cpp):
 //     shifted by a pixel                        0.061    0.43
 //     without one body                          0.004    0.63
 //     another golden, or blank                  0.28     0.73
 //
-// A missing body of 210 is lost in the mean but not in the percentile, as it covers more than 0.2 %
-// of the foreground. Both limits lie midway between the spread and what must fail, on a logarithmic
-// scale. Polygons drawn as lines are not among the cases: softpipe draws them so differently that
-// no limit would hold (43 % of the foreground).
+// One missing body out of 210 is lost in the mean but not in the percentile, as it covers more than
+// 0.2 % of the foreground. Both limits lie midway, on a logarithmic scale, between the spread and
+// what must fail. No case draws polygons as lines: softpipe draws them so differently that no limit
+// would hold (43 % of the foreground).
 const OtherRasterizerLimits other_rasterizer_limits{0.035, 0.22, 0.998f};
 
 Tier tier_of(const Rasterizer &golden, const Rasterizer &present) {

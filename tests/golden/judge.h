@@ -1,4 +1,4 @@
-// When a picture counts as the golden one.
+// When a picture counts as matching the golden one.
 #pragma once
 
 #include "app/render/compare_images.h"
@@ -8,13 +8,13 @@
 
 namespace plumb::golden {
 
-// How closely to look: the rasterizer that drew the golden picture on the same kind of CPU, or
-// another one.
+// How strict to be: the rasterizer that drew the golden picture on the same kind of CPU, or another
+// one.
 enum class Tier { same_rasterizer, another_rasterizer };
 
 Tier tier_of(const Rasterizer &golden, const Rasterizer &present);
 
-// Of one channel of one pixel, 0..255: what one rasterizer's rounding explains.
+// Per channel of a pixel, 0..255: what one rasterizer's rounding explains.
 constexpr int same_rasterizer_limit = 2;
 
 struct OtherRasterizerLimits {
@@ -24,7 +24,7 @@ struct OtherRasterizerLimits {
 };
 extern const OtherRasterizerLimits other_rasterizer_limits;
 
-// The options that the limits hold for.
+// Compares with the options that the limits hold for.
 ImageDifference difference(const Image &expected, const Image &actual, const Image &background);
 bool within_limits(const ImageDifference &difference, Tier tier);
 
@@ -32,11 +32,11 @@ struct Verdict {
     enum class Kind { same, no_golden, another_state, another_picture };
     Kind kind = Kind::same;
     Tier tier = Tier::same_rasterizer;
-    ImageDifference difference; // only where both pictures are there
-    std::string text;           // what is to be said, in any case
+    ImageDifference difference; // only if both pictures exist
+    std::string text;           // the message, in any case
 };
 
-// The state first: only where it agrees is another picture the renderer's doing.
+// The state first: a picture difference is the renderer's doing only if the states agree.
 Verdict judge(const std::optional<Record> &golden, const Rendering &present);
 
 } // namespace plumb::golden

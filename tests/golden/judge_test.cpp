@@ -1,4 +1,4 @@
-// Limits that let another picture pass test nothing: everything here must fail, in both tiers.
+// Limits that let a different picture pass test nothing: everything here must fail, in both tiers.
 #include "tests/golden/judge.h"
 
 #include <algorithm>
@@ -149,7 +149,7 @@ TEST(GoldenJudge, TheSameRasterizerMayBeTwoOffAndNotThree) {
 TEST(GoldenJudge, EachPartOfARasterizersNameCounts) {
     const Rendering present = square();
     Record record = record_of(present);
-    // A little more than rounding, as another rasterizer has it.
+    // Slightly more than rounding, as another rasterizer would give.
     record.picture.set(0, 0, {203, 200, 200});
     for (std::string Rasterizer::*part :
          {&Rasterizer::renderer, &Rasterizer::version, &Rasterizer::cpu}) {

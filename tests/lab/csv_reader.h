@@ -1,4 +1,4 @@
-// Reads comma-separated values, for tests of what writes them.
+// Reads comma-separated values, for tests of code that writes them.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Ctrl-C at charts and maps: what was known stays known.
+// Ctrl-C during charts and maps: finished results are kept.
 #include "app/lab/chart/chart.h"
 #include "app/lab/csv.h"
 #include "app/lab/fingerprint.h"
@@ -43,7 +43,7 @@ std::string text_of(const fs::path &path) {
     return text.str();
 }
 
-// How many rows a table has of each method.
+// How many rows of a table belong to each method.
 std::map<std::string, int> rows_by_method(const std::string &table) {
     std::istringstream in(table);
     CsvReader rows(in);
@@ -68,8 +68,8 @@ class Interrupted : public testing::Test {
 
 class InterruptedChart : public Interrupted {
   protected:
-    // Makes so many simulations, and is interrupted as it makes one more. Returns how many it made
-    // to their end. One of two shards, as those have no pictures.
+    // Makes `until` simulations, and is interrupted while making the next. Returns how many it
+    // finished. One of two shards, as shards have no pictures.
     int chart(const std::vector<std::string> &scenes, const std::vector<std::string> &methods,
               int until = 1000) {
         int made = 0;
@@ -103,15 +103,15 @@ TEST_F(InterruptedChart, GoesOnWithEveryScene) {
     EXPECT_EQ(rows_by_method(text_of(table("a"))), (Rows{{"soft_step", 2}}));
     EXPECT_FALSE(fs::exists(table("b")));
     EXPECT_NE(err_.str().find("interrupted; rows so far: "), std::string::npos) << err_.str();
-    // Neither what is done nor what comes first is run again.
+    // Neither the finished scene nor the first row of the other is run again.
     EXPECT_EQ(chart({"a", "b"}, {"soft_step"}), 1);
     EXPECT_EQ(rows_by_method(text_of(table("b"))), (Rows{{"soft_step", 2}}));
     EXPECT_FALSE(fs::exists(partial("a")));
     EXPECT_FALSE(fs::exists(partial("b")));
-    EXPECT_EQ(chart({"a", "b"}, {"soft_step"}), 4); // anew
+    EXPECT_EQ(chart({"a", "b"}, {"soft_step"}), 4); // from scratch
 }
 
-// Its accurate run is run again, but no row.
+// Its accurate run is repeated, but no row is.
 TEST_F(Interrupted, AChartOfSingleStepsGoesOn) {
     ChartCommand command;
     command.scenes = {folder_ / "a.toml"};
@@ -122,7 +122,7 @@ TEST_F(Interrupted, AChartOfSingleStepsGoesOn) {
     command.options.repeats = 1;
     command.options.shard = {1, 2};
     command.out_dir = folder_;
-    std::set<int> made; // substeps, of Stormer-Verlet
+    std::set<int> made; // substeps of Stormer-Verlet
     bool interrupts = true;
     command.options.make = [&](const SceneDesc &scene, const RunOptions &options) {
         if (interrupts && options.method == "rk4")
@@ -172,7 +172,7 @@ TEST_F(InterruptedChart, FollowsLinks) {
 
 class InterruptedMap : public Interrupted {
   protected:
-    // Is interrupted after so many cells that were not known.
+    // Interrupted after `until` cells that were not known yet.
     void map(const std::vector<std::string> &methods, std::size_t until = 1000) {
         MapCommand command;
         command.scene = folder_ / "a.toml";
@@ -220,7 +220,7 @@ TEST(PartialTable, KeepsItsOwnProgramsRowsAlone) {
     const std::vector<std::string> key{"key", "made_by"};
     EXPECT_EQ(table.rows_not_in(head + "2,new," + own + "\n", key, "made_by"),
               "1,\"x\"\"y\"," + own + "\n");
-    EXPECT_EQ(table.rows_not_in("key,made_by\n", key, "made_by"), ""); // another table
+    EXPECT_EQ(table.rows_not_in("key,made_by\n", key, "made_by"), ""); // a different table
     table.keep_only("2,z," + own + "\n");
     EXPECT_EQ(text_of(place), head + "2,z," + own + "\n");
     table.keep_only("");

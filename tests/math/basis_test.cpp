@@ -38,7 +38,7 @@ Wide any_perpendicular(Random &random, const Wide &n) {
     return glm::normalize(glm::cross(n, any_direction(random)));
 }
 
-// The largest error of unit length, of right angles, and of handedness.
+// The largest error in unit length, orthogonality and handedness.
 double orthonormal_error(const Wide &n, const TangentBasis &basis) {
     const Wide t1 = wide(basis.t1);
     const Wide t2 = wide(basis.t2);
@@ -51,7 +51,7 @@ double orthonormal_error(const Wide &n, const TangentBasis &basis) {
 }
 
 // A reflection along w = n - pole: rounding n and the fixed frame to `Real` turns w by epsilon /
-// |w|, and the basis by twice that; a dozen more roundings for the arithmetic.
+// |w|, and the basis by twice that. Add a dozen roundings for the arithmetic.
 double tolerance(const Wide &n) {
     const double w = double(glm::length(n - pole));
     return 12 * epsilon + 4 * epsilon / w;
@@ -72,8 +72,8 @@ TEST(TangentBasis, OrthonormalAndRightHanded) {
         }
 }
 
-// Down to the pole itself. Nearest to it the reflection and the fallback are equally wrong: where
-// epsilon / |w| = |w|.
+// Down to the pole itself. The worst is where the errors of the reflection and the fallback are
+// equal, epsilon / |w| = |w|.
 TEST(TangentBasis, OrthonormalNearThePole) {
     Random random(2);
     const double worst = 4 * std::sqrt(epsilon);
@@ -89,7 +89,7 @@ TEST(TangentBasis, OrthonormalNearThePole) {
     EXPECT_LE(orthonormal_error(wide(n), tangent_basis(n)), worst);
 }
 
-// Along great circles. H = 1 - 2 w w^T / w^2 turns by at most 2 |dn| / |w|.
+// Along great circles: H = 1 - 2 w w^T / w^2 turns by at most 2 |dn| / |w|.
 TEST(TangentBasis, ContinuousAwayFromThePole) {
     Random random(3);
     const int steps = 2000;

@@ -1,5 +1,5 @@
-// What the engine takes from GLM as it is, held against wide arithmetic and against the conventions
-// that the rest relies on: columns, right-handed, clip space from -w to w.
+// What the engine uses of GLM unchanged, against wide arithmetic and the conventions the rest
+// relies on: columns, right-handed, clip space from -w to w.
 #include "engine/core/random.h"
 #include "engine/math/types.h"
 #include "tests/trials.h"
@@ -60,7 +60,7 @@ TEST(Glm, VectorsComponentByComponentDotCrossAndLength) {
     }
 }
 
-// By permutations, not by cofactors.
+// Summed over permutations, not by cofactors.
 template <int N, typename Matrix> long double determinant(const Matrix &m) {
     std::array<int, N> order{};
     for (int i = 0; i < N; ++i)
@@ -109,7 +109,7 @@ template <int N, typename Matrix, typename Vector> void check_matrices(std::uint
             }
         }
         ASSERT_EQ(a * Matrix(Real(1)), a);
-        // Each of the N! products is at most 10^N, and rounded N times.
+        // Each of the N! products is at most 10^N and is rounded N times.
         const double size = std::tgamma(N + 1) * std::pow(10.0, N);
         ASSERT_NEAR(static_cast<double>(glm::determinant(a)),
                     static_cast<double>(determinant<N>(a)),
@@ -132,7 +132,7 @@ TEST(Glm, TranslationScaleAndRotationActInOrder) {
     EXPECT_EQ(Vec3(moved * Vec4(5, 5, 5, 1)), Vec3(6, 7, 8));
     EXPECT_EQ(Vec3(moved * Vec4(5, 5, 5, 0)), Vec3(5, 5, 5));          // a direction
     EXPECT_EQ(Vec3(moved * scaled * Vec4(1, 1, 1, 1)), Vec3(3, 5, 7)); // scale first
-    // A quarter turn about y carries z to x.
+    // A quarter turn about y takes z to x.
     const Mat4 turned =
         glm::rotate(Mat4(Real(1)), static_cast<Real>(std::acos(0.0L)), Vec3{0, 1, 0});
     const Vec3 image(turned * Vec4(0, 0, 1, 1));

@@ -19,7 +19,7 @@ namespace {
 using W = long double;
 constexpr W epsilon = std::numeric_limits<Real>::epsilon();
 
-// A determinant by all permutations, and with all products positive.
+// Sums over all permutations: with signs, and of absolute products.
 template <typename Number> struct Sums {
     Number determinant = 0;
     Number permanent = 0;
@@ -30,7 +30,8 @@ template <typename Number> struct Square {
     std::size_t size = 0;
 };
 
-// Adds the products that begin with `product`, of columns up to `column` and rows `used`.
+// Adds all products that extend `product`, which covers the columns before `column` and the rows in
+// `used`.
 template <typename Number>
 void permute(const Square<Number> &m, std::size_t column, unsigned used, Number product,
              bool is_odd, Sums<Number> &sums) {
@@ -55,7 +56,7 @@ template <typename Number> Sums<Number> by_permutations(const Square<Number> &m)
 
 template <int N> using Matrix = glm::mat<N, N, Real, glm::defaultp>;
 
-// What is left of m without a column and a row; all of it without those before the first.
+// m without one column and one row; an index of -1 removes nothing.
 template <typename Number, int N> Square<Number> without(const Matrix<N> &m, int column, int row) {
     Square<Number> rest;
     for (int j = 0; j < N; ++j) {
@@ -70,8 +71,8 @@ template <typename Number, int N> Square<Number> without(const Matrix<N> &m, int
     return rest;
 }
 
-// Minors, cofactors and adjugates of whole numbers are exact; what is singular is called so, and
-// what is not has its inverse.
+// Minors, cofactors and adjugates of integer matrices are exact; try_inverse fails exactly for the
+// singular ones.
 template <int N> void expect_whole_numbers_exact(std::uint64_t seed, int reach, int count) {
     Random random(seed);
     int singular = 0;
@@ -137,7 +138,7 @@ template <int N> void expect_inverse_within_bound(std::uint64_t seed, int count)
         const Sums<W> whole = by_permutations(without<W, N>(m, -1, -1));
         const W certainty = std::abs(whole.determinant) / (epsilon * whole.permanent);
         const auto inverse = try_inverse(m);
-        // The stated threshold is 16; the measure itself is known to a few epsilon.
+        // The documented threshold is 16; the measure itself is accurate to a few epsilon.
         if (certainty > W(24)) {
             ASSERT_TRUE(inverse.has_value()) << N << ", trial " << trial;
         } else if (certainty < W(8)) {
@@ -186,7 +187,7 @@ TEST(Matrices, SmallAndHugeEntriesAreNotSingular) {
     EXPECT_FALSE(try_inverse(Mat3{Real(0)}).has_value());
     uneven[1][2] = std::numeric_limits<Real>::quiet_NaN();
     EXPECT_FALSE(try_inverse(uneven).has_value());
-    // Of the determinant of this one nothing is left but roundings, in float and in double.
+    // This one's determinant is pure rounding error, in float and in double.
     const Mat3 counted{Vec3{Real(0.1), Real(0.2), Real(0.3)}, Vec3{Real(0.4), Real(0.5), Real(0.6)},
                        Vec3{Real(0.7), Real(0.8), Real(0.9)}};
     EXPECT_FALSE(try_inverse(counted).has_value());

@@ -19,9 +19,9 @@ int sign_of(const Rational &value) {
     return value.sign();
 }
 
-// The oracle for the multitude: a long double whose error cannot reach `value` decides, and only
-// the rest is left to rationals. `size` is a sum of magnitudes that bounds all intermediate ones,
-// and the error is below 2^-64 a rounding, of which there are fewer than 32.
+// The oracle for most trials: a long double decides if its error cannot reach `value`, and only the
+// rest need rationals. `size` is a sum of magnitudes that bounds all intermediate values; each of
+// fewer than 32 roundings adds an error below 2^-64.
 template <typename Exactly>
 int sign_by(long double value, long double size, const Exactly &exactly) {
     if (std::abs(value) > 0x1p-59L * size)
@@ -46,7 +46,7 @@ int true_orient2d(const Vec2 &a, const Vec2 &b, const Vec2 &c) {
     const long double left = (wide(b.x) - wide(a.x)) * (wide(c.y) - wide(a.y));
     const long double right = (wide(b.y) - wide(a.y)) * (wide(c.x) - wide(a.x));
     return sign_by(left - right, std::abs(left) + std::abs(right), [&] {
-        // The area as a sum over the corners, where the engine takes differences first.
+        // The area as a sum over the corners; the engine takes differences first.
         const Rational2 p = rational(a), q = rational(b), r = rational(c);
         return Rational(p.x * q.y - p.y * q.x + q.x * r.y - q.y * r.x + r.x * p.y - r.y * p.x);
     });
@@ -113,11 +113,11 @@ int true_line_ball_sign(const Vec3 &center, Real radius, const Vec3 &origin, con
     const long double mm = m.x * m.x + m.y * m.y + m.z * m.z;
     const long double dd = d.x * d.x + d.y * d.y + d.z * d.z;
     const long double r = wide(radius);
-    // The moment is as far off as |m| |d| is large, and is compared by its square.
+    // The moment's error scales with |m| |d|, and the comparison uses its square.
     return sign_by(r * r * dd - (x * x + y * y + z * z),
                    dd * (r * r + 2 * r * std::sqrt(mm) + 0x1p-59L * mm), [&] {
-                       // The distance of the centre from its foot on the line, where the engine
-                       // takes the moment.
+                       // The centre's distance from its foot on the line; the engine uses the
+                       // moment.
                        const Rational3 p = rational(center) - rational(origin);
                        const Rational3 q = rational(to) - rational(from);
                        const Rational squared = dot(q, q), along = dot(p, q);
@@ -126,9 +126,9 @@ int true_line_ball_sign(const Vec3 &center, Real radius, const Vec3 &origin, con
                    });
 }
 
-__extension__ typedef __float128 Quad; // of 113 bits
+__extension__ typedef __float128 Quad; // 113 bits
 
-// (b - a) x (d - c), to a relative 1e-16 of its greatest component; {0, 0, 0} just when it is zero.
+// (b - a) x (d - c), to 1e-16 relative to its largest component; {0, 0, 0} exactly when it is zero.
 glm::dvec3 true_cross(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
     const auto magnitude = [](Quad x) { return x < 0 ? -x : x; };
     Quad n[3], size = 0, greatest = 0;
@@ -148,8 +148,8 @@ glm::dvec3 true_cross(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d
             exact.z.convert_to<double>()};
 }
 
-// Coordinates of every kind: small whole numbers, ordinary ones of one size, sizes over many
-// orders, zeros of both signs.
+// Coordinates of every kind: small integers, ordinary ones of one size, sizes over many orders of
+// magnitude, zeros of both signs.
 Real any_coordinate(Random &random, std::uint32_t kind) {
     switch (kind) {
     case 0:
@@ -172,7 +172,7 @@ Vec3 any_point(Random &random, std::uint32_t kind) {
             any_coordinate(random, kind)};
 }
 
-// Up to two steps away; from zero a step within the range.
+// Up to two ulps away; from zero, a step within the supported range.
 Real nudged(Random &random, Real value) {
     if (value == Real(0))
         return random.next_index(3) == 0 ? Real(1e-20) : value;
@@ -192,7 +192,7 @@ TEST(Predicates, ProductDifference) {
         const std::uint32_t kind = random.next_index(5);
         const Real a = any_coordinate(random, kind), b = any_coordinate(random, kind);
         Real c = any_coordinate(random, kind), d = any_coordinate(random, kind);
-        if (trial % 2 == 0) { // nearly the same product
+        if (trial % 2 == 0) { // nearly equal products
             c = nudged(random, a * Real(2));
             d = nudged(random, b / Real(2));
         }
@@ -230,7 +230,7 @@ TEST(Predicates, OrientInThePlane) {
         };
         const Vec2 a = point(), b = point();
         Vec2 c = point();
-        if (trial % 2 == 0) { // on the line, but for rounding
+        if (trial % 2 == 0) { // on the line, up to rounding
             const Real s = static_cast<Real>(random.next_in(-1.0, 2.0));
             c = {nudged(random, a.x + s * (b.x - a.x)), nudged(random, a.y + s * (b.y - a.y))};
         }
@@ -254,7 +254,7 @@ TEST(Predicates, OrientInSpace) {
         const Vec3 a = any_point(random, kind), b = any_point(random, kind),
                    c = any_point(random, kind);
         Vec3 d = any_point(random, kind);
-        if (trial % 4 == 0) { // in the plane, but for rounding
+        if (trial % 4 == 0) { // in the plane, up to rounding
             const Real s = static_cast<Real>(random.next_in(-1.0, 2.0));
             const Real t = static_cast<Real>(random.next_in(-1.0, 2.0));
             d = nudged(random, a + s * (b - a) + t * (c - a));
@@ -276,7 +276,7 @@ TEST(Predicates, OrientInSpace) {
     EXPECT_GT(zeros, trials(1'000'000) / 100);
 }
 
-// Nearly parallel vectors, whose cross product cancels all its digits.
+// Nearly parallel vectors, whose cross product cancels completely.
 TEST(Predicates, LinesAndBalls) {
     Random random(17);
     int zeros[3] = {};
@@ -286,7 +286,7 @@ TEST(Predicates, LinesAndBalls) {
         const Vec3 a = any_point(random, kind), b = any_point(random, kind),
                    c = any_point(random, kind);
         Vec3 d = any_point(random, kind);
-        if (trial % 4 == 0) // across
+        if (trial % 4 == 0) // nearly perpendicular
             d = nudged(random, c + glm::cross(b - a, any_point(random, 1)));
         const int dot = dot_sign(a, b, c, d);
         ASSERT_EQ(dot, true_dot_sign(a, b, c, d)) << "trial " << trial;
@@ -323,7 +323,7 @@ TEST(Predicates, AccurateCross) {
         const bool is_zero = truth == glm::dvec3(0.0);
         ASSERT_EQ(answer == glm::dvec3(0.0), is_zero) << "trial " << trial;
         zeros += is_zero;
-        // Scaled, as the squares of the smallest would vanish.
+        // Scaled, because the squares of the smallest would underflow.
         const double size =
             std::max({std::abs(truth.x), std::abs(truth.y), std::abs(truth.z), 1e-300});
         ASSERT_LE(glm::length((answer - truth) / size),
@@ -337,7 +337,7 @@ TEST(Predicates, AccurateCross) {
     EXPECT_GT(cancelled, trials(1'000'000) / 10);
 }
 
-// Coordinates from one end of the stated range to the other in one determinant.
+// Coordinates from both ends of the supported range in one determinant.
 TEST(Predicates, TheWholeRange) {
     Random random(15);
     const double low = sizeof(Real) == 4 ? -44.0 : -80.0, high = sizeof(Real) == 4 ? 38.0 : 90.0;
@@ -366,7 +366,7 @@ TEST(Predicates, TheWholeRange) {
     }
 }
 
-// Products of four.
+// Products of four factors.
 TEST(Predicates, TheWholeRangeOfLinesAndBalls) {
     Random random(18);
     const double low = sizeof(Real) == 4 ? -44.0 : -60.0, high = sizeof(Real) == 4 ? 38.0 : 70.0;

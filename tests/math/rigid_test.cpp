@@ -30,7 +30,7 @@ WM widened(const Mat3 &m) {
     return {widened(m[0]), widened(m[1]), widened(m[2])};
 }
 
-// q v q*, for q of any length, in wider numbers.
+// q v q* for q of any length, in long double.
 W3 turned(const Quat &q, const W3 &v) {
     const W3 u{W(q.x), W(q.y), W(q.z)};
     const W w = W(q.w), squared = w * w + glm::dot(u, u);
@@ -39,7 +39,7 @@ W3 turned(const Quat &q, const W3 &v) {
            squared;
 }
 
-// A turn about a coordinate axis, as a matrix, in wider numbers.
+// A rotation about a coordinate axis as a matrix, in long double.
 WM turn_about(int axis, W angle) {
     WM m{W(1)};
     const int j = (axis + 1) % 3, k = (axis + 2) % 3;
@@ -126,7 +126,7 @@ TEST(Rigid, Orthonormalized) {
             m[j] = (m[j] + drift * any_vector(random, 1)) *
                    Real(std::pow(10.0, random.next_in(-10, 10)));
         const std::uint32_t kind = random.next_index(8);
-        if (kind == 0) // the second column nearly along the first, or just along it
+        if (kind == 0) // second column nearly or exactly parallel to the first
             m[1] = m[0] * Real(random.next_in(-2, 2)) +
                    m[1] *
                        (Real(std::pow(10.0, random.next_in(-9, -2))) * glm::length(m[0]) /
@@ -142,7 +142,8 @@ TEST(Rigid, Orthonormalized) {
         }
         const WM q = widened(*axes);
         ASSERT_LE(largest_difference(glm::transpose(q) * q, WM{W(1)}), 4 * epsilon) << trial;
-        // The first keeps its direction, the second its plane and side, all their handedness.
+        // The first axis keeps its direction, the second its plane and side, all three their
+        // handedness.
         ASSERT_LE(glm::length(q[0] - glm::normalize(widened(m[0]))), 4 * epsilon);
         const W3 second = glm::normalize(widened(m[1]));
         ASSERT_LE(std::abs(glm::dot(second, q[2])), 4 * epsilon) << trial;
@@ -165,7 +166,7 @@ TEST(Rigid, DecomposeGivesTheSameMatrix) {
         const auto found = decompose(m);
         ASSERT_TRUE(found.has_value()) << trial;
         ASSERT_EQ(found->position, parts.position);
-        // Mirrored or not, and the sizes.
+        // Mirroring goes into scale.x.
         const bool is_mirrored = parts.scale.x * parts.scale.y * parts.scale.z < Real(0);
         ASSERT_EQ(found->scale.x < Real(0), is_mirrored);
         ASSERT_GT(found->scale.y, Real(0));
@@ -201,7 +202,7 @@ TEST(Euler, ThereAndBack) {
                            Real(random.next_in(-1.570796, 1.570796)),
                            Real(random.next_in(-3.14159, 3.14159))};
         const std::uint32_t kind = random.next_index(4);
-        if (kind == 0) // near the lock
+        if (kind == 0) // near gimbal lock
             angles.pitch = Real((random.next_index(2) == 0 ? 1.0 : -1.0) *
                                 (1.5707963267948966 - std::pow(10.0, random.next_in(-20, -1))));
         if (kind == 1)
@@ -214,12 +215,12 @@ TEST(Euler, ThereAndBack) {
         ASSERT_LE(std::abs(W(found.yaw)), pi * (1 + epsilon));
         ASSERT_LE(std::abs(W(found.roll)), pi * (1 + epsilon));
         ASSERT_LE(std::abs(W(found.pitch)), pi / 2 * (1 + epsilon));
-        // Whatever the angles, they make the rotation again.
+        // Whatever the angles, they reproduce the rotation.
         const WM again = turn_about(1, W(found.yaw)) * turn_about(0, W(found.pitch)) *
                          turn_about(2, W(found.roll));
         ASSERT_LE(largest_difference(again, exact), 24 * epsilon)
             << trial << " pitch " << angles.pitch;
-        // Away from the lock they are the same angles, to what the rotation's roundings are worth.
+        // Away from gimbal lock they are the same angles, up to the rotation's rounding.
         const W from_lock = pi / 2 - std::abs(W(angles.pitch));
         const W bound = 16 * epsilon / std::min(W(1), from_lock);
         if (from_lock > W(0) && bound < W(0.1)) {
@@ -230,7 +231,7 @@ TEST(Euler, ThereAndBack) {
     }
     const Real half_turn = Real(pi / 2);
     const EulerAngles up = euler_angles(rotation_of(EulerAngles{Real(1), half_turn, Real(0.25)}));
-    EXPECT_EQ(up.roll, Real(0)); // locked: yaw - roll is all there is
+    EXPECT_EQ(up.roll, Real(0)); // locked: only yaw - roll is defined
     EXPECT_NEAR(double(up.yaw), 0.75, 8 * double(epsilon));
     const EulerAngles down =
         euler_angles(rotation_of(EulerAngles{Real(1), -half_turn, Real(0.25)}));
@@ -262,7 +263,7 @@ TEST(AxisAngle, ThereAndBack) {
         const AxisAngle found = axis_angle(random.next_index(2) == 0 ? q : -q);
         ASSERT_GE(found.angle, Real(0));
         ASSERT_LE(W(found.angle), pi * (1 + epsilon));
-        // At nearly half a turn roundings may choose the other axis; else each to its last places.
+        // Near half a turn, rounding may flip the axis; otherwise both agree to their last places.
         const W3 found_axis = widened(found.axis);
         const bool is_same = glm::dot(found_axis, unit) > W(0);
         ASSERT_TRUE(is_same || W(angle) > pi - 8 * epsilon) << trial;

@@ -10,7 +10,7 @@
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
-// How far A x is from the side that was solved for.
+// The largest component of the residual b - A x.
 double residual(const std::vector<MatrixEntry> &entries, const std::vector<double> &x,
                 std::vector<double> side) {
     for (const auto &[row, column, value] : entries) {
@@ -24,7 +24,7 @@ double residual(const std::vector<MatrixEntry> &entries, const std::vector<doubl
     return worst;
 }
 
-// Masses of 1 on springs between neighbours of a grid and some others at random.
+// Unit masses on springs between grid neighbours, and between a few random pairs.
 std::vector<MatrixEntry> net(Random &random, int n) {
     std::vector<MatrixEntry> entries;
     const auto join = [&](int a, int b) {
@@ -64,7 +64,7 @@ TEST(SparseCholesky, SolvesNets) {
     }
 }
 
-// What was arranged before has no part in a solution.
+// Matrices factored earlier do not affect a solution.
 TEST(SparseCholesky, ForgetsOtherMatrices) {
     Random random(2);
     const std::vector<MatrixEntry> entries = net(random, 6);

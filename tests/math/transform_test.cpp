@@ -48,7 +48,7 @@ Quat any_rotation(Random &random) {
     }
 }
 
-// Two cross products, three sums and a product, each a rounding of a value of at most 4 |v|.
+// Two cross products, three sums and a product, each rounding a value of at most 4 |v|.
 TEST(Rotated, AgainstTheRotationMatrix) {
     Random random(1);
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
@@ -60,8 +60,8 @@ TEST(Rotated, AgainstTheRotationMatrix) {
     }
 }
 
-// The length depends on a quaternion's own length to second order only where it is exact; GLM's
-// product is off by twice the quaternion's error.
+// rotated() divides by the quaternion's squared length, so it keeps lengths whatever that is; GLM's
+// product is off by twice the error of the quaternion's length.
 TEST(Rotated, LengthIsKeptByAQuaternionThatIsNotOfUnitLength) {
     Random random(2);
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
@@ -74,8 +74,8 @@ TEST(Rotated, LengthIsKeptByAQuaternionThatIsNotOfUnitLength) {
     }
 }
 
-// A vector turned there and back many times: no bias, so the roundings (each at most 12 epsilon)
-// do not all point one way. A tenth of the worst case is far more than a random walk.
+// A vector rotated there and back many times. Without bias the roundings (each at most 12 epsilon)
+// do not all point one way; a tenth of the worst case is far more than a random walk.
 TEST(Rotated, ThereAndBackManyTimes) {
     Random random(3);
     const int turns = 10000;
@@ -88,8 +88,8 @@ TEST(Rotated, ThereAndBackManyTimes) {
     EXPECT_NEAR(double(glm::length(wide(v))), before, 0.1 * turns * 12 * epsilon * before);
 }
 
-// Each way is a turn (12 roundings of up to |v|) and a sum; the quaternion's own error of length,
-// at most 2 epsilon, scales the vector by twice that each way.
+// Each way is a rotation (12 roundings of up to |v|) and a sum; the quaternion's length error, at
+// most 2 epsilon, scales the vector by twice that each way.
 TEST(Transform, RoundTrips) {
     Random random(4);
     for (int trial = 0; trial < trials(1'000'000); ++trial) {

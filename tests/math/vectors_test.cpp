@@ -23,7 +23,7 @@ W3 widened(const Vec3 &v) {
     return {W(v.x), W(v.y), W(v.z)};
 }
 
-// Any direction, with a length of any power of ten, some components zero, -0 or tiny.
+// Any direction, any order of magnitude, some components 0, -0 or tiny.
 Vec3 any_vector(Random &random, double low, double high) {
     const double length = std::pow(10.0, random.next_in(low, high));
     Vec3 v{Real(random.next_in(-1, 1) * length), Real(random.next_in(-1, 1) * length),
@@ -62,7 +62,7 @@ TEST(Normalized, AnyLength) {
         const W largest = std::max({std::abs(w.x), std::abs(w.y), std::abs(w.z)});
         const W3 scaled = w / largest;
         const W3 exact = scaled / std::sqrt(glm::dot(scaled, scaled));
-        for (int i = 0; i < 3; ++i) // each component to its own last places
+        for (int i = 0; i < 3; ++i) // each component to its last places
             ASSERT_LE(std::abs(W((*unit)[i]) - exact[i]),
                       3 * epsilon * std::abs(exact[i]) + std::numeric_limits<Real>::denorm_min())
                 << "trial " << trial;
@@ -76,7 +76,7 @@ TEST(Normalized, AnyLength) {
     EXPECT_EQ(*normalized<2>(Vec2{Real(3), Real(-4)}), (Vec2{Real(0.6), Real(-0.8)}));
 }
 
-// What has diverged has no direction, and is no mistake either.
+// A diverged vector has no direction, but normalizing it is no error.
 TEST(Normalized, WhatIsNotFiniteStaysSo) {
     constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
     constexpr Real infinity = std::numeric_limits<Real>::infinity();
@@ -90,8 +90,8 @@ TEST(Normalized, WhatIsNotFiniteStaysSo) {
         }
 }
 
-// Vectors of whole numbers at tiny angles to each other: their cross and dot products are exact in
-// whole numbers, of 128 bits where 64 do not do.
+// Integer vectors at tiny angles to each other: their cross and dot products are exact in integers,
+// 128 bits where 64 are too few.
 __extension__ typedef __int128 Int; // NOLINT(modernize-use-using): __extension__ needs it
 struct Int3 {
     std::int64_t x = 0, y = 0, z = 0;
@@ -108,7 +108,7 @@ Int3 any_whole(Random &random, int of_bits) {
 Vec3 real(const Int3 &v) {
     return {Real(v.x), Real(v.y), Real(v.z)};
 }
-// In wider numbers, without rounding before the end.
+// In long double, rounded only at the end.
 W exact_angle(const Int3 &a, const Int3 &b) {
     const W x = W(Int(a.y) * b.z - Int(a.z) * b.y), y = W(Int(a.z) * b.x - Int(a.x) * b.z),
             z = W(Int(a.x) * b.y - Int(a.y) * b.x);
@@ -121,7 +121,7 @@ TEST(AngleBetween, AccurateNearZeroAndPi) {
     W worst = 0;
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Int3 a = any_whole(random, bits - 1);
-        // A multiple of a with its last bits changed, forwards or backwards; or anything.
+        // a or -a with some low bits changed, few or nearly all.
         const std::int64_t sign = random.next_index(2) == 0 ? 1 : -1;
         const Int3 noise = any_whole(random, int(random.next_index(std::uint32_t(bits - 1))));
         Int3 b{sign * a.x + noise.x, sign * a.y + noise.y, sign * a.z + noise.z};
@@ -131,7 +131,7 @@ TEST(AngleBetween, AccurateNearZeroAndPi) {
         const W exact = exact_angle(a, b);
         const W angle = W(angle_between(real(a) * std::ldexp(Real(1), power), real(b)));
         ASSERT_GE(angle, W(0));
-        // A few units in the last place of the angle, however small; and near pi, of pi.
+        // A few ulps of the angle, however small, and near pi a few ulps of pi.
         ASSERT_LE(std::abs(angle - exact), 4 * epsilon * exact) << "trial " << trial;
         worst = std::max(worst, std::abs(angle - exact) / (epsilon * exact));
         const Int3 flat_a{a.x, a.y, 0}, flat_b{b.x, b.y, 0};
@@ -172,7 +172,7 @@ TEST(ProjectionAndReflection, PartsAddUpAndAreAtRightAngles) {
     for (int trial = 0; trial < trials(1'000'000); ++trial) {
         const Vec3 v = any_vector(random, -6, 6);
         Vec3 axis = any_vector(random, -12, 12);
-        if (random.next_index(4) == 0) // nearly along v
+        if (random.next_index(4) == 0) // nearly parallel to v
             axis = v + Real(std::pow(10.0, random.next_in(-8, -1))) * glm::length(v) *
                            normalized_or<3>(axis, Vec3{Real(0)});
         const W3 w = widened(v), n = widened(axis);
@@ -188,7 +188,7 @@ TEST(ProjectionAndReflection, PartsAddUpAndAreAtRightAngles) {
         const W3 along = n * (glm::dot(w, n) / squared);
         ASSERT_LE(glm::length(p - along), 4 * epsilon * length) << "trial " << trial;
         ASSERT_LE(glm::length(r - (w - W(2) * along)), 8 * epsilon * length) << "trial " << trial;
-        // The rejection is as accurate as it is long, where that is more than the wider numbers'
+        // The rejection is accurate relative to its own length, down to the long double oracle's
         // own rounding.
         const W3 across = w - along;
         const W slack = 64 * std::numeric_limits<W>::epsilon() * length;

@@ -48,7 +48,7 @@ TEST(Camera, YawZeroLooksFromPlusZAndPositivePitchLooksDown) {
     expect_near(camera_at(std::numbers::pi_v<float> / 2, 0).eye(), {8, 2, -3}, 1e-5f);
 }
 
-// A few roundings of numbers up to 10 in single precision.
+// A few round-offs of numbers up to 10 in single precision.
 constexpr float rounding = 1e-5f;
 
 TEST(Camera, MatricesAreThoseOfGlm) {
@@ -81,12 +81,12 @@ TEST(Camera, ProjectAgreesWithTheMatricesAndUnprojectUndoesIt) {
             if (clip.w < 1)
                 continue;
             const glm::vec3 seen = camera.project(glm::vec3(world), viewport);
-            // Pixels: single precision of a thousand, times the spread at a depth of 1 metre.
+            // Pixels: single-precision round-off at a thousand, times the spread at a depth of 1 m.
             EXPECT_NEAR(static_cast<double>(seen.x), (clip.x / clip.w + 1) / 2 * 1280, 0.02);
             EXPECT_NEAR(static_cast<double>(seen.y), (1 - clip.y / clip.w) / 2 * 720, 0.02);
             EXPECT_NEAR(static_cast<double>(seen.z), (clip.z / clip.w + 1) / 2, 1e-6);
-            // One rounding of depth next to 1 is 6e-8; it moves the point by depth^2 / near times
-            // as much: at most 15^2 / 0.07 * 6e-8 = 2e-4 metres, twice for both ways.
+            // One round-off of depth near 1 is 6e-8 and moves the point by depth^2 / near times
+            // that: at most 15^2 / 0.07 * 6e-8 = 2e-4 metres, twice for the round trip.
             expect_near(camera.unproject(seen, viewport), glm::vec3(world), 4e-4f);
         }
     }
@@ -153,7 +153,7 @@ TEST(Camera, FrameShowsTheWholeSphereAndLittleElse) {
         Camera camera = camera_at(0.7f, 0.5f);
         camera.frame({4, 5, 6}, 2, side);
         EXPECT_EQ(camera.target, glm::vec3(4, 5, 6));
-        // The cone that touches the sphere, against half the square.
+        // The cone tangent to the sphere, against half the square.
         const float cone = std::asin(2 / camera.distance);
         const float half = std::atan(std::tan(camera.fov / 2) * side);
         EXPECT_LT(cone, half);
@@ -164,8 +164,8 @@ TEST(Camera, FrameShowsTheWholeSphereAndLittleElse) {
     EXPECT_GT(camera.distance, 0);
 }
 
-// A camera that looks through a part of the picture shows in it what one of the same field of view
-// shows in a picture of that size.
+// A camera that looks through a part of the picture shows there what a camera of the same field of
+// view shows in a picture of that size.
 TEST(Camera, LooksThroughAPartOfThePicture) {
     const glm::vec2 corner{300, 40};
     const glm::vec2 size{600, 500};

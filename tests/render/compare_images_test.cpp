@@ -26,7 +26,7 @@ double linear_light(double s) {
     return s > 0.04045 ? std::pow((s + 0.055) / 1.055, 2.4) : s / 12.92;
 }
 
-// The published sRGB primaries and the white that they add up to.
+// The published sRGB primaries and the white they add up to.
 const glm::dmat3 to_xyz{{0.4123908, 0.2126390, 0.0193308},
                         {0.3575843, 0.7151687, 0.1191948},
                         {0.1804808, 0.0721923, 0.9505322}};
@@ -153,7 +153,7 @@ Image blobs(std::uint64_t seed, int width, int height) {
     return image;
 }
 
-// Single precision leaves luminances about 1e-7 off; the feature error takes a square root of that.
+// Single precision is off by about 1e-7 in luminance; the feature error takes its square root.
 constexpr double flip_tolerance = 2e-3;
 
 TEST(CompareImages, FlipIsItsDefinition) {
@@ -246,7 +246,7 @@ TEST(CompareImages, SharesAreOfThePixelsThatAreNotBackground) {
     Image a = background;
     Image b = background;
     for (int x = 0; x < 8; ++x)
-        a.set(x, 2, {200, 0, 0}); // in both, but for two
+        a.set(x, 2, {200, 0, 0}); // in both images, except for two pixels
     for (int x = 2; x < 8; ++x)
         b.set(x, 2, {200, 0, 0});
     b.set(19, 9, {51, 61, 71}); // within rounding: still background

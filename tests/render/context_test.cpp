@@ -8,7 +8,7 @@
 namespace plumb {
 namespace {
 
-// Each test of this program runs in a process of its own under ctest; under none, later ones do not
+// Under ctest each test of this program runs in its own process; without ctest, later tests do not
 // need a display either.
 void hide_displays() {
     unsetenv("DISPLAY");

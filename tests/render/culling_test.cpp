@@ -29,7 +29,7 @@ DrawShape any_shape(Random &random, double reach) {
     return shape;
 }
 
-// Whether the shape's middle is in the picture, by its projection: then it must be drawn.
+// Whether the shape's centre projects into the picture: then it must be drawn.
 bool is_projected_inside(const glm::mat4 &view_projection, const DrawShape &shape) {
     const glm::vec4 clip = view_projection * glm::vec4(shape.position, 1);
     return clip.w > 0 && std::abs(clip.x) < clip.w && std::abs(clip.y) < clip.w &&
@@ -44,7 +44,7 @@ TEST(Culling, LeavesOutNothingThatIsInView) {
     Culling culling;
     std::size_t shown = 0, looked = 0;
     for (int frame = 0; frame < std::max(20, trials(500)); ++frame) {
-        // Some move, now and then far out of where all began, and some come or go.
+        // Some shapes move, now and then far beyond where they all started, and some come or go.
         for (int i = 0; i < 50; ++i) {
             DrawShape &shape = shapes[random.next_index(static_cast<std::uint32_t>(shapes.size()))];
             shape.position += any_vector(random, random.next_index(10) == 0 ? 100 : 1);
@@ -68,7 +68,7 @@ TEST(Culling, LeavesOutNothingThatIsInView) {
             }
         }
     }
-    // And it does leave out most of what is not.
+    // And it does cull most of the shapes out of view.
     EXPECT_LT(shown, looked / 2);
     EXPECT_GT(shown, 0);
 }

@@ -1,4 +1,4 @@
-// Flat triangles, glass and cylinders, as pixels.
+// Pixel tests of flat triangles, glass and cylinders.
 #include "app/render/renderer.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ int red_over_blue(const glm::u8vec3 &c) {
     return static_cast<int>(c.x) - static_cast<int>(c.z);
 }
 
-// Seen from +z, the target in the middle.
+// Seen from +z, with the target in the middle.
 DrawList facing() {
     DrawList list = plain_list();
     list.camera.target = glm::vec3(0);
@@ -62,7 +62,7 @@ TEST_F(OffScreen, GlassShowsWhatIsBehindAndTints) {
     const int tint = red_over_blue(glass.at(80, 60));
     EXPECT_GT(tint, red_over_blue(nothing.at(80, 60)) + 15);
     EXPECT_LT(tint, red_over_blue(solid.at(80, 60)) - 15);
-    // A line behind it is seen in full: glass hides nothing.
+    // A line behind it is fully visible: glass hides nothing.
     list.lines.push_back({{-0.9f, 0, -0.3f}, {0.9f, 0, -0.3f}, colours::ink, 4});
     const Image with_line = render_image(renderer, list, picture_size);
     EXPECT_LT(static_cast<int>(with_line.at(80, 60).x), 90);

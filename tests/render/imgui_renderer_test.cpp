@@ -106,7 +106,7 @@ TEST_F(Painting, PanelsLieOverTheScene) {
     const Image both = target.read();
     EXPECT_EQ(both.at(10, 20), glm::u8vec3(1, 2, 3));
     EXPECT_EQ(both.at(50, 20), scene.at(50, 20));
-    // The next scene is drawn as if no panel had been.
+    // The next scene is drawn as if there had been no panel.
     renderer.draw(list, target);
     EXPECT_EQ(target.read(), scene);
 }

@@ -29,7 +29,7 @@ double volume(const Mesh &mesh, float half_height = 0) {
     return six / 6;
 }
 
-// Each directed edge has its opposite, as often, but for edges without length.
+// Each directed edge is matched by its opposite, equally often; zero-length edges do not count.
 bool closed(const Mesh &mesh, float half_height) {
     using Point = std::tuple<long, long, long>;
     const auto point = [](const glm::vec3 &p) {
@@ -66,7 +66,7 @@ TEST(Mesh, SpheresAreClosedAndApproachTheirVolumeFromBelow) {
         EXPECT_EQ(mesh.indices.size(), 60u << (2 * splits));
         const double now = exact - volume(mesh);
         EXPECT_GT(now, 0);
-        // Each split halves the edges, and the gap goes with their square.
+        // Each split halves the edges, and the gap shrinks with their square.
         EXPECT_LT(now, missing / 2.5);
         missing = now;
     }
@@ -76,7 +76,7 @@ TEST(Mesh, CapsuleStretchesToAnyHeight) {
     const Mesh mesh = capsule_mesh(64, 16);
     const double round = volume(mesh, 0);
     EXPECT_NEAR(round, 4 * std::numbers::pi / 3, 0.03);
-    // The cross-section is a regular polygon of 64 corners.
+    // The cross-section is a regular 64-gon.
     const double section = 32 * std::sin(2 * std::numbers::pi / 64);
     for (const float half_height : {0.0f, 0.3f, 4.0f}) {
         EXPECT_TRUE(closed(mesh, half_height));
@@ -99,7 +99,7 @@ TEST(Mesh, NormalsAreUnitAndPointOutward) {
     for (const Mesh &mesh : {box_mesh(), sphere_mesh(2), capsule_mesh(12, 3), cylinder_mesh(12)}) {
         for (const MeshVertex &vertex : mesh.vertices) {
             EXPECT_NEAR(glm::length(vertex.normal), 1, 1e-5f);
-            // Of a height of 2, so that ends are told apart.
+            // With a height of 2, to tell the ends apart.
             const glm::vec3 place = vertex.position + glm::vec3(0, vertex.end, 0);
             EXPECT_GT(glm::dot(vertex.normal, place), 0);
         }

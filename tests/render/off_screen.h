@@ -1,4 +1,4 @@
-// A context in memory and a renderer, for tests that look at pixels.
+// An in-memory context and a renderer, for tests that look at pixels.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ class OffScreen : public testing::Test {
     Renderer renderer{shader_dir()};
 };
 
-// Without what would change the colour of a pixel that is seen.
+// Without effects that change the colour of visible pixels.
 inline DrawList plain_list() {
     DrawList list;
     list.view.shadows = false;

@@ -49,7 +49,7 @@ TEST_F(OffScreen, AnEmptyListIsTheBackdropWhateverTheCamera) {
     const Image first = render_image(renderer, list, size);
     EXPECT_EQ(first.width, size.x);
     EXPECT_EQ(first.height, size.y);
-    // Light, and changing slowly from the top to the middle.
+    // Bright, and changing slowly from the top to the middle.
     EXPECT_GT(sum(first.at(160, 120)), 3 * 200);
     EXPECT_GT(difference(first.at(160, 2), first.at(160, 120)), 10);
     for (int y = 1; y < size.y; ++y)
@@ -88,7 +88,7 @@ TEST_F(OffScreen, TheSameListGivesTheSamePixels) {
 TEST_F(OffScreen, AFarOriginGivesNearlyTheSamePixels) {
     DrawList list = mixture();
     const Image here = render_image(renderer, list, size);
-    // Multiples of the grid's ten metres, at which quarters of a metre are still exact.
+    // Multiples of the grid's 10 metres, where quarters of a metre are still exact.
     const glm::vec3 there{10240, 0, -20480};
     list.camera.target += there;
     for (DrawShape &s : list.shapes)
@@ -103,12 +103,12 @@ TEST_F(OffScreen, AFarOriginGivesNearlyTheSamePixels) {
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x)
             changed += difference(here.at(x, y), far.at(x, y)) > 12;
-    // Poses moved by up to 2 mm, a fifteenth of a pixel here: only pixels on edges may change.
+    // Poses move by up to 2 mm, a fifteenth of a pixel here: only edge pixels may change.
     EXPECT_LT(changed, size.x * size.y / 100);
 }
 
-// Compares what is drawn with an analytic silhouette: `inside` tells for a ray through a pixel how
-// far within the outline it passes, in metres at the shape (negative: outside).
+// Compares the picture with an analytic silhouette. `inside` tells how far inside the outline a
+// pixel's ray passes, in metres at the shape (negative: outside).
 void expect_silhouette(Renderer &renderer, const DrawList &list,
                        const std::function<double(const PickRay &)> &inside) {
     DrawList empty = list;
@@ -116,7 +116,7 @@ void expect_silhouette(Renderer &renderer, const DrawList &list,
     const Image without = render_image(renderer, empty, size);
     const Image with = render_image(renderer, list, size);
     const Camera &camera = list.camera;
-    // A pixel's extent at the target's depth.
+    // Pixel size at the target's depth.
     const double pixel =
         static_cast<double>(2 * camera.distance * std::tan(camera.fov / 2)) / size.y;
     int covered = 0;
@@ -124,7 +124,7 @@ void expect_silhouette(Renderer &renderer, const DrawList &list,
         for (int x = 0; x < size.x; ++x) {
             const double depth = inside(camera.pick_ray(
                 {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, glm::vec2(size)));
-            // The mesh lies within the shape by less than a third of a pixel; half is allowed.
+            // The mesh lies inside the shape by less than a third of a pixel; allow half.
             if (std::abs(depth) < 0.5 * pixel)
                 continue;
             const bool drawn = difference(with.at(x, y), without.at(x, y)) > 20;
@@ -135,8 +135,8 @@ void expect_silhouette(Renderer &renderer, const DrawList &list,
     EXPECT_GT(covered, 30);
 }
 
-// The least distance of a ray to a segment, in double precision by bisection on the segment: the
-// distance to a ray's line is convex along it.
+// Distance from a ray to a segment, in double precision by bisection on the segment: the distance
+// to the ray's line is convex along it.
 double distance_to_segment(const PickRay &ray, const glm::dvec3 &a, const glm::dvec3 &b) {
     const auto at = [&](double t) {
         const glm::dvec3 d = a + t * (b - a) - glm::dvec3(ray.origin);
@@ -159,7 +159,7 @@ TEST_F(OffScreen, ASphereHasItsAnalyticSilhouette) {
         DrawList list = plain_list();
         list.camera.target = {0, 0, 0};
         list.camera.distance = 8;
-        // Off the middle, where the outline is an ellipse.
+        // Off-centre, where the outline is an ellipse.
         const glm::vec3 centre{1.2f, 0.7f, 0};
         list.shapes.push_back(shape(DrawKind::sphere, centre, glm::vec3(radius)));
         expect_silhouette(renderer, list, [&](const PickRay &ray) {
@@ -193,7 +193,7 @@ TEST_F(OffScreen, ABoxCoversItsProjectedCorners) {
     list.camera.distance = 8;
     const glm::vec3 half{1.1f, 0.7f, 0.5f};
     list.shapes.push_back(shape(DrawKind::box, {0, 0, 0}, half));
-    // Seen straight on: the near face is a rectangle.
+    // Seen head-on: the near face is a rectangle.
     expect_silhouette(renderer, list, [&](const PickRay &ray) {
         const double t = static_cast<double>((half.z - ray.origin.z) / ray.direction.z);
         const glm::dvec3 hit = glm::dvec3(ray.origin) + t * glm::dvec3(ray.direction);
@@ -222,7 +222,7 @@ TEST_F(OffScreen, AFlatLitPatchShowsItsColourTimesTheLight) {
             list.shapes.push_back(shape(DrawKind::box, {0, -1, 0}, glm::vec3(1), colour));
             const glm::u8vec3 seen = render_image(renderer, list, size, samples).at(160, 120);
             for (int c = 0; c < 3; ++c)
-                // Dithering and rounding are half a step each.
+                // Dithering and rounding contribute half a level each.
                 EXPECT_NEAR(seen[c],
                             255 * srgb(static_cast<double>(ambient) *
                                        linear(static_cast<double>(colour[c]))),
@@ -237,20 +237,20 @@ TEST_F(OffScreen, DirectLightFollowsTheCosine) {
         list.camera.target = {0, 0, 0};
         list.camera.pitch = 1.2f;
         list.camera.distance = 5;
-        // From behind the camera's back and without gloss towards it.
+        // Lit from behind the camera, with no specular highlight towards it.
         list.light.direction = {std::sin(angle), -std::cos(angle), 0};
         list.light.ambient = 0;
         list.light.intensity = 1;
         list.shapes.push_back(shape(DrawKind::box, {0, -1, 0}, glm::vec3(1), glm::vec3(0.5f)));
         const double seen = linear(render_image(renderer, list, size).at(160, 120).x / 255.0);
-        // The gloss adds at most a tenth of the light, the sheen next to nothing from above.
+        // The specular term adds at most a tenth of the light, the sheen almost none from above.
         const double diffuse = linear(0.5) * static_cast<double>(std::cos(angle));
         EXPECT_GT(seen, diffuse - 0.005);
         EXPECT_LT(seen, diffuse + 0.1 * static_cast<double>(std::cos(angle)) + 0.01);
     }
 }
 
-// A ball over a floor, the light as it comes: which points of the floor are in shadow is known.
+// A ball over a floor, with the default light: the shadowed points of the floor are known.
 TEST_F(OffScreen, ShadowsLieWhereTheLightIsBlockedAndNowhereElse) {
     DrawList list;
     list.view.occlusion = false;
@@ -273,7 +273,7 @@ TEST_F(OffScreen, ShadowsLieWhereTheLightIsBlockedAndNowhereElse) {
             const PickRay ray = list.camera.pick_ray(
                 {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, glm::vec2(size));
             const glm::vec3 ground = ray.origin - ray.origin.y / ray.direction.y * ray.direction;
-            // The box and all that is near its shadow is left to the ball's test below.
+            // Skip the box and everything near its shadow; the ball is tested below.
             const bool ball_in_front =
                 distance_to_segment(ray, glm::dvec3(centre), glm::dvec3(centre)) <
                 static_cast<double>(radius) + 0.1;
@@ -296,7 +296,7 @@ TEST_F(OffScreen, ShadowsLieWhereTheLightIsBlockedAndNowhereElse) {
 }
 
 TEST_F(OffScreen, LitSurfacesShowNoAcne) {
-    // Tops and sides that face the light, nothing in the way.
+    // Tops and sides that face the light, unobstructed.
     for (const float distance : {6.0f, 60.0f}) {
         DrawList list;
         list.view.occlusion = false;
@@ -312,19 +312,18 @@ TEST_F(OffScreen, LitSurfacesShowNoAcne) {
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x)
                 different += difference(with.at(x, y), without.at(x, y)) > 2;
-        // Only the thin rounded rims, where the face itself turns from the light, may change.
+        // Only the thin rounded rims may change, where the face itself turns away from the light.
         EXPECT_LT(different, 40);
     }
 }
 
-// What is convex throws no shadow on itself, however low the light and however coarse the mesh that
-// it is drawn with.
+// A convex shape casts no shadow on itself, however low the light and however coarse its mesh.
 TEST_F(OffScreen, AConvexShapeAloneIsTheSameWithAndWithoutShadows) {
     const float pi = glm::pi<float>();
     Renderer plain(shader_dir(), Renderer::Quality::plain);
     for (const DrawKind kind :
          {DrawKind::sphere, DrawKind::box, DrawKind::capsule, DrawKind::cylinder}) {
-        for (const float distance : {4.0f, 12.0f, 30.0f, 70.0f}) { // each with a mesh of its own
+        for (const float distance : {4.0f, 12.0f, 30.0f, 70.0f}) { // each picks its own mesh
             for (const float height : {0.1f, 0.3f, 0.7f, 1.2f}) {
                 for (const float around : {0.0f, 1.0f}) {
                     for (Renderer *each : {&renderer, &plain}) {
@@ -385,15 +384,15 @@ TEST_F(OffScreen, LinesAreAsWideAsTheySay) {
         const Image without = render_image(renderer, list, size);
         list.lines.push_back({{-1, 0.03f, 0}, {1, 0.03f, 0}, {0, 0, 0}, width});
         const Image with = render_image(renderer, list, size);
-        // Coverage, as light, down a column through its middle: the width, as each pixel is covered
-        // by what the distance of its centre says.
+        // Light blocked down a column through its middle: the width, since each pixel's coverage
+        // follows from the distance of its centre.
         double covered = 0;
         for (int y = 0; y < size.y; ++y) {
             const double before = linear(without.at(160, y).x / 255.0);
             covered += 1 - linear(with.at(160, y).x / 255.0) / before;
         }
         EXPECT_NEAR(covered, static_cast<double>(width), 0.05);
-        // Not beyond its ends.
+        // Not past its ends.
         const glm::vec3 end = list.camera.project({1, 0.03f, 0}, glm::vec2(size));
         const int past = static_cast<int>(end.x + width / 2) + 2;
         for (int y = 0; y < size.y; ++y)
@@ -405,14 +404,14 @@ TEST_F(OffScreen, LinesThatPassTheEyeAreCutAtTheNearPlane) {
     DrawList list = plain_list();
     list.camera = {{0, 0, 0}, 8, 0, 0, 0.8f};
     const Image without = render_image(renderer, list, size);
-    // Straight down the view's axis a little below, from behind the eye to far beyond.
+    // Along the view axis and slightly below it, from behind the eye to far away.
     list.lines.push_back({{0, -0.5f, 20}, {0, -0.5f, -1000}, {0, 0, 0}, 3});
     const Image with = render_image(renderer, list, size);
     EXPECT_NE(with.at(160, 200), without.at(160, 200));
     for (int y = 0; y < 110; ++y) // above the horizon
         for (int x = 0; x < size.x; ++x)
             EXPECT_EQ(with.at(x, y), without.at(x, y));
-    // Wholly behind the eye: nothing.
+    // Wholly behind the eye: nothing is drawn.
     list.lines = {{{0, -0.5f, 20}, {3, 0.5f, 9}, {0, 0, 0}, 3}};
     EXPECT_EQ(render_image(renderer, list, size), without);
 }
@@ -450,7 +449,7 @@ TEST_F(OffScreen, ASelectedShapeHasARingEvenWhenHidden) {
             ++ring;
         }
     }
-    // About the sphere's circumference in pixels times the ring's three.
+    // Roughly the sphere's circumference in pixels times the ring's three.
     const double radius = 0.5 / 9 * 120 / static_cast<double>(std::tan(0.4f));
     EXPECT_NEAR(ring, 3 * 2 * 3.14159 * (radius + 1.5), 0.2 * ring);
     EXPECT_EQ(with.at(160, 120), without.at(160, 120));
@@ -489,7 +488,7 @@ TEST_F(OffScreen, APlaneIsNotSeenFromBelowAndFadesIntoTheBackdrop) {
     int changed = 0;
     for (int x = 0; x < size.x; ++x) {
         changed += floor.at(x, 200) != empty.at(x, 200);
-        // The horizon lies at tan(pitch) / tan(fov / 2) above the middle; there nothing is left.
+        // The horizon lies tan(pitch) / tan(fov / 2) above the middle; nothing may be left there.
         const int horizon =
             static_cast<int>(120 * (1 - std::tan(0.15f) / std::tan(list.camera.fov / 2)));
         EXPECT_LE(difference(floor.at(x, horizon + 1), empty.at(x, horizon + 1)), 3);

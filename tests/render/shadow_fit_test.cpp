@@ -83,7 +83,7 @@ TEST(ShadowFit, AFloorOrAnOutlierDoesNotCoarsenTheMap) {
     DrawShape fallen;
     fallen.position = {0, -5000, 0};
     shapes.push_back(fallen);
-    // Bounded by what the camera sees, within 6 distances: some 60 m here.
+    // Bounded by what the camera sees, within 6 times its distance: some 60 m here.
     EXPECT_LT(fit_shadow(shapes, camera, 1.6f, light, camera.target, 1024)->texel, 100.0f / 1024);
 }
 

@@ -49,7 +49,7 @@ TEST(Background, IsReplacedWithoutWaitingAndEndsWhenAsked) {
                 desk.publish(i);
                 while (!desk.stopped())
                     std::this_thread::sleep_for(1ms);
-                desk.publish(-1); // of one that was replaced nobody sees
+                desk.publish(-1); // nobody sees the results of replaced work
                 ++ended;
             });
         while (!background.result())
@@ -62,7 +62,7 @@ TEST(Background, IsReplacedWithoutWaitingAndEndsWhenAsked) {
     EXPECT_EQ(ended, 3);
 }
 
-// On a busy machine what gives way to all others would not end.
+// On a busy machine, work that yields to everything else would never end.
 TEST(Background, GivesWayNoMoreWhenItIsToEnd) {
     std::atomic<int> policy = SCHED_IDLE;
     Background<int> background;
@@ -79,7 +79,7 @@ TEST(Background, GivesWayNoMoreWhenItIsToEnd) {
         std::this_thread::sleep_for(1ms);
     background.stop();
     ASSERT_TRUE(wait_for(background));
-    const sched_param none{}; // a system may let nobody but root do so
+    const sched_param none{}; // some systems let only root do this
     const bool may = sched_setscheduler(0, SCHED_IDLE, &none) == 0 &&
                      sched_setscheduler(0, SCHED_OTHER, &none) == 0;
     if (may) {

@@ -12,21 +12,21 @@ namespace {
 
 constexpr std::int64_t second = 1'000'000'000;
 
-// However the time is cut into frames, the steps are those that fit into the whole time.
+// However the time is split into frames, the step count is what fits into the total time.
 TEST(Clock, CountsStepsByTheWholeTimeNotByFrames) {
     for (const double dt : {1.0 / 60, 1.0 / 144, 0.01, 1.0 / 1920}) {
         Random random(7);
         StepClock clock(dt);
         std::int64_t passed = 0;
         std::int64_t steps = 0;
-        // Frames short enough never to meet the cap.
+        // Frames too short ever to hit the cap.
         const auto longest = static_cast<std::uint32_t>(dt * 1e9 * StepClock::max_catch_up);
         for (int frame = 0; frame < 200'000; ++frame) {
             const std::int64_t duration = random.next_index(longest) + 1;
             passed += duration;
             steps += clock.advance(duration);
-            // In exact arithmetic: floor(passed / dt); the product in doubles may round across a
-            // whole number, which is one step late or early at that very nanosecond.
+            // In exact arithmetic floor(passed / dt). The product in doubles may round across an
+            // integer, which is one step late or early at that very nanosecond.
             ASSERT_NEAR(static_cast<double>(steps), static_cast<double>(passed) * 1e-9 / dt - 0.5,
                         0.5 + 1e-6);
         }
@@ -42,12 +42,12 @@ TEST(Clock, OneFrameAStepGivesOneStepAFrame) {
 TEST(Clock, DropsWhatItCannotCatchUpWith) {
     StepClock clock(1.0 / 60);
     EXPECT_EQ(clock.advance(10 * second), StepClock::max_catch_up);
-    // Nothing of the ten seconds is owed afterwards.
+    // None of the ten seconds is owed afterwards.
     EXPECT_EQ(clock.advance(second / 60 / 2), 0);
     EXPECT_EQ(clock.advance(second / 60 / 2 + 10), 1);
 }
 
-// A world whose steps take longer than they last must not be asked for ever more of them.
+// If steps take longer than the time they simulate, the clock must not ask for ever more of them.
 TEST(Clock, NoSpiralOfDeath) {
     StepClock clock(1.0 / 60);
     std::int64_t frame = second / 60;
@@ -75,7 +75,7 @@ TEST(Clock, SpeedScalesStepsAndKeepsTheFraction) {
 TEST(Clock, AFastClockMayCatchUpMore) {
     StepClock clock(1.0 / 60);
     clock.set_speed(16);
-    // A frame of 1/60 s at 16 times the speed is 16 steps: more than max_catch_up, and not dropped.
+    // A frame of 1/60 s at 16 times the speed is 16 steps: more than max_catch_up, none dropped.
     int steps = 0;
     for (int frame = 0; frame < 60; ++frame)
         steps += clock.advance(second / 60);
@@ -114,7 +114,7 @@ TEST(Clock, RefusesAStepOfNoLength) {
     EXPECT_THROW(clock.set_dt(-1), CheckFailure);
 }
 
-// How far a spring of 20 rad/s swings in 20 s of its own time, let go 1 m from rest, by
+// How far a spring of 20 rad/s swings in 20 s of its own time, released 1 m from rest, with
 // semi-implicit Euler, which is stable up to w dt = 2.
 double greatest_swing(double dt, int steps) {
     double x = 1;
@@ -128,8 +128,8 @@ double greatest_swing(double dt, int steps) {
     return greatest;
 }
 
-// A known failing of clocks that stretch their steps for a higher rate: at eight times the speed
-// w dt is 2.7, and the spring explodes. This one takes more steps, and the motion is the same.
+// Clocks that stretch their steps for a higher rate fail here: at eight times the speed w dt is
+// 2.7, and the spring explodes. This one takes more steps, and the motion is the same.
 TEST(Clock, TakesMoreStepsAtAHigherSpeedNotLargerOnes) {
     constexpr double dt = 1.0 / 60;
     EXPECT_GT(greatest_swing(8 * dt, 150), 1e6);

@@ -1,4 +1,4 @@
-// A world simple enough to know by heart, for tests of what is around a world: points in free fall.
+// A world simple enough to know by heart, for testing the code around a world: points in free fall.
 #pragma once
 
 #include "app/sandbox/session/session.h"
@@ -14,10 +14,10 @@ namespace plumb {
 
 class FakeSimulation final : public Simulation {
   public:
-    std::optional<std::uint64_t> throws_at;   // the step from this count on fails
+    std::optional<std::uint64_t> throws_at;   // the step from this count on throws
     std::optional<std::uint64_t> diverges_at; // the step from this count on gives NaN
     std::vector<Command> commands;            // in order
-    double advance_time = 0;                  // s, that each step says it took
+    double advance_time = 0;                  // s, reported by each step
     void set_save_bytes(std::size_t bytes) { state_.bytes = bytes; }
 
     explicit FakeSimulation(const SceneDesc &scene) {
@@ -82,7 +82,7 @@ class FakeSimulation final : public Simulation {
     }
 
     struct State final : Saved {
-        std::size_t bytes = 0; // that a save is said to take
+        std::size_t bytes = 0; // reported size of a save
         std::size_t bytes_beside(const Saved *) const override { return bytes; }
         std::uint64_t steps = 0;
         std::vector<BodyState> bodies;
@@ -159,7 +159,7 @@ inline Session::Make make_fake() {
         };
 }
 
-// A ball of radius 1 at the origin, weightless, and one beside it.
+// A weightless ball of radius 1 at the origin, and one beside it.
 inline SceneDesc two_balls() {
     SceneDesc scene;
     scene.name = "two_balls";

@@ -12,7 +12,7 @@
 namespace plumb {
 namespace {
 
-// Looks along -z from 10 m, with half a picture of 5 m at the target.
+// Looks along -z from 10 m; the half-height of the view at the target is 5 m.
 Camera front() {
     Camera camera;
     camera.target = {0, 0, 0};
@@ -38,7 +38,7 @@ TEST(AspectNeeded, IsAsWideAsWhatIsSeenButAtLeastSquare) {
     EXPECT_NEAR(aspect_needed(list), 1.1f * 6 / 5, 1e-5f);
     list.shapes.push_back(ball({0, -40, 0}, 30)); // a floor
     EXPECT_NEAR(aspect_needed(list), 1.1f * 6 / 5, 1e-5f);
-    list.lines.push_back({{0, 0, 0}, {40, 0, 0}, {}, 1}); // beyond a picture of 16:9
+    list.lines.push_back({{0, 0, 0}, {40, 0, 0}, {}, 1}); // beyond a 16:9 picture
     EXPECT_NEAR(aspect_needed(list), 16.0f / 9, 1e-5f);
 }
 
@@ -47,14 +47,14 @@ TEST(ShiftToSee, BringsTheNearestPlaceJustIntoThePicture) {
     const std::vector<glm::vec3> inside{{0, 0, 0}, {100, 0, 0}};
     EXPECT_EQ(shift_to_see(camera, 1, inside), glm::vec3(0));
     EXPECT_EQ(shift_to_see(camera, 1, {}), glm::vec3(0));
-    // 5 m to the border, a tenth of it air.
+    // 5 m to the border, of which a tenth is margin.
     const std::vector<glm::vec3> below{{0, -20, 0}, {0, -300, 0}};
     EXPECT_LT(glm::distance(shift_to_see(camera, 1, below), glm::vec3(0, -20 + 5 / 1.1f, 0)),
               1e-5f);
     const std::vector<glm::vec3> aside{{20, 0, 0}};
     EXPECT_LT(glm::distance(shift_to_see(camera, 1.5f, aside), glm::vec3(20 - 7.5f / 1.1f, 0, 0)),
               1e-5f);
-    // Away, it may be as far again as the target.
+    // Along the view direction it may be as far beyond the target as the target is away.
     const std::vector<glm::vec3> far{{0, 0, -50}};
     EXPECT_LT(glm::distance(shift_to_see(camera, 1, far), glm::vec3(0, 0, -40)), 1e-4f);
 }
@@ -98,7 +98,7 @@ TEST(PlaneBehind, IsAFloorUnderWhatIsHeldAndAWallBehindWhatFalls) {
     const auto floor = plane_behind(scene);
     ASSERT_TRUE(floor);
     EXPECT_EQ(floor->rotation, glm::quat(1, 0, 0, 0));
-    const float half = 10 * std::tan(0.4f); // of the picture, m
+    const float half = 10 * std::tan(0.4f); // half the picture's height, m
     EXPECT_NEAR(floor->position.y, 3 - 0.85f * half, 1e-4f);
     scene.bodies[0].position.y = -4;
     EXPECT_NEAR(plane_behind(scene)->position.y, -4.5f, 1e-5f);

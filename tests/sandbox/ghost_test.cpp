@@ -11,7 +11,7 @@
 namespace plumb {
 namespace {
 
-// One ball, dropped; velocity Verlet is exact.
+// One ball, dropped; velocity Verlet is exact for it.
 SceneDesc drop() {
     SceneDesc scene;
     scene.name = "drop";
@@ -28,7 +28,7 @@ GhostDistance distance(const Session &session) {
     return session.ghost()->farthest(*session.simulation(), session.present());
 }
 
-// Explicit Euler falls short by g h t / 2 of what is exact, h its substep.
+// Explicit Euler falls short of the exact result by g h t / 2, with h its substep.
 double lag(const Session &session, double time) {
     const StepSettings &settings = session.ghost()->simulation().settings();
     return 0.5 * 9.81 * settings.dt / settings.substeps * time;
@@ -93,7 +93,7 @@ TEST(Ghost, WhatIsDoneToTheOneIsDoneToTheOtherAndTheRunIsAsItWas) {
     EXPECT_EQ(hash(true), hash(false));
 }
 
-// Beside explicit Euler it is where a falling ball is: the distance is the error of the run.
+// Beside explicit Euler, the reference follows the exact fall: its distance is the run's error.
 TEST(Ghost, TheReferenceTellsHowFarTheRunIsFromTheTruth) {
     SceneDesc scene = drop();
     scene.world.method = "explicit_euler";
@@ -114,7 +114,7 @@ TEST(Ghost, TheReferenceTellsHowFarTheRunIsFromTheTruth) {
     EXPECT_TRUE(session.ghost()->is_reference());
 }
 
-// Begun in mid-run it is where the run is, and goes on beside it.
+// Started mid-run, it begins where the run is and continues beside it.
 TEST(Ghost, AReferenceBegunInMidRunIsOfTheSameTime) {
     Session session;
     ASSERT_TRUE(session.open(drop()));
@@ -130,7 +130,7 @@ TEST(Ghost, AReferenceBegunInMidRunIsOfTheSameTime) {
     EXPECT_NEAR(distance(session).metres, 0, 1e-9);
 }
 
-// When another step is chosen it goes on with a quarter of that.
+// After a change of step it continues with a quarter of the new one.
 TEST(Ghost, AReferenceKeepsItsShareOfTheStep) {
     Session session;
     ASSERT_TRUE(session.open(drop()));
@@ -148,7 +148,7 @@ TEST(Ghost, AReferenceKeepsItsShareOfTheStep) {
     EXPECT_EQ(session.ghost()->failure(), "");
 }
 
-// With no time it stays behind and says by how much; what is done then ends it.
+// Without time to compute it lags and reports by how much; a command given then ends it.
 TEST(Ghost, AReferenceWithoutTimeLags) {
     SceneDesc scene = drop();
     scene.world.method = "soft_step";
@@ -188,7 +188,7 @@ TEST(Ghost, OfAMethodThatCannotRunTheSceneThereIsNone) {
     ASSERT_TRUE(session.step());
 }
 
-// What was chosen since stays chosen when both are taken back, for both.
+// Settings chosen since stay in force for both when both step back.
 TEST(Ghost, IsTakenBackBeforeAnythingIsDoneToIt) {
     Session session;
     ASSERT_TRUE(session.open(drop()));
@@ -228,7 +228,7 @@ TEST(Ghost, WhatEndedItsMotionIsGoneOnlyBeforeThat) {
     EXPECT_EQ(session.ghost()->failure(), "");
 }
 
-// A hand that holds the one holds the other, also where it held before the ghost came.
+// A grab holds the ghost too, even one that began before the ghost existed.
 TEST(Ghost, IsHeldToo) {
     SceneDesc scene = drop();
     scene.world.method = "soft_step";
@@ -247,7 +247,7 @@ TEST(Ghost, IsHeldToo) {
     EXPECT_LT(session.ghost()->simulation().read().bodies[0].position.y, 97);
 }
 
-// What was recorded is done to the ghost once, forth and back, as it was when it was done.
+// Playing forth and back, each recorded command reaches the ghost once, as it did live.
 TEST(Ghost, FollowsARecording) {
     const std::filesystem::path path = std::filesystem::temp_directory_path() /
                                        ("plumb-ghost-" + std::to_string(::getpid()) + ".toml");
@@ -281,7 +281,7 @@ TEST(Ghost, FollowsARecording) {
     const auto play_to_the_end = [&] {
         while (session.step()) {
         }
-        EXPECT_FALSE(session.step()); // nothing is done once more at the end
+        EXPECT_FALSE(session.step()); // no command is repeated at the end
         EXPECT_EQ(session.replay_outcome(), ExitCode::fine);
         EXPECT_EQ(session.ghost()->failure(), "");
         return session.ghost()->simulation().hash();
@@ -292,7 +292,7 @@ TEST(Ghost, FollowsARecording) {
             ASSERT_TRUE(session.step_back());
         EXPECT_EQ(play_to_the_end(), live) << back;
     }
-    // One that comes while something is held in the recording.
+    // A ghost that starts while the recording holds something.
     ASSERT_TRUE(session.set_ghost(""));
     for (int i = 0; i < 3; ++i)
         ASSERT_TRUE(session.step_back());

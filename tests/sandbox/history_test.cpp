@@ -1,4 +1,4 @@
-// States to step back to: how many are kept, in how much memory, and that each is as it was.
+// States to step back to: how many are kept, in how much memory, and that each is unchanged.
 #include "app/sandbox/session/history.h"
 
 #include "engine/scene/scene_file.h"
@@ -17,7 +17,7 @@ std::unique_ptr<Simulation> simulation_of(const std::string &text) {
     return Simulation::create(result.scene, {}, nullptr);
 }
 
-// A thousand boxes that lie about, and what is added.
+// A thousand boxes lying around, plus `more`.
 std::string boxes(const std::string &more) {
     return R"(title = "boxes"
 [[body]]
@@ -64,7 +64,7 @@ TEST(History, KeepsWithinItsMemory) {
     EXPECT_EQ(history.bytes(), 0U);
 }
 
-// A minute of what rests takes as much as a few states of it.
+// A minute at rest takes as much memory as a few of its states.
 TEST(History, RestIsKeptOnce) {
     const std::unique_ptr<Simulation> simulation = simulation_of(boxes(""));
     while (simulation->step_count() < 120)
@@ -73,7 +73,7 @@ TEST(History, RestIsKeptOnce) {
     history.remember(*simulation);
     const std::size_t one = history.bytes();
     EXPECT_GT(one, 1000U * 100U);
-    EXPECT_LE(one, 1001U * 300U); // bytes a resting body, contacts among them
+    EXPECT_LE(one, 1001U * 300U); // bytes per resting body, including its contacts
     while (history.size() < History::most_states) {
         simulation->step();
         history.remember(*simulation);

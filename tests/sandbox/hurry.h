@@ -1,5 +1,5 @@
-// Background work gives way to all others, and on a busy machine that is for ever: while a test
-// waits for it, its threads run as all do.
+// Background work yields to everything else, on a busy machine for ever: while a test waits for it,
+// its threads run at normal priority.
 #pragma once
 
 #include <chrono>
@@ -12,10 +12,10 @@
 
 namespace plumb {
 
-// False when it took longer than any machine needs.
+// False if it took longer than any machine needs.
 template <typename Work> bool wait_for(const Work &background) {
     for (int i = 0; i < 12000 && background.running(); ++i) {
-        std::error_code gone; // a thread may end while it is looked at
+        std::error_code gone; // a thread may end while it is being looked at
         for (const auto &thread : std::filesystem::directory_iterator("/proc/self/task", gone)) {
             const int id = std::stoi(thread.path().filename().string());
             const sched_param none{};

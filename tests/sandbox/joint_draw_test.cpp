@@ -13,11 +13,11 @@ namespace plumb {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// A body 2 m to the right of the origin, as large as 1 m.
+// A body 2 m to the right of the origin, with a reach of 1 m.
 const std::array<BodyState, 1> one_pose{{{glm::dvec3(2, 0, 0), glm::dquat(1, 0, 0, 0)}}};
 const std::array<double, 1> reach{1.0};
 const JointSurroundings surroundings{one_pose, reach, {0, -9.81, 0}};
-constexpr float sign_size = 0.5f; // of signs: half of the body
+constexpr float sign_size = 0.5f; // half the body's size
 
 JointView joint(JointType type) {
     JointView view;
@@ -47,7 +47,7 @@ bool has_line(const DrawList &list, const glm::vec3 &a, const glm::vec3 &b) {
     return false;
 }
 
-// The x axis of the frame along z: the angle turns in the xy plane.
+// The frame's x axis along z: the angle turns in the xy plane.
 const glm::dquat along_z = glm::angleAxis(-pi / 2, glm::dvec3(0, 1, 0));
 
 TEST(JointDraw, EveryTypeShowsItsAnchors) {
@@ -66,7 +66,7 @@ TEST(JointDraw, HingeHasItsAxisAnArcBetweenItsLimitsAndAHand) {
     const DrawList list = signs(hinge);
     EXPECT_TRUE(has_line(list, {0, 0, -sign_size}, {0, 0, sign_size})) << "axis";
     EXPECT_TRUE(has_line(list, {0, 0, 0}, {sign_size, 0, 0})) << "hand, to the body";
-    // 30 degrees before the hand is angle 0; the limits' ticks count from there.
+    // Angle 0 is 30 degrees before the hand; the limits' ticks count from there.
     for (const double limit : {-pi / 3, pi / 2}) {
         const double angle = limit - pi / 6;
         EXPECT_TRUE(has_line(list, {0, 0, 0},
@@ -79,7 +79,7 @@ TEST(JointDraw, HingeOfABodyAgainstTheWorldTurnsTheOtherWayRound) {
     JointView hinge = joint(JointType::hinge);
     std::swap(hinge.body_a, hinge.body_b);
     hinge.frame_a = hinge.frame_b = along_z;
-    hinge.limits = {0, pi / 2}; // of the world against the body
+    hinge.limits = {0, pi / 2}; // the world's angle relative to the body
     EXPECT_TRUE(has_line(signs(hinge), {0, 0, 0}, {0, -1.15f * sign_size, 0}));
 }
 
@@ -108,7 +108,7 @@ TEST(JointDraw, RodRopeAndSpring) {
     view.limits = {2, 2};
     EXPECT_EQ(links(view).shapes.size(), 1u);
 
-    view.limits = {0, 3}; // slack: it hangs below its ends, and is as long as it is
+    view.limits = {0, 3}; // slack: it sags below its ends and keeps its full length
     double length = 0;
     float lowest = 0;
     for (const DrawShape &shape : links(view).shapes)
@@ -136,7 +136,7 @@ TEST(JointDraw, ABrokenJointShowsItsEndsAlone) {
     EXPECT_EQ(signs(view).points.at(0).colour, colours::contact);
 }
 
-// 0.3 m for the weight, twice as long for four times it; at the anchor of what is held.
+// 0.3 m for the body's weight, twice as long for four times that; at the held body's anchor.
 TEST(JointDraw, AnArrowIsTheForceOnWhatIsHeld) {
     const double weight = 20;
     const JointSurroundings scaled{one_pose, reach, {0, -9.81, 0}, weight};
@@ -153,7 +153,7 @@ TEST(JointDraw, AnArrowIsTheForceOnWhatIsHeld) {
     EXPECT_TRUE(has_line(arrows(ball), {1, 0, 0}, {1, 0.6f, 0}));
     ball.force *= 1e4;
     EXPECT_TRUE(has_line(arrows(ball), {1, 0, 0}, {1, 2, 0}));
-    // A body that is held by the world as the second: what acts on the world acts back on it.
+    // The world is the joint's second side here, so the force on it acts back on the body.
     JointView hung = joint(JointType::ball);
     std::swap(hung.body_a, hung.body_b);
     hung.anchor_a = {1, 0, 0};

@@ -10,7 +10,7 @@ namespace plumb {
 namespace {
 
 TEST(Keys, EveryActionHasOneRowAndAKey) {
-    // `quit` is the last of the enumeration.
+    // `quit` is the last enumerator.
     for (int i = 0; i <= static_cast<int>(Action::quit); ++i) {
         const auto rows =
             std::ranges::count(actions(), static_cast<Action>(i), &ActionInfo::action);
@@ -37,7 +37,7 @@ TEST(Keys, NoChordStandsForTwoActionsAndEachFindsItsOwn) {
     EXPECT_EQ(find_action({'p', true, true}), nullptr);
 }
 
-// The keys that people know from other programs.
+// The keys people know from other programs.
 TEST(Keys, AreTheKnownOnes) {
     using namespace special_key;
     const auto expect = [](Chord chord, Action action) {
@@ -92,7 +92,7 @@ TEST(Keys, TheMarkdownListsEveryActionAndGesture) {
     }
     for (const MouseInfo &row : mouse_gestures())
         EXPECT_NE(text.find("| " + std::string(row.gesture) + " |"), std::string::npos);
-    // A head of two lines, then a line for each row.
+    // Two header lines, then one line per row.
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(text, '\n')),
               2 + actions().size() + mouse_gestures().size());
 }

@@ -42,7 +42,7 @@ TEST(Layout, NothingOverlapsAndAllIsInside) {
                          : random.next_in(0, 4) < 1 ? 0
                                                     : static_cast<float>(random.next_in(20, 900));
             if (!is_roomy(window, 1))
-                wished[PanelId::help] = wished[PanelId::lab] = 0; // which stand alone there
+                wished[PanelId::help] = wished[PanelId::lab] = 0; // these open alone there
             expect_apart_and_inside(lay_out(window, 1, wished), window);
             if (HasFailure())
                 return;
@@ -80,13 +80,13 @@ TEST(Layout, APanelIsAsHighAsItsContentsWhileThereIsRoom) {
     EXPECT_EQ(rects[PanelId::settings].size.y, 220);
     EXPECT_EQ(rects[PanelId::view].size.y, 34);
     EXPECT_EQ(rects[PanelId::details].size.y, 150);
-    EXPECT_EQ(rects[PanelId::view].max().y, 792); // the list has what is left
+    EXPECT_EQ(rects[PanelId::view].max().y, 792); // the list gets the rest
     EXPECT_EQ(rects[PanelId::diagnostics].size.y, 0);
 }
 
 TEST(Layout, InASmallWindowTheHelpStandsAlone) {
     EXPECT_FALSE(is_roomy(smallest_window, 1));
-    EXPECT_FALSE(is_roomy({1280, 800}, 2)); // a screen of twice the density
+    EXPECT_FALSE(is_roomy({1280, 800}, 2)); // a screen of twice the pixel density
     PerPanel<float> wished{};
     wished[PanelId::help] = 500;
     const Rect help = lay_out(smallest_window, 1, wished)[PanelId::help];
@@ -122,17 +122,17 @@ TEST(FreePart, IsTheLargestThatNothingCovers) {
     const Rect between = free_part(window, columns, 1);
     EXPECT_EQ(between.min, glm::vec2(208, 0));
     EXPECT_EQ(between.size, glm::vec2(572, 800));
-    // Closed to their titles, they leave what is below.
+    // Collapsed to their titles, they leave the space below free.
     const std::vector<Rect> titles{{{8, 8}, {200, 34}}, {{780, 8}, {212, 34}}};
     const Rect below = free_part(window, titles, 16.0f / 9);
     EXPECT_EQ(below.min, glm::vec2(0, 42));
     EXPECT_EQ(below.size, glm::vec2(1000, 758));
-    // Hardly anything is left: the panels lie over the scene.
+    // Almost nothing is left: the panels lie over the scene.
     const std::vector<Rect> all{{{0, 0}, {950, 800}}};
     EXPECT_EQ(free_part(window, all, 1).size, window);
 }
 
-// Brute force: no rectangle of a coarse net that nothing covers holds a larger picture.
+// Brute force: no uncovered rectangle of a coarse grid holds a larger picture.
 TEST(FreePart, NoFreeRectangleHoldsALargerPicture) {
     Random random(11);
     const glm::vec2 window(400, 300);

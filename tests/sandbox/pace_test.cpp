@@ -26,7 +26,7 @@ TEST(Pace, IsTheMeanOfTheLastHalfSecond) {
     EXPECT_EQ(pace.frames_per_second(), 0);
 }
 
-// Frames of a fifth of a second, of which at most max_catch_up steps of 1/60 s are caught up with.
+// Frames of a fifth of a second: at most max_catch_up steps of 1/60 s are caught up per frame.
 TEST(Pace, TellsWhenTheWorldIsSlowerThanAsked) {
     Sandbox sandbox(Session({}, nullptr, make_fake()));
     ASSERT_TRUE(sandbox.open(two_balls()));

@@ -55,7 +55,7 @@ TEST(Plots, FollowTheRunForthAndBack) {
     EXPECT_EQ(samples.size(), 1u);
 }
 
-// Whenever it was chosen, a displacement is the distance from the place at the run's start.
+// Whenever it is added to the plot, a displacement is measured from the start of the run.
 TEST(Plots, CountFromTheStartOfTheRun) {
     Session session({}, nullptr, make_fake());
     ASSERT_TRUE(session.open(slow_balls()));
@@ -77,11 +77,11 @@ TEST(Plots, OfWhatIsNotThereAreGoneOrRefused) {
     ASSERT_TRUE(session.step());
     ASSERT_TRUE(session.plot({"speed", "ball"}));
     ASSERT_TRUE(session.plot({"energy", ""}));
-    ASSERT_TRUE(session.plot({"energy", ""})); // is there already
+    ASSERT_TRUE(session.plot({"energy", ""})); // already plotted
     ASSERT_TRUE(session.step());
     ASSERT_EQ(session.plots().curves().size(), 2u);
     EXPECT_EQ(session.plots().curves()[0].samples.back().value, 1);
-    for (int i = 0; i < 3; ++i) // to before the shot
+    for (int i = 0; i < 3; ++i) // back to before the shot
         ASSERT_TRUE(session.step_back());
     ASSERT_EQ(session.plots().curves().size(), 1u);
     EXPECT_EQ(session.plots().curves()[0].name.quantity, "energy");
@@ -162,7 +162,7 @@ TEST(PlotAxis, TicksAscendAndTellTheirValues) {
     EXPECT_GE(plot_axis(0, 1, 6).ticks.size(), 3u);
 }
 
-// About its tick, but for the ends of the axis, beyond which those of another begin.
+// Centred on its tick, except at the ends of the axis, past which another axis's labels begin.
 TEST(PlotAxis, LabelsStayWithinIt) {
     EXPECT_EQ(label_begin(50, 10, 0, 100), 45);
     EXPECT_EQ(label_begin(2, 10, 0, 100), 0);

@@ -32,7 +32,7 @@ TEST(PoseBlend, HalfwayIsHalfTheTurn) {
     EXPECT_NEAR(glm::dot(middle.orientation, expected), 1, 1e-15);
 }
 
-// q and -q are the same rotation; the blend must not turn the long way round.
+// q and -q are the same rotation; the blend must take the short way round.
 TEST(PoseBlend, TakesTheShorterWay) {
     const std::vector<BodyState> a{{{0, 0, 0}, about_y(0.2)}};
     const std::vector<BodyState> b{{{0, 0, 0}, -about_y(0.4)}};

@@ -1,4 +1,4 @@
-// Probes in the sandbox: drawn, dragged, put back, saved.
+// Probes in the sandbox: drawing, dragging, resetting, saving.
 #include "app/sandbox/draw/probe_draw.h"
 #include "app/sandbox/sandbox.h"
 #include "engine/scene/scene_file.h"
@@ -16,7 +16,7 @@
 namespace plumb {
 namespace {
 
-// A ray along x at a ball, seen from +z; the ball is in the middle of a viewport of 800 x 600.
+// A ray along x at a ball, seen from +z; the ball is at the centre of an 800 x 600 viewport.
 SceneDesc ray_at_ball() {
     SceneDesc scene;
     scene.name = "ray_at_ball";
@@ -67,10 +67,10 @@ TEST_F(ProbeTest, ADragOnADiscMovesTheProbeAndNotTheCamera) {
     ASSERT_TRUE(sandbox.view().hovered_handle.has_value());
     EXPECT_EQ(*sandbox.view().hovered_handle, (ProbeHandle{0, 0}));
     send(PointerEvent::Kind::press, ball);
-    // As far to the right as half a metre is at the ball.
+    // To the right by as much as half a metre at the ball.
     const glm::vec2 there(sandbox.view().camera.project({0.5f, 0, 0}, viewport));
     send(PointerEvent::Kind::move, there);
-    EXPECT_NEAR(t(), 1.5, 1e-4); // the answer follows at once
+    EXPECT_NEAR(t(), 1.5, 1e-4); // the answer is updated immediately
     send(PointerEvent::Kind::release, there);
     EXPECT_EQ(sandbox.view().camera.yaw, yaw);
     EXPECT_EQ(sandbox.tools().drag(), Tools::Drag::none);
@@ -91,7 +91,7 @@ TEST_F(ProbeTest, BesideTheDiscsTheCameraTurns) {
     EXPECT_EQ(t(), 1);
 }
 
-// What is expected holds where the scene has the probe, and nowhere else.
+// The expectations hold only where the scene placed the probe.
 TEST_F(ProbeTest, ASavedSceneHasTheMovedProbeAndExpectsNothingOfIt) {
     const TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "moved.toml";
@@ -111,13 +111,13 @@ TEST_F(ProbeTest, ASavedSceneTakesTheFilesOfItsMeshesAlong) {
     ASSERT_TRUE(sandbox.session().save_scene(folder / "saved.toml"));
     ASSERT_TRUE(sandbox.session().save_scene(folder / "again.toml"));
     EXPECT_TRUE(load_scene(folder / "again.toml").ok());
-    // Another mesh of that name is neither lost nor used.
+    // A different mesh of that name is neither overwritten nor used.
     std::ofstream(folder / "gear.obj") << "v 0 0 0\nf 1 1 1\n";
     EXPECT_FALSE(sandbox.session().save_scene(folder / "third.toml"));
     EXPECT_FALSE(std::filesystem::exists(folder / "third.toml"));
 }
 
-// A disk that is full after so many bytes, or as good as one.
+// Simulates a disk that is full after so many bytes.
 class FullDisk {
   public:
     explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

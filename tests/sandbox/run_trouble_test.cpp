@@ -15,7 +15,7 @@ namespace {
 
 const std::filesystem::path scenes_folder = std::filesystem::path(PLUMB_SOURCE_DIR) / "scenes";
 
-// A ball and a wall, weightless.
+// A ball and a wall, without gravity.
 constexpr const char *bullet_text = R"(
 title = "bullet"
 [world]
@@ -49,7 +49,7 @@ bool says(const Trouble &trouble, const std::string &part) {
     return trouble.text.find(part) != std::string::npos;
 }
 
-// Explicit Euler multiplies the amplitude of an undamped spring by sqrt(1 + (omega dt)^2) a step.
+// Explicit Euler multiplies an undamped spring's amplitude by sqrt(1 + (omega dt)^2) per step.
 TEST(Trouble, AMethodThatGainsEnergyIsToldWithPlaceAndTime) {
     const SceneDesc scene = load_scene(scenes_folder / "springs/mass_on_spring.toml").scene;
     const auto grown = trouble_of(scene, "explicit_euler", 600);
@@ -93,7 +93,7 @@ TEST(Trouble, ABodyThatPassesThroughAWallIsNamed) {
     EXPECT_FALSE(trouble_of(scene, "soft_step", 60));
 }
 
-// Far too heavy for contacts so soft; and one that is held by a hand in it is no failing.
+// A body far too heavy for such soft contacts.
 TEST(Trouble, WhatStaysDeepIsNamedAndStaysGoneBeforeIt) {
     const SceneDesc scene = parse_scene(R"(
 [world]
@@ -137,7 +137,7 @@ position = [0, 1.5, 0]
 
 TEST(Trouble, AJointThatStaysApartIsNamed) {
     SceneDesc scene = load_scene(scenes_folder / "joints/heavy_chain.toml").scene;
-    scene.expects.clear(); // which say how far it may be
+    scene.expects.clear(); // these say how far apart it may be
     for (BodyDesc &body : scene.bodies)
         if (body.name == "weight")
             body.mass = 1e6;
@@ -147,7 +147,7 @@ TEST(Trouble, AJointThatStaysApartIsNamed) {
     EXPECT_TRUE(says(*torn, "joint \"")) << torn->text;
 }
 
-// What a person brings in is no failing of the method.
+// Energy that the user adds is no failing of the method.
 TEST(Trouble, AShotAndAPullAreNone) {
     Session session;
     ASSERT_TRUE(session.open(parse_scene(bullet_text, "bullet.toml").scene));
@@ -163,7 +163,7 @@ TEST(Trouble, AShotAndAPullAreNone) {
     EXPECT_FALSE(session.trouble()) << session.trouble()->text;
 }
 
-// Nor is it in a recording, which is judged as the run was: the method's own gain is told.
+// Nor is it in a recording, which is judged as the run was: only the method's own gain is reported.
 TEST(Trouble, InAReplayTheLightsAreThoseOfTheRun) {
     const std::filesystem::path path = std::filesystem::temp_directory_path() /
                                        ("plumb-trouble-" + std::to_string(::getpid()) + ".toml");
@@ -215,7 +215,7 @@ TEST(Trouble, InAReplayTheLightsAreThoseOfTheRun) {
 }
 
 TEST(Trouble, WhatIsNotFiniteComesFirst) {
-    Session session({}, nullptr, make_fake()); // whose energy grows by 1 J a step
+    Session session({}, nullptr, make_fake()); // its energy grows by 1 J per step
     ASSERT_TRUE(session.open(two_balls()));
     dynamic_cast<FakeSimulation &>(*session.simulation()).diverges_at = 1;
     ASSERT_TRUE(session.step());
@@ -229,7 +229,7 @@ TEST(Trouble, WhatIsNotFiniteComesFirst) {
     EXPECT_EQ(session.trouble()->failing, Failing::energy_grew);
 }
 
-// Of a particle, too, it is told where it was last.
+// A particle's last position is reported too.
 TEST(Trouble, SaysWhereAParticleWasLast) {
     RunOptions options;
     options.method = "explicit_euler";
@@ -245,7 +245,7 @@ TEST(Trouble, SaysWhereAParticleWasLast) {
         << session.trouble()->text;
 }
 
-// No scene that keeps what it expects gives an alarm.
+// A scene that keeps its expectations raises no alarm.
 TEST(Trouble, IsNoneInScenesThatAreFine) {
     for (const char *name : {"stacking/ten_box_stack", "joints/pendulum", "joints/newtons_cradle",
                              "contact/bounce_elastic", "springs/two_masses", "free/free_fall"}) {
@@ -269,7 +269,7 @@ TEST(Trouble, AMissIsDatedToTheStepInWhichItWasSealed) {
         added.to = 10;
     };
     expect("low", "max", 0.6);        // 0.625 m after 2.5 s
-    expect("low at last", "last", 1); // 2.5 m in the end
+    expect("low at last", "last", 1); // 2.5 m at the end
     expect("high", "max", 3);
     Session session({}, nullptr, make_fake());
     ASSERT_TRUE(session.open(scene));

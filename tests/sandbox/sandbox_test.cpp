@@ -89,14 +89,14 @@ TEST(Sandbox, HomeAndFrameMoveTheCamera) {
     press(sandbox, 'f');
     EXPECT_EQ(sandbox.view().camera.target, glm::vec3(5, 0, 0));
     EXPECT_EQ(sandbox.view().camera.yaw, at_home.yaw);
-    // The ball of radius 1 has about its own width of air on either side.
+    // The ball of radius 1 has about its own width of space on either side.
     const float high = 1 / std::tan(std::asin(1 / sandbox.view().camera.distance));
     EXPECT_NEAR(high * std::tan(at_home.fov / 2), 3, 0.3);
     press(sandbox, special_key::home);
     EXPECT_TRUE(same(sandbox.view().camera, at_home));
 }
 
-// What the panels leave free stays where it is: only the panels change it.
+// The free part of the window stays in place: only the panels change it.
 TEST(Sandbox, HomeAndFrameLookThroughWhatThePanelsLeaveFree) {
     Sandbox sandbox = fake_sandbox();
     sandbox.view().camera.look_through({1000, 800}, {200, 0}, {500, 600}, 1);
@@ -111,7 +111,7 @@ TEST(Sandbox, HomeAndFrameLookThroughWhatThePanelsLeaveFree) {
         EXPECT_EQ(sandbox.view().camera.centre, centre);
         EXPECT_EQ(sandbox.view().camera.share, share);
     }
-    // The ball in the middle is seen in the middle of what is free.
+    // The ball at the origin is seen at the centre of the free part.
     const glm::vec3 seen = sandbox.view().camera.project({0, 0, 0}, {1000, 800});
     EXPECT_NEAR(seen.x, 450, 0.01f);
     EXPECT_NEAR(seen.y, 300, 0.01f);
@@ -125,7 +125,7 @@ TEST(Sandbox, PanelsGrowAndShrinkBackToWhatTheyWere) {
     for (int i = 0; i < 3; ++i)
         press(sandbox, '-', true);
     EXPECT_EQ(sandbox.view().ui_scale, 1);
-    EXPECT_EQ(sandbox.clock().speed(), 1); // which the same keys change without Ctrl
+    EXPECT_EQ(sandbox.clock().speed(), 1); // the same keys change it without Ctrl
 }
 
 TEST(Sandbox, EscapePeelsBackAndNeverQuits) {
@@ -155,7 +155,7 @@ TEST(Sandbox, EscapePeelsBackAndNeverQuits) {
 TEST(Sandbox, TypedTextIsNoShortcut) {
     Sandbox sandbox = fake_sandbox();
     press(sandbox, 'o', true);
-    // From here on the search box has the keyboard, even before it is drawn.
+    // From now on the search box has the keyboard, even before it is drawn.
     press(sandbox, 'p');
     press(sandbox, 'r');
     EXPECT_FALSE(sandbox.clock().paused());
@@ -196,8 +196,8 @@ TEST(Sandbox, ASelectionThatIsGoneIsLetGo) {
     sandbox.view().selected = 2;
     press(sandbox, '.');
     EXPECT_EQ(sandbox.view().selected, 2u);
-    press(sandbox, ','); // to after the shot
-    press(sandbox, ','); // to before it
+    press(sandbox, ','); // back to after the shot
+    press(sandbox, ','); // back to before it
     EXPECT_FALSE(sandbox.view().selected.has_value());
 }
 
@@ -260,14 +260,14 @@ TEST_F(SandboxWithScenes, JointsThatNothingElseShowsAreShownWhereMostBodiesHangO
         ASSERT_TRUE(sandbox.open(folder / (std::string(name) + ".toml")));
         EXPECT_TRUE(sandbox.view().joints) << name;
     }
-    // Rods are part of the picture anyway, a few joints among many bodies are not what it is about,
-    // and probes have none.
+    // Rods are drawn anyway, a few joints among many bodies are not the point of the scene, and
+    // probes have no joints.
     for (const char *name :
          {"joints/newtons_cradle", "showcase/wrecking_ball", "geometry/raycasts"}) {
         ASSERT_TRUE(sandbox.open(folder / (std::string(name) + ".toml")));
         EXPECT_FALSE(sandbox.view().joints) << name;
     }
-    // Who hides them is not shown them again before the next scene.
+    // Once hidden, they stay hidden until the next scene.
     ASSERT_TRUE(sandbox.open(folder / "joints/door.toml"));
     press(sandbox, 'j');
     press(sandbox, 'r');
@@ -335,7 +335,7 @@ TEST_F(SandboxWithScenes, NewFilesOverwriteNothing) {
     std::filesystem::remove_all(out);
 }
 
-// Drawn as what the pointer holds, from the first picture on.
+// Drawn as if the pointer held it, from the first frame on.
 TEST(Sandbox, ShowsWhatASavedSceneHoldsUntilEscape) {
     SceneDesc scene = two_balls();
     GrabStateDesc &grab = scene.grab.emplace();

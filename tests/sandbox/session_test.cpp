@@ -16,7 +16,7 @@
 namespace plumb {
 namespace {
 
-// A stack that is pushed over: contacts, friction and remembered impulses all matter.
+// A stack that is pushed over: contacts, friction and warm starting all matter.
 constexpr const char *stack_text = R"(
 title = "stack"
 [[body]]
@@ -70,8 +70,8 @@ TEST_F(SessionTest, SteppingBackGivesTheVeryStatesBefore) {
         ASSERT_EQ(session.simulation()->step_count(), step);
         ASSERT_EQ(session.simulation()->hash(), hashes[step]) << "step " << step;
     }
-    EXPECT_FALSE(session.step_back());               // nothing remembered any more
-    EXPECT_EQ(hashes_of_steps(session, 60), hashes); // and on again, the same way
+    EXPECT_FALSE(session.step_back());               // no states left to go back to
+    EXPECT_EQ(hashes_of_steps(session, 60), hashes); // and forward again, the same way
 }
 
 TEST_F(SessionTest, SteppingBackUndoesAShot) {
@@ -131,7 +131,7 @@ TEST_F(SessionTest, SteppingBackKeepsTheMethodChosen) {
     EXPECT_EQ(session.simulation()->step_count(), 4u);
 }
 
-// Another method runs with the settings that the scene, or else the method, has for it.
+// Another method runs with the scene's settings for it, or else with its own defaults.
 TEST_F(SessionTest, EachMethodBringsItsOwnSettings) {
     write("tuned.toml", std::string(stack_text) +
                             "[methods.sequential_impulses]\nsubsteps = 3\niterations = 17\n");
@@ -167,7 +167,7 @@ TEST_F(SessionTest, ASavedStateLoadsToTheSameHashAndGoesOnTheSameWay) {
     hashes_of_steps(session, 40);
     const std::filesystem::path saved = folder / "new folder" / "saved.toml";
     ASSERT_TRUE(session.save_scene(saved));
-    // Nothing half-written is left beside it.
+    // No half-written file is left beside it.
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(saved.parent_path()), {}), 1);
     Session again;
     ASSERT_TRUE(again.open(saved)) << again.messages().all()[0].text;
@@ -177,7 +177,7 @@ TEST_F(SessionTest, ASavedStateLoadsToTheSameHashAndGoesOnTheSameWay) {
 TEST_F(SessionTest, AFolderThatCannotBeMadeIsAMessage) {
     Session session;
     ASSERT_TRUE(session.open(folder / "stack.toml"));
-    EXPECT_FALSE(session.save_scene(folder / "stack.toml" / "saved.toml")); // a file, no folder
+    EXPECT_FALSE(session.save_scene(folder / "stack.toml" / "saved.toml")); // a file, not a folder
     ASSERT_EQ(session.messages().all().size(), 1u);
     EXPECT_EQ(session.messages().all()[0].severity, Message::Severity::error);
 }
@@ -197,7 +197,7 @@ TEST_F(SessionTest, ReloadReadsTheFileAnewAndABrokenOneChangesNothing) {
     EXPECT_FALSE(session.reload());
     EXPECT_EQ(session.simulation()->hash(), running);
     ASSERT_FALSE(session.messages().empty());
-    // What is wrong, and the file and line where it is.
+    // The mistake, and its file and line.
     EXPECT_TRUE(std::ranges::any_of(session.messages().all(), [](const Message &message) {
         return message.text.find("stack.toml:2:") != std::string::npos &&
                message.text.find("naem") != std::string::npos;
@@ -243,7 +243,7 @@ TEST(SessionWithFake, AFailingStepStopsWithAMessageAndGoesBack) {
         EXPECT_TRUE(session.step());
     EXPECT_FALSE(session.step());
     EXPECT_TRUE(session.stopped());
-    EXPECT_FALSE(session.step()); // stays so
+    EXPECT_FALSE(session.step()); // stays stopped
     ASSERT_EQ(session.messages().all().size(), 1u);
     EXPECT_NE(session.messages().all()[0].text.find("as told"), std::string::npos);
     ASSERT_TRUE(session.step_back());
@@ -274,7 +274,7 @@ TEST(SessionWithFake, PosesBeforeAndAfterTheLastStep) {
     EXPECT_EQ(session.previous_bodies()[0].position, session.present_bodies()[0].position);
     session.step();
     session.step();
-    // 0.25 m/s, half a second a step.
+    // 0.25 m/s, half a second per step.
     EXPECT_EQ(session.previous_bodies()[0].position.y, 0.125);
     EXPECT_EQ(session.present_bodies()[0].position.y, 0.25);
     session.step_back();
@@ -312,7 +312,7 @@ TEST(SessionWithFake, TimesAreOfTheStepThatLedHere) {
     EXPECT_FALSE(session.times());
 }
 
-// Held to what two_balls does: "left" rises by 0.25 m/s.
+// Expectations about two_balls: "left" rises by 0.25 m/s.
 SceneDesc expecting() {
     SceneDesc scene = two_balls();
     scene.world.settings.give(&StepSettings::dt, 0.125);
@@ -375,20 +375,20 @@ TEST(SessionWithFake, AnotherStepIsJudgedByTimeNotByCount) {
     Session session({}, nullptr, make_fake());
     ASSERT_TRUE(session.open(expecting()));
     StepSettings settings = session.simulation()->settings();
-    settings.dt = 0.25; // before the first step: the whole run has it
+    settings.dt = 0.25; // before the first step: the whole run uses it
     ASSERT_TRUE(session.set_settings(settings));
     EXPECT_FALSE(session.disturbed());
     for (int step = 1; step <= 4; ++step)
         ASSERT_TRUE(session.step());
     EXPECT_EQ(verdicts(session), (Verdicts{met, missed, missed}));
-    ASSERT_TRUE(session.restart()); // with the step now chosen
+    ASSERT_TRUE(session.restart()); // with the newly chosen step
     EXPECT_EQ(verdicts(session), (Verdicts{pending, pending, pending}));
     for (int step = 1; step <= 4; ++step)
         ASSERT_TRUE(session.step());
     EXPECT_EQ(verdicts(session), (Verdicts{met, missed, missed}));
 }
 
-// All that the window does to a run, and back again, is in its recording.
+// The recording holds everything the window does to a run, undone steps included.
 TEST_F(SessionTest, ARecordingIsTheWayToThePresentState) {
     Session session;
     session.record();
@@ -437,7 +437,7 @@ TEST_F(SessionTest, ARecordingIsTheWayToThePresentState) {
     EXPECT_EQ(replayed_hash(), session.simulation()->hash());
 }
 
-// A recorded run is played again, forth and back, until something else is done.
+// A recorded run plays back and forth until a new command is given.
 TEST_F(SessionTest, ARecordingIsPlayedAgain) {
     const std::filesystem::path path = folder / "run.toml";
     std::vector<std::uint64_t> hashes;
@@ -474,7 +474,7 @@ TEST_F(SessionTest, ARecordingIsPlayedAgain) {
     EXPECT_TRUE(session.disturbed());
     EXPECT_FALSE(session.step()) << "there is nothing beyond the end";
     for (int i = 0; i < 10; ++i)
-        ASSERT_TRUE(session.step_back()); // before the shot and the other method
+        ASSERT_TRUE(session.step_back()); // before the shot and the change of method
     play_to_the_end();
     ASSERT_TRUE(session.restart());
     EXPECT_EQ(session.simulation()->step_count(), 0u);
@@ -485,7 +485,7 @@ TEST_F(SessionTest, ARecordingIsPlayedAgain) {
     play_to_the_end();
 }
 
-// As what was saved goes on, though no pointer holds it: until it is let go.
+// The saved scene's grab keeps holding, though no pointer does, until it is released.
 TEST_F(SessionTest, WhatASavedSceneHoldsIsHeld) {
     Session first;
     ASSERT_TRUE(first.open(folder / "stack.toml"));
@@ -569,7 +569,7 @@ TEST(SessionWithFake, ARunThatWasMeddledWithSaysSo) {
     session.shoot({0, 9, 0}, {0, 1, 0}, 0.1);
     EXPECT_TRUE(session.disturbed());
     session.step();
-    session.step_back(); // the ball is there still
+    session.step_back(); // the ball is still there
     EXPECT_TRUE(session.disturbed());
     session.step_back();
     EXPECT_FALSE(session.disturbed());
@@ -583,7 +583,7 @@ TEST(SessionWithFake, ARunThatWasMeddledWithSaysSo) {
     settings.gravity = {0, -1, 0};
     session.set_settings(settings);
     EXPECT_TRUE(session.disturbed());
-    session.step_back(); // to the start: from here on all is under the new settings
+    session.step_back(); // to the start: the whole run from here on uses the new settings
     EXPECT_FALSE(session.disturbed());
     session.step();
     session.set_settings(settings);
@@ -610,7 +610,7 @@ TEST(Messages, NotesGoAndErrorsStay) {
     messages.error("broken");
     messages.grow_older(Messages::note_lifetime - 0.5);
     EXPECT_EQ(messages.all().size(), 2u);
-    messages.note("saved"); // said again: new again, and only once
+    messages.note("saved"); // repeated: new again, and only once
     EXPECT_EQ(messages.all().size(), 2u);
     messages.grow_older(1);
     EXPECT_EQ(messages.all().size(), 2u);

@@ -1,4 +1,4 @@
-// Particles, springs and cloth as drawn, picked and dragged.
+// Particles, springs and cloth: drawing, picking and dragging.
 #include "app/sandbox/draw/soft_draw.h"
 
 #include "app/sandbox/draw/framing.h"
@@ -69,7 +69,7 @@ TEST_F(SoftDraw, ParticlesAreBallsAndClothIsASurface) {
     EXPECT_EQ(list.meshes[0].normals->size(), list.meshes[0].corners->size());
 }
 
-// A flat sheet has one normal; one bent to a cylinder has normals along its radii.
+// A flat sheet has one normal; a sheet bent into a cylinder has radial normals.
 TEST_F(SoftDraw, NormalsAreThoseOfTheSurface) {
     const ClothSurface flat = cloth_surface(simulation->soft_parts().cloths[0], view());
     for (const glm::vec3 &normal : *flat.normals)
@@ -86,7 +86,7 @@ TEST_F(SoftDraw, NormalsAreThoseOfTheSurface) {
     }
 }
 
-// One torn side of a triangle opens it; a spring on its own is no longer drawn.
+// Tearing one side of a triangle opens it; a lone spring is no longer drawn.
 TEST_F(SoftDraw, TornSpringsOpenTheSurface) {
     const ClothInfo &cloth = simulation->soft_parts().cloths[0];
     const std::uint32_t side = cloth.triangles[10].sides[0];
@@ -112,7 +112,7 @@ TEST_F(SoftDraw, RayPicksTheNearest) {
     ASSERT_TRUE(bob);
     EXPECT_EQ(bob->particle, 0U);
     EXPECT_FALSE(pick({2, 0.3, 0}));
-    EXPECT_TRUE(pick({2, 0.3, 0}, 0.05)); // with a broad pointer
+    EXPECT_TRUE(pick({2, 0.3, 0}, 0.05)); // with a wide pointer
     const auto sheet = pick({0.26, 0.24, 0});
     ASSERT_TRUE(sheet);
     EXPECT_EQ(simulation->soft_parts().particle_name(sheet->particle), "sheet[4,1]");
@@ -126,11 +126,11 @@ TEST_F(SoftDraw, FramingHoldsThem) {
     for (const ParticleState &particle : frame.particles)
         EXPECT_LE(glm::distance(glm::dvec3(all.centre), particle.position),
                   static_cast<double>(all.radius));
-    EXPECT_TRUE(plane_behind(scene)); // a floor, as something is pinned
+    EXPECT_TRUE(plane_behind(scene)); // a floor, because something is pinned
     EXPECT_LT(plane_behind(scene)->position.y, -0.5f);
 }
 
-// With the mouse: a click selects a particle, a drag with Ctrl pulls the cloth along.
+// With the mouse: a click selects a particle, and a Ctrl-drag pulls the cloth along.
 TEST_F(SoftDraw, IsDragged) {
     Sandbox sandbox{Session()};
     ASSERT_TRUE(sandbox.open(scene));

@@ -19,7 +19,7 @@ namespace {
 
 const std::filesystem::path scenes = std::filesystem::path(PLUMB_SOURCE_DIR) / "scenes";
 
-// The run beside which a chart is made goes as it goes alone.
+// A run is the same with or without a chart being made beside it.
 TEST(Studies, AChartIsMadeBesideThePlayAndDoesNotTouchIt) {
     const auto hash = [](bool charts) {
         Session session;
@@ -82,7 +82,7 @@ TEST(Studies, AMapIsMadeAndItsCellsCanBeChosen) {
     EXPECT_EQ(sandbox.session().present_bodies().back().position.y, 60);
 }
 
-// What is shown and asked is the running scene, whatever became of its file.
+// Studies show and use the running scene, whatever happened to its file.
 TEST(Studies, AreOfTheSceneThatRuns) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("plumb-running-" + std::to_string(::getpid()));
@@ -110,11 +110,11 @@ TEST(Studies, AreOfTheSceneThatRuns) {
     std::filesystem::resize_file(folder / "fall.toml", 0); // while it runs
     EXPECT_NE(session.scene_text().text, "");
     const MethodStudy weights = map_of("body." + body + ".gravity_scale=1,2");
-    EXPECT_EQ(weights.map.scene.bodies.back().position.y, 60); // as was clicked on before
+    EXPECT_EQ(weights.map.scene.bodies.back().position.y, 60); // as clicked before
     click(choice_of(weights, 1.0 / 60, 2));
     EXPECT_EQ(session.scene().bodies.back().position.y, 60);
     EXPECT_EQ(session.scene().bodies.back().gravity_scale, 2);
-    click(choice_of(heights, 1.0 / 60, 50)); // of the earlier map
+    click(choice_of(heights, 1.0 / 60, 50)); // in the earlier map
     EXPECT_EQ(session.scene().bodies.back().position.y, 50);
     std::filesystem::remove_all(folder);
 }
@@ -135,7 +135,7 @@ TEST(Studies, OfAnotherSceneAreForgottenAndEnd) {
     EXPECT_EQ(sandbox.view().map_mistake, "");
 }
 
-// What is applied is recorded, and replayed to the same states.
+// An applied choice is recorded and replays to the same states.
 TEST(Studies, AClickOnAPointIsARecordedCommand) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("plumb-studies-" + std::to_string(::getpid()));
@@ -169,7 +169,7 @@ TEST(Studies, AClickOnAPointIsARecordedCommand) {
     std::filesystem::remove_all(folder);
 }
 
-// As a person does it: the tab, the button, then a point.
+// As a user does it: the tab, the button, then a point.
 TEST(Studies, InTheLabAPointIsFoundAndClicked) {
     Sandbox sandbox{Session()};
     ASSERT_TRUE(sandbox.open(scenes / "free/free_fall.toml"));

@@ -10,7 +10,7 @@ namespace {
 
 using Kind = PointerEvent::Kind;
 
-// Two balls seen from +z, the left one in the middle of a viewport of 800 x 600.
+// Two balls seen from +z, the left one at the centre of an 800 x 600 viewport.
 class ToolsTest : public testing::Test {
   protected:
     ToolsTest() : session({}, nullptr, make_fake()) {
@@ -62,7 +62,7 @@ TEST_F(ToolsTest, ALeftDragOrbitsByTheWholeWayAndSelectsNothing) {
     Camera expected = camera;
     expected.orbit({60, 30}, viewport.y);
     send(Kind::press, sky);
-    send(Kind::move, sky + glm::vec2(3, 0)); // still within a click
+    send(Kind::move, sky + glm::vec2(3, 0)); // still within a click's tolerance
     send(Kind::move, sky + glm::vec2(20, 10));
     send(Kind::move, sky + glm::vec2(60, 30));
     send(Kind::release, sky + glm::vec2(60, 30));
@@ -71,7 +71,7 @@ TEST_F(ToolsTest, ALeftDragOrbitsByTheWholeWayAndSelectsNothing) {
     EXPECT_FALSE(selected.has_value());
 }
 
-// The camera must not stick to the pointer when the button goes up over a panel.
+// The camera must not stay stuck to the pointer when the button is released over a panel.
 TEST_F(ToolsTest, AReleaseOverAPanelEndsTheDrag) {
     for (const PointerButton button : {PointerButton::left, PointerButton::right}) {
         send(Kind::press, sky, button);
@@ -115,8 +115,8 @@ TEST_F(ToolsTest, AnotherButtonsReleaseDoesNotEndADrag) {
     EXPECT_EQ(tools.drag(), Tools::Drag::none);
 }
 
-// The grabbed point stays in the plane through it that faces the camera: here z = 1, the front of
-// the ball as seen from +z, and follows the pointer there.
+// The grabbed point stays in the camera-facing plane through it and follows the pointer there: here
+// z = 1, the front of the ball as seen from +z.
 TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
     send(Kind::press, ball, PointerButton::left, true);
     EXPECT_EQ(tools.drag(), Tools::Drag::grab);
@@ -126,8 +126,8 @@ TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
     send(Kind::move, ball + glm::vec2(100, 50), PointerButton::left, true);
     const glm::dvec3 target = session.grabbed()->target;
     EXPECT_NEAR(target.z, 1, 1e-5);
-    // Back through the camera, the target lies under the pointer. Pixels in float, of a few
-    // hundred.
+    // Projected back through the camera, the target lies under the pointer. Pixels are floats of a
+    // few hundred.
     const glm::vec3 pixel = camera.project(glm::vec3(target), viewport);
     EXPECT_NEAR(pixel.x, 500, 1e-2);
     EXPECT_NEAR(pixel.y, 350, 1e-2);
@@ -135,9 +135,9 @@ TEST_F(ToolsTest, AGrabPullsEachStepTowardsThePointerInAPlane) {
     const auto &grabbed = std::get<GrabBody>(fake().commands.at(0));
     EXPECT_EQ(grabbed.body, "left");
     EXPECT_EQ(grabbed.target, target);
-    EXPECT_EQ(grabbed.max_force, tools.grab_strength); // of 1 kg
+    EXPECT_EQ(grabbed.max_force, tools.grab_strength); // for a mass of 1 kg
     session.step();
-    EXPECT_EQ(fake().commands.size(), 1u); // the pointer rests
+    EXPECT_EQ(fake().commands.size(), 1u); // the pointer does not move
     send(Kind::move, ball + glm::vec2(50, 50), PointerButton::left, true);
     session.step();
     EXPECT_EQ(std::get<MoveGrab>(fake().commands.at(1)).target, session.grabbed()->target);

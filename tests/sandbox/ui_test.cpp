@@ -29,7 +29,7 @@ bool windows_overlap(const Rect &a, const Rect &b) {
     return a.min.x < b.max().x && b.min.x < a.max().x && a.min.y < b.max().y && b.min.y < a.max().y;
 }
 
-// Colours within a rectangle, and the number of pixels that are far brighter than the panel: text.
+// The colours in a rectangle, and the number of pixels much brighter than the panel: text.
 struct Look {
     std::set<std::uint32_t> colours;
     std::size_t bright = 0;
@@ -46,7 +46,7 @@ Look look(const Image &image, const Rect &rect) {
     return look;
 }
 
-// What is drawn once windows have found their sizes.
+// The draw data once windows have settled on their sizes.
 const ImDrawData &settled(Ui &ui, Sandbox &sandbox, glm::vec2 window = {1280, 800}) {
     const ImDrawData *data = nullptr;
     for (int frame = 0; frame < 4; ++frame) {
@@ -58,7 +58,7 @@ const ImDrawData &settled(Ui &ui, Sandbox &sandbox, glm::vec2 window = {1280, 80
     return *data;
 }
 
-// A frame with the pointer there, its button up or down.
+// One frame with the pointer there and its button up or down.
 void point(Ui &ui, Sandbox &sandbox, ImVec2 mouse, bool down) {
     ui.fill_input({1280, 800}, 1.0f / 60);
     ImGui::GetIO().MousePos = mouse;
@@ -85,7 +85,7 @@ class UiTest : public testing::Test {
             scenes.push_back(entry);
         }
     }
-    // Objects of GL go before their context.
+    // GL objects are destroyed before their context.
     std::unique_ptr<GlContext> context;
     std::unique_ptr<Renderer> renderer;
     std::vector<SceneEntry> scenes;
@@ -118,7 +118,7 @@ TEST_F(UiTest, PanelsAreDrawnAndNothingOverlaps) {
                 for (std::size_t j = i + 1; j < panels.size(); ++j)
                     EXPECT_FALSE(windows_overlap(rect, panels[j].rect))
                         << panels[i].name << " and " << panels[j].name;
-                // Text is anti-aliased: many shades, and some of them bright.
+                // Text is antialiased: many shades, some of them bright.
                 const Look seen = look(image, rect);
                 EXPECT_GT(seen.colours.size(), 20u) << panels[i].name;
                 EXPECT_GT(seen.bright, 50u) << panels[i].name;
@@ -127,8 +127,8 @@ TEST_F(UiTest, PanelsAreDrawnAndNothingOverlaps) {
     }
 }
 
-// Whether what a scene expects holds is said in the verdict's own colour, green or red, as soon as
-// it is known and only then.
+// Each expectation's verdict is shown in its own colour, green or red, as soon as it is known and
+// not before.
 TEST_F(UiTest, ThePanelSaysWhatIsMetAndWhatIsMissed) {
     struct Coloured {
         std::size_t green = 0, red = 0;
@@ -196,11 +196,11 @@ TEST_F(UiTest, WithoutASceneThereIsStillAProgram) {
     EXPECT_FALSE(sandbox.open(std::filesystem::path("/no/such.toml")));
     std::vector<Ui::Panel> panels;
     const Image image = ui_snapshot(sandbox, *renderer, source / "shaders", {}, &panels);
-    EXPECT_EQ(panels.size(), 3u); // no world's; but the message that says why
+    EXPECT_EQ(panels.size(), 3u); // no world panels, but the message that says why
     EXPECT_FALSE(image.empty());
 }
 
-// A click at a place of the list, as ImGui sees it.
+// A click at a place in the list, as ImGui sees it.
 TEST_F(UiTest, AClickInTheListOpensAScene) {
     Sandbox sandbox(Session(), scenes);
     ASSERT_TRUE(sandbox.open(scenes[0].path));
@@ -213,8 +213,8 @@ TEST_F(UiTest, AClickInTheListOpensAScene) {
     EXPECT_FALSE(ui.over_panel());
     ASSERT_EQ(ui.panels().front().id, PanelId::scenes);
     const Rect list = ui.panels().front().rect;
-    // Down the middle of the list, under the title that would close it, until the second scene is
-    // met.
+    // Down the middle of the list, below the title that would close it, until it hits the second
+    // scene.
     for (float y = list.min.y + 34; y < list.max().y - 50; y += 6) {
         const ImVec2 at(list.min.x + list.size.x / 2, y);
         frame(at, false);
@@ -260,7 +260,7 @@ TEST_F(UiTest, EscClosesAListThatIsOpen) {
     ASSERT_EQ(ui.panels()[1].id, PanelId::settings);
     const Rect settings = ui.panels()[1].rect;
     for (float y = settings.min.y + 30; y < settings.max().y && !is_open(); y += 6) {
-        const ImVec2 at(settings.min.x + settings.size.x / 2, y); // of the method, or of the step
+        const ImVec2 at(settings.min.x + settings.size.x / 2, y); // on the method, or on the step
         frame(at, false);
         frame(at, true);
         frame(at, false);
@@ -285,7 +285,7 @@ bool covers(const Rect &rect, const glm::vec3 &pixel) {
            pixel.y < rect.max().y;
 }
 
-// What the scene's own camera shows in a picture of 16:9, no panel covers.
+// No panel covers what the scene's own camera shows in a 16:9 picture.
 TEST_F(UiTest, NoPanelLiesOverWhatASceneShows) {
     for (const SceneEntry &entry : find_scenes(source / "scenes")) {
         Sandbox sandbox(Session(), scenes);
@@ -330,7 +330,7 @@ TEST_F(UiTest, PanelsAreAsHighAsTheirContentsAndCloseToTheirTitles) {
     ASSERT_TRUE(sandbox.open(scenes[2].path));
     std::vector<Ui::Panel> open;
     static_cast<void>(ui_snapshot(sandbox, *renderer, source / "shaders", {{1280, 1200}}, &open));
-    float bottom = 0; // of what has room to spare: three scenes are a short list
+    float bottom = 0; // these have room to spare: three scenes are a short list
     for (const Ui::Panel &panel : open)
         if (panel.id != PanelId::transport)
             bottom = std::max(bottom, panel.rect.max().y);
@@ -345,7 +345,7 @@ TEST_F(UiTest, PanelsAreAsHighAsTheirContentsAndCloseToTheirTitles) {
     EXPECT_GT(sandbox.view().camera.share, 1.3f * share);
 }
 
-// In a window of the least size the panels are closed; opened one by one, all still have a place.
+// In a window of the minimum size the panels are closed; opened one by one, each still finds room.
 TEST_F(UiTest, ASmallWindowIsUsable) {
     Sandbox sandbox(Session(), scenes);
     ASSERT_TRUE(sandbox.open(scenes[1].path));
@@ -381,7 +381,7 @@ TEST_F(UiTest, LargerPanelsAreLarger) {
     EXPECT_NEAR(height({2560, 1600}, 2), 2 * height({1280, 800}, 1), 8);
 }
 
-// In all windows, or in the one of that name.
+// In all windows, or only in the named one.
 double area_of(const ImDrawData &data, const Colour &colour, const char *window = nullptr) {
     const ImU32 wanted = ImGui::ColorConvertFloat4ToU32(colour) & ~IM_COL32_A_MASK;
     double area = 0;
@@ -403,7 +403,7 @@ double area_of(const ImDrawData &data, const Colour &colour, const char *window 
     return area;
 }
 
-// In a narrow panel there is as much of every letter as in a wide one.
+// A narrow panel shows as much of every letter as a wide one.
 TEST_F(UiTest, NoNumberIsCutInANarrowWindow) {
     const auto text_in = [&](const char *panel, ImVec2 window) {
         Sandbox sandbox(Session(), scenes);
@@ -425,7 +425,7 @@ TEST_F(UiTest, NoNumberIsCutInANarrowWindow) {
     }
 }
 
-// Each curve is drawn in a colour of its own, as long as it is; what is stepped back over is gone.
+// Each curve has its own colour and its full length; what was stepped back over is gone.
 TEST_F(UiTest, TheLabPlotsWhatWasChosen) {
     const auto plotted = [&](int steps, int back, glm::vec2 size) {
         Sandbox sandbox(Session(), scenes);
@@ -446,7 +446,7 @@ TEST_F(UiTest, TheLabPlotsWhatWasChosen) {
         for (const Ui::Panel &panel : ui.panels())
             EXPECT_TRUE(panel.id == PanelId::lab || !windows_overlap(lab->rect, panel.rect))
                 << panel.name;
-        // Less its sign in the legend.
+        // Minus its swatch in the legend.
         return std::array{area_of(data, {0.42f, 0.68f, 0.90f, 1}, "lab") - 90,
                           area_of(data, {0.90f, 0.64f, 0.42f, 1}, "lab") - 90};
     };
@@ -461,14 +461,14 @@ TEST_F(UiTest, TheLabPlotsWhatWasChosen) {
     }
 }
 
-// As a body that is selected, it comes to the front, and its quantities are offered.
+// Like a selected body, it comes to the front and its quantities are offered.
 TEST_F(UiTest, AParticleThatIsSelectedIsShown) {
     Sandbox sandbox(Session(), scenes);
     ASSERT_TRUE(sandbox.open(source / "scenes/cloth/flag.toml"));
     sandbox.perform(Action::toggle_lab);
     Ui ui;
     ImGui::GetIO().Fonts->Build();
-    const auto headings = [&] { // which the scene has, and a particle has not
+    const auto headings = [&] { // the scene has some, a particle has none
         const ImDrawData &data = settled(ui, sandbox);
         return area_of(data, theme::accent, "details");
     };
@@ -482,7 +482,7 @@ TEST_F(UiTest, AParticleThatIsSelectedIsShown) {
     EXPECT_EQ(headings(), of_scene);
 }
 
-// Of a scene that has them, in rows of their own.
+// In a scene that has them, each in a row of its own.
 TEST_F(UiTest, ParticlesAndSpringsAreCounted) {
     const auto height = [&](const std::filesystem::path &scene) {
         Sandbox sandbox(Session(), scenes);
@@ -499,7 +499,7 @@ TEST_F(UiTest, ParticlesAndSpringsAreCounted) {
     EXPECT_NEAR(height(source / "scenes/cloth/flag.toml"), height(scenes[0].path) + 3 * row, 2);
 }
 
-// A number stands in one line with its unit and tolerance, and words go to the next whole.
+// A number stays on one line with its unit and tolerance, and words wrap whole.
 TEST_F(UiTest, TextIsBrokenAtSpacesAlone) {
     Ui ui;
     ImGui::GetIO().Fonts->Build();
@@ -514,13 +514,13 @@ TEST_F(UiTest, TextIsBrokenAtSpacesAlone) {
     EXPECT_EQ(lines("found 2.153", "found 2.1"), 2);
     EXPECT_EQ(lines("a b " + unbroken("1 ± 2 m"), "a b 1 ± 2"), 2);
     EXPECT_EQ(lines("a b 1 ± 2 m", "a b 1 ± 2"), 2);
-    EXPECT_EQ(lines(unbroken("1 ± 2 m"), "1 ± 2"), 2); // which does not fit into one
+    EXPECT_EQ(lines(unbroken("1 ± 2 m"), "1 ± 2"), 2); // does not fit on one line
     EXPECT_EQ(lines("one\ntwo", "one two"), 2);
     ImGui::End();
     ImGui::EndFrame();
 }
 
-// Several samples stand on each column of pixels; which way they go does not show in the line.
+// Each pixel column covers several samples; the line does not show which way they go.
 TEST_F(UiTest, ACurveThatFallsIsDrawnAsOneThatRises) {
     const auto area = [&](double gravity) {
         SceneDesc scene;
@@ -545,7 +545,7 @@ TEST_F(UiTest, ACurveThatFallsIsDrawnAsOneThatRises) {
     EXPECT_NEAR(area(-1), rises, 0.01 * rises);
 }
 
-// A phase that takes no time is not seen in the graph of a step's time: only its sign is, below.
+// A phase that takes no time does not show in the step-time graph, only as a legend swatch below.
 TEST_F(UiTest, APhaseWithoutTimeLeavesNoTraceInTheGraph) {
     Sandbox sandbox(Session({}, nullptr, make_fake()));
     ASSERT_TRUE(sandbox.open(two_balls()));

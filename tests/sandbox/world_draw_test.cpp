@@ -53,7 +53,7 @@ TEST_F(WorldDraw, EveryBodyOnceInItsPlace) {
     EXPECT_EQ(list.shapes[0].colour, colours::static_body);
     EXPECT_EQ(list.shapes[1].kind, DrawKind::box);
     EXPECT_EQ(list.shapes[1].size, glm::vec3(0.5f, 0.25f, 0.75f));
-    EXPECT_EQ(list.shapes[1].colour, palette_colour(2)); // by its index among the bodies
+    EXPECT_EQ(list.shapes[1].colour, palette_colour(2)); // by its body index
     EXPECT_EQ(list.shapes[2].kind, DrawKind::capsule);
     EXPECT_EQ(list.shapes[2].size.x, 0.2f);
     EXPECT_EQ(list.shapes[2].size.y, 0.5f);
@@ -102,7 +102,7 @@ TEST_F(WorldDraw, ContactsBoundsAndVelocitiesWhenAskedFor) {
 
 TEST_F(WorldDraw, WhatMovesIsFramedNotTheFloor) {
     const Around all = around(*simulation);
-    // The box and the capsule, within x = [-0.94, 3.7]: the wall of 80 m does not count.
+    // The box and the capsule, within x = [-0.94, 3.7]; the 80 m wall does not count.
     EXPECT_LT(all.radius, 4);
     EXPECT_NEAR(all.centre.x, 1.4, 0.1);
     const Around wall = around(*simulation, 1);
@@ -110,7 +110,7 @@ TEST_F(WorldDraw, WhatMovesIsFramedNotTheFloor) {
     EXPECT_GT(wall.radius, 40);
 }
 
-// A weightless ball on a rod from the origin, held in one direction.
+// A weightless ball on a rod from the origin, held in the given direction.
 std::unique_ptr<Simulation> rod_towards(const glm::dvec3 &direction) {
     SceneDesc scene;
     scene.name = "rod";
@@ -130,7 +130,7 @@ std::unique_ptr<Simulation> rod_towards(const glm::dvec3 &direction) {
     return Simulation::create(scene, {}, nullptr);
 }
 
-// Straight down is where the shortest turn from up loses its axis: by a hair, by a little, exactly.
+// The shortest rotation from up has no axis straight down: off by a hair, by a little, exactly.
 TEST(Rods, ReachFromEndToEndInEveryDirection) {
     std::vector<glm::dvec3> directions{{0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
     for (double off = 1e-9; off < 1; off *= 3)
@@ -151,7 +151,7 @@ TEST(Rods, ReachFromEndToEndInEveryDirection) {
     }
 }
 
-// Between two steps all that is drawn of a body goes with it: anchors, rods, contacts and bounds.
+// Between two steps everything drawn for a body moves with it: anchors, rods, contacts and bounds.
 TEST(WorldDrawn, BetweenTwoStepsEverythingIsOfOneMoment) {
     const auto simulation = rod_towards({0.6, -0.8, 0});
     WorldDrawOptions options;
@@ -187,7 +187,7 @@ TEST_F(WorldDraw, ContactsGoAlongWithTheBodiesThatAreShown) {
         EXPECT_NEAR(before.points[i].position.x, now.points[i].position.x - 0.25f, 1e-5f);
 }
 
-// A ring of 16 lines and a stalk for each impact that is passed on, smaller the older it is.
+// A ring of 16 lines and a stalk for each impact passed in, smaller the older it is.
 TEST_F(WorldDraw, ImpactsAreDrawnWhereTheyWereAndHowHard) {
     WorldDrawOptions options;
     options.contacts = true;

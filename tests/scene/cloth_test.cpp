@@ -1,4 +1,4 @@
-// What a cloth is made of: how many springs, how long, and that no side is preferred.
+// How many springs a cloth has, how long they are, and that it is symmetric.
 #include "engine/scene/cloth.h"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST(Cloth, SpringsOfAGridAreAsLongAsTheirCells) {
     }
 }
 
-// Mirrored along x, along z, or, of a square one, with x and z swapped, it has the same springs.
+// Mirrored along x or z, or, for a square one, with x and z swapped, it has the same springs.
 TEST(Cloth, GridIsSymmetric) {
     const int n = 6;
     const ClothParts parts = cloth_parts(grid(n, n, 2, 2));
@@ -90,7 +90,7 @@ TEST(Cloth, GridIsSymmetric) {
     }
 }
 
-// They cover the sheet once, seen from above, and their sides are the springs between their
+// Seen from above the triangles cover the sheet once, and their sides are the springs between their
 // corners.
 TEST(Cloth, TrianglesCoverTheSheet) {
     const ClothParts parts = cloth_parts(grid(5, 3, 2, 1.5));
@@ -112,8 +112,8 @@ TEST(Cloth, TrianglesCoverTheSheet) {
     EXPECT_NEAR(area, 2 * 1.5, 1e-12);
 }
 
-// An octahedron: 6 corners, 12 edges, and across each edge the two opposite corners, which are
-// 3 pairs on the axes and 12 edges: only the former are new.
+// An octahedron: 6 corners, 12 edges, and across each edge a pair of opposite corners: 3 pairs in
+// all, on the axes.
 TEST(Cloth, MeshHasItsEdgesAndWhatBendsAcrossThem) {
     MeshData mesh;
     for (int axis = 0; axis < 3; ++axis)

@@ -1,4 +1,4 @@
-// How far contacts are from the laws of contact, where that is known in closed form.
+// Residuals of the contact laws, where they are known in closed form.
 #include "engine/scene/scene_file.h"
 #include "engine/scene/simulation.h"
 
@@ -11,7 +11,7 @@
 namespace plumb {
 namespace {
 
-// A box of 2 kg, friction 0.5 against the ground.
+// A 2 kg box, friction 0.5 against the ground.
 std::unique_ptr<Simulation> box(const std::string &method, const std::string &motion) {
     const SceneFileResult file = parse_scene(R"(
 [world]
@@ -37,7 +37,7 @@ position = [0, 0.25, 0]
 
 class ContactLaw : public testing::TestWithParam<const char *> {};
 
-// What slides at v loses mu m g v, all that there is to lose.
+// A box sliding at v loses mu m g v, all the power that friction can take.
 TEST_P(ContactLaw, ABoxThatSlidesLosesWhatFrictionTakes) {
     const auto simulation = box(GetParam(), "velocity = [2.4, 0, 1.8]\n");
     for (int i = 0; i < 60; ++i)
@@ -46,7 +46,7 @@ TEST_P(ContactLaw, ABoxThatSlidesLosesWhatFrictionTakes) {
     const double force = 0.5 * 2 * 9.81;
     const double speed = 3 - 0.5 * 9.81 * 0.25;
     EXPECT_NEAR(now.contact_power, -force * speed, 0.02 * force * speed);
-    // What soft_step remembers of a push foresees what its next relaxing pass will change.
+    // soft_step's stored impulse anticipates what its next relaxation pass will change.
     const bool foresees = std::string(GetParam()) == "soft_step";
     EXPECT_LT(now.dissipation_residual, (foresees ? 2e-3 : 1e-3) * force * speed);
     EXPECT_LT(now.cone_residual, (foresees ? 2e-3 : 1e-9) * force);
@@ -68,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, ContactLaw,
                          testing::Values("soft_step", "tgs_soft", "sequential_impulses", "nncg",
                                          "avbd"));
 
-// A known failing: XPBD's friction is off by some per cent (here 3.5 % of what there is to lose).
-// What it has of forces keeps the laws, and at rest nothing is off.
+// Known failing: XPBD's friction is off by a few per cent (here 3.5 % of the power it can take).
+// The forces it does have obey the laws, and at rest nothing is off.
 TEST(ContactLaw, XpbdsFrictionIsOff) {
     const auto simulation = box("xpbd", "velocity = [2.4, 0, 1.8]\n");
     for (int i = 0; i < 60; ++i)
@@ -88,8 +88,8 @@ TEST(ContactLaw, XpbdsFrictionIsOff) {
     EXPECT_NEAR(resting->measure().contact_power, 0, 1e-4);
 }
 
-// A known failing: gravity comes after naive impulses, so a box at rest falls anew in each step and
-// is struck back, at some watts; its friction stays in the cone.
+// Known failing: gravity comes after naive impulses, so a box at rest falls in every step and is
+// hit back, at some watts; its friction stays in the cone.
 TEST(ContactLaw, NaiveImpulsesPushWhatDoesNotRest) {
     for (const char *motion : {"velocity = [2.4, 0, 1.8]\n", ""}) {
         const auto simulation = box("naive_impulses", motion);

@@ -1,4 +1,4 @@
-// What a scene file remembers of contacts.
+// Contacts stored in a scene file.
 #include "engine/math/basis.h"
 #include "engine/scene/simulation.h"
 
@@ -11,7 +11,7 @@
 namespace plumb {
 namespace {
 
-// The force of a contact on its second body, from its impulse along the normal and two tangents.
+// A contact's force on its second body, from its impulses along the normal and both tangents.
 Vec3 on_second(const ContactStateDesc &contact, const glm::dvec3 &impulse) {
     const Vec3 n{contact.normal};
     const TangentBasis tangents = tangent_basis(n);
@@ -19,7 +19,7 @@ Vec3 on_second(const ContactStateDesc &contact, const glm::dvec3 &impulse) {
     return i.x * n + i.y * tangents.t1 + i.z * tangents.t2;
 }
 
-// The same contact as the other body has it.
+// The same contact seen from the other body.
 ContactStateDesc from_the_other_side(ContactStateDesc contact) {
     std::swap(contact.body_a, contact.body_b);
     std::swap(contact.child_a, contact.child_b);
@@ -37,7 +37,8 @@ ContactStateDesc from_the_other_side(ContactStateDesc contact) {
     return contact;
 }
 
-// A box that friction holds aslant, so that its contact bears along both tangents.
+// A box that friction holds under oblique gravity, so that its contact carries load along both
+// tangents.
 SceneDesc resting_box() {
     SceneDesc scene;
     scene.world.settings.give(&StepSettings::gravity, {1, -9, 2});

@@ -46,7 +46,7 @@ TEST(Reduce, MeanWeighsByTime) {
     // Trapezoids of 2, 3 and 12 over 6 seconds.
     const Samples s{{0, 1, 2, 6}, {1, 3, 3, 3}};
     EXPECT_DOUBLE_EQ(reduce(s, Reduction::mean), (2.0 + 3.0 + 12.0) / 6.0);
-    // A straight line's mean is its middle, however unevenly it is sampled.
+    // A straight line's mean is its middle, however unevenly sampled.
     const Samples line{{0, 0.1, 0.7, 1}, {3, 3.2, 4.4, 5}};
     EXPECT_NEAR(reduce(line, Reduction::mean), 4, 1e-14);
     EXPECT_EQ(reduce(Samples{{3}, {8}}, Reduction::mean), 8);
@@ -68,14 +68,13 @@ TEST(Reduce, PeriodHasALevel) {
     const Samples s = sine(5, 3, 0.7, 1, 5, 5001);
     EXPECT_NEAR(reduce(s, Reduction::period), 0.7, 3e-8);
     EXPECT_NEAR(reduce(s, Reduction::period, 6.0), 0.7, 3e-8);
-    EXPECT_TRUE(std::isnan(reduce(s, Reduction::period, 9.0))); // never there
-    // One upward crossing is no period yet.
+    EXPECT_TRUE(std::isnan(reduce(s, Reduction::period, 9.0))); // never reaches 9
+    // One upward crossing makes no period.
     EXPECT_TRUE(std::isnan(reduce(Samples{{0, 1, 2}, {-1, 1, -1}}, Reduction::period, 0.0)));
 }
 
 TEST(Reduce, PeriodIsExactForTriangles) {
-    // Straight sides are what linear interpolation is exact for: upward through 0 at
-    // 0.25, 4.25, 8.25.
+    // Linear interpolation is exact for straight sides: upward through 0 at 0.25, 4.25, 8.25.
     const Samples s{{0, 1, 3, 4, 5, 7, 8, 9}, {-1, 3, -1, -1, 3, -1, -1, 3}};
     EXPECT_DOUBLE_EQ(reduce(s, Reduction::period, 0.0), 4);
     // A sample on the level is a crossing at that sample, counted once.
@@ -87,14 +86,14 @@ TEST(Reduce, CountsCrossings) {
     // A sine of 5 s / 0.7 s = 7.14 turns from phase 0.1 is zero at phases pi, 2 pi, ...: the last
     // below 0.1 + 14.29 pi, so 14 times.
     EXPECT_EQ(reduce(sine(0, 3, 0.7, 0.1, 5, 5001), Reduction::crossings, 0.0), 14);
-    // Touching the level from one side is no crossing, passing over samples on it is one.
+    // Touching the level from one side is no crossing; passing through samples on it is one.
     EXPECT_EQ(reduce(Samples{{0, 1, 2}, {1, 0, 1}}, Reduction::crossings, 0.0), 0);
     EXPECT_EQ(reduce(Samples{{0, 1, 2, 3}, {1, 0, 0, -1}}, Reduction::crossings, 0.0), 1);
     EXPECT_EQ(reduce(Samples{{0, 1}, {2, 2}}, Reduction::crossings), 0);
 }
 
-// Let go at 5 m, it passes 2 m after sqrt(2 (5 - 2) / g): the chord is off by g dt^2 / 8, 1.2e-6 m,
-// at 7.7 m/s.
+// Dropped from 5 m, it passes 2 m after sqrt(2 (5 - 2) / g): the chord is off by g dt^2 / 8, 1.2e-6
+// m, at 7.7 m/s.
 TEST(Reduce, FirstCrossingOfAFall) {
     Samples s;
     for (int i = 0; i <= 1000; ++i) {
@@ -102,11 +101,11 @@ TEST(Reduce, FirstCrossingOfAFall) {
         s.values.push_back(5 - 0.5 * 9.81 * (0.001 * i) * (0.001 * i));
     }
     EXPECT_NEAR(reduce(s, Reduction::first_crossing, 2.0), std::sqrt(6 / 9.81), 2e-7);
-    EXPECT_DOUBLE_EQ(reduce(s, Reduction::first_crossing, -10.0), 1); // not while it is watched
-    // Upward, and only the first; one that only touches is none.
+    EXPECT_DOUBLE_EQ(reduce(s, Reduction::first_crossing, -10.0), 1); // not while sampled
+    // Upward, and only the first; touching is no crossing.
     const Samples wave{{0, 1, 2, 3, 4, 5}, {-1, 0, -1, 3, -3, 3}};
     EXPECT_DOUBLE_EQ(reduce(wave, Reduction::first_crossing, 0.0), 2.25);
-    // Over samples on the level: when it came to it.
+    // Through samples on the level: the first of them.
     EXPECT_DOUBLE_EQ(reduce(Samples{{0, 1, 2, 3}, {1, 0, 0, -1}}, Reduction::first_crossing, 0.0),
                      1);
 }
@@ -125,7 +124,7 @@ TEST(Reduce, RefusesUnequalLengths) {
     EXPECT_ANY_THROW(plumb::reduce(one, both, Reduction::last));
 }
 
-// The values of f at `count` places over [from, to].
+// f at `count` points over [from, to].
 std::vector<double> values_of(double (*f)(double), double from, double to, int count) {
     std::vector<double> values;
     for (int i = 0; i < count; ++i)
@@ -141,7 +140,7 @@ double sine_of(double t) {
     return std::sin(t);
 }
 
-// The largest error of a curve, within [first, last] of its intervals.
+// A curve's largest error within its intervals [first, last].
 double curve_error(double (*f)(double), double from, double to, int count, int first, int last) {
     const std::vector<double> values = values_of(f, from, to, count);
     const double h = (to - from) / (count - 1);
@@ -160,13 +159,13 @@ TEST(Curve, IsExactForCubicsAndAtItsValues) {
     const std::vector<double> values{3, -1, 4, 1, -5};
     for (std::size_t i = 0; i < values.size(); ++i)
         EXPECT_DOUBLE_EQ(curve_at(values, 1, 3, 1 + 0.5 * static_cast<double>(i)), values[i]);
-    // No further than its window.
+    // Clamped outside its window.
     EXPECT_DOUBLE_EQ(curve_at(values, 1, 3, 0.9), 3);
     EXPECT_DOUBLE_EQ(curve_at(values, 1, 3, 3.1), -5);
 }
 
-// As the declaration says, and no smaller than half of that: the bounds are those of a sine, whose
-// fourth derivative is at most 1.
+// Within the declared bounds, and above half of them: they are tight for a sine, whose fourth
+// derivative is at most 1.
 TEST(Curve, IsOffByTheFourthPowerOfItsInterval) {
     for (const int count : {33, 65, 129}) {
         const double h = 2 * pi / (count - 1);
@@ -174,7 +173,7 @@ TEST(Curve, IsOffByTheFourthPowerOfItsInterval) {
         const double found = curve_error(sine_of, 0, 2 * pi, count, 1, count - 3);
         EXPECT_LE(found, within) << count;
         EXPECT_GT(found, 0.5 * within) << count;
-        // From where the sine is greatest, the ends are worst.
+        // Starting where the sine is largest, the ends are worst.
         const double at_ends =
             std::max(curve_error(sine_of, pi / 2, 2.5 * pi, count, 0, 0),
                      curve_error(sine_of, pi / 2, 2.5 * pi, count, count - 2, count - 2));

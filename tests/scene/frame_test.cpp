@@ -1,4 +1,4 @@
-// Everything that is seen of a simulation comes from one call.
+// Everything shown of a simulation comes from one call.
 #include "engine/scene/simulation.h"
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace plumb {
 
 namespace {
 
-// A ball on a floor, with a second one that hangs on it and a third that bounces.
+// A ball on a floor, a second one jointed to it, and a third that bounces.
 std::unique_ptr<Simulation> three_balls() {
     SceneDesc scene;
     BodyDesc floor;
@@ -57,7 +57,7 @@ TEST(Frame, HoldsWhatIsAskedFor) {
         for (const ImpactView &impact : frame.impacts) {
             EXPECT_EQ(impact.body_a, 0u);
             EXPECT_EQ(impact.body_b, 3u);
-            // All that changed the ball's momentum in this step, less gravity.
+            // The whole change of the ball's momentum in this step, less gravity.
             const double change = frame.bodies[3].velocity.y - before + 9.81 / 60;
             EXPECT_NEAR(impact.impulse, mass * change, 1e-4 * mass);
             has_bounced = true;
@@ -86,7 +86,7 @@ TEST(Frame, HoldsWhatIsAskedFor) {
     EXPECT_NEAR(force, weight, 0.01 * weight);
 }
 
-// A frame that is read again keeps nothing of what it held.
+// Reading into a frame again keeps nothing of its old content.
 TEST(Frame, IsReadAnew) {
     const auto simulation = three_balls();
     simulation->step();
@@ -103,8 +103,8 @@ TEST(Frame, IsReadAnew) {
     EXPECT_TRUE(frame.contacts.empty());
 }
 
-// A ball and a hinge that the world holds, put where the joint would not have it: one error is in
-// metres, the other in radians.
+// A hinge and a fixed joint to the world, with the body moved out of place: one error is in metres,
+// the other in radians.
 TEST(Frame, ErrorsOfAJointAreALengthAndAnAngle) {
     for (const JointType type : {JointType::hinge, JointType::fixed}) {
         SceneDesc scene;
@@ -139,13 +139,13 @@ TEST(Frame, ErrorsOfAJointAreALengthAndAnAngle) {
     }
 }
 
-// A dumbbell with a ball on each triangle of a mesh, and one of them within a sensor.
+// A dumbbell with a ball on each triangle of a mesh, one of them inside a sensor.
 TEST(Frame, ContactsSayWhatTouches) {
     SceneDesc scene;
     BodyDesc &ground = scene.bodies.emplace_back();
     ground.name = "ground";
     ground.kind = BodyKind::static_body;
-    MeshData quad; // two triangles, parted along x = z
+    MeshData quad; // two triangles, split along x = z
     quad.vertices = {{-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2}};
     quad.triangles = {{0, 1, 2}, {0, 2, 3}};
     MeshDesc mesh;
@@ -182,7 +182,7 @@ TEST(Frame, ContactsSayWhatTouches) {
         }
         EXPECT_EQ(contact.body_a, 0u);
         EXPECT_EQ(contact.child_a, 0u);
-        // The ball at -1 is on the side of z > x, where the first triangle is.
+        // The ball at -1 is on the side z > x, on the first triangle.
         EXPECT_EQ(contact.triangle, contact.child_b) << contact.position.x;
         EXPECT_EQ(contact.position.x > 0, contact.child_b == 1);
         ++on_ground;
@@ -191,7 +191,7 @@ TEST(Frame, ContactsSayWhatTouches) {
     EXPECT_EQ(in_gate, 1);
 }
 
-// The corners of a box that lies flat are four features, and stay the same from step to step.
+// The corners of a box lying flat are four features, and keep their ids from step to step.
 TEST(Frame, FeaturesOfPointsLast) {
     SceneDesc scene;
     for (const char *name : {"floor", "box"}) {

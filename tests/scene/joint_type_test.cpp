@@ -1,4 +1,4 @@
-// The table of joint types, and what is made of it.
+// The table of joint types and what derives from it.
 #include "engine/scene/joint_type.h"
 
 #include "engine/scene/scene_file.h"
@@ -64,7 +64,7 @@ void expect_near(const glm::dvec3 &actual, const glm::dvec3 &expected) {
 }
 
 TEST(JointTypes, AxisIsTheFramesXAxisInTheWorldAtTheStart) {
-    // Among them the directions near to which a shortest turn of x is ill defined.
+    // Including directions near which a shortest rotation of x is ill defined.
     for (const glm::dvec3 &direction :
          {glm::dvec3{1, 0, 0}, glm::dvec3{-1, 0, 0}, glm::dvec3{0, 1, 0}, glm::dvec3{0, -1, 0},
           glm::dvec3{0, 0, 1}, glm::dvec3{0, 0, -1}, glm::normalize(glm::dvec3{-1, 1e-9, 0}),
@@ -146,7 +146,7 @@ max_length = 4
     EXPECT_EQ(scene.joints.at(3).min_length, 2);
 }
 
-// What a person would write, not more.
+// Only what a person would write.
 TEST(JointTypes, WriterSaysWhatMatters) {
     SceneDesc scene = parse(turned_body + "[[joint]]\nname = \"rod\"\ntype = \"distance\"\n"
                                           "body_b = \"a\"\nanchor_a = [1, 5, 3]\nlength = 4\n");

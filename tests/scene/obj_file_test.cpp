@@ -54,13 +54,13 @@ TEST(ObjFile, LineEndsOfAllSystems) {
         text += "f 1 2 9";
         EXPECT_TRUE(read(text).error.starts_with("model.obj:6: ")) << read(text).error;
     }
-    EXPECT_EQ(mesh_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3").triangles.size(), 1U); // no last end
+    EXPECT_EQ(mesh_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3").triangles.size(), 1U); // no newline
 }
 
 TEST(ObjFile, RelativeIndicesCountFromTheirLine) {
     const ObjMesh mesh =
         mesh_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -3 -2 -1\nf 4 5 1\nv 6 6 6\n");
-    const Triangles expected{{0, 1, 2}, {1, 2, 3}, {3, 4, 0}}; // 5 is below its use
+    const Triangles expected{{0, 1, 2}, {1, 2, 3}, {3, 4, 0}}; // 5 is defined after its use
     EXPECT_EQ(mesh.triangles, expected);
     EXPECT_NE(read("v 0 0 0\nv 1 0 0\nf -1 -2 -3\nv 0 1 0\n").error.find("before this line"),
               std::string::npos);
@@ -85,7 +85,7 @@ TEST(ObjFile, NumbersAreReadToTheLastBit) {
         for (std::size_t i = 0; i < 300; ++i)
             ASSERT_EQ(mesh.vertices[i / 3][int(i % 3)], expected[i]);
     }
-    // What is behind three numbers is not ours: a weight, or a colour.
+    // Anything after three numbers is ignored: a weight or a colour.
     EXPECT_EQ(mesh_of("v .5 -.5 +5. 1\nv 1e2 0 0 1 0 0\nv 0 -0 1 junk\nf 1 2 3\n").vertices[0],
               glm::dvec3(0.5, -0.5, 5.0));
 }
@@ -105,7 +105,7 @@ TEST(ObjFile, ConvexPolygonsBecomeFans) {
 }
 
 TEST(ObjFile, AnArrowheadIsNotCutOutside) {
-    // Whichever corner it begins with, and wherever it lies.
+    // Whichever corner it starts with, and wherever it is.
     for (const double at : {0.0, -7.0, 1e6}) {
         const std::array<glm::dvec3, 4> corners{
             glm::dvec3{at, 5, at}, {at + 2, 5, at - 1}, {at + 0.5, 5, at}, {at + 2, 5, at + 1}};
@@ -139,7 +139,7 @@ void append(std::string &text, double value) {
     text.append(digits.data(), end);
 }
 
-// A star with spikes inwards and outwards, corners in line, flat or tilted.
+// A star with spikes inwards and outwards and some collinear corners, flat or tilted.
 std::vector<glm::dvec3> any_simple_polygon(Random &random, std::uint32_t count) {
     const bool is_flat = random.next_index(2) == 0;
     const double angle = is_flat ? 0.0 : random.next_in(0.0, 6.0);
@@ -148,7 +148,7 @@ std::vector<glm::dvec3> any_simple_polygon(Random &random, std::uint32_t count) 
     for (std::uint32_t i = 0; i < count; ++i) {
         const double turn = 6.283185307179586 * double(i) / count;
         double reach = random.next_index(3) == 0 ? 0.05 : random.next_in(0.2, 1.0);
-        if (random.next_index(5) == 0 && i > 0) // in line with the last ones, or nearly
+        if (random.next_index(5) == 0 && i > 0) // in line with the last corners, or nearly
             reach = glm::length(outline.back() - center) * random.next_in(0.99, 1.01);
         const double x = reach * std::cos(turn), y = reach * std::sin(turn);
         outline.push_back(center + glm::dvec3{x * std::cos(angle), y, x * std::sin(angle)});
@@ -156,8 +156,8 @@ std::vector<glm::dvec3> any_simple_polygon(Random &random, std::uint32_t count) 
     return outline;
 }
 
-// Each triangle must turn as the outline does, and the areas add up to its area: then nothing is
-// covered twice or left out. A million polygons, ten in a file.
+// Each triangle must wind as the outline does, and their areas must add up to its area: then
+// nothing is covered twice or left out. A million polygons, ten to a file.
 TEST(ObjFile, AnySimplePolygonIsCutIntoItsArea) {
     Random random(2);
     const int rounds = trials(100'000);
@@ -212,7 +212,7 @@ TEST(ObjFile, AnySimplePolygonIsCutIntoItsArea) {
 TEST(ObjFile, CornersInLineAndSlits) {
     // A corner in the middle of a side.
     EXPECT_EQ(mesh_of("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3 4\n").triangles.size(), 2U);
-    // A square with a square hole, joined by a slit along which two corners are used twice.
+    // A square with a square hole, joined by a slit that uses two corners twice.
     const ObjMesh hole = mesh_of("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\n"
                                  "v 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\nf 1 2 3 4 1 5 6 7 8 5\n");
     double sum = 0;
@@ -222,10 +222,10 @@ TEST(ObjFile, CornersInLineAndSlits) {
         sum += area;
     }
     EXPECT_EQ(sum, 12.0);
-    // Without area: as many triangles all the same.
+    // Zero area still gives the same number of triangles.
     EXPECT_EQ(mesh_of("v 0 0 0\nv 1 1 1\nv 2 2 2\nv 3 3 3\nf 1 2 3 4\n").triangles.size(), 2U);
     EXPECT_EQ(mesh_of("v 0 0 0\nv 1 1 1\nf 1 1 1\nf 1 2 2 1\n").triangles.size(), 3U);
-    // Not plane.
+    // Not planar.
     EXPECT_EQ(mesh_of("v 0 0 0\nv 1 0 1\nv 1 1 0\nv 0 1 1\nf 1 2 3 4\n").triangles.size(), 2U);
 }
 
@@ -295,13 +295,13 @@ TEST(ObjFile, LimitsAreKept) {
     std::string large = "f 1 2 3\n";
     large += std::string(max_obj_bytes, '\n');
     EXPECT_NE(read(large).error.find("the file is too large"), std::string::npos);
-    // A stream that cannot be read.
+    // An unreadable stream.
     std::istringstream broken("v 0 0 0");
     broken.setstate(std::ios::badbit);
     EXPECT_NE(read_obj(broken, "x").error.find("cannot be read"), std::string::npos);
 }
 
-// Valid files with bytes changed, cut out and doubled: a mesh or one message, never a crash.
+// Valid files with bytes changed, cut and doubled: a mesh or one message, never a crash.
 TEST(ObjFile, DamagedFiles) {
     Random random(3);
     const std::string good = "# cube\n" + square +

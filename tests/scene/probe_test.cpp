@@ -1,6 +1,6 @@
 // Probes: the file format, the handles, and the answers of trees and frustums against brute force.
-// What the single geometric functions answer is tested with them; that probes ask them right is
-// held by the expects of scenes/geometry, which the catalogue tests check.
+// The geometric functions have their own tests; that probes call them correctly is checked by the
+// expects of scenes/geometry, in the catalogue tests.
 #include "engine/scene/probe.h"
 
 #include "engine/scene/scene_file.h"
@@ -51,7 +51,7 @@ SceneDesc parsed(const std::string &text) {
     return result.scene;
 }
 
-// All messages, one a line.
+// All messages, one per line.
 std::string said(const std::string &text) {
     std::string all;
     for (const SceneMessage &message : parse_scene(text, "p.toml").messages)
@@ -112,7 +112,7 @@ TEST(Probe, TheSameQuestionGivesTheSameBits) {
                 << scene.name;
 }
 
-// The items of a tree, as drawn, each with its verdict: no tree is needed to check them.
+// A tree's items as drawn, each with its verdict, checked without a tree.
 TEST(Probe, AnOctreeFindsWhatLookingAtEachFinds) {
     const SceneDesc scene = parsed(R"([[probe]]
 name = "tree"
@@ -140,7 +140,7 @@ shapes = [{ shape = "sphere", position = [0.5, 0.25, 0], radius = 1.5 }]
     EXPECT_GT(touched, 5U);
 }
 
-// Without a matrix: by the angles under which a box's corners are seen from the eye.
+// Checked without a matrix, by the angles at which the eye sees a box's corners.
 TEST(Probe, CullingKeepsEachBoxWithACornerInTheView) {
     const SceneDesc scene = parsed(R"([[probe]]
 name = "culling"
@@ -174,7 +174,7 @@ scatter = { count = 500, half_extents = [6, 6, 6], size = 0.3, seed = 4 }
     EXPECT_GT(inside, 50U);
 }
 
-// One matrix for which all of the formulas are whole numbers.
+// A matrix for which all formulas give integers.
 TEST(Probe, AMatrixIsTakenApart) {
     const SceneDesc scene = parsed(R"([[probe]]
 name = "matrix"
@@ -195,7 +195,7 @@ points = [[1, 1, 1], [2, 1, 6], [3, 2, 7], [4, 5, 1]]
             EXPECT_EQ(found.value("minor" + at), minors[i]);
             EXPECT_EQ(found.value("cofactor" + at), sign * minors[i]);
             EXPECT_EQ(found.value("adjugate" + turned), sign * minors[i]);
-            EXPECT_NEAR(found.value("inverse" + at), inverse[i], 2e-3); // the stated bound
+            EXPECT_NEAR(found.value("inverse" + at), inverse[i], 2e-3); // the documented bound
         }
     }
 }
@@ -227,11 +227,11 @@ shapes = [{ shape = "mesh", file = "gear.obj", position = [3, 0, 0], scale = 4, 
     const ProbeDesc &probe = scene.probes.front();
     EXPECT_EQ(std::get<MeshDesc>(probe.shapes.front().shape).data->vertices.size(), 96U);
     const ProbeAnswer found = answer(probe, Precision::f64);
-    EXPECT_NEAR(found.value("x"), 4, 1e-9); // 0.25 thick to either side
+    EXPECT_NEAR(found.value("x"), 4, 1e-9); // 0.25 thick on either side
     EXPECT_NEAR(found.value("normal_x"), 1, 1e-9);
 }
 
-// A compound is its parts, each of which is asked alone.
+// A compound gives the same answer as its parts one by one.
 TEST(Probe, ACompoundHoldsWhatItsPartsHold) {
     const std::string parts = R"({ shape = "circle", position = [1, 0], radius = 0.5 },
 { shape = "rectangle", position = [-1, 0.25], half_extents = [0.75, 0.5] },

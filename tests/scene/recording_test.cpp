@@ -1,4 +1,4 @@
-// A recorded run comes out the same, through a file too; what is wrong with a recording is said.
+// A recorded run replays the same, also through a file; errors in a recording are reported.
 #include "engine/scene/recording.h"
 
 #include "engine/scene/scene_file.h"
@@ -69,7 +69,7 @@ BodyDesc shot(const char *name) {
     return body;
 }
 
-// Every kind of command, at the step before which it is given.
+// Every kind of command, with the step it precedes.
 std::vector<std::pair<std::uint64_t, Command>> commands() {
     GivenSettings settings;
     settings.give(&StepSettings::substeps, 3);
@@ -81,7 +81,7 @@ std::vector<std::pair<std::uint64_t, Command>> commands() {
         {9, GrabBody{"club", {0, 1, 0.1}, {2, 4, 1}, 5e5, {1.0 / 3, 0.25}}},
         {12, MoveGrab{{2.5, 4, 1.0 / 7}}},
         {15, RemoveBody{"crate_0"}},
-        {15, AddBody{shot("crate_0")}}, // into the hole, under the name that is free now
+        {15, AddBody{shot("crate_0")}}, // into the hole, with the name that is now free
         {20, ReleaseGrab{}},
         {22, SetMotion{"bob", {3, 3, 0.2}, turned, {0, 0, 1}, {0.1, 0.2, 0.3}}},
         {25, SetMethod{"sequential_impulses"}},
@@ -109,7 +109,7 @@ Recording recorded(const SceneDesc &of, std::uint64_t steps = 40) {
     }
 }
 
-// The first step that differs, if any does.
+// The first step that differs, if any.
 std::optional<std::uint64_t> first_difference(const Recording &recording) {
     const auto simulation = Simulation::create(recording.scene, {}, nullptr);
     Replay replay(recording);
@@ -149,7 +149,7 @@ TEST(Recording, ComesOutTheSameThroughAFile) {
     }
 }
 
-// Without any one of its commands a run is another, from the step of that command on.
+// Leaving out any one command changes the run from that command's step on.
 TEST(Recording, ALeftOutCommandIsFoundAtItsStep) {
     const Recording whole = recorded(scene());
     for (std::size_t i = 0; i < whole.commands.size(); ++i) {
@@ -160,7 +160,7 @@ TEST(Recording, ALeftOutCommandIsFoundAtItsStep) {
         less.commands.erase(less.commands.begin() + static_cast<std::ptrdiff_t>(i));
         try {
             EXPECT_EQ(first_difference(less), step) << i;
-        } catch (const CommandFailure &) { // a body is not there, or there already
+        } catch (const CommandFailure &) { // a body is missing, or exists already
         }
     }
 }
@@ -203,7 +203,7 @@ TEST(Recording, WhatIsSteppedBackOverIsForgotten) {
     EXPECT_EQ(first_difference(recording), std::nullopt);
 }
 
-// A recording may start where a saved scene continues.
+// A recording can start where a saved scene continues.
 TEST(Recording, CountsItsStepsFromItsScene) {
     const auto simulation = Simulation::create(scene(), {}, nullptr);
     for (int i = 0; i < 10; ++i)
@@ -214,12 +214,12 @@ TEST(Recording, CountsItsStepsFromItsScene) {
     EXPECT_EQ(first_difference(parsed(write_recording(recording))), std::nullopt);
 }
 
-// One that starts in the middle of a run knows the holes that removed bodies left: those that are
-// added fill them, and come in the same place in the solver's order.
+// A recording that starts in mid-run knows the holes that removed bodies left: new bodies fill them
+// and get the same place in the solver's order.
 TEST(Recording, StartsAfterBodiesWereRemoved) {
     for (const char *precision : {"float", "double"}) {
         SceneDesc heap = scene(precision);
-        heap.bodies.push_back(shot("removed_2")); // a name that the recording would like to have
+        heap.bodies.push_back(shot("removed_2")); // a name the recording would like to use
         heap.bodies.back().position.y = 9;
         const auto simulation = Simulation::create(heap, {}, nullptr);
         const auto step = [&](int count) {
@@ -262,7 +262,7 @@ TEST(Recording, StartsAfterBodiesWereRemoved) {
     }
 }
 
-// Also while a method that knows no contacts steps what is left.
+// Also while a method without contacts steps the remaining bodies.
 TEST(Recording, StartsAfterBodiesWereRemovedWhereNothingCollides) {
     SceneDesc heap = scene();
     heap.particles.clear();
@@ -330,7 +330,7 @@ TEST(Recording, MistakesAreNamedAtTheirPlace) {
         for (const SceneMessage &message : result.messages) {
             found = found ||
                     (message.what + message.suggestion).find(mistake.said) != std::string::npos;
-            // At the change, or at the table that it stands in.
+            // At the change, or at its table.
             EXPECT_LE(std::abs(static_cast<double>(message.line) - double(line_of(at))), 6)
                 << format_message("heap.toml", message);
             EXPECT_GE(message.column, 1U);
@@ -348,7 +348,7 @@ TEST(Recording, ASceneIsNone) {
     EXPECT_FALSE(parse_recording("]", "heap.toml").ok());
 }
 
-// What a file does not say of a grab's spring is as it is by itself; what it says is kept.
+// The values that a file gives for a grab's spring are kept; the others get their defaults.
 TEST(Recording, AGrabHasTheSpringThatIsGiven) {
     const std::string text = write_recording(recorded(scene()));
     const RecordingResult read = parse_recording(text, "heap.toml");
@@ -385,7 +385,7 @@ TEST(Recording, AGrabHasTheSpringThatIsGiven) {
     }
 }
 
-// Nothing happens, and the reason is said, when a command cannot be obeyed.
+// A command that cannot be obeyed changes nothing and reports why.
 TEST(Commands, ThatCannotBeObeyedChangeNothing) {
     const auto simulation = Simulation::create(scene(), {}, nullptr);
     for (int i = 0; i < 3; ++i)

@@ -22,7 +22,7 @@ std::vector<Placement> place(const Repeat &repeat, std::uint64_t seed = 1) {
     return placed;
 }
 
-// Positions are sums of few terms of at most 100 m: a few units in the last place of 100.
+// Positions are sums of a few terms of at most 100 m: a few ulps of 100.
 constexpr double rounding = 1e-12;
 
 void expect_near(const glm::dvec3 &actual, const glm::dvec3 &expected) {
@@ -39,7 +39,7 @@ TEST(Repeat, GridIsCentredAndGrowsUp) {
     expect_near(p[3].position, at + glm::dvec3(-1, 0, 1.5));  // then z
     expect_near(p[6].position, at + glm::dvec3(-1, 2, -1.5)); // then up
     expect_near(p.back().position, at + glm::dvec3(1, 6, 1.5));
-    // Centred: the mean is the position, and half the height above it.
+    // Centred: the mean is the position, raised by half the height.
     glm::dvec3 sum{0};
     for (const Placement &each : p)
         sum += each.position;
@@ -122,8 +122,8 @@ TEST(Repeat, ScatterIsSeeded) {
 
 TEST(Repeat, ScatteredRotationsAreUniform) {
     // Uniform rotations take a fixed vector to every direction alike, so each component of the
-    // image has mean 0 and mean square 1/3. Of 20000 samples the means deviate by 1/sqrt(3 * 20000)
-    // = 0.0041 and sqrt(4/45 / 20000) = 0.0021 (one standard deviation); five of them are allowed.
+    // image has mean 0 and mean square 1/3. Over 20000 samples the means have standard deviations
+    // 1/sqrt(3 * 20000) = 0.0041 and sqrt(4/45 / 20000) = 0.0021; five of them are allowed.
     glm::dvec3 sum{0};
     glm::dvec3 squares{0};
     for (const Placement &each : place(ScatterRepeat{20000, {1, 1, 1}, 0, true})) {
@@ -181,7 +181,7 @@ position = [9, 0, 0]
     ASSERT_EQ(scene.bodies.size(), 4U);
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(scene.bodies[i].name, "brick_" + std::to_string(i));
-        // Spaced by the height of the box, so that they just touch.
+        // Spaced by the box's height, so that they just touch.
         expect_near(scene.bodies[i].position, {1, 0.25 + 0.5 * static_cast<double>(i), 0});
         EXPECT_EQ(scene.bodies[i].velocity, glm::dvec3(0, 0, 3));
     }

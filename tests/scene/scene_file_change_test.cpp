@@ -94,7 +94,7 @@ TEST(SceneFileChange, SaysWhatAPathShouldBe) {
     EXPECT_FALSE(complaint("").empty());
 }
 
-// As if they stood in the file.
+// As if the file contained them.
 TEST(SceneFileChange, ValuesOutOfPlaceAreErrorsOfTheScene) {
     EXPECT_NE(mistake("body.ball.radius", -1).find("radius"), std::string::npos);
     EXPECT_NE(mistake("body.box.repeat.count", 2.5).find("count"), std::string::npos);

@@ -1,4 +1,4 @@
-// Scene files with errors, and what must be said of them.
+// Scene files with errors, and the messages they must give.
 #pragma once
 
 #include "engine/scene/scene_file.h"
@@ -12,8 +12,8 @@
 
 namespace plumb::scene_file_errors {
 
-// A file with errors, each place that a message must point to marked by an '@' before it, and the
-// messages in the order of the file.
+// A file with errors: each place that a message must point to has an '@' before it, and the
+// messages are in file order.
 struct SceneFileError {
     std::string name;
     std::string marked;
@@ -35,7 +35,7 @@ inline Marked take_marks(const std::string &marked) {
             continue;
         }
         result.text += c;
-        // Columns count characters, not bytes: the bytes 10xxxxxx continue one.
+        // Columns count characters, not bytes: 10xxxxxx bytes continue one.
         if (c == '\n')
             ++line, column = 1;
         else if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U)

@@ -1,5 +1,4 @@
-// Each way in which the settings and bodies of a scene file can be wrong: where the message points,
-// and what it says.
+// Every error in a scene file's settings and bodies: where the message points, and what it says.
 #include "tests/scene/scene_file_errors.h"
 
 namespace plumb {

@@ -1,4 +1,4 @@
-// Each way in which joints of a scene file can be wrong.
+// Every error in a scene file's joints.
 #include "tests/scene/scene_file_errors.h"
 
 namespace plumb {

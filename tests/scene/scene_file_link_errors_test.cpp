@@ -1,4 +1,4 @@
-// Each way in which expectations and states of a scene file can be wrong.
+// Every error in a scene file's expectations and states.
 #include "tests/scene/scene_file_errors.h"
 
 namespace plumb {

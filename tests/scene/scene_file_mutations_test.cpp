@@ -1,5 +1,4 @@
-// Whatever is done to a valid file: the reader does not crash, and each message points into the
-// file.
+// Mutated files: the reader never crashes, and each message points into the file.
 #include "engine/scene/scene_file.h"
 
 #include "engine/core/random.h"
@@ -175,7 +174,7 @@ impulses = [[1.5, 0, 0], [1.25, 0.5, -0.5]]
 )";
 
 void expect_positions_inside(const std::string &text, const SceneFileResult &result) {
-    std::vector<std::size_t> lengths{0}; // in bytes, so at least as many as characters
+    std::vector<std::size_t> lengths{0}; // in bytes, so no fewer than characters
     for (const char c : text)
         if (c == '\n')
             lengths.push_back(0);
@@ -185,7 +184,7 @@ void expect_positions_inside(const std::string &text, const SceneFileResult &res
         ASSERT_GE(message.line, 1U) << message.what;
         ASSERT_LE(message.line, lengths.size()) << message.what << "\n" << text;
         ASSERT_GE(message.column, 1U) << message.what;
-        // One past the end, or on the newline, is where something is missing.
+        // One past the end, or on the newline: something is missing there.
         ASSERT_LE(message.column, lengths[message.line - 1] + 1) << message.what << "\n" << text;
         ASSERT_FALSE(message.what.empty());
     }
@@ -224,12 +223,12 @@ TEST(Mutations, BytesChangedRemovedAndAdded) {
         if (HasFatalFailure())
             return;
         failed += !result.ok();
-        // What is accepted can be written and is accepted again.
+        // An accepted scene can be written and reads back.
         if (result.ok()) {
             ASSERT_TRUE(parse_scene(write_scene(result.scene), "s.toml").ok()) << text;
         }
     }
-    EXPECT_GT(failed, 1000); // the mutations do bite
+    EXPECT_GT(failed, 1000); // mutations do cause errors
 }
 
 TEST(Mutations, LinesSwappedRemovedAndDoubled) {
@@ -267,7 +266,7 @@ TEST(Mutations, LinesSwappedRemovedAndDoubled) {
 }
 
 TEST(Mutations, ValuesOfAnotherType) {
-    // Each value of the file in turn replaced by one of each type.
+    // Each value in turn, replaced by one of each type.
     const std::vector<std::string> values{
         "1",  "-1",  "0.5", "nan",      "1e300",     "true",     "\"x\"",
         "[]", "[1]", "{}",  "[[1], 2]", "{ a = 1 }", "07:32:00", "-9223372036854775808"};

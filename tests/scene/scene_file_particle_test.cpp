@@ -1,5 +1,4 @@
-// Particles, springs and cloth in scene files: what they say, what is wrong with them, and that
-// what is written reads back.
+// Particles, springs and cloth in scene files: reading, errors, and the round trip through a file.
 #include "engine/scene/cloth.h"
 #include "engine/scene/particle_keys.h"
 #include "engine/scene/scene_limits.h"
@@ -90,7 +89,7 @@ stiffness = 50
     EXPECT_EQ(scene.springs[0].rest_length, 3);
     EXPECT_EQ(scene.springs[1].rest_length, 7);
     EXPECT_NEAR(scene.springs[2].rest_length, std::sqrt(50.0), 1e-12);
-    // Turned by a quarter about z: the world's x is the body's -y.
+    // A quarter turn about z: the world's x is the body's -y.
     EXPECT_NEAR(glm::distance(scene.springs[2].anchor_b_local, glm::dvec3(0, -1, 0)), 0, 1e-12);
     EXPECT_EQ(scene.springs[3].rest_length, 1.5);
     const SoftParts parts(scene);
@@ -98,7 +97,7 @@ stiffness = 50
     EXPECT_EQ(parts.springs[2].b.kind, SpringEndInfo::Kind::body);
 }
 
-// The reduced mass of 2 kg and 3 kg is 6/5 kg, and of 2 kg against what never moves 2 kg.
+// The reduced mass of 2 kg and 3 kg is 6/5 kg, and of 2 kg against a fixed end 2 kg.
 TEST(ParticleFile, FrequencyAndDampingRatioAreOfTheReducedMass) {
     const SceneDesc scene = parse(bob + nail + R"([[particle]]
 name = "other"
@@ -284,7 +283,7 @@ INSTANTIATE_TEST_SUITE_P(All, ParticleErrors, testing::ValuesIn(errors()),
                          [](const auto &tested) { return tested.param.name; });
 
 TEST(ParticleFile, TooManyParticles) {
-    // 448 x 448 are more than 200 000; the first cloth alone fits.
+    // 448 x 448 is more than 200 000; the first cloth alone fits.
     const std::string large = "cells = [446, 446]\n";
     EXPECT_EQ(parse("[[cloth]]\nname = \"a\"\n" + large).cloths.size(), 1U);
     expect_messages(
@@ -314,7 +313,7 @@ TEST_F(ClothMesh, IsMadeOfVerticesAndEdges) {
     ASSERT_TRUE(result.ok()) << result.messages.front().what;
     const SoftParts parts(result.scene);
     EXPECT_EQ(parts.particles.size(), 4U);
-    EXPECT_EQ(parts.springs.size(), 6U); // four sides, the cut, and what bends across it
+    EXPECT_EQ(parts.springs.size(), 6U); // four sides, the diagonal, and the bend spring across it
     EXPECT_EQ(parts.springs.front().rest_length, 2);
     EXPECT_TRUE(parts.particles[3].pinned);
     EXPECT_EQ(parts.particles[0].mass, 0.25);

@@ -227,7 +227,7 @@ class Scenes {
   private:
     bool one_in(std::uint32_t n) { return random_.next_index(n) == 0; }
 
-    // Up to 1e9 in magnitude, over all orders of it; round numbers, both zeros and subnormals too.
+    // Magnitudes up to 1e9 of every order, and also round numbers, both zeros and subnormals.
     double number() {
         switch (random_.next_index(6)) {
         case 0:
@@ -272,7 +272,7 @@ class Scenes {
         return glm::vec3(r, g, channel());
     }
 
-    // Half of the settings, somewhere in their ranges.
+    // Half of the settings, anywhere in their ranges.
     GivenSettings settings(bool of_world) {
         GivenSettings given;
         for (const SettingNumber number : setting_numbers()) {
@@ -290,7 +290,7 @@ class Scenes {
     }
 
     glm::dquat rotation() {
-        // Drawn at once: the order of evaluation of arguments is not fixed.
+        // Drawn one by one: the evaluation order of arguments is unspecified.
         double q[4];
         for (double &part : q)
             part = random_.next_in(-1, 1);
@@ -303,7 +303,7 @@ class Scenes {
             std::vector<glm::dvec3>{{0, 0, 0}, {size, 0, 0}, {0, 1 / size, 0}, {0, 0, size}});
     }
 
-    // Of the first kinds; the last three never move.
+    // One of the first `kinds` kinds; the last three never move.
     ShapeDesc shape(std::uint32_t kinds) {
         const double x = positive();
         const double y = positive();
@@ -367,7 +367,7 @@ class Scenes {
         const bool can_move = std::ranges::all_of(
             b.colliders, [](const ColliderDesc &c) { return c.shape.index() < 5; });
         if (can_move) {
-            // A mass of its own, as the materials' densities may give too much for a scene.
+            // An explicit mass, because the materials' densities may give too much for a scene.
             b.mass = positive();
             if (one_in(3)) {
                 b.center_of_mass = vector();
@@ -431,7 +431,7 @@ class Scenes {
         return j;
     }
 
-    // Within the key's bounds, which are degrees for an angle.
+    // Within the key's bounds, which are in degrees for angles.
     double value(const JointKey &key) {
         const double share = random_.next_unit();
         const double low = std::max(key.bounds.min, -1000.0);
@@ -637,8 +637,8 @@ TEST(RoundTrip, TextReadsWell) {
         << text;
 }
 
-// A world in float lets rotations stray so far from unit length; normalised, they would go on
-// otherwise.
+// A float world lets rotations drift this far from unit length; normalizing them would change how
+// the run goes on.
 TEST(RoundTrip, KeepsRotationsThatStrayedByRounding) {
     for (const double length : {1 - 6e-7, 1 - 4.9e-7, 1 + 4.9e-7, 1 + 6e-7}) {
         const std::string half = shortest(0.5 * length);

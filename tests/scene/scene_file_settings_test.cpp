@@ -1,4 +1,4 @@
-// Scene files with other settings written into them.
+// Writing changed settings into scene files.
 #include "engine/scene/file/settings.h"
 
 #include "engine/scene/file/change.h"
@@ -109,7 +109,7 @@ TEST(SceneFileSettings, WithAnotherMethodTheOldOneKeepsItsSettings) {
     EXPECT_EQ(run_of(changed, {}).settings.substeps, 16);
 }
 
-// What was said of settings goes with them, within their table and above it.
+// Comments on settings go with them, both inside their table and above it.
 TEST(SceneFileSettings, CommentsOfWhatIsRemovedGoToo) {
     const std::string text = "# all of it\n[world]\ndt = 0.01\n\n# needs more,\n# since it is "
                              "soft\n[methods.tgs_soft]\n# at least\nsubsteps = 32\n" +

@@ -1,5 +1,5 @@
-// Shapes in scene files: each kind comes back as it was written, and each mistake is told where it
-// is.
+// Shapes in scene files: each kind survives the round trip, and each error is reported at its
+// place.
 #include "engine/scene/scene_file.h"
 
 #include "engine/scene/shape_kinds.h"
@@ -23,7 +23,7 @@ const std::string pyramid_mesh = "vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [
                                  "triangles = [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]";
 const std::string heights = "heights = [[0, 0.5, 0], [1, 0, 0.25]]\nspacing = 0.5";
 
-// One body, whose shape is given as lines.
+// One body with the given shape lines.
 std::string body(const std::string &lines) {
     return "[[body]]\nname = \"a\"\n" + lines + "\n";
 }
@@ -62,7 +62,7 @@ std::vector<std::string> every_kind() {
             "shape = \"height_field\"\nhalf_extents = [4, 1, 3]\ndetail = 6"};
 }
 
-// As an inline table of `shapes`.
+// As an inline table for `shapes`.
 std::string inline_table(std::string lines) {
     std::ranges::replace(lines, '\n', ',');
     return "{ " + lines + " }";
@@ -132,7 +132,7 @@ TEST(SceneFileShapes, MassAndFreedomComeBack) {
     EXPECT_EQ(write_scene(parsed(text)), text);
 }
 
-// Its own, its material's, the body's, the body's material's.
+// In order: its own, its material's, the body's, the body's material's.
 TEST(SceneFileShapes, DensitiesGoByTheNearest) {
     const std::string materials = "[[material]]\nname = \"a\"\ndensity = 10\n"
                                   "[[material]]\nname = \"b\"\ndensity = 20\n";

@@ -1,4 +1,4 @@
-// Scene files with truths written into them.
+// Writing truths into scene files.
 #include "engine/scene/file/truths.h"
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace plumb {
 namespace {
 
-// With a comment beside what changes, and keys in no order.
+// With a comment beside the changed value, and keys in no order.
 std::string fall(const std::string &equals, const std::string &estimate) {
     return "[[body]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 1\n"
            "[[expect]]\nname = \"other\"\nquantity = \"energy\"\nto = 1\nequals = 7\ntolerance = "
@@ -43,7 +43,7 @@ std::string way(const std::string &equals) {
            equals + "\nestimate = 0 # rough\nto = 1\ntolerance = 0.1\nsource = \"by refinement\"\n";
 }
 
-// However many lines the array takes, and however many it took.
+// However many lines the old and the new array take.
 TEST(SceneFileTruths, CurvesTakeThePlaceOfCurves) {
     const WrittenTruth eleven{"way", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10.5}, 0};
     const std::string written = "[\n    0, 1, 2, 3, 4, 5, 6, 7, 8, 9,\n    10.5,\n]";
@@ -55,7 +55,7 @@ TEST(SceneFileTruths, CurvesTakeThePlaceOfCurves) {
     const WrittenTruth four{"way", {1, 2, 3, 4}, 0};
     EXPECT_EQ(with_truths(way(written), "scene.toml", std::array{four}),
               way("[\n    1, 2, 3, 4,\n]"));
-    // The ends of lines are those of the file.
+    // Line endings are the file's own.
     EXPECT_EQ(
         with_truths("title = \"x\"\r\n" + way("[0, 0, 0, 0]"), "scene.toml", std::array{four}),
         "title = \"x\"\r\n" + way("[\r\n    1, 2, 3, 4,\r\n]"));

@@ -1,4 +1,4 @@
-// What the keys of a scene file come out as.
+// The values that a scene file's keys give.
 #include "engine/scene/scene_file.h"
 #include "tests/temporary_folder.h"
 
@@ -300,7 +300,7 @@ TEST(SceneFileValues, LoadRefusesAFileWithNothingToRun) {
             format_message("s.toml", result.messages[0]),
             "s.toml:1:1: error: the scene is empty: it has no body, no particle, no cloth and no "
             "probe; add a [[body]], a [[particle]], a [[cloth]] or a [[probe]]");
-        EXPECT_TRUE(parse_scene(text, "s.toml").ok()); // as a text it is a scene
+        EXPECT_TRUE(parse_scene(text, "s.toml").ok()); // as text it is a valid scene
     }
 }
 

@@ -1,4 +1,4 @@
-// What a scene file is warned of, and what it is not.
+// Which scene files give warnings, and which do not.
 #include "engine/scene/scene_file.h"
 
 #include <string>
@@ -32,7 +32,7 @@ const std::string cube = "shape = \"hull\"\npoints = [[-0.5, -0.5, -0.5], [0.5, 
                          "[0.5, -0.5, 0.5], [-0.5, 0.5, 0.5], [0.5, 0.5, 0.5]]\n";
 
 TEST(SceneWarnings, OverlapHasADepth) {
-    // Spheres 1 m wide, 0.9 m apart; line 6 is where the second begins.
+    // Spheres 1 m wide, 0.9 m apart; the second starts at line 6.
     const std::string text = body("a", sphere) + body("b", sphere + "position = [0.9, 0, 0]");
     EXPECT_EQ(warnings(text),
               (None{"s.toml:6:1: warning: \"a\" and \"b\" overlap by 0.1 m at the start; move them "
@@ -44,7 +44,7 @@ TEST(SceneWarnings, OverlapOfEveryPairOfShapes) {
     const std::string ground = body("ground", "shape = \"plane\"");
     for (const std::string &first : shapes) {
         for (const std::string &second : shapes) {
-            // All are 1 wide in x: 0.98 apart they overlap by 2 %, 0.995 apart by half a per cent.
+            // All are 1 m wide in x: 0.98 m apart they overlap by 2 %, 0.995 m apart by 0.5 %.
             EXPECT_EQ(
                 warnings(body("a", first) + body("b", second + "position = [0.98, 0, 0]")).size(),
                 1U)
@@ -60,7 +60,7 @@ TEST(SceneWarnings, OverlapOfEveryPairOfShapes) {
     }
 }
 
-// A dumbbell of two balls with nothing between them but a third, which lets through.
+// A dumbbell of two balls; the only shape between them is a sensor.
 TEST(SceneWarnings, OverlapOfCompoundsIsThatOfTheirShapes) {
     const auto dumbbell = [](const std::string &ends) {
         return "shapes = [{ shape = \"sphere\", radius = 0.5, position = [-2, 0, 0]" + ends +
@@ -82,11 +82,11 @@ TEST(SceneWarnings, TouchingStacksAndTurnedBoxesAreFine) {
     EXPECT_EQ(warnings(ground + body("a", box + "position = [0, 0.5, 0]\nrepeat = { kind = "
                                                 "\"pyramid\", base = 12, spacing = [1.1, 1] }")),
               None{});
-    // Bounding boxes overlap, the boxes do not: corner to corner, turned by 45 degrees.
+    // AABBs overlap but the boxes do not: corner to corner, turned by 45 degrees.
     EXPECT_EQ(warnings(body("a", box + "rotation_deg = [0, 45, 0]") +
                        body("b", box + "rotation_deg = [0, 45, 0]\nposition = [0.8, 0, 0.8]")),
               None{});
-    // Far away, where float cannot tell millimetres.
+    // Far away, where float cannot resolve millimetres.
     EXPECT_EQ(warnings("[world]\nprecision = \"double\"\n" +
                        body("a", box + "position = [1e8, 0, 0]") +
                        body("b", box + "position = [100000001, 0, 0]")),
@@ -103,7 +103,7 @@ TEST(SceneWarnings, FarAwayFloatIsTooCoarse) {
                     "world.precision = \"double\", or all of it nearer to the origin"}));
     EXPECT_EQ(warnings(at("1000")), None{});
     EXPECT_EQ(warnings("[world]\nprecision = \"double\"\n" + at("1e5")), None{});
-    // What is small suffers first, and of many one speaks for all.
+    // Small bodies suffer first, and one warning covers many.
     EXPECT_EQ(warnings(body("a", "shape = \"sphere\"\nradius = 0.005\nposition = [1000, 0, 0]\n"
                                  "repeat = { kind = \"line\", count = 30, step = [0.1, 0, 0] }"))
                   .size(),
@@ -181,13 +181,13 @@ TEST(SceneWarnings, AnchorsThatEachTypeKeepsTogether) {
               (None{"s.toml:6:1: warning: the two anchors of slider joint \"j\" start 0.25 m apart "
                     "across its axis; they should be one point, or the first step will jerk them "
                     "together"}));
-    EXPECT_EQ(joint("type = \"slider\"\naxis = [0, 1, 0]\n"), None{}); // along it they may
-    EXPECT_EQ(joint("type = \"ball\"\nfrequency = 2\n"), None{});      // a spring that is drawn
+    EXPECT_EQ(joint("type = \"slider\"\naxis = [0, 1, 0]\n"), None{}); // allowed along its axis
+    EXPECT_EQ(joint("type = \"ball\"\nfrequency = 2\n"), None{});      // a stretched spring
     EXPECT_EQ(joint("type = \"distance\"\n"), None{});
 }
 
 TEST(SceneWarnings, StepTooLong) {
-    // 0.5 m wide and 200 m/s: 1/400 s at most; here 2 m a step.
+    // 0.5 m wide at 200 m/s: 1/400 s at most; here 2 m a step.
     EXPECT_EQ(
         warnings("[world]\ndt = 0.01\n" +
                  body("a", "shape = \"sphere\"\nradius = 0.25\nvelocity = [0, 0, 200]")),

@@ -1,4 +1,4 @@
-// What a scene may ask for, and what is said of one that asks for more.
+// The limits of a scene, and the messages beyond them.
 #include "tests/scene/scene_file_errors.h"
 #include "tests/temporary_folder.h"
 
@@ -31,7 +31,7 @@ std::string repeated(const std::string &text, const std::string &separator, int 
     return all;
 }
 
-// The message stands at the last mark; the others are at probes that still fit.
+// The message points to the last mark; earlier marks are at probes that still fit.
 void expect_only(std::string marked, const std::string &message) {
     while (marked.find('@') != marked.rfind('@'))
         marked.erase(marked.find('@'), 1);
@@ -46,7 +46,8 @@ bool fine(const std::string &text) {
     return result.ok();
 }
 
-// Whose pairs are n (n - 1) / 2: 2450 bodies have 3 000 025, and the 2450th is the first too many.
+// n bodies in one place are n (n - 1) / 2 pairs: 3 000 025 for 2450, and the 2450th is the first
+// too many.
 TEST(SceneLimits, BodiesInOnePlace) {
     EXPECT_TRUE(fine(body("heap", line_of(2449, 1e-4))));
     expect_messages(
@@ -55,7 +56,7 @@ TEST(SceneLimits, BodiesInOnePlace) {
          {"with \"heap_2449\" more than 3000000 pairs of bodies touch or overlap at the "
           "start; each pair takes memory: put the bodies apart (fast ones reach as far as "
           "they move in a step)"}});
-    // Static ones too: they are looked at once.
+    // Static ones too: they are checked once.
     EXPECT_FALSE(parse_scene(body("heap", "kind = \"static\"\n" + line_of(3000, 1e-4)), "s").ok());
 }
 
@@ -85,7 +86,7 @@ TEST(SceneLimits, Planes) {
     EXPECT_TRUE(fine(planes + body("row", "position = [0, 50, 0]\n" + line_of(30'001, 2))));
 }
 
-// A knot of detail 64 has 65 536: 61 of them have 3 997 696.
+// A knot of detail 64 has 65 536 triangles; 61 knots have 3 997 696.
 TEST(SceneLimits, TrianglesOfAllBodies) {
     const auto knots = [](const std::string &name, int count, int x) {
         return "[[body]]\nname = \"" + name +
@@ -131,7 +132,7 @@ TEST(SceneLimits, HeightsOfAHeightField) {
     const std::string title = "the height_field of [[probe]] \"hills\" would have ";
     expect_messages({"", hills("[1, 1, 400]"), {title + "1020051" + suggestion}});
     expect_messages({"", hills("[1, 1, 200000]"), {title + "510000051" + suggestion}});
-    // More than a whole number holds.
+    // More than an integer holds.
     expect_messages(
         {"", hills("[1e-9, 1, 1e9]"), {title + "2549999999999999475712.0" + suggestion}});
 }
@@ -172,7 +173,7 @@ TEST(SceneLimits, OfManyMistakesTheFirstInTheFileAreListed) {
     std::string text = "[world]\n";
     for (int i = 0; i < 300; ++i)
         text += "mistake_" + std::to_string(i) + " = 1\n";
-    // Read later, but it stands first.
+    // Read later, but first in the file.
     const SceneFileResult result = parse_scene("expect = 1\n" + text, "s.toml");
     ASSERT_EQ(result.messages.size(), max_listed_mistakes + 1);
     EXPECT_EQ(result.messages.front().line, 1U);

@@ -1,4 +1,4 @@
-// Each row of the table of settings, wherever a setting can be given.
+// Each row of the table of settings, everywhere a setting can be given.
 #include "engine/scene/scene_file.h"
 #include "engine/scene/simulation.h"
 
@@ -13,7 +13,7 @@
 namespace plumb {
 namespace {
 
-// Another value than any default, in the row's range.
+// A non-default value in the row's range.
 double another_value(SettingNumber number) {
     const SettingRow &row = number.setting();
     const double value = row.min + 0.37 * (row.max - row.min) / (1 + number.component);
@@ -243,7 +243,7 @@ TEST(Settings, ASavedWorldKeepsThemAll) {
         }
 }
 
-// At another dt it goes on from the time that it had.
+// With another dt it continues from the same time.
 TEST(Settings, ASavedWorldKeepsItsTimeAtAnotherStep) {
     SceneDesc scene = scene_for(*find_method_info("soft_step"));
     scene.world.settings.give(&StepSettings::dt, 0.01);
@@ -263,7 +263,7 @@ TEST(Settings, ASavedWorldKeepsItsTimeAtAnotherStep) {
     EXPECT_EQ(Simulation::create(scene, finer, nullptr)->time(), 0);
 }
 
-// Saved with another method than the scene's own, which keeps what was its own.
+// Saved with a method other than the scene's, which keeps its own settings.
 TEST(Settings, ASavedWorldKeepsThoseOfTheMethodThatItLeft) {
     SceneDesc scene = scene_for(*find_method_info("soft_step"));
     scene.world.settings.give(&StepSettings::substeps, 7);
@@ -298,8 +298,8 @@ bool same_motion(const std::vector<BodyState> &a, const std::vector<BodyState> &
     });
 }
 
-// What the panel offers, the reference says and a chart tells apart: the motion depends on a
-// setting just where the method's row says so.
+// The panel, the reference and charts rely on this: the motion depends on a setting exactly where
+// the method's row says so.
 TEST(Settings, MethodsReadWhatTheySay) {
     for (const MethodInfo &method : method_infos()) {
         const SceneDesc scene = scene_for(method);

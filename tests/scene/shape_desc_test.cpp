@@ -1,4 +1,4 @@
-// Measures of shapes against closed forms and brute force.
+// Shape measures against closed forms and brute force.
 #include "engine/scene/scene_desc.h"
 
 #include "engine/core/random.h"
@@ -77,7 +77,7 @@ TEST(ShapeDesc, AHullIsAsWideAsTheNarrowestWayToHoldIt) {
                 best = direction;
             }
         }
-        // Downhill from there.
+        // Then a random descent.
         for (double step = 0.05; step > 1e-7; step *= 0.99) {
             const glm::dvec3 near = glm::normalize(best + step * random_direction(random));
             if (const double extent = extent_along(points, near); extent < narrowest) {
@@ -90,7 +90,7 @@ TEST(ShapeDesc, AHullIsAsWideAsTheNarrowestWayToHoldIt) {
     }
 }
 
-// Points of its surface, many enough that the box around them is nearly that of the shape.
+// Enough points on its surface that their AABB is nearly the shape's.
 TEST(ShapeDesc, ATurnedCylinderFillsItsBounds) {
     Random random(6);
     const CylinderDesc cylinder{0.75, 0.5};

@@ -1,4 +1,4 @@
-// What scenes/README.md says of shapes is what the table of kinds says.
+// What scenes/README.md says about shapes matches the table of kinds.
 #include "engine/scene/shape_fields.h"
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// Particles, springs and cloth as they run: saved and loaded, recorded and replayed, grabbed, torn.
+// Running particles, springs and cloth: saved and loaded, recorded and replayed, grabbed, torn.
 #include "engine/scene/recording.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/simulation.h"
@@ -100,7 +100,7 @@ std::size_t torn_springs(const Simulation &simulation) {
     return count;
 }
 
-// After any step, through a file and back, it goes on with the same bits.
+// Saved to a file after any step and read back, it goes on bit for bit.
 TEST(SoftSimulation, GoesOnTheSameFromASavedFile) {
     for (const char *precision : {"float", "double"}) {
         const auto simulation = run(scene(precision), 60);
@@ -139,7 +139,7 @@ TEST(SoftSimulation, SpringsGoWithTheirBody) {
     EXPECT_EQ(simulation->read().torn[*simulation->soft_parts().find_spring("lower")], 1);
     const SceneDesc left = simulation->describe();
     EXPECT_EQ(left.springs.size(), 2U);
-    EXPECT_TRUE(left.expects.empty()); // of the spring that is gone
+    EXPECT_TRUE(left.expects.empty()); // its spring is gone
     const SceneFileResult read = parse_scene(write_scene(left), "soft.toml");
     ASSERT_TRUE(read.ok()) << format_message("soft.toml", read.messages.front());
     const auto again = Simulation::create(read.scene, {}, nullptr);
@@ -159,7 +159,7 @@ TEST(SoftSimulation, NamesOfParticlesAndClothsAreTaken) {
     EXPECT_THROW(simulation->apply(AddBody{body}), std::invalid_argument);
 }
 
-// A particle that is held comes to its target, and what was done replays to the bit, from a file.
+// A grabbed particle comes to its target, and the recording replays bit for bit from a file.
 TEST(SoftSimulation, GrabIsRecorded) {
     const auto simulation = Simulation::create(scene(), {}, nullptr);
     Recorder recorder(*simulation);
@@ -210,7 +210,7 @@ TEST(SoftSimulation, MethodsSayWhatTheyCannotRun) {
         EXPECT_EQ(why_not(method, soft).empty(), method.springs) << method.name;
 }
 
-// What nothing but gravity pulls at falls as it should, whatever its mass, with every method.
+// Particles under gravity alone fall correctly, whatever their mass, with every method.
 TEST(SoftSimulation, LooseParticlesFall) {
     const SceneDesc falling =
         parse_scene("[world]\nprecision = \"double\"\ndt = \"1/1000\"\n[[particle]]\nname = "
@@ -227,7 +227,7 @@ TEST(SoftSimulation, LooseParticlesFall) {
             simulation->step();
         const ParticleState p = simulation->read().particles.at(0);
         EXPECT_NEAR(p.position.x, 1, 1e-9) << method.name;
-        EXPECT_NEAR(p.position.y, 2 - 0.5 * 9.81, 6e-3) << method.name; // g dt / 2 for first order
+        EXPECT_NEAR(p.position.y, 2 - 0.5 * 9.81, 6e-3) << method.name; // g dt / 2 at first order
         EXPECT_NEAR(p.velocity.y, 2 - 9.81, 1e-9) << method.name;
     }
 }

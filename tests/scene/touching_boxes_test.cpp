@@ -36,7 +36,7 @@ Pairs by_asking_all(const std::vector<BoundsDesc> &boxes) {
     return pairs;
 }
 
-// On a coarse grid, so that many touch exactly; near the origin and where float has no digits left.
+// On a coarse grid, so that many touch exactly; near the origin and where float runs out of digits.
 TEST(TouchingBoxes, AreThoseThatAskingAllFinds) {
     Random random(5);
     for (const double origin : {0.0, 1e6, 1e9}) {

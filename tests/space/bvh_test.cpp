@@ -28,7 +28,7 @@ struct Family {
     Aabb (*make)(Random &random, int i);
 };
 
-// Boxes as they come, and such as make splitting hard.
+// Ordinary boxes, and families that are hard to split.
 const Family families[] = {
     {"scattered",
      [](Random &random, int) {
@@ -73,8 +73,8 @@ std::vector<Aabb> boxes_of(const Family &family, Random &random, int count) {
     return boxes;
 }
 
-// Every item is in one leaf, every node in one place, bounds are as tight as they can be, and no
-// visit needs more stack than there is.
+// Every item is in one leaf, every node is reached once, bounds are tight, and the stack is large
+// enough for any traversal.
 void expect_consistent(const Bvh &tree, const std::vector<Aabb> &boxes) {
     std::vector<int> seen(boxes.size(), 0);
     std::vector<int> leaf_seen(tree.leaf_count(), 0);
@@ -87,7 +87,7 @@ void expect_consistent(const Bvh &tree, const std::vector<Aabb> &boxes) {
         for (std::size_t child = 0; child < Bvh::width; ++child) {
             Aabb box;
             if (node.children[child] == Bvh::no_child) {
-                // no box
+                // empty box
             } else if ((node.children[child] & Bvh::leaf_bit) != 0) {
                 const std::uint32_t leaf = node.children[child] & ~Bvh::leaf_bit;
                 ++leaf_seen[leaf];
@@ -99,7 +99,7 @@ void expect_consistent(const Bvh &tree, const std::vector<Aabb> &boxes) {
                     box.max = glm::max(box.max, boxes[item].max);
                 }
             } else {
-                EXPECT_GT(node.children[child], index); // the parent before
+                EXPECT_GT(node.children[child], index); // parents first
                 box = self(self, node.children[child], height + 1);
             }
             for (int axis = 0; axis < 3; ++axis) {
@@ -120,7 +120,7 @@ void expect_consistent(const Bvh &tree, const std::vector<Aabb> &boxes) {
     EXPECT_EQ(std::count(leaf_seen.begin(), leaf_seen.end(), 1), std::ptrdiff_t(leaf_seen.size()));
 }
 
-// What touches is visited, once; what is not in a leaf that touches is not.
+// The items of every leaf that touches the query are visited once, no others.
 void expect_right_query(const Bvh &tree, const std::vector<Aabb> &boxes, const Aabb &query) {
     std::vector<int> visits(boxes.size(), 0);
     tree.query(query, [&](std::uint32_t item) {
@@ -247,7 +247,7 @@ TEST(Bvh, IsTheSameForTheSameBoxes) {
     }
 }
 
-// Fewer boxes are opened than a list has, by far: what a tree is for.
+// The point of a tree: far fewer visits than a list needs.
 TEST(Bvh, VisitsFewOfAMillion) {
     Random random(6);
     const int count = trials(1'000'000);
@@ -266,7 +266,7 @@ TEST(Bvh, VisitsFewOfAMillion) {
             return true;
         });
     }
-    EXPECT_LT(visits / 1000.0, 10.0); // 0.17 of a million touch, on average
+    EXPECT_LT(visits / 1000.0, 10.0); // 0.17 of the million touch on average
 }
 
 TEST(Bvh, RefusesBoxesThatAreNone) {

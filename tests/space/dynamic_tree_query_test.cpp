@@ -1,4 +1,4 @@
-// What DynamicTree finds, against lists.
+// DynamicTree queries against brute force.
 
 #include "engine/geometry/frustum.h"
 #include "engine/space/dynamic_tree.h"
@@ -40,7 +40,7 @@ TEST(DynamicTree, RaycastAgainstBruteForce) {
     int hits = 0;
     const int count = trials(1'000'000);
     for (int trial = 0; trial < count; ++trial) {
-        if (trial % 500 == 0) // now and then a large one
+        if (trial % 500 == 0) // occasionally a large one
             field = Field(trial % 50'000 == 0 ? 300 : random.next_index(32),
                           [&] { return any_box(random, 5.0, 3.5); });
         Ray ray{any_vector(random, 7.0), any_vector(random, 1.0), any_real(random, 0.1, 20.0)};
@@ -49,7 +49,7 @@ TEST(DynamicTree, RaycastAgainstBruteForce) {
                 ray.direction[k] = random.next_index(2) == 0 ? Real(0) : -Real(0);
         if (ray.direction == Vec3{Real(0)})
             continue;
-        // All that are met, with a visit that does not shorten the ray.
+        // All boxes hit, with a callback that does not shorten the ray.
         std::vector<std::uint32_t> found, expected;
         field.tree.raycast(ray, [&](std::uint32_t user, const Ray &left) {
             found.push_back(user);
@@ -158,15 +158,15 @@ TEST(DynamicTree, SegmentQueryAgainstBruteForce) {
         const std::uint32_t kind = random.next_index(5);
         if (kind == 0)
             segment.b = segment.a;
-        if (kind == 1) // contained, or along an axis
+        if (kind == 1) // a point, or along an axis
             for (int k = 0; k < 3; ++k)
                 if (random.next_index(3) != 0)
                     segment.b[k] = segment.a[k];
         const std::vector<std::uint32_t> found = sorted_answers(field.tree, segment);
         found_in_all += found.size();
         for (std::uint32_t i = 0; i < field.boxes.size(); ++i) {
-            // Exactly, in integers: clip [0, 1] with the parameters as fractions over a common
-            // denominator, the product of the components that are not zero.
+            // Exact, in integers: clip [0, 1] with the parameters as fractions over a common
+            // denominator, the product of the nonzero components.
             const Aabb &box = field.boxes[i];
             long long common = 1;
             for (int k = 0; k < 3; ++k)
@@ -197,7 +197,7 @@ TEST(DynamicTree, SegmentQueryAgainstBruteForce) {
     }
     EXPECT_GT(found_in_all, std::size_t(rounds) / 5);
     EXPECT_GT(ends, std::size_t(rounds) / 40);
-    // Ends in boxes, with coordinates that round.
+    // Ends in boxes, with coordinates that round off.
     const Field reals(100, [&] { return any_box(random, 5.0, 1.0); });
     for (int round = 0; round < rounds / 10; ++round) {
         Segment segment{any_vector(random, 5.0), any_vector(random, 5.0)};
@@ -226,7 +226,7 @@ TEST(DynamicTree, FrustumQueryAgainstBruteForceInDouble) {
             for (std::uint32_t i = 0; i < field.boxes.size(); ++i)
                 single.emplace_back(Real(0)).insert(field.boxes[i], i);
         }
-        // Half of them with a corner of a box in a plane, as rounded.
+        // Half have a box corner in a plane, up to rounding.
         Frustum frustum = frustum_of(
             glm::perspective(any_real(random, 0.3, 1.5), Real(1.5), Real(0.5), Real(40)) *
             glm::lookAt(any_vector(random, 25.0), any_vector(random, 5.0),
@@ -241,7 +241,7 @@ TEST(DynamicTree, FrustumQueryAgainstBruteForceInDouble) {
         found_in_all += found.size();
         for (std::uint32_t i = 0; i < field.boxes.size(); ++i) {
             const Aabb &box = field.boxes[i];
-            long double foremost = -1e9L; // of the planes, the height of the lowest corner
+            long double foremost = -1e9L; // the lowest corner's height, largest over the planes
             long double size = 0;
             for (const Plane &plane : frustum.planes) {
                 long double lowest = 1e9L;
@@ -257,7 +257,7 @@ TEST(DynamicTree, FrustumQueryAgainstBruteForceInDouble) {
                 foremost = std::max(foremost, lowest);
             }
             const bool got = std::binary_search(found.begin(), found.end(), i);
-            // No branch is lost: the answer is that for the box alone, to the bit.
+            // No branch is lost: the answer equals that for the box alone, bit for bit.
             ASSERT_EQ(got, !sorted_answers(single[i], frustum).empty());
             const long double slack =
                 4 * static_cast<long double>(std::numeric_limits<Real>::epsilon()) * size;
@@ -279,7 +279,7 @@ TEST(DynamicTree, QueryIfTakesAnyRegion) {
     Random random(18);
     Field field(100, [&] { return any_integer_box(random); });
     std::vector<std::uint32_t> found;
-    // Beside the origin, along x + y <= -3.
+    // The half space x + y <= -3.
     field.tree.query_if([](const Aabb &box) { return box.min.x + box.min.y <= Real(-3); },
                         [&](std::uint32_t user) {
                             found.push_back(user);
@@ -300,7 +300,7 @@ TEST(DynamicTree, QueryIfTakesAnyRegion) {
 
 TEST(DynamicTree, ClosestAndAnyHitAgainstBruteForce) {
     Random random(14);
-    // Two trees of the same boxes, put in forwards and backwards: the answers must be the same.
+    // Two trees of the same boxes, inserted forwards and backwards, must agree.
     Field field;
     DynamicTree backwards(Real(0));
     std::size_t hits = 0, ties = 0;
@@ -349,7 +349,7 @@ TEST(DynamicTree, ClosestAndAnyHitAgainstBruteForce) {
                 return ray_interval(field.boxes[user], left).has_value();
             });
             ASSERT_EQ(any, expected.has_value());
-            ASSERT_LE(asked, any ? 1 : 0); // a box is its own shape here
+            ASSERT_LE(asked, any ? 1 : 0); // here the boxes are the shapes
         }
         hits += expected ? 1 : 0;
     }

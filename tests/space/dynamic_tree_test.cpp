@@ -17,7 +17,7 @@ namespace {
 using namespace oracle;
 using namespace tree_boxes;
 
-// A list of boxes, and the tree that should know them.
+// A list of boxes, and the tree that should match it.
 struct Mirror {
     DynamicTree tree;
     std::vector<DynamicTree::Leaf> leaves;
@@ -37,7 +37,7 @@ struct Mirror {
         users.erase(users.begin() + std::ptrdiff_t(i));
         boxes.erase(boxes.begin() + std::ptrdiff_t(i));
     }
-    // What a query should find: by the fat boxes, all of them.
+    // The expected answer, from all fat boxes.
     std::vector<std::uint32_t> brute(const Aabb &box) const {
         std::vector<std::uint32_t> found;
         for (std::size_t i = 0; i < leaves.size(); ++i)
@@ -55,7 +55,7 @@ TEST(DynamicTree, RandomChangesAgainstBruteForce) {
     for (int step = 0; step < 100000; ++step) {
         const std::uint32_t action = random.next_index(8);
         const std::size_t count = mirror.leaves.size();
-        // Up to some 150 boxes, now and then none.
+        // Up to about 150 boxes, occasionally none.
         if (step % 20000 == 19999) {
             while (!mirror.leaves.empty())
                 mirror.remove(random.next_index(std::uint32_t(mirror.leaves.size())));
@@ -155,8 +155,8 @@ TEST(DynamicTree, CopyAnswersAlikeAndIsIndependent) {
 }
 
 TEST(DynamicTree, StaysShallow) {
-    // In order along a line, the worst order for insertion: still a small multiple of the 10 levels
-    // that a balanced tree of 1024 has.
+    // Sorted along a line, the worst insertion order: the height stays a small multiple of the 10
+    // levels of a balanced tree of 1024.
     DynamicTree line(Real(0));
     for (std::uint32_t i = 0; i < 1024; ++i) {
         const Real x = Real(i);
@@ -263,8 +263,8 @@ TEST(DynamicTree, NodesAreVisitedParentsFirst) {
         mirror.insert(any_box(random, 5.0, 0.5));
     for (int i = 0; i < 200; ++i)
         mirror.remove(random.next_index(std::uint32_t(mirror.leaves.size())));
-    // In this order a parent is the last box seen one level up; and the boxes of the leaves are
-    // those that were put in.
+    // In this order the parent is the last box seen one level up; the leaf boxes are those
+    // inserted.
     std::vector<Aabb> above;
     std::vector<Aabb> leaves;
     int deepest = 0, nodes = 0;
@@ -300,7 +300,7 @@ TEST(DynamicTree, NodesAreVisitedParentsFirst) {
     }
 }
 
-// A million changes, each followed by a query, and queries of other kinds, against lists.
+// A million changes, each followed by a query, and other kinds of query, against brute force.
 TEST(DynamicTree, AMillionOperations) {
     Random random(17);
     Mirror mirror(Real(0.05));
@@ -319,8 +319,8 @@ TEST(DynamicTree, AMillionOperations) {
             mirror.boxes[any] = {mirror.boxes[any].min + by, mirror.boxes[any].max + by};
             mirror.tree.update(mirror.leaves[any], mirror.boxes[any]);
         } else if (action > 5) {
-            // A sphere's or a segment's answers must be among its box's, and hold all leaves that
-            // have its centre or an end.
+            // A sphere's or segment's answers must be a subset of its AABB's, and include every
+            // leaf that contains its centre or an end.
             const Vec3 a = any_vector(random, 5.0), b = any_vector(random, 5.0);
             const Real radius = any_real(random, 0.0, 1.0);
             const Sphere sphere{a, radius};

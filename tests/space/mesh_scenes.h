@@ -1,4 +1,4 @@
-// Meshes to ask, and questions to ask them, for the tests of MeshTree.
+// Meshes and queries for the MeshTree tests.
 #pragma once
 
 #include "engine/geometry/triangle.h"
@@ -26,7 +26,7 @@ inline Vec3 whole_vector(Random &random, int reach) {
     return {x, y, component()};
 }
 
-// Few places for the vertices, so that triangles are often flat, coplanar, or share corners.
+// Vertices in few places, so that triangles are often flat, coplanar, or share corners.
 inline TriangleMesh whole_soup(Random &random, int count, int reach) {
     TriangleMesh mesh;
     for (int i = 0; i < count; ++i)
@@ -63,7 +63,7 @@ inline std::vector<Scene> scenes() {
     all.push_back({"small sphere", sphere(20, 12, 1e-3), 1e-3, V{0.0}});
     all.push_back({"cube", cube(6, 3.0), 3.0, V{0.0}});
     all.push_back({"needles", turned(sphere(90, 3, 2.0), V{3.0}), 2.0, V{3.0}});
-    TriangleMesh soup; // large, small, long and flat ones
+    TriangleMesh soup; // large, small, long and flat triangles
     for (std::uint32_t i = 0; i < 400; ++i) {
         const Vec3 a = any_vector(random, 5.0);
         const double size = std::pow(10.0, random.next_in(-4.0, 1.0));
@@ -76,7 +76,7 @@ inline std::vector<Scene> scenes() {
     return all;
 }
 
-// From anywhere, to anywhere, and to vertices and edges; along axes; of any length.
+// Rays from anywhere, to anywhere, to vertices and to edges; along axes; of any length.
 inline Ray any_ray(Random &random, const Scene &scene, int k) {
     const auto &vertices = scene.mesh.vertices;
     const auto vertex = [&] {
@@ -123,7 +123,7 @@ struct SmallMesh {
     bool is_whole = false;
 };
 
-// Half of them of whole numbers, half of any size, at any place.
+// Half have integer vertices, half any size and place.
 inline SmallMesh any_small_mesh(Random &random) {
     const int count = 1 + int(random.next_index(12));
     if (random.next_index(2) == 0) {
@@ -144,7 +144,7 @@ inline SmallMesh any_small_mesh(Random &random) {
     return small;
 }
 
-// On a vertex, an edge, or near by.
+// On a vertex or an edge, or near one.
 inline Vec3 any_place(Random &random, const SmallMesh &small) {
     const std::uint32_t kind = random.next_index(4);
     if (small.is_whole && kind != 0)
@@ -155,7 +155,7 @@ inline Vec3 any_place(Random &random, const SmallMesh &small) {
     return kind < 3 ? on_edge : on_edge + any_vector(random, small.size * random.next_in(0.0, 2.0));
 }
 
-// A length that whole meshes often have.
+// A length that is common in integer meshes.
 inline double any_length(Random &random, const SmallMesh &small) {
     return small.is_whole ? double(random.next_index(4))
                           : small.size * std::pow(10.0, random.next_in(-3.0, 0.3));

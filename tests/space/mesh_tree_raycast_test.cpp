@@ -1,4 +1,4 @@
-// Rays against meshes in a tree.
+// Rays against mesh trees.
 
 #include "engine/core/hash.h"
 #include "engine/geometry/raycast.h"
@@ -53,8 +53,8 @@ struct Fraction {
     double value() const { return double(over) / double(under); }
 };
 
-// The first t >= 0 on the closed triangle: by the point on its plane, and where there is none by
-// clipping; not by edge functions of the line.
+// The first t >= 0 on the closed triangle: from the point on its plane, or by clipping if there is
+// none; not from the line's edge functions.
 std::optional<Fraction> whole_hit(Whole o, Whole d, const Whole (&p)[3]) {
     const Whole zero{0, 0, 0};
     const Whole n = cross(p[1] - p[0], p[2] - p[0]);
@@ -65,7 +65,7 @@ std::optional<Fraction> whole_hit(Whole o, Whole d, const Whole (&p)[3]) {
             const Fraction t(over, under);
             if (t.over < 0)
                 return std::nullopt;
-            const Whole point = t.under * o + t.over * d; // times t.under
+            const Whole point = t.under * o + t.over * d; // scaled by t.under
             for (int i = 0; i < 3; ++i)
                 if (dot(n, cross(p[(i + 1) % 3] - p[i], point - t.under * p[i])) < 0)
                     return std::nullopt;
@@ -73,7 +73,7 @@ std::optional<Fraction> whole_hit(Whole o, Whole d, const Whole (&p)[3]) {
         }
         if (over != 0)
             return std::nullopt;
-        // Inside of edge i where f0 + f1 t >= 0.
+        // Inside edge i where f0 + f1 t >= 0.
         Fraction enter(0, 1);
         std::optional<Fraction> leave;
         for (int i = 0; i < 3; ++i) {
@@ -102,7 +102,7 @@ std::optional<Fraction> whole_hit(Whole o, Whole d, const Whole (&p)[3]) {
             along = e;
         }
     const Whole m = cross(along, d);
-    if (m == zero) { // a point, or on a parallel
+    if (m == zero) { // degenerate to a point, or parallel
         if (!(cross(a - o, d) == zero))
             return std::nullopt;
         const Fraction one(dot(a - o, d), dot(d, d));
@@ -142,7 +142,7 @@ TEST(MeshTree, RaycastIsExactInWholeNumbers) {
                 continue;
             if (k % 3 == 0)
                 ray.direction = -ray.direction;
-            if (k % 5 == 0) // and some components -0
+            if (k % 5 == 0) // some components -0
                 ray.direction = Real(-1) * (Real(-1) * ray.direction);
             if (k % 4 == 0)
                 ray.max_t = Real(random.next_index(5)) / Real(2);
@@ -168,7 +168,7 @@ TEST(MeshTree, RaycastIsExactInWholeNumbers) {
                 continue;
             ++hits;
             ASSERT_NEAR(double(found->t), first->value(), 2.0 * epsilon * first->value());
-            // Equal times may be rounded differently for flat triangles.
+            // Equal times may round differently for flat triangles.
             ASSERT_NE(std::find(firsts.begin(), firsts.end(), found->triangle), firsts.end());
             const Triangle t = triangle(mesh.mesh(), found->triangle);
             const Whole n = cross(whole(t.b) - whole(t.a), whole(t.c) - whole(t.a));
@@ -180,7 +180,7 @@ TEST(MeshTree, RaycastIsExactInWholeNumbers) {
                 ASSERT_LT(glm::length(wide(found->normal) - (side < 0 ? -front : front)),
                           4.0 * epsilon);
             }
-            // The weights give the point, and the point is that on the ray.
+            // The barycentric weights and the ray both give the point.
             const Vec3 &w = found->barycentric;
             ASSERT_GE(std::min({w.x, w.y, w.z}), Real(0));
             ASSERT_NEAR(double(w.x + w.y + w.z), 1.0, 4.0 * epsilon);
@@ -206,7 +206,8 @@ TEST(MeshTree, RaycastIsThatOfTheTrianglesOneByOne) {
         const int count = trials(8'000);
         for (int k = 0; k < count; ++k) {
             const Ray ray = any_ray(random, scene, k);
-            // By the triangle's own exact test: hit or not. By the mesh's: when, to the bit.
+            // The triangle's exact test decides hit or miss; the mesh's ray gives the time, bit for
+            // bit.
             const WideRay prepared = wide_ray(ray, mesh.tree().bounds());
             Real best = infinity;
             std::uint32_t best_triangle = 0;
@@ -234,7 +235,7 @@ TEST(MeshTree, RaycastIsThatOfTheTrianglesOneByOne) {
     }
 }
 
-// Against the plane's equation in long double, where the ray does not graze.
+// Against the plane equation in long double, unless the ray grazes.
 TEST(MeshTree, TimesAreRight) {
     Random random(3);
     using L = glm::vec<3, long double>;
@@ -258,7 +259,7 @@ TEST(MeshTree, TimesAreRight) {
             const double coordinate =
                 std::max({std::abs(double(ray.origin.x)), std::abs(double(ray.origin.y)),
                           std::abs(double(ray.origin.z)), glm::length(wide(t.a))});
-            // Rounded once to Real, and moved by rounding of the boxes at most.
+            // Rounded once to Real, and shifted at most by the rounding of the boxes.
             const double bound =
                 (4.0 * glm::length(wide(t.a) - wide(ray.origin)) + coordinate) * double(epsilon);
             const double error =
@@ -315,7 +316,7 @@ TEST(MeshTree, AnswersAreTheSameForEveryKindOfVectors) {
     RecordProperty("targets", names);
     EXPECT_GE(targets.size(), 1U);
     std::sort(chosen.begin(), chosen.end());
-    EXPECT_EQ(std::unique(chosen.begin(), chosen.end()), chosen.end()); // each was another
+    EXPECT_EQ(std::unique(chosen.begin(), chosen.end()), chosen.end()); // all different
 }
 
 } // namespace

@@ -28,7 +28,7 @@ constexpr Real infinity = std::numeric_limits<Real>::infinity();
 
 // --- Segments, shapes, points --------------------------------------------------------------------
 
-// Calls ask(mesh, its tree, k) a million times, a hundred times for each of many small meshes.
+// Calls ask(mesh, its tree, k) a million times: a hundred for each of many small meshes.
 template <typename Ask> void for_a_million(Random &random, Ask &&ask) {
     for (int i = 0; i < trials(10'000); ++i) {
         const SmallMesh small = any_small_mesh(random);
@@ -210,21 +210,21 @@ TEST(MeshTree, ContainsIsExactForACubeOfWholeNumbers) {
     const int half = 3;
     const MeshTree mesh(meshes::cube(2 * half, half));
     ASSERT_TRUE(is_closed(mesh.mesh()));
-    for (int x = -9; x <= 9; ++x) // halves too
+    for (int x = -9; x <= 9; ++x) // in half units
         for (int y = -9; y <= 9; ++y)
             for (int z = -9; z <= 9; ++z) {
                 const bool expected = std::max({std::abs(x), std::abs(y), std::abs(z)}) <= 2 * half;
                 const Vec3 point = Vec3{Real(x), Real(y), Real(z)} / Real(2);
                 ASSERT_EQ(contains(mesh, point), expected) << x << ' ' << y << ' ' << z;
-                // Next to a face the answer turns at once.
+                // Just past a face the answer flips.
                 const Vec3 nudged{std::nextafter(point.x, infinity), point.y, point.z};
                 const bool nudged_expected = expected && nudged.x <= Real(half);
                 ASSERT_EQ(contains(mesh, nudged), nudged_expected);
             }
 }
 
-// Whether a point is on a closed mesh, and how often the mesh goes around it: the solid angle of
-// the triangles (van Oosterom and Strackee 1983) is 4 pi inside, 0 outside.
+// Whether a point is on a closed mesh, and the mesh's winding number around it: the triangles'
+// solid angle (van Oosterom and Strackee 1983) is 4 pi inside, 0 outside.
 struct Around {
     bool is_on = false;
     double turns = 0.0;
@@ -267,7 +267,7 @@ TEST(MeshTree, AMillionPointsInsideOrNot) {
             const Vec3 vertex =
                 closed.vertices[random.next_index(std::uint32_t(closed.vertices.size()))];
             Vec3 point = meshes::narrowed(middle) + any_vector(random, size);
-            if (k % 3 == 1) // on a line with a vertex along x
+            if (k % 3 == 1) // level with a vertex along x
                 point = {point.x, vertex.y, vertex.z};
             if (k % 20 == 2)
                 point = vertex;
@@ -276,7 +276,7 @@ TEST(MeshTree, AMillionPointsInsideOrNot) {
             if (found.is_on) {
                 ASSERT_TRUE(answer) << "mesh " << i;
             } else if (std::abs(found.turns - std::round(found.turns)) > 1e-3) {
-                ++open; // too near to the surface for this
+                ++open; // too close to the surface to tell
             } else {
                 ASSERT_EQ(answer, std::lround(found.turns) != 0) << "mesh " << i;
                 inside += answer ? 1 : 0;
@@ -302,7 +302,7 @@ TEST(MeshTree, ContainsWhatTheMeshGoesAround) {
             Vec3 point = meshes::narrowed(scene.middle) + any_vector(random, scene.size);
             const Vec3 vertex =
                 scene.mesh.vertices[random.next_index(std::uint32_t(scene.mesh.vertices.size()))];
-            if (k % 3 == 1) // on a line with a vertex along x
+            if (k % 3 == 1) // level with a vertex along x
                 point = {point.x, vertex.y, vertex.z};
             const auto [is_on, turns] = around(scene.mesh, point);
             if (is_on) {
@@ -310,7 +310,7 @@ TEST(MeshTree, ContainsWhatTheMeshGoesAround) {
                 continue;
             }
             if (std::abs(turns - std::round(turns)) > 1e-3) {
-                ++open; // too near to the surface for this
+                ++open; // too close to the surface to tell
                 continue;
             }
             ASSERT_EQ(contains(mesh, point), std::lround(turns) != 0) << turns;

@@ -1,4 +1,4 @@
-// Closed meshes, and soups of triangles, for tests.
+// Closed meshes and triangle soups for tests.
 #pragma once
 
 #include "engine/geometry/triangle_mesh.h"
@@ -17,8 +17,8 @@ inline Vec3 narrowed(const V &v) {
     return {Real(v.x), Real(v.y), Real(v.z)};
 }
 
-// A grid of `columns` x `rows` places on a surface, closed around in both directions; at(u, v) for
-// u and v in [0, 1). Outward when u x v is.
+// A grid of `columns` x `rows` points on a surface that closes in both directions; at(u, v) takes u
+// and v in [0, 1). Faces outwards if u x v does.
 inline TriangleMesh torus_of(int columns, int rows, const std::function<V(double, double)> &at) {
     TriangleMesh mesh;
     for (int i = 0; i < columns; ++i)
@@ -33,7 +33,7 @@ inline TriangleMesh torus_of(int columns, int rows, const std::function<V(double
     return mesh;
 }
 
-// Around y, with a tube of radius `thin` whose middle is a circle of radius `wide`.
+// Around y: a tube of radius `thin` along a circle of radius `wide`.
 inline TriangleMesh torus(int columns, int rows, double wide, double thin) {
     constexpr double turn = 2.0 * std::numbers::pi;
     return torus_of(columns, rows, [=](double u, double v) {
@@ -43,7 +43,7 @@ inline TriangleMesh torus(int columns, int rows, double wide, double thin) {
     });
 }
 
-// Poles on y; their triangles are needles when there are many columns.
+// Poles on y, whose triangles are needles when there are many columns.
 inline TriangleMesh sphere(int columns, int rows, double radius) {
     constexpr double half_turn = std::numbers::pi;
     TriangleMesh mesh;
@@ -72,8 +72,8 @@ inline TriangleMesh sphere(int columns, int rows, double radius) {
     return mesh;
 }
 
-// The cube from -half to half, each face of `count` x `count` squares; corners of squares are
-// whole multiples of 2 half / count. Vertices are shared within and between faces.
+// The cube from -half to half, each face of `count` x `count` squares; their corners are integer
+// multiples of 2 half / count. Vertices are shared within and between faces.
 inline TriangleMesh cube(int count, double half) {
     TriangleMesh mesh;
     std::vector<std::uint32_t> known(std::size_t((count + 1) * (count + 1) * (count + 1)),
@@ -108,7 +108,7 @@ inline TriangleMesh cube(int count, double half) {
     return mesh;
 }
 
-// Turned and moved; rounded once.
+// Rotates and translates, rounding once.
 inline TriangleMesh placed(TriangleMesh mesh, const glm::dquat &rotation, const V &position) {
     for (Vec3 &v : mesh.vertices)
         v = narrowed(rotation * oracle::wide(v) + position);

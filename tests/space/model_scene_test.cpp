@@ -61,7 +61,7 @@ struct WideTriangle {
 
 struct Brute {
     std::map<Model, Record> records;
-    std::map<Model, std::vector<Model>> children; // none: the roots
+    std::map<Model, std::vector<Model>> children; // `none` holds the roots
 
     // The models from `model` to its root.
     std::vector<Model> line(Model model) const {
@@ -81,7 +81,7 @@ struct Brute {
         }
         return world;
     }
-    // What was worked out, to be cleared after each change.
+    // Cached results, cleared after each change.
     struct Size {
         W position{0.0L};
         L depth = 0, lengths = 0;
@@ -102,7 +102,7 @@ struct Brute {
         }
         return all;
     }
-    // How far the scene may have a model from its place, seen from `from` (model_scene.h).
+    // How far off the scene may place a model, seen from `from` (see model_scene.h).
     L slack(Model model, const W &from) {
         const auto [entry, is_new] = sizes.try_emplace(model);
         Size &size = entry->second;
@@ -126,7 +126,7 @@ struct Brute {
         return 16 * L(std::numeric_limits<Real>::epsilon()) * size.depth *
                (glm::length(size.position - from) + size.lengths);
     }
-    bool is_above(Model model, Model other) const { // or the same
+    bool is_above(Model model, Model other) const { // or equal to it
         const std::vector<Model> all = line(other);
         return std::find(all.begin(), all.end(), model) != all.end();
     }
@@ -170,8 +170,8 @@ L distance_to_triangle(const W &p, const WideTriangle &t) {
                      distance_to_segment(p, t.c, t.a)});
 }
 
-// Where the line of a ray goes through the plane of a triangle, by how much it passes inside of the
-// nearest edge (negative: outside), and how t changes when the triangle moves by a length.
+// Where a ray's line crosses a triangle's plane, how far inside the nearest edge it passes
+// (negative: outside), and how t changes per length that the triangle moves.
 struct Passage {
     L t, inside, t_per_length;
 };
@@ -194,11 +194,11 @@ std::optional<Passage> passage(const WideTriangle &tri, const W &origin, const W
     return result;
 }
 
-// Whether a triangle has a point in a box: what is left of it after cutting by the six planes.
+// Whether a triangle touches a box: anything left after clipping to the box's six planes.
 bool meets_box(const WideTriangle &t, const Box &box, L grow) {
     const W center = widest(box.center);
     if (distance_to_triangle(center, t) > glm::length(widest(box.half_extents) + W{grow}))
-        return false; // as most are
+        return false; // most are rejected here
     const auto axes = axes_of(box.rotation);
     std::vector<W> polygon{t.a - center, t.b - center, t.c - center};
     for (int i = 0; i < 3; ++i) {
@@ -260,7 +260,7 @@ class RandomScene {
     ModelScene scene;
     Brute brute;
 
-    // Up to `most` models, and a quarter of them always.
+    // Between a quarter of `most` and `most` models.
     RandomScene(std::uint64_t seed, double reach, std::size_t most, int soup_size)
         : random_(seed), reach_(reach), most_(most), cube_(cube()), soup_(soup(random_, soup_size)),
           empty_(TriangleMesh{}) {}
@@ -361,7 +361,7 @@ void expect_raycast(RandomScene &s, const Ray &ray, Doubt &doubt) {
     const std::optional<ModelScene::Hit> hit = s.scene.raycast(ray);
     ASSERT_EQ(s.scene.is_met(ray), hit.has_value());
     doubt.found += hit ? 1 : 0;
-    // What is returned is a hit.
+    // A returned hit is valid.
     L t_slack = 0;
     if (hit) {
         const L slack = s.brute.slack(hit->model, origin);
@@ -381,7 +381,7 @@ void expect_raycast(RandomScene &s, const Ray &ray, Doubt &doubt) {
         ASSERT_NEAR(std::abs(double(glm::dot(n, widest(hit->normal)))), 1.0, 1e-4);
         ASSERT_LE(glm::dot(widest(hit->normal), direction), 1e-5 * speed);
     }
-    // Nothing is before it without doubt.
+    // No certain hit comes before it.
     const L until = hit ? L(hit->t) - t_slack : L(ray.max_t);
     for (const Model model : s.brute.models()) {
         const L slack = s.brute.slack(model, origin);
@@ -429,7 +429,7 @@ void expect_few_doubts(const Doubt &doubt, int rounds, int asked_a_round) {
     EXPECT_LT(doubt.doubtful, doubt.asked / 100 + 3);
 }
 
-// `rounds` of one ray, sphere and box each, answered by all triangles of all models.
+// `rounds` of a ray, a sphere and a box, checked against every triangle of every model.
 void compare_with_brute_force(RandomScene &s, int rounds, int asked_a_round) {
     Doubt rays, spheres, boxes;
     for (int round = 0; round < rounds; ++round) {
@@ -482,10 +482,10 @@ TEST(ModelScene, AgainstBruteForceFarAway) {
 
 TEST(ModelScene, AMillionOfEachInSmallScenes) {
     RandomScene scene(3, 4.0, 2, 3);
-    compare_with_brute_force(scene, trials(1'100'000), 1); // some find no model
+    compare_with_brute_force(scene, trials(1'100'000), 1); // some rounds have no model
 }
 
-// Placements that round nothing: translations by integers, scales that are powers of two.
+// Placements without rounding: integer translations, power-of-two scales.
 TEST(ModelScene, ExactWhereNothingIsRounded) {
     const MeshTree mesh(cube());
     ModelScene scene;
@@ -512,13 +512,13 @@ TEST(ModelScene, ExactWhereNothingIsRounded) {
     EXPECT_EQ(scene.overlapping(Sphere{{Real(7), Real(3), Real(5)}, Real(3)}), Models{child});
     EXPECT_EQ(scene.overlapping(Sphere{{Real(6.75), Real(3), Real(5)}, Real(3)}), Models{});
     const Box box{{Real(8), Real(0), Real(5)}, identity_rotation, Vec3{Real(2)}};
-    EXPECT_EQ(scene.overlapping(box), Models{child}); // along an edge
+    EXPECT_EQ(scene.overlapping(box), Models{child}); // touches along an edge
     Box beside = box;
     beside.center.x = Real(7.75);
     EXPECT_EQ(scene.overlapping(beside), Models{});
-    // Inside of it there are no triangles.
+    // It has no triangles in its interior.
     EXPECT_EQ(scene.overlapping(Sphere{{Real(12), Real(4), Real(6)}, Real(1)}), Models{});
-    // The model of the lesser number of two in one place.
+    // Of two models in the same place the lower number wins.
     const Model twin = scene.add(&mesh, scene.world(child));
     EXPECT_GT(twin, child);
     const auto hit = scene.raycast({{Real(0), Real(3), Real(5)}, {Real(2), Real(0), Real(0)}});
@@ -602,7 +602,7 @@ TEST(ModelScene, MisuseNamesTheValueAndChangesNothing) {
     says([&] { scene.set_parent(a, c); }, "itself or attached");
     says([&] { scene.set_parent(a, a); }, "itself or attached");
     says([&] { scene.set_parent(a, 99); }, "99");
-    // The scale of c in the world would be 1e9.
+    // c's world scale would be 1e9.
     says([&] { scene.set_local(a, {Vec3{Real(1)}, identity_rotation, Real(1000)}); }, "scale");
     EXPECT_EQ(scene.world(a).position, Vec3{Real(0)});
     EXPECT_EQ(scene.world(c).scale, Real(1e6));

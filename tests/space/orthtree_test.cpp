@@ -40,8 +40,8 @@ template <int Dim> BoxOf<Dim> world() {
     return {PointOf<Dim>{Real(-64)}, PointOf<Dim>{Real(64)}};
 }
 
-// Of all sizes from points to more than the world, mostly small; on dividing planes, outside of the
-// world, and of whole coordinates, so that many touch.
+// Boxes of all sizes from points to larger than the world, mostly small; some on dividing planes,
+// outside the world, or with integer coordinates, so that many touch.
 template <int Dim> BoxOf<Dim> any_box(Random &random) {
     const std::uint32_t kind = random.next_index(8);
     PointOf<Dim> center = any_point<Dim>(random, 64.0);
@@ -81,7 +81,7 @@ template <int Dim> W distance(const BoxOf<Dim> &box, const PointOf<Dim> &p) {
     return std::sqrt(sum);
 }
 
-// Where origin + t * direction, 0 <= t <= max_t, enters a box grown by `grow`.
+// The t in [0, max_t] at which origin + t * direction enters a box grown by `grow`.
 template <int Dim>
 std::optional<W> entry(const BoxOf<Dim> &box, const PointOf<Dim> &origin,
                        const PointOf<Dim> &direction, W max_t, W grow) {
@@ -103,17 +103,17 @@ std::optional<W> entry(const BoxOf<Dim> &box, const PointOf<Dim> &origin,
     return enter;
 }
 
-// All items in a list, each asked: what the tree must agree with.
+// A tree and a list of the same items, which must agree.
 template <int Dim> class Checked {
   public:
-    // Up to `most` items, and down to a fifteenth of that.
+    // Grows to `most` items, then shrinks to a fifteenth of that.
     Checked(int max_depth, int capacity, std::size_t most, std::uint64_t seed)
         : tree_(world<Dim>(), max_depth, capacity), max_depth_(max_depth), capacity_(capacity),
           most_(most), random_(seed) {}
 
     void change() {
         const std::uint32_t what = random_.next_index(100);
-        // Grows, and falls again: cells are divided and united.
+        // Grows and shrinks in turn, so that cells split and merge.
         is_growing_ =
             items_.empty() || (is_growing_ ? items_.size() < most_ : items_.size() < most_ / 15);
         if (items_.empty() || (what < 50 && is_growing_) || what < 15) {
@@ -154,7 +154,7 @@ template <int Dim> class Checked {
         }
     }
 
-    // The cells are what they are in a tree that was never anything else.
+    // The cells must equal those of a tree built from scratch.
     void check_cells() const {
         Orthtree<Dim> fresh(world<Dim>(), max_depth_, capacity_);
         for (const Item &item : items_)
@@ -184,7 +184,7 @@ template <int Dim> class Checked {
         ball.radius = static_cast<Real>(std::pow(10.0, random_.next_in(-2.0, 2.0)));
         check_found([&](auto &&visit) { tree_.query(ball, visit); },
                     [&](const Item &item) {
-                        // A square of differences: 4 roundings.
+                        // A sum of squared differences: 4 roundings.
                         const W d = distance<Dim>(item.box, ball.center) - W(ball.radius);
                         return std::abs(d) <= 2 * W(epsilon) * W(ball.radius)
                                    ? std::nullopt
@@ -197,7 +197,8 @@ template <int Dim> class Checked {
         check_found([&](auto &&visit) { tree_.query(line, visit); },
                     [&](const Item &item) -> std::optional<bool> {
                         const W length = std::sqrt(W(glm::dot(line.b - line.a, line.b - line.a)));
-                        // In a difference, as it is rounded, and exactly.
+                        // A line that meets the box exactly must be found. One that misses it by
+                        // more than the rounding of b - a must not.
                         if (meets(item.box, line.a, line.b, 0))
                             return true;
                         if (!meets(item.box, line.a, line.b, 8 * W(epsilon) * (length + 130)))
@@ -249,10 +250,10 @@ template <int Dim> class Checked {
         if (expected == infinity) {
             ASSERT_EQ(closest, infinity);
         } else {
-            // What a cell's entry is rounded up by may hide another hit as near.
+            // Rounding up a cell's entry may hide another hit equally near.
             ASSERT_NEAR(double(closest), double(expected), 4 * epsilon * double(expected));
         }
-        // Any hit: the first visit that is one ends it.
+        // Any hit: the first visit that hits ends the search.
         bool any = false;
         bool goes_on = false;
         tree_.raycast({a, d, max_t}, [&](std::uint32_t user, const auto &ray) {
@@ -316,7 +317,7 @@ template <int Dim> class Checked {
             ->box;
     }
 
-    // Some along an axis, in faces of boxes; some are points.
+    // Some lie along an axis or in faces of boxes; some are points.
     typename Orthtree<Dim>::Line any_line() {
         PointOf<Dim> a = any_point<Dim>(random_, 90.0);
         PointOf<Dim> b = any_point<Dim>(random_, 90.0);
@@ -335,7 +336,7 @@ template <int Dim> class Checked {
     }
 
     bool meets(const BoxOf<Dim> &box, const PointOf<Dim> &a, const PointOf<Dim> &b, W grow) const {
-        // From a to b in long double, without rounding the difference to Real.
+        // Clipped in long double, without rounding b - a to Real.
         W enter = 0, exit = 1;
         for (int i = 0; i < Dim; ++i) {
             const W low = W(box.min[i]) - grow - W(a[i]);
@@ -352,7 +353,8 @@ template <int Dim> class Checked {
         return enter <= exit;
     }
 
-    // Each item is found once if it must be, never if it must not. `must` may leave it open.
+    // Each item that must be found is found once, and none that must not be. `must` may return
+    // nullopt for either.
     template <typename Query, typename Must> void check_found(Query &&query, Must &&must) {
         found_.assign(items_.size() + free_users_.size(), 0);
         query([&](std::uint32_t user) {
@@ -372,7 +374,6 @@ template <int Dim> class Checked {
         }
         hits_ += count;
         ASSERT_EQ(count, std::size_t(std::count(found_.begin(), found_.end(), 1)));
-        // Stops when told to.
         std::size_t visits = 0;
         const std::size_t enough = 1 + random_.next_index(3);
         query([&](std::uint32_t) { return ++visits < enough; });
@@ -441,7 +442,7 @@ TEST(Orthtree, OctreeAgreesWithAList) {
     check_streams<3>();
 }
 
-// A million of each change and of each question: few items, so that a list is quick.
+// A million of each change and query: few items, so that the list is fast.
 template <int Dim> void check_a_million() {
     Checked<Dim> checked(6, 1, 15, 0x0c9);
     const int count = trials(1'000'000);

@@ -1,4 +1,4 @@
-// Boxes to put into trees, and the answers of lists of them.
+// Boxes for trees, and brute-force answers.
 #pragma once
 
 #include "engine/space/dynamic_tree.h"
@@ -24,7 +24,7 @@ inline bool touches(const Aabb &a, const Aabb &b) {
     return true;
 }
 
-// Small integers: every answer is decided exactly, so touching is met over and over.
+// Small integers: every answer is exact, and boxes often just touch.
 inline Vec3 any_integers(Random &random, std::uint32_t reach) {
     const auto one = [&] { return Real(int(random.next_index(2 * reach + 1)) - int(reach)); };
     const Real x = one(), y = one(), z = one();

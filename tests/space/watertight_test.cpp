@@ -1,4 +1,4 @@
-// No ray leaks out of a closed mesh, or into it.
+// No ray leaks out of a closed mesh or into it.
 
 #include "engine/geometry/raycast.h"
 #include "engine/math/predicates.h"
@@ -22,13 +22,13 @@ using oracle::any_vector;
 using oracle::V;
 using oracle::wide;
 
-// A closed mesh, and points that are inside of it by far more than its vertices are rounded.
+// A closed mesh, and points inside it by far more than its vertices' rounding.
 struct Closed {
     const char *name;
     TriangleMesh mesh;
     std::vector<Vec3> inside;
     V middle;
-    double size; // all is within, of the middle
+    double size; // everything lies within this distance of the middle
 };
 
 std::vector<Closed> closed_meshes() {
@@ -78,7 +78,7 @@ std::vector<Closed> closed_meshes() {
     return all;
 }
 
-// A point of the mesh: a vertex, a point of an edge, or of a triangle.
+// A vertex, a point on an edge, or a point on a triangle.
 V any_target(Random &random, const TriangleMesh &mesh, int kind) {
     const Triangle t = triangle(mesh, random.next_index(std::uint32_t(mesh.triangles.size())));
     if (kind == 0)
@@ -96,7 +96,7 @@ Vec3 stretched(Random &random, const V &direction) {
 TEST(Watertight, EveryRayFromInsideHits) {
     Random random(2);
     const std::vector<Closed> all = closed_meshes();
-    // Ten million in the two precisions together; exact signs of doubles take longer.
+    // Ten million in the two precisions together; exact signs take longer in double.
     const int total = sizeof(Real) == sizeof(float) ? 8'000'000 : 2'100'000;
     const int count = trials(total) / int(all.size());
     for (const Closed &closed : all) {
@@ -109,7 +109,7 @@ TEST(Watertight, EveryRayFromInsideHits) {
         for (int k = 0; k < count; ++k) {
             const Vec3 origin = closed.inside[std::size_t(k) % closed.inside.size()];
             V direction = any_target(random, closed.mesh, k % 4) - wide(origin);
-            if (k % 16 == 3) // along an axis, or a plane of axes
+            if (k % 16 == 3) // along an axis or in a coordinate plane
                 direction[int(random.next_index(3))] = k % 32 == 3 ? 0.0 : -0.0;
             if (k % 64 == 3)
                 direction[int(random.next_index(3))] = 0.0;
@@ -132,7 +132,7 @@ TEST(Watertight, EveryWayInHits) {
         int misses = 0;
         for (int k = 0; k < trials(20'000); ++k) {
             const Vec3 inside = closed.inside[std::size_t(k) % closed.inside.size()];
-            // Backwards through a vertex, an edge or a triangle.
+            // Inwards through a vertex, an edge or a triangle.
             const V target = any_target(random, closed.mesh, k % 3);
             const V out = glm::normalize(target - wide(inside));
             const double far = closed.size * random.next_in(4.0, 20.0);
@@ -144,8 +144,8 @@ TEST(Watertight, EveryWayInHits) {
     }
 }
 
-// A ray from outside crosses as often inwards as outwards. Counted where the line passes no edge or
-// corner, by exact signs.
+// A ray from outside enters as often as it leaves. Counted only where, by exact signs, its line
+// misses every edge and corner.
 TEST(Watertight, RaysFromOutsideCrossAnEvenNumberOfTimes) {
     Random random(4);
     for (const Closed &closed : closed_meshes()) {

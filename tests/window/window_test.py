@@ -113,7 +113,7 @@ def play(process, folder):
     window.key("p")
     _, _, step = window.wait_state("a pause", lambda _, s, n: s == "paused")
 
-    # Steps on and back, each exactly as many as asked for.
+    # Steps forward and back, each exactly as many as asked for.
     for keys, change in ((("period",), 1), (("Right",), 1), (("shift+Right",), 5),
                          (("comma",), -1), (("Left",), -1)):
         window.key(*keys)
@@ -126,7 +126,7 @@ def play(process, folder):
     window.key("shift+Right")
     window.wait_state("step 5", lambda _, s, n: n == 5)
 
-    # A picture of what is seen: the program's own, and the display's.
+    # A screenshot: the program's own, and the display's.
     def pictures():
         return sorted(name for name in os.listdir(folder) if name.endswith(".png"))
     window.key("ctrl+p")
@@ -141,17 +141,17 @@ def play(process, folder):
         run("import", "-window", "root", "png:" + path)
         display = Picture(path)
         check(display.size == SCREEN, f"the display is {display.size}")
-        # The note that the picture was written is on the display only, for a while; nothing else.
+        # Only the display shows, for a while, the note that the picture was written.
         return display.fraction_unlike(own) < 0.01
     wait_for("the display to show what the screenshot shows", same_as_display, process)
 
-    # A click in the list of scenes: from the top of the list down, until another one opens.
+    # Click in the scene list, from the top down, until another scene opens.
     def other_scene():
         state = window.state()
         return state is not None and state[0] != scene
     for y in range(80, 330, 11):
         window.click(100, y)
-        # Whether this was a row is known a few frames later; another click does no harm.
+        # Whether this was a row shows a few frames later; another click does no harm.
         try:
             wait_for("another scene", other_scene, process, patience=1.0)
             break
@@ -160,8 +160,8 @@ def play(process, folder):
                 raise
     clicked, _, _ = window.wait_state("another scene", lambda c, _, __: c != scene, patience=5)
 
-    # A scene by its name, after the search has the keyboard: a few frames. Return is pressed and
-    # released long before a slow machine's next frame.
+    # Open a scene by name, once the search box has the keyboard: a few frames. Return is pressed
+    # and released long before a slow machine's next frame.
     for pause in (0.5, 2, 8):
         window.key("ctrl+o")
         time.sleep(pause)
@@ -175,7 +175,7 @@ def play(process, folder):
                 raise
             window.key("Escape")
 
-    # The next scene by key; Escape and the panels' key do not end the program.
+    # Open the next scene by key; Escape and the panels' key do not end the program.
     window.key("bracketright")
     window.wait_state("the next scene", lambda c, _, __: c != clicked)
     window.key("Escape", "Escape", "Tab", "F1", "Escape", "Tab")
@@ -196,8 +196,8 @@ def main():
         if shutil.which(tool) is None:
             print(f"skipped: there is no {tool}")
             return SKIPPED
-    # A display of its own; Xvfb picks a number that is free and tells it. It must not start anew when
-    # its last client goes: whoever comes just then is turned away.
+    # A display of its own; Xvfb picks a free number and reports it. It must not reset when its last
+    # client leaves: a client that connects just then is turned away.
     server = subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0",
                                f"{SCREEN[0]}x{SCREEN[1]}x24", "-nolisten", "tcp", "-noreset"],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
@@ -214,7 +214,7 @@ def play_on_display(program):
     keep = sys.argv[sys.argv.index("--keep") + 1] if "--keep" in sys.argv else None
     folder = keep or tempfile.mkdtemp(prefix="plumb-window-")
     os.makedirs(folder, exist_ok=True)
-    # The pointer must not lie over the scene, where it would highlight a body.
+    # Keep the pointer off the scene, where it would highlight a body.
     run("xdotool", "mousemove", "640", "760")
     process = subprocess.Popen([program, "run", "--gl", "window", "--out", folder,
                                 "--size", f"{SCREEN[0]}x{SCREEN[1]}", "ten_box_stack"])

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The first expectation that there is nothing to say of.
+// The first expectation that could not be measured.
 std::string unmeasured(const JudgedRun &run) {
     for (const ExpectOutcome &outcome : run.outcomes)
         if (!std::isfinite(outcome.error))
@@ -37,10 +37,10 @@ void judge_error(const ErrorMeasure &measure, ChartRun &run) {
         run.status = ChartStatus::unfinished;
         return;
     }
-    // A window that ended before a divergence has a result, but the method has failed.
+    // A window that ended before the divergence has a result, but the method still failed.
     if (run.run.divergence) {
         run.status = ChartStatus::diverged;
-        if (run.failure.empty()) // it is kept of what was read from a table
+        if (run.failure.empty()) // runs read from a table keep theirs
             run.failure = describe(*run.run.divergence);
         return;
     }
@@ -71,7 +71,8 @@ void set_cost(ChartRun &run) {
 
 void mark_front(SceneChart &chart) {
     std::vector<CostAndError> choices;
-    // What fails the scene is no choice, however cheap; nor are errors that are not resolved.
+    // A run that fails the scene is no choice, however cheap. Errors below the floor count as
+    // equal.
     const double floor = chart.steps_from ? chart.steps_from->floor() : 0;
     for (const ChartRun &run : chart.runs)
         choices.push_back(run.status == ChartStatus::fine && !chart.convergence
@@ -188,8 +189,8 @@ class Charting {
             const auto known =
                 options_.known.find(run_key(planned_[index].resolved, planned_[index].threads));
             if (stopped() && known == options_.known.end())
-                continue; // what is known stays known
-            // Both halves of the work count as half.
+                continue; // runs already known are kept
+            // Full runs and timings count as half of the work each.
             const double share =
                 ((chart_.repeats > 0 ? 0.5 : 1) - states_share_) / static_cast<double>(mine.size());
             const double begin = states_share_ + share * static_cast<double>(chart_.runs.size());
@@ -211,7 +212,7 @@ class Charting {
         if (options_.progress)
             options_.progress(fraction, scene_.name + ": " + run_text(run.resolved));
     }
-    // What single steps begin with.
+    // The states single steps start from.
     void find_states() {
         OneStepOptions options;
         options.base = options_.base;
@@ -258,7 +259,7 @@ class Charting {
         run.run = judge_run(*simulated, scene_, judging);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
         if (states_ && !run.run.divergence && !run.run.stopped) {
-            std::shared_ptr<Simulation> engine; // it remembers within, not in the scene
+            std::shared_ptr<Simulation> engine; // it keeps its memory inside, not in the scene
             run.one_step =
                 states_->error_of([&](const SceneDesc &state) -> std::shared_ptr<Simulation> {
                     if (next.engine == nullptr)
@@ -283,7 +284,7 @@ class Charting {
         chart_.runs.push_back(std::move(run));
     }
 
-    // With what is known of it; where timings are missing it is run once more, for its parts.
+    // Takes over a known run; if timings are missing, runs it again to get the parts to time.
     void go_on(std::size_t index, ChartRun known, double begin) {
         known.index = index;
         known.resolved = planned_[index].resolved;
@@ -312,14 +313,14 @@ class Charting {
         return judging;
     }
 
-    // Of the last run.
+    // For the last run.
     void set_timer(std::unique_ptr<Simulation> simulated, RunRecord &record, double used,
                    double cost) {
         std::vector<TimedPart> parts = record.take_parts(*simulated, used);
         timers_.back().emplace(std::move(simulated), std::move(parts), cost, chart_.wall_clock);
     }
 
-    // One timing of each run, in an order drawn anew: a machine that slows down does so for all.
+    // Times each run once, in a newly shuffled order: a machine that slows down does so for all.
     void time_all(int round) {
         std::vector<std::size_t> order(timers_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
@@ -341,7 +342,7 @@ class Charting {
                           chart_.repeats,
                 chart_.runs[i]);
         }
-        // A round that was not finished would favour those that it reached.
+        // An unfinished round would favour the runs it reached.
         if (stopped())
             return;
         for (std::size_t i = 0; i < timings.size(); ++i)
@@ -358,10 +359,10 @@ class Charting {
     double end_; // s, of each run
     SceneChart chart_;
     std::optional<OneStepStates> states_;
-    double states_share_ = 0; // of all the work
+    double states_share_ = 0; // fraction of the total work
     std::vector<PlannedRun> planned_;
-    std::map<int, std::unique_ptr<TaskPool>> pools_; // by threads; outlive the timers
-    std::vector<std::optional<RunTimer>> timers_;    // as many as runs
+    std::map<int, std::unique_ptr<TaskPool>> pools_; // by thread count; outlive the timers
+    std::vector<std::optional<RunTimer>> timers_;    // one per run
 };
 
 } // namespace

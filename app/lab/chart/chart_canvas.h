@@ -1,4 +1,4 @@
-// What a chart's pen draws on: pixels, or the text of an SVG. All in pixels of the finished
+// What a chart's pen draws on: pixels or SVG text. All coordinates are pixels of the finished
 // picture.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace plumb {
 
-// Sizes of text: chart_style says which.
+// Text sizes, defined in chart_style.
 enum class Face { title, subtitle, axis, label, footer };
 inline constexpr std::array all_faces{Face::title, Face::subtitle, Face::axis, Face::label,
                                       Face::footer};
@@ -29,13 +29,13 @@ inline constexpr std::array all_faces{Face::title, Face::subtitle, Face::axis, F
 // Drawn this many times larger, then averaged down, for smooth edges everywhere.
 inline constexpr int supersampling = 2;
 
-// Of each face, for its size times supersampling.
+// One per face, at its size times supersampling.
 using ChartFonts = std::array<ImFont *, all_faces.size()>;
 
-// Adds them to the atlas.
+// Adds the fonts to the atlas.
 [[nodiscard]] ChartFonts load_chart_fonts(ImFontAtlas &atlas);
 
-// Of a text in that face, `scale` times its size.
+// Size of the text in that face, scaled by `scale`.
 [[nodiscard]] glm::vec2 text_size(const ChartFonts &fonts, std::string_view text, Face face,
                                   float scale);
 
@@ -50,7 +50,7 @@ class ChartCanvas {
     virtual void box(const PixelBox &box, ImU32 c) = 0;
     virtual void polygon(std::span<const glm::vec2> convex, ImU32 c) = 0;
     virtual void stroke(std::span<const glm::vec2> points, ImU32 c, float width) = 0;
-    // The upper left corner lies at p.
+    // p: upper left corner.
     virtual void text(glm::vec2 p, std::string_view text, Face face, float scale, ImU32 c) = 0;
 };
 

@@ -25,7 +25,7 @@ namespace plumb {
 
 namespace {
 
-// Makes its painter when first asked, and remembers that there is none.
+// Makes its painter on first use; if that fails, does not try again.
 class LazyPainter {
   public:
     explicit LazyPainter(std::filesystem::path shader_dir) : shader_dir_(std::move(shader_dir)) {}
@@ -49,7 +49,7 @@ class LazyPainter {
     bool failed_ = false;
 };
 
-// What the names of all files of a chart begin with.
+// The prefix of all of a chart's file names.
 std::filesystem::path stem_of(const std::filesystem::path &folder, const std::string &scene,
                               bool convergence, bool one_step) {
     return folder / (scene + (convergence ? ".convergence" : one_step ? ".one-step" : ""));
@@ -74,7 +74,8 @@ ExitCode write_pictures(const SceneChart &chart, const std::filesystem::path &st
     return ExitCode::fine;
 }
 
-// Whether any run has come to something, and what is to be said if not.
+// The chart's exit code, fine if any run has a result. Reports on `err` if no method can run the
+// scene.
 ExitCode code_of(const SceneChart &chart, std::ostream &err) {
     if (chart.runs.empty() && chart.planned == 0) {
         err << chart.scene.name << ": " << why_no_method(chart.left_out) << '\n';
@@ -89,14 +90,14 @@ ExitCode code_of(const SceneChart &chart, std::ostream &err) {
     return all_diverged ? ExitCode::diverged : ExitCode::outside_tolerance;
 }
 
-// Of a scene that is done, while others are still to come.
+// A finished scene, kept while others are still to run.
 struct Charted {
     PartialTable earlier;
-    std::string table, others; // the latter: rows of the earlier one that are not in the table
+    std::string table, others; // `others`: rows of `earlier` that are not in `table`
 
-    // The command ended: what was done before is of no more use, but for what is another's.
+    // The command completed: earlier rows are obsolete, except those of other commands.
     void finish() const { earlier.keep_only(others); }
-    // It was interrupted: this scene, too, is not run again when it goes on.
+    // The command was interrupted: keeps this scene too, so that resuming does not run it again.
     void keep() const {
         if (earlier.place().empty())
             return;
@@ -168,7 +169,7 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
             err << "two scenes are called " << scene.name << "; chart them into two folders\n";
             return ExitCode::bad_input;
         }
-    // A scene without motion is passed over where others have some.
+    // Scenes without motion are skipped if others have some.
     const bool any_moves = std::ranges::any_of(loaded.scenes, has_world);
     if (any_moves)
         create_folder(command.out_dir);

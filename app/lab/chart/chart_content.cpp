@@ -16,8 +16,8 @@ namespace plumb {
 
 namespace {
 
-// Names the worst expectation of each run, where there are several: by a letter, or once for all
-// where it is always the same.
+// Names each run's worst expectation if the scene has several: by a letter, or once if it is the
+// same for all runs.
 class WorstNames {
   public:
     explicit WorstNames(const SceneChart &chart) {
@@ -38,7 +38,7 @@ class WorstNames {
         }
     }
 
-    // What is added to a run's label.
+    // Appended to a run's label.
     [[nodiscard]] std::string suffix(const ChartRun &run) const {
         if (!run.worst || run.run.divergence || letters_.size() < 2)
             return "";
@@ -52,7 +52,7 @@ class WorstNames {
     std::vector<std::string> texts_;
 };
 
-// The step, substeps and iterations always; others where a run has another value than the default.
+// dt, substeps and iterations always; others if any run has a non-default value.
 bool is_worth_saying(const SceneChart &chart, SettingNumber number) {
     const SettingMember &member = number.setting().member;
     if (member == SettingMember(&StepSettings::dt) ||
@@ -66,24 +66,24 @@ bool is_worth_saying(const SceneChart &chart, SettingNumber number) {
     });
 }
 
-// Whether the same method is there with fixed and with adaptive substeps.
+// Whether any method appears with both fixed and adaptive substeps.
 bool has_both_modes(const SceneChart &chart) {
     return std::ranges::any_of(chart.runs, [&](const ChartRun &run) {
         return curve_name(chart, run).find(" substeps") != std::string::npos;
     });
 }
 
-// Colour and shape: of a method's further curves the same colour, and another shape.
+// Colour and shape: further curves of a method keep its colour and take another shape.
 std::size_t style_of(const MethodInfo &method, const std::vector<ChartSeries> &earlier) {
     const auto own = std::ranges::find_if(method_infos(),
                                           [&](const MethodInfo &each) { return &each == &method; });
     std::size_t style = static_cast<std::size_t>(own - method_infos().begin());
     while (std::ranges::find(earlier, style, &ChartSeries::style) != earlier.end())
-        style += own != method_infos().end() ? series_colour_count : 1; // or of another engine
+        style += own != method_infos().end() ? series_colour_count : 1; // 1: another engine
     return style;
 }
 
-// The first run's, and that there are others.
+// The first run's text, plus "and others" if any run differs.
 std::string first_of(const SceneChart &chart, std::string ChartRun::*text,
                      const std::string &here) {
     const std::string &first = chart.runs.front().*text;
@@ -99,7 +99,8 @@ std::string short_reason(const ChartRun &run) {
     return run.failure.starts_with("not finite") ? "not finite" : "check failed";
 }
 
-// A line a series: "Explicit Euler, 1, 2, 4: not finite", or of one run all that is known.
+// One line per series: "Explicit Euler, 1, 2, 4: not finite"; a single run gets its full failure
+// text.
 class FailedSeries {
   public:
     void add(const std::string &series, const std::string &point, const std::string &reason,
@@ -147,7 +148,7 @@ std::string values_by_method(const SceneChart &chart, SettingNumber number) {
     return values_by_name(values);
 }
 
-// What the chart shows, as a sentence begins; a name stays as it is.
+// The explanation, capitalised as a sentence; a name stays as it is.
 std::string subtitle_of(const ErrorMeasure &measure) {
     std::string text = measure.explanation;
     if (measure.kind != ErrorMeasure::Kind::expectation && !text.empty() && text[0] >= 'a' &&
@@ -171,7 +172,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.cost_title =
         chart.wall_clock ? "Wall time per simulated second" : "CPU time per simulated second";
     content.error_title = chart.measure.title;
-    // Where the numbers at the ticks have no unit of their own.
+    // Tick labels in power-of-ten form carry no unit then: see short_quantity.
     if (chart.measure.unit != "1" && !takes_prefix(chart.measure.unit))
         content.error_title += " (" + chart.measure.unit + ")";
     content.error_unit = chart.measure.unit;
@@ -196,14 +197,14 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         content.budget_label = chart.budget == 1 ? "60 Hz" : "budget";
     }
     const std::vector<CurveOrder> orders = curve_orders(chart);
-    // Where many failed, so that their crosses stand close, the list says why.
+    // With many failures the crosses are too close for reasons; the list gives them.
     constexpr std::ptrdiff_t few = 6;
     const bool says_why = std::ranges::count_if(chart.runs, [](const ChartRun &run) {
                               return !std::isfinite(run.error);
                           }) <= few;
     FailedSeries failed;
     std::string curve;
-    SweepPoint others; // the point less its first axis: each has its own line
+    SweepPoint others; // the point without its first axis: one line for each
     for (const ChartRun &run : chart.runs) {
         if (run.status == ChartStatus::unfinished || !(run.cost > 0))
             continue;
@@ -244,7 +245,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     }
     content.failures = failed.lines();
 
-    // What was not swept, where it is the same for all.
+    // Settings that were not swept.
     std::string settings;
     const auto swept = [&](SettingNumber number) {
         return std::ranges::find(chart.sweep, number, &SweepAxis::setting) != chart.sweep.end();

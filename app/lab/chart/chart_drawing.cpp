@@ -53,7 +53,7 @@ void draw_grid(ChartPen &pen, const ChartContent &content, const ChartLayout &la
     pen.text({plot.max.x, plot.max.y + 30}, content.cost_title, Face::axis, ink, {1, 0});
 }
 
-// A cross, with the series' own mark in it: there are fewer colours than methods.
+// A cross with the series' mark inside, since there are fewer colours than methods.
 void draw_failed(ChartPen &pen, glm::vec2 p, std::size_t style, ImU32 c) {
     constexpr float arm = chart_style::mark_radius + 1, small = 0.62f * chart_style::mark_radius;
     pen.cross(p, arm, paper, 5);
@@ -85,7 +85,7 @@ void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &l
     for (const ChartSeries &series : content.series)
         for (const auto &line : series.lines)
             for (std::size_t k = 1; k < line.size(); ++k) {
-                // A line to a failed run would say that there is an error to read off.
+                // A line to a failed run would suggest an error that can be read off.
                 if (content.marks[line[k - 1]].failed || content.marks[line[k]].failed)
                     continue;
                 pen.line(layout.marks[line[k - 1]], layout.marks[line[k]], series_colour(series),
@@ -128,7 +128,7 @@ void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &l
                  content.marks[label.mark].label, Face::label, ink);
 }
 
-// A name that is too long for one row goes on in a second, behind a comma.
+// Splits a name too long for one row into two, after a comma.
 std::vector<std::string> rows_of(const ChartPen &pen, const std::string &name, float width) {
     const auto fits = [&](std::size_t length) {
         return pen.text_size(name.substr(0, length), Face::axis).x <= width;
@@ -148,7 +148,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     const float text_left = left + 34;
     const float width = layout.size.x - 20 - text_left;
     float y = layout.plot.min.y + 10;
-    // Down to the small print; many series stand closer, so that what follows finds room.
+    // Down to the footer; many series are set closer to leave room for the rest.
     const float bottom = layout.plot.max.y + 54;
     const bool many = content.series.size() > 9;
     const float row = many ? chart_style::close_row : 26, entry_row = many ? 19 : 23;
@@ -192,7 +192,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         entry(content.budget ? "true enough, within the budget" : "true enough");
     }
     if (!content.label_meaning.empty()) {
-        // A label as a sample, where it is not too long: of a run that has an error.
+        // A sample label, from a run that has an error, if it is not too long.
         const auto mark = std::find_if(content.marks.begin(), content.marks.end(),
                                        [](const ChartMark &m) { return !m.failed; });
         if (mark != content.marks.end() && pen.text_size(mark->label, Face::label).x < 30)
@@ -207,12 +207,12 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         std::string title;
         const std::vector<std::string> &texts;
     };
-    // What may be long comes last.
+    // Lists that may be long come last.
     const std::array<List, 3> lists{{{"Worst expectation", content.worst},
                                      {"Failed", content.failures},
                                      {"Not on this chart", content.left_out}}};
     constexpr float gap = 12, title_row = 21, line_row = 16;
-    // Each has its title at least, with the number of what is not listed.
+    // Every list gets at least its title, with a count if nothing is listed.
     float room = bottom + 0.5f * line_row - y;
     for (const List &list : lists)
         if (!list.texts.empty())
@@ -245,7 +245,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
 void draw_chart(ChartPen &pen, const ChartContent &content) {
     const ChartLayout layout =
         lay_out(content, [&pen](std::string_view text, float size) -> glm::vec2 {
-            // The layout asks for one of our own sizes.
+            // The layout only asks for our own sizes.
             return pen.text_size(text, size == chart_style::label_text ? Face::label : Face::axis);
         });
     const float left = 40, right = layout.size.x - 40;

@@ -1,4 +1,4 @@
-// Draws a chart, once its layout is known.
+// Lays out and draws a chart.
 #pragma once
 
 #include "app/lab/chart/chart_layout.h"

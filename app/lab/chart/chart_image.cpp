@@ -16,7 +16,7 @@ namespace plumb {
 
 namespace {
 
-// ImGui's draw list.
+// Draws to an ImGui draw list.
 class PixelCanvas final : public ChartCanvas {
   public:
     PixelCanvas(ImDrawList &list, const ChartFonts &fonts) : list_(list), fonts_(fonts) {}
@@ -31,7 +31,7 @@ class PixelCanvas final : public ChartCanvas {
         list_.PathFillConvex(c);
     }
     void stroke(std::span<const glm::vec2> points, ImU32 c, float width) override {
-        // One by one with round joints: ImGui's mitres break where a curve turns back sharply.
+        // Segment by segment with round joints: ImGui's mitres break at sharp turns.
         for (std::size_t i = 1; i < points.size(); ++i) {
             list_.AddLine(at(points[i - 1]), at(points[i]), c, width * supersampling);
             if (i + 1 < points.size())
@@ -70,7 +70,7 @@ Image reduced(const Image &large) {
     return small;
 }
 
-// Makes a context current, and puts back the one before.
+// Makes a context current and restores the previous one.
 class CurrentImGui {
   public:
     explicit CurrentImGui(ImGuiContext *context) : before_(ImGui::GetCurrentContext()) {
@@ -105,7 +105,7 @@ struct ChartPainter::Parts {
     ChartFonts fonts{};
     std::unique_ptr<ImguiRenderer> renderer;
 
-    ~Parts() { gl->make_current(); } // for the renderer's end
+    ~Parts() { gl->make_current(); } // for the renderer's destructor
 };
 
 ChartPainter::ChartPainter(const std::filesystem::path &shader_dir) {

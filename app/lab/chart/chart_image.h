@@ -14,17 +14,17 @@ class ChartPen;
 struct MapPicture;
 struct PanelChart;
 
-// Holds a GL context and a typeface for as many charts as one likes. Leaves ImGui's current context
-// as it was, but not the thread's GL context: whoever has one makes it current again afterwards.
+// Holds a GL context and a typeface for any number of charts. Restores ImGui's current context but
+// not the thread's GL context: a caller that has one must make it current again.
 class ChartPainter {
   public:
-    // Throws ContextError when there is no GL context, std::runtime_error when a shader is missing.
+    // Throws ContextError without a GL context, std::runtime_error if a shader is missing.
     explicit ChartPainter(const std::filesystem::path &shader_dir);
     ~ChartPainter();
     ChartPainter(const ChartPainter &) = delete;
     ChartPainter &operator=(const ChartPainter &) = delete;
 
-    // 1200 x 800 pixels; a chart of many series is higher.
+    // 1200 x 800 pixels; taller with many series.
     [[nodiscard]] Image paint(const ChartContent &content);
     [[nodiscard]] Image paint(const PanelChart &chart);
     [[nodiscard]] Image paint(const MapPicture &picture);

@@ -12,7 +12,7 @@ namespace {
 // Height of the strips for failed runs and for zero error: a mark with a label above or below it.
 constexpr float strip = 54;
 
-// The length of the part of a segment inside a box (Liang and Barsky 1984).
+// Length of the part of a segment inside a box (Liang and Barsky 1984).
 float length_inside(const std::pair<glm::vec2, glm::vec2> &segment, const PixelBox &box) {
     const glm::vec2 d = segment.second - segment.first;
     float enter = 0, leave = 1;
@@ -56,7 +56,7 @@ std::vector<PlacedLabel> place_labels(const std::vector<glm::vec2> &points,
                 const glm::vec2 direction = directions[k];
                 const bool corner = direction.x != 0 && direction.y != 0;
                 const float reach = radii[index] + gaps[g];
-                // A corner's label sits nearer, as the mark is round.
+                // Diagonal labels sit closer, as the mark is round.
                 const glm::vec2 offset =
                     direction * (half + glm::vec2(corner ? 0.75f * reach : reach));
                 const glm::vec2 centre = points[index] + offset;
@@ -96,7 +96,7 @@ std::vector<std::string> fitting_lines(const std::vector<std::vector<std::string
     std::size_t shown = 0;
     for (; shown < texts.size() && rows > 0; ++shown) {
         if (all > rows && lines.size() + texts[shown].size() + 1 > rows)
-            break; // the last row is for what is said of the rest
+            break; // the last row says how many more there are
         lines.insert(lines.end(), texts[shown].begin(), texts[shown].end());
     }
     if (shown > 0 && shown < texts.size())
@@ -107,7 +107,7 @@ std::vector<std::string> fitting_lines(const std::vector<std::vector<std::string
 
 glm::vec2 chart_size(const ChartContent &content) {
     using chart_style::close_row;
-    constexpr std::size_t long_name = 30; // characters, that may take two rows
+    constexpr std::size_t long_name = 30; // characters; longer names may take two rows
     constexpr float fits = 17 * close_row;
     float names = 0;
     for (const ChartSeries &series : content.series)
@@ -134,7 +134,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     }
     if (content.limit && *content.limit > 0)
         errors.push_back(*content.limit);
-    // A line in the next decade or so is worth the room.
+    // Lines within the next decade or so are worth the room.
     constexpr double reach = 20;
     const bool floor_shows =
         content.floor && *content.floor > 0 &&
@@ -188,7 +188,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
     }
 
     std::vector<PixelBox> obstacles;
-    // The place with the fewest marks in the way, the first of equals; off what is placed already.
+    // The place with the fewest marks in the way (the first if tied), clear of earlier texts.
     const auto best_place = [&](const std::vector<PixelBox> &places) {
         const auto score = [&](const PixelBox &box) {
             float sum = layout.plot.contains(box) ? 0.0f : 1000.0f;
@@ -216,7 +216,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         const float above = *layout.limit_line - 4 - text.y, below = *layout.limit_line + 4;
         std::vector<PixelBox> places;
         constexpr int columns = 24;
-        // The ends first.
+        // Try both ends first.
         for (const int column : {columns, 0}) {
             const float x = left + (right - left) * static_cast<float>(column) / columns;
             places.insert(places.end(), {box_at(x, above, text), box_at(x, below, text)});
@@ -256,7 +256,7 @@ ChartLayout lay_out(const ChartContent &content, const TextSize &text_size) {
         layout.corner = {{layout.plot.min.x, *layout.limit_line},
                          {layout.budget_line.value_or(layout.plot.max.x), layout.plot.max.y}};
 
-    // The front, from cheap to dear.
+    // The front, cheapest first.
     std::vector<std::size_t> front;
     for (std::size_t i = 0; i < content.marks.size(); ++i)
         if (content.marks[i].pareto)

@@ -1,4 +1,4 @@
-// What charts are drawn with, in pixels of the finished picture.
+// Drawing primitives for charts, in pixels of the finished picture.
 #pragma once
 
 #include "app/lab/chart/chart_canvas.h"
@@ -36,8 +36,8 @@ inline constexpr ImU32 limit_ink = colour(0x2f7d4f);
 inline constexpr ImU32 budget_ink = colour(0x9a5b13);
 inline constexpr ImU32 front = colour(0xdcdfe3);
 
-// Colours that people with any of the usual kinds of colour blindness can tell apart (Okabe and Ito
-// 2008), without the yellow, which is too light on white. The shape of the mark says it again.
+// Distinguishable with any common type of colour blindness (Okabe and Ito 2008), without the
+// yellow, which is too light on white. Mark shapes repeat the distinction.
 inline constexpr std::array<unsigned, series_colour_count> series_colours{
     0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x4d4d4d};
 inline constexpr std::size_t shape_count = 5; // coprime to the number of colours: 35 combinations
@@ -69,7 +69,7 @@ class ChartPen {
         line(p + glm::vec2(-r, -r), p + glm::vec2(r, r), c, width);
         line(p + glm::vec2(-r, r), p + glm::vec2(r, -r), c, width);
     }
-    // A filled mark of equal weight to the eye in each of the shapes.
+    // A filled mark; all shapes have the same visual weight.
     void mark(glm::vec2 p, std::size_t shape, float r, ImU32 c) {
         switch (shape % chart_colour::shape_count) {
         case 0:
@@ -97,7 +97,7 @@ class ChartPen {
             size.x += plain_size(text.substr(head.size() + 1), face, raised_scale).x;
         return size;
     }
-    // `anchor` (0..1 of the text's size) lies at p.
+    // p is where `anchor` goes (0..1 of the text's size).
     void text(glm::vec2 p, std::string_view text, Face face, ImU32 c, glm::vec2 anchor = {0, 0}) {
         const glm::vec2 start = p - anchor * text_size(text, face);
         const std::string_view head = text.substr(0, text.find(raised_from));
@@ -106,13 +106,13 @@ class ChartPen {
             canvas_.text(start + glm::vec2(plain_size(head, face, 1).x, -0.12f * font_size(face)),
                          text.substr(head.size() + 1), face, raised_scale, c);
     }
-    // The text cut to the width, with an ellipsis where something is missing.
+    // The text cut to the width, with an ellipsis if anything was cut.
     [[nodiscard]] std::string fitted(const std::string &text, Face face, float width) const {
         if (text_size(text, face).x <= width)
             return text;
         std::string cut = text;
         while (!cut.empty() && text_size(cut + "…", face).x > width) {
-            // Whole characters of UTF-8.
+            // Whole UTF-8 characters.
             while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xc0) == 0x80)
                 cut.pop_back();
             if (!cut.empty())
@@ -120,7 +120,7 @@ class ChartPen {
         }
         return cut + "…";
     }
-    // Broken at spaces into lines of at most this width.
+    // Breaks the text at spaces into lines of at most this width (longer for a long word).
     [[nodiscard]] std::vector<std::string> wrapped(const std::string &text, Face face,
                                                    float width) const {
         std::vector<std::string> lines{""};

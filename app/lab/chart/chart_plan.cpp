@@ -17,14 +17,14 @@ bool is_swept(const std::vector<SweepAxis> &sweep, SettingMember member) {
         sweep, [&](const SweepAxis &axis) { return axis.setting.setting().member == member; });
 }
 
-// Whether a setting is neither swept nor given, so that the chart may choose it.
+// Whether a setting is neither swept nor given, so the chart may choose it.
 bool is_open(const ChartOptions &options, const std::vector<SweepAxis> &sweep, const char *name) {
     const SettingRow &row = *find_setting(name);
     return !is_swept(sweep, row.member) && !options.base.settings.has(row);
 }
 
-// The least that islands take says little of what they take: where substeps are swept, and nothing
-// is said of the most, just so many are charted, too.
+// With adaptive substeps `substeps` is only the islands' minimum, which says little about how many
+// they take. If substeps are swept and max_substeps is open, fixed substeps are charted as well.
 std::vector<RunOptions> substep_modes(const SceneDesc &scene, const MethodInfo &method,
                                       const ChartOptions &options,
                                       const std::vector<SweepAxis> &sweep) {
@@ -45,7 +45,7 @@ std::vector<RunOptions> substep_modes(const SceneDesc &scene, const MethodInfo &
     return modes;
 }
 
-// Whether the same is planned already, at `first` or behind it.
+// Whether the same run is already planned at `first` or later.
 bool repeats(const PlannedRun &run, const std::vector<PlannedRun> &planned, std::size_t first) {
     return std::any_of(planned.begin() + static_cast<std::ptrdiff_t>(first), planned.end(),
                        [&](const PlannedRun &other) {
@@ -56,7 +56,7 @@ bool repeats(const PlannedRun &run, const std::vector<PlannedRun> &planned, std:
                        });
 }
 
-// The values of a sweep of what is no setting.
+// Values of a sweep over something that is not a setting.
 template <typename Value, typename Read>
 std::vector<Value> values_of(std::string_view text, const Read &read, const char *right) {
     std::vector<Value> values;

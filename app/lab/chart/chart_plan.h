@@ -1,4 +1,4 @@
-// Which runs a chart is made of.
+// Which runs make up a chart.
 #pragma once
 
 #include "app/lab/chart/chart.h"
@@ -12,11 +12,11 @@ struct PlannedRun {
     ResolvedRun resolved;
     int threads = 1;
     SweepPoint point;
-    const OtherEngine *engine = nullptr; // that runs it; null: ours
+    const OtherEngine *engine = nullptr; // runs it; null: ours
 };
 
-// Method by method, then engine by engine, and of each: precision by precision, threads by threads,
-// point by point; none twice. Notes in `left_out` why a method is not among them.
+// Ordered by method, then engine, and within each by precision, threads and point; no duplicates.
+// Adds to `left_out` why methods are missing.
 [[nodiscard]] std::vector<PlannedRun> plan_chart(const SceneDesc &scene,
                                                  const ChartOptions &options,
                                                  const std::vector<SweepAxis> &sweep,

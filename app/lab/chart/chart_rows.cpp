@@ -32,7 +32,7 @@ ExpectOutcome read_outcome(const CsvReader &row, const ExpectDesc &expect) {
     return outcome;
 }
 
-// Nothing of a row that is not finished, or not to be understood.
+// Empty for a row that is unfinished or cannot be read.
 std::optional<ChartRun> read_run(const CsvReader &row, const SceneDesc &scene,
                                  const std::vector<SweepAxis> &sweep) {
     ChartRun run;
@@ -102,7 +102,7 @@ bool knows_all_columns(const CsvReader &table, const SceneDesc &scene) {
            }) == static_cast<std::ptrdiff_t>(expects.size());
 }
 
-// What is the same in all rows of a chart.
+// The part that all rows of a chart share.
 SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
     SceneChart chart;
     chart.scene = scene;
@@ -129,7 +129,7 @@ SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
     return chart;
 }
 
-// All cells of read_head, and the commit.
+// The cells read_head reads, and the commit.
 std::string head_text(const CsvReader &row) {
     std::string text;
     for (const char *column : {"scene", "sweep", "against", "clock", "budget_s_per_s", "planned",

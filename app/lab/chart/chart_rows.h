@@ -1,4 +1,4 @@
-// What write_chart_csv wrote, read again: to go on from, and to merge.
+// Reads write_chart_csv's tables back, to resume or merge charts.
 #pragma once
 
 #include "app/lab/chart/chart.h"
@@ -9,23 +9,22 @@
 
 namespace plumb {
 
-// See Fingerprint: of the scene, the options and what is swept; the shard is not in it.
+// Fingerprint of the scene, the options and the sweep, but not the shard.
 [[nodiscard]] std::string chart_fingerprint(const SceneDesc &scene, const ChartOptions &options);
 
-// The columns by which rows of the same chart, or of any, are told apart.
+// The columns that identify a row, within one chart or across charts.
 [[nodiscard]] std::vector<std::string> chart_key_columns();
 
-// Those finished runs of a table that have this fingerprint; none of a table that is not to be
-// understood.
+// The table's finished runs with this fingerprint; none if the table cannot be read.
 [[nodiscard]] KnownRuns read_known_runs(std::istream &in, const SceneDesc &scene,
                                         const std::string &fingerprint);
 
-// The name of the scene that a table is of; empty when it is no chart's.
+// The table's scene name; empty if it is not a chart's table.
 [[nodiscard]] std::string scene_of_chart(const std::string &table);
 
-// The chart whose shards these tables are, in any order; rows may come twice. Throws
-// std::invalid_argument that says which table is not one of this scene, as it is now, or not of the
-// same chart as the first: one with the same settings, by the same commit.
+// Merges shards, in any order; rows may repeat. Throws std::invalid_argument naming a table that
+// does not match the scene as it is now, or that is not from the first table's chart: same
+// settings, same commit.
 struct NamedTable {
     std::string name; // for messages
     std::string text;

@@ -13,7 +13,7 @@ namespace plumb {
 
 namespace {
 
-// Hundredths of a pixel.
+// Rounded to hundredths of a pixel.
 std::string number(float value) {
     std::array<char, 32> text{};
     auto *end =
@@ -66,12 +66,12 @@ class SvgCanvas final : public ChartCanvas {
         out_ << "<polyline points=\"" << points_text(points) << "\" fill=\"none\" stroke=\""
              << colour_text(c) << "\" stroke-width=\"" << number(width) << "\"/>\n";
     }
-    // As wide as it was laid out, whichever typeface the reader has.
+    // textLength keeps the width as laid out, whatever typeface the viewer has.
     void text(glm::vec2 p, std::string_view text, Face face, float scale, ImU32 c) override {
         if (text.empty())
             return;
         const glm::vec2 size = text_size(fonts_, text, face, scale);
-        constexpr float baseline = 0.79f; // of Roboto, from the top of its line
+        constexpr float baseline = 0.79f; // Roboto's, from the top of the line
         out_ << "<text x=\"" << number(p.x) << "\" y=\"" << number(p.y + baseline * size.y)
              << "\" font-size=\"" << number(0.85f * scale * font_size(face)) << "\" textLength=\""
              << number(size.x) << "\" lengthAdjust=\"spacingAndGlyphs\" fill=\"" << colour_text(c)

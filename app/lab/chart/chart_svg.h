@@ -1,5 +1,4 @@
-// Charts and maps as scalable vector graphics: what their pixels show, as text. Needs no GL
-// context.
+// Charts and maps as SVG, showing the same as their pixels. Needs no GL context.
 #pragma once
 
 #include "app/lab/chart/chart_layout.h"

@@ -1,4 +1,4 @@
-// A chart's numbers: as CSV, and as a table for people.
+// A chart's numbers, as CSV and as a human-readable table.
 #include "app/lab/chart/chart.h"
 #include "app/lab/chart/chart_columns.h"
 #include "app/lab/chart/convergence.h"
@@ -142,7 +142,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
 
 void print(std::ostream &out, const SceneChart &chart) {
     out << chart.scene.name << ": " << chart.measure.explanation;
-    // In units of tolerances it is 1, and needs no words.
+    // In units of tolerances it is 1 and needs no mention.
     if (chart.measure.limit && chart.measure.kind != ErrorMeasure::Kind::worst) {
         std::string label = chart.measure.limit_label;
         std::replace(label.begin(), label.end(), raised_from, '^');

@@ -10,7 +10,7 @@ namespace plumb {
 
 std::string curve_name(const SceneChart &chart, const ChartRun &run) {
     const MethodInfo &method = *run.resolved.method;
-    // Whether islands may take substeps of their own in it.
+    // Whether islands may choose their own substeps in this run.
     const auto chooses = [](const ChartRun &each) {
         return each.resolved.method->chooses_substeps() && each.resolved.settings.max_substeps > 1;
     };
@@ -45,7 +45,7 @@ std::optional<FittedOrder> fitted_order(std::vector<std::pair<double, double>> e
         x.push_back(std::log(dt));
         y.push_back(std::log(error));
     }
-    std::size_t begin = 0, count = 2; // points; a run is more than two
+    std::size_t begin = 0, count = 2; // points; a run has at least three
     for (std::size_t first = 0; first + 2 < x.size(); ++first) {
         double low = INFINITY, high = 0;
         for (std::size_t last = first + 1; last < x.size(); ++last) {

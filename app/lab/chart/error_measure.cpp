@@ -14,7 +14,7 @@ namespace plumb {
 namespace {
 
 std::string explain(const ExpectDesc &expect, const std::string &unit) {
-    if (expect.quantity.empty()) // of a probe
+    if (expect.quantity.empty()) // from a probe
         return "truly " + with_unit(expect.value, unit) + " (" + expect.source + ")";
     std::string text = expect.quantity + (expect.body.empty() ? "" : " of " + expect.body);
     if (expect.reduce == "last")

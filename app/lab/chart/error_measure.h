@@ -13,33 +13,32 @@ namespace plumb {
 struct ErrorMeasure {
     enum class Kind { worst, expectation, penetration, joint_drift, energy, one_step };
     Kind kind = Kind::energy;
-    std::size_t expectation = 0; // index into everything_expected, when of that kind
+    std::size_t expectation = 0; // index into everything_expected, for Kind::expectation
     std::string name;
-    std::string unit;        // "1" where there is none, and in units of tolerances
+    std::string unit;        // "1" if dimensionless or in units of tolerances
     std::string title;       // for the axis
     std::string explanation; // a sentence
-    // What the error may be. Whether a run is true enough is more than this where only one of
-    // several expectations is shown: see ChartStatus.
+    // Largest acceptable error. If only one of several expectations is shown, a run can be within
+    // it and still miss another: see ChartStatus.
     std::optional<double> limit;
     std::string limit_label;
 };
 
-// The worst of all that the scene expects, in units of their tolerances; where it expects but one
-// thing, or one is named by `expect`, that one in its own unit; where it expects nothing, what
-// followed_measure says. Throws std::invalid_argument when there is none of that name.
+// The scene's worst expectation, in units of tolerances; if it has only one, or `expect` names one,
+// that one in its own unit; if it has none, followed_measure. Throws std::invalid_argument if none
+// has that name.
 [[nodiscard]] ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect);
 
-// For scenes that expect nothing: the error that the scene can show.
+// For scenes without expectations: the error that applies to the scene.
 [[nodiscard]] ErrorMeasure followed_measure(const SceneDesc &scene, bool had_contacts);
 
-// Of a chart of single steps, each a frame of so many seconds, from so many states.
+// For one-step charts: steps of `frame` seconds from `instants` states.
 [[nodiscard]] ErrorMeasure one_step_measure(double frame, std::size_t instants);
 
-// The outcome with the largest error in units of its tolerance; none when no error is above 0.
+// The outcome with the largest error in units of its tolerance; none if no error is above 0.
 [[nodiscard]] std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes);
 
-// The run's error by this measure, which is not that of single steps; infinite when it could not be
-// measured.
+// The run's error by this measure, other than Kind::one_step; infinite if it could not be measured.
 [[nodiscard]] double error_of(const ErrorMeasure &measure, const JudgedRun &run);
 
 } // namespace plumb

@@ -54,7 +54,7 @@ LogRange log_range(const std::vector<double> &values) {
         b += lack / 2;
     }
     const double air = 0.07 * (b - a);
-    // Within what a double holds, so that ticks stay finite and above zero.
+    // Clamped to the range of a double, so ticks stay finite and above zero.
     return {std::pow(10, std::max(a - air, -300.0)), std::pow(10, std::min(b + air, 300.0))};
 }
 
@@ -73,7 +73,7 @@ std::vector<Tick> log_ticks(const LogRange &range, std::string_view unit, int mo
         for (int digit = 1; digit <= 9; ++digit) {
             if (digit > 1 && decades > 8)
                 break;
-            // Through text: exactly the double nearest to digit * 10^exponent.
+            // Via text, to get exactly the double nearest to digit * 10^exponent.
             char text[24];
             std::snprintf(text, sizeof text, "%de%d", digit, exponent);
             const double value = std::strtod(text, nullptr);
@@ -110,7 +110,7 @@ std::string short_quantity(double value, std::string_view unit) {
     const std::string power = std::string("10") + raised_from +
                               std::string(exponent < 0 ? "−" : "") +
                               std::to_string(std::abs(exponent));
-    // The unit would have to stand after the raised digits.
+    // No unit: it would have to follow the superscript.
     const std::string head = mantissa == 1 ? "" : plain(mantissa) + "×";
     return head + power;
 }

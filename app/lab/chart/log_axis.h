@@ -1,4 +1,4 @@
-// Logarithmic axes: their range, their ticks, and the numbers at them.
+// Logarithmic axes: range, ticks and tick labels.
 #pragma once
 
 #include <string>
@@ -12,31 +12,31 @@ struct LogRange {
     double high = 10;
 };
 
-// Holds all values that are positive and finite, with some air; at least a decade, so that small
-// differences are not blown up. Without such values: 1..10.
+// Covers all positive finite values with some margin; at least a decade, so small differences are
+// not blown up. 1..10 if there are none.
 [[nodiscard]] LogRange log_range(const std::vector<double> &values);
 
 struct Tick {
     double value = 0;
-    bool decade = false; // a whole power of ten: a stronger line
-    std::string label;   // empty: a line without a number
+    bool decade = false; // a power of ten, drawn stronger
+    std::string label;   // empty: unlabelled line
 };
 
-// Ascending, all within the range. Labels at whole powers of ten, thinned to about `most_labels`;
-// where that leaves room also at 2 and 5 times such. Ranges above eight decades have lines at
-// powers of ten only.
+// Ascending, all within the range. Labels at powers of ten, thinned to about `most_labels`; also at
+// 2 and 5 times these if there is room. Ranges above eight decades have lines at powers of ten
+// only.
 [[nodiscard]] std::vector<Tick> log_ticks(const LogRange &range, std::string_view unit,
                                           int most_labels = 10);
 
 // Whether short_quantity puts metric prefixes before the unit.
 [[nodiscard]] bool takes_prefix(std::string_view unit);
 
-// In a label: what follows is to be raised.
+// In a label: the rest is superscript.
 inline constexpr char raised_from = '\x1f';
 
 // A short label. With a unit that takes prefixes (m, s, J, m/s, rad, ...): "20 µm", "1 s", "5 kJ".
-// Without ("1"): "0.02", "300", and below 1e-3 and from 1e4 on a power of ten, as "2×10",
-// raised_from, "−5".
+// Without ("1"): "0.02", "300", and below 1e-3 or from 1e4 up a power of ten: "2×10", raised_from,
+// "−5".
 [[nodiscard]] std::string short_quantity(double value, std::string_view unit);
 
 // 0 at range.low, 1 at range.high.

@@ -18,10 +18,11 @@ namespace plumb {
 namespace {
 
 constexpr double shortest_frame = 1.0 / 60; // s
-// Collision is found once a step: where things strike each other, steps count, not substeps.
+// Collision detection runs once per step, so for impacts the steps matter, not the substeps.
 constexpr int steps_a_frame = 64, substeps_a_step = 4;
-constexpr std::size_t gone_along = 16; // frames, at most
-// Of the accurate run all frames are states, or as many frames in so many stretches.
+constexpr std::size_t gone_along = 16; // uncounted frames per stretch, at most
+// All frames of the accurate run are states if there are at most `most_frames`; otherwise that
+// many, in `stretch_count` stretches.
 constexpr std::size_t most_frames = 600, stretch_count = 10;
 
 SceneDesc without_memory(SceneDesc scene) {
@@ -38,7 +39,7 @@ SceneDesc without_memory(SceneDesc scene) {
     return scene;
 }
 
-// Poses, velocities and what is broken; what is remembered stays.
+// Sets poses, velocities and broken or torn parts; the solver's memory stays.
 void put_state(SceneDesc &scene, const Frame &frame, const SoftParts &soft) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         BodyDesc &body = scene.bodies[i];

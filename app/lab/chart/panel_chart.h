@@ -1,4 +1,4 @@
-// Many small charts on one sheet, with the same two logarithmic axes: one panel a query.
+// Many small charts on one sheet sharing two logarithmic axes: one panel per query.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ class ChartPen;
 
 struct PanelMark {
     double x = 0; // > 0
-    double y = 0; // >= 0; zero lies in a strip of its own
+    double y = 0; // >= 0; 0 is drawn in its own strip
     std::size_t series = 0;
 };
 
@@ -24,7 +24,7 @@ struct PanelChart {
     std::string subtitle;
     std::string x_title, y_title;
     std::string x_unit = "s";
-    std::string zero_label = "0"; // of the strip for y == 0
+    std::string zero_label = "0"; // label of the strip for y == 0
     std::vector<std::string> series;
     std::vector<Panel> panels;
     std::vector<std::string> footer;

@@ -13,8 +13,8 @@ std::vector<bool> pareto_front(std::span<const CostAndError> choices) {
     std::erase_if(order, [&](std::size_t i) {
         return !std::isfinite(choices[i].cost) || !std::isfinite(choices[i].error);
     });
-    // From cheap to dear, and among equals the truer first: a choice is on the front when it is
-    // truer than all before it, or the same as the last on the front.
+    // By ascending cost, ties by error: a choice is on the front if it is more accurate than all
+    // before it, or equal to the last on the front.
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         if (choices[a].cost != choices[b].cost)
             return choices[a].cost < choices[b].cost;

@@ -1,4 +1,4 @@
-// Which choices nothing else beats.
+// Pareto front of cost and error.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ struct CostAndError {
     double error = 0;
 };
 
-// For each choice, whether it is on the Pareto front: no other one is as good in both and better in
-// one. Equal choices are on it together. Choices that are not finite never are.
+// For each choice, whether it is on the Pareto front: no other is at least as good in both and
+// better in one. Equal choices are on it together; non-finite ones never are.
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const CostAndError> choices);
 
 } // namespace plumb

@@ -43,7 +43,7 @@ struct ShapeMaker {
         return std::make_unique<btCylinderShape>(
             of(glm::dvec3(cylinder.radius, cylinder.half_height, cylinder.radius)));
     }
-    // Its margin goes on top of the points: 4 cm by default, which would show as a gap.
+    // The margin is added outside the points: the default of 4 cm would show as a gap.
     std::unique_ptr<btCollisionShape> operator()(const HullDesc &hull) const {
         auto shape = std::make_unique<btConvexHullShape>();
         for (const glm::dvec3 &point : *hull.points)
@@ -52,7 +52,7 @@ struct ShapeMaker {
         shape->setMargin(btScalar(0.001));
         return shape;
     }
-    // A slab: on its planes Bullet finds one new point of contact a step, and friction is worse.
+    // A thick box: Bullet's planes find one new contact point per step, and friction is worse.
     std::unique_ptr<btCollisionShape> operator()(const PlaneDesc &) const {
         return std::make_unique<btBoxShape>(btVector3(300, slab_depth, 300));
     }
@@ -61,7 +61,7 @@ struct ShapeMaker {
     }
 };
 
-// Tells how long the narrow and broad phases took.
+// Measures how long the broad and narrow phases took.
 class TimedWorld final : public btDiscreteDynamicsWorld {
   public:
     using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
@@ -141,7 +141,7 @@ class BulletEngine final : public Engine {
                 from(of_body.getLinearVelocity()), from(of_body.getAngularVelocity())};
     }
 
-    struct Driven { // a kinematic body: Bullet takes its velocity from where it is put
+    struct Driven { // a kinematic body: Bullet derives its velocity from its poses
         btRigidBody *body;
         btVector3 velocity, spin;
     };
@@ -158,7 +158,7 @@ class BulletEngine final : public Engine {
         const bool is_slab = std::holds_alternative<PlaneDesc>(first.shape);
         if (!is_slab && body.colliders.size() == 1 && first.position == glm::dvec3(0) &&
             first.orientation == glm::dquat(1, 0, 0, 0)) {
-            // Many bodies of one hull share it.
+            // Bodies with the same hull share its shape.
             if (const auto *hull = std::get_if<HullDesc>(&first.shape)) {
                 btCollisionShape *&shared = hulls_[hull->points.get()];
                 if (shared == nullptr)
@@ -184,7 +184,7 @@ class BulletEngine final : public Engine {
                                                       shape_of(desc), of(mass.inertia));
         info.m_startWorldTransform = btTransform(of(desc.orientation), of(desc.position));
         const MaterialDesc &material = scene_.material(desc);
-        // A pair has the product of both in Bullet.
+        // Bullet multiplies the values of the two bodies in contact.
         info.m_friction = static_cast<btScalar>(std::sqrt(material.friction));
         info.m_restitution = static_cast<btScalar>(std::sqrt(material.restitution));
         auto body = std::make_unique<btRigidBody>(info);
@@ -240,7 +240,7 @@ class BulletEngine final : public Engine {
     btSequentialImpulseConstraintSolver solver_;
     TimedWorld world_;
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
-    std::map<const void *, btCollisionShape *> hulls_; // looked up, never gone through
+    std::map<const void *, btCollisionShape *> hulls_; // looked up, never iterated over
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> joints_;
     std::vector<Driven> driven_;

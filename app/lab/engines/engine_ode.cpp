@@ -15,11 +15,11 @@ namespace plumb {
 
 namespace {
 
-// ODE is initialised once and for all.
+// Initialises ODE on the first call; seeds it on every call.
 void initialise() {
     static const bool done = dInitODE2(0) != 0;
     (void)done;
-    dRandSetSeed(0); // the order of its constraints is drawn
+    dRandSetSeed(0); // it orders its constraints randomly
 }
 
 dReal real(double x) {
@@ -77,7 +77,7 @@ class OdeEngine final : public Engine {
         dWorldDestroy(world_);
     }
 
-    // Hulls are not among the shapes whose contacts ODE's manual vouches for.
+    // No hulls: ODE's manual does not vouch for their contacts.
     static bool can_run(const SceneDesc &scene) {
         const auto known = [](const ColliderDesc &collider) {
             return std::holds_alternative<PlaneDesc>(collider.shape) ||

@@ -44,7 +44,7 @@ std::string beyond_engines(const JointDesc &joint) {
 }
 
 bool lies_in_its_mass_frame(const BodyDesc &body, const BodyDesc &described) {
-    constexpr double near = 1e-6; // m, rad: what float leaves
+    constexpr double near = 1e-6; // m, rad: float round-off
     if (!described.mass_pose)
         return true;
     return glm::distance(described.mass_pose->position, body.position) < near &&

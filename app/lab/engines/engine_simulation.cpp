@@ -14,7 +14,7 @@ namespace plumb {
 namespace {
 
 RunOptions given_of(const ResolvedRun &run) {
-    RunOptions options; // the scene's own method tells what there is; it is never stepped
+    RunOptions options; // the scene's own method, which only lists what exists; never stepped
     options.settings.give(&StepSettings::dt, run.settings.dt);
     options.settings.give(&StepSettings::gravity, run.settings.gravity);
     options.precision = Precision::f64;
@@ -39,7 +39,7 @@ class EngineSimulation final : public Simulation {
     }
     std::uint64_t step_count() const override { return steps_; }
     double time() const override { return static_cast<double>(steps_) * run_.settings.dt; }
-    // Looked at when asked, outside of what is timed.
+    // Made on request, so that it is not timed.
     const StepReport &report() const override {
         if (report_is_of_ != steps_) {
             const StepWork work = engine_->work();
@@ -58,7 +58,7 @@ class EngineSimulation final : public Simulation {
     Measures measure() const override {
         Measures m;
         m.time = time();
-        // Forces, which are not told.
+        // These need contact forces, which the engines do not report.
         m.signorini_residual = m.cone_residual = std::numeric_limits<double>::quiet_NaN();
         m.dissipation_residual = m.contact_power = std::numeric_limits<double>::quiet_NaN();
         const std::vector<BodyState> states = engine_->states();
@@ -145,7 +145,7 @@ class EngineSimulation final : public Simulation {
 
   private:
     void begin() {
-        engine_ = nullptr; // before the next: of some there can be but one
+        engine_ = nullptr; // first: some engines allow only one at a time
         engine_ = kind_.create(scene_);
         if (!engine_)
             throw std::invalid_argument(why_not(kind_, scene_.desc));
@@ -161,7 +161,7 @@ class EngineSimulation final : public Simulation {
     std::unique_ptr<Engine> engine_;
     std::uint64_t steps_ = 0;
     mutable StepReport report_;
-    mutable std::uint64_t report_is_of_ = 0; // of which step
+    mutable std::uint64_t report_is_of_ = 0; // the step it describes
 };
 
 } // namespace

@@ -1,4 +1,4 @@
-// Compiled with PLUMB_DOUBLE: depths of micrometres are to be told at 100 m from the origin.
+// Compiled with PLUMB_DOUBLE, to resolve micrometres of depth at 100 m from the origin.
 #include "app/lab/engines/pose_measures.h"
 
 #include "engine/geometry/manifold.h"
@@ -29,7 +29,7 @@ struct PoseMeasures::Colliders {
         std::uint32_t body;
         Shape shape;
     };
-    std::vector<BodyDef> defs; // they keep the meshes of hulls
+    std::vector<BodyDef> defs; // keep the hulls' meshes alive
     std::vector<One> all;
     std::set<std::pair<std::uint32_t, std::uint32_t>> joined; // lower index first
 };

@@ -49,8 +49,7 @@ double smallest_moving_width(const SceneDesc &scene) {
     return width;
 }
 
-// Of a magnitude or a distance from a curve only the run knows whether it is of a gain or of a
-// loss.
+// A magnitude, or a distance from a curve, does not tell gain from loss, but the run does.
 bool is_too_much_energy(const ExpectOutcome &outcome, const JudgedRun &run) {
     const ReductionInfo *reduction = find_reduction(outcome.desc.reduce);
     if (reduction->reduction == Reduction::drift || reduction->reduction == Reduction::max_abs ||
@@ -132,7 +131,7 @@ RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::s
         found(Failing::penetration, "");
     if (run.end_joint_drift > tolerated.drift)
         found(Failing::drift, "");
-    // Of several of one kind the one that is missed by most.
+    // Of several misses of one kind, the worst.
     double error = 0;
     for (const ExpectOutcome &outcome : run.outcomes) {
         if (outcome.verdict != Verdict::missed)

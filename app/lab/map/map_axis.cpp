@@ -35,13 +35,13 @@ double parse_value(std::string_view whole, std::string_view text, const MapAxis 
     return value;
 }
 
-// A setting goes before a path: "gravity.y" is one.
+// Settings take precedence over paths: "gravity.y" is a setting.
 std::optional<SettingNumber> find_setting_number(std::string_view whole, std::string_view name) {
     std::vector<SettingNumber> numbers;
     try {
         numbers = find_setting_numbers(name);
     } catch (const std::invalid_argument &) {
-        return std::nullopt; // then it is in the scene, or nowhere
+        return std::nullopt; // a path in the scene, or unknown
     }
     if (numbers.size() > 1)
         refuse(whole, std::string(name) + " has three components; give one of them, as in " +
@@ -49,7 +49,7 @@ std::optional<SettingNumber> find_setting_number(std::string_view whole, std::st
     return numbers.front();
 }
 
-// Of a key that is no setting's and stands nowhere in the scene.
+// For a key that is neither a setting nor in the scene.
 std::string why_unknown(std::string_view key) {
     try {
         (void)find_setting_numbers(key);
@@ -64,7 +64,7 @@ std::string why_unknown(std::string_view key) {
     }
 }
 
-// Cuts ":N", "log" and ":Nlog" off the end of a range.
+// Strips ":N", "log" and ":Nlog" from the end of a range.
 int take_count(std::string_view whole, std::string_view &range, bool &logarithmic) {
     constexpr std::string_view log = "log";
     logarithmic = range.ends_with(log);
@@ -119,7 +119,7 @@ void set_list(std::string_view whole, std::string_view list, MapAxis &axis) {
         refuse(whole, "an axis has 2 to " + std::to_string(most_values) + " values");
 }
 
-// As few as tell its values apart, three at least; up to five where that says what they are.
+// 3 to 5 digits if that is exact; else the fewest, 3 to 9, that tell neighbours apart.
 int digits_of(const MapAxis &axis) {
     constexpr int least = 3, exact = 5, most = 9;
     constexpr double rounding = 1e-9;
@@ -195,7 +195,7 @@ double between(const MapAxis &axis, double low, double high) {
 
 double cell_position(const MapAxis &axis, double value) {
     const auto scale = [&](double v) { return axis.logarithmic ? std::log(v) : v; };
-    // The cell before the value, but the first and the last two go on beyond the ends.
+    // The interval that contains the value; the outermost ones extrapolate.
     std::size_t i = 1;
     while (i + 1 < axis.values.size() && axis.values[i] < value)
         ++i;

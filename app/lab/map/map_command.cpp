@@ -24,7 +24,7 @@ namespace plumb {
 
 namespace {
 
-// Of a setting, "4", or "4 (soft_step), 1 (rk4)" where methods differ.
+// A setting's value: "4", or "4 (soft_step), 1 (rk4)" if methods differ.
 std::string values_by_method(const StabilityMap &map, SettingNumber number) {
     std::vector<std::pair<std::string, std::string>> values;
     for (const MethodMap &of_method : map.methods)
@@ -33,7 +33,8 @@ std::string values_by_method(const StabilityMap &map, SettingNumber number) {
     return values_by_name(values);
 }
 
-// Settings that are not on an axis, where they are not each method's defaults, and what made it.
+// dt, substeps and any setting with a value that is not its method's default, unless on an axis;
+// then precision, machine and commit.
 std::string made_with(const StabilityMap &map) {
     std::string text;
     const auto add = [&](const std::string &part) { text += (text.empty() ? "" : "  ·  ") + part; };
@@ -94,7 +95,7 @@ ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &e
     MapOptions options = command.options;
     options.stop = InterruptGuard::requested;
     options.progress = [&](double fraction, const std::string &what) { line.show(fraction, what); };
-    // Before the work, so that a place that nothing can be written to is known at once.
+    // Opened before the work, so that a path that cannot be written to fails immediately.
     std::optional<OutputFile> csv;
     std::optional<PartialTable> earlier;
     std::string fingerprint;

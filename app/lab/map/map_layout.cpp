@@ -22,7 +22,7 @@ class Writer {
 
     glm::vec2 measure(std::string_view text, float font) const { return text_size_(text, font); }
 
-    // `anchor` (0..1 of the text's size) lies at p.
+    // Puts `anchor` (0..1 of the text's size) at p.
     MapText place(std::string text, float font, glm::vec2 p, glm::vec2 anchor = {0, 0}) const {
         const glm::vec2 extent = measure(text, font);
         const glm::vec2 corner = p - anchor * extent;
@@ -31,14 +31,14 @@ class Writer {
     std::string cut(std::string text, float font, float width) const {
         if (measure(text, font).x <= width)
             return text;
-        // Whole characters of UTF-8.
+        // Removes whole UTF-8 characters.
         while (!text.empty() && measure(text + "…", font).x > width)
             do
                 text.pop_back();
             while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0U) == 0x80U);
         return text + "…";
     }
-    // Broken at spaces; a word that is too long is cut.
+    // Wraps at spaces; cuts words that are too long.
     std::vector<std::string> broken(const std::string &text, float font, float width) const {
         std::vector<std::string> lines;
         for (std::size_t begin = 0; begin <= text.size();) {
@@ -57,7 +57,7 @@ class Writer {
     const TextSize &text_size_;
 };
 
-// The expectations that cells failed by, in the scene's order: a, b, c, ...
+// The expectations that cells missed, in the scene's order: a, b, c, ...
 std::vector<std::string> missed_expectations(const StabilityMap &map) {
     std::set<std::string> seen;
     for (const MethodMap &of_method : map.methods)
@@ -80,7 +80,7 @@ std::string letter_of(const std::vector<std::string> &missed, const std::string 
                : std::string(1, static_cast<char>('a' + index));
 }
 
-// As many of the labels, at equal distances from the first on, as stay `air` apart on one axis.
+// Every n-th label from the first, with the least n that keeps them `air` apart along the axis.
 std::vector<MapText> spread_out(const std::vector<MapText> &labels, int axis, float air) {
     for (std::size_t stride = 1;; ++stride) {
         std::vector<MapText> kept;
@@ -104,7 +104,7 @@ struct Frame {
         : plot(box),
           cell((box.max - box.min) / glm::vec2(static_cast<float>(map.x.values.size()),
                                                static_cast<float>(map.y.values.size()))) {}
-    // Of a place in units of cells, (0, 0) the centre of the first.
+    // From cell coordinates: (0, 0) is the centre of the first cell.
     glm::vec2 at(double column, double row) const {
         return {plot.min.x + static_cast<float>(column + 0.5) * cell.x,
                 plot.max.y - static_cast<float>(row + 0.5) * cell.y};
@@ -148,7 +148,7 @@ MapPanel lay_out_panel(const Writer &write, const StabilityMap &map, const Metho
                 continue;
             MapCellBox cell{frame.box(column, row), run->failing.failing, std::nullopt};
             if (run->failing.failing != Failing::none) {
-                // In a corner, off the limits, which lie halfway up.
+                // In a corner, clear of the limits, which are drawn halfway up.
                 MapText mark = write.place(std::string(1, info_of(run->failing.failing).letter) +
                                                letter_of(missed, run->failing.what),
                                            footer_text, cell.box.min + glm::vec2(4, 2));
@@ -169,7 +169,7 @@ MapPanel lay_out_panel(const Writer &write, const StabilityMap &map, const Metho
     std::vector<MapText> labels;
     for (std::size_t i = 0; i < map.x.values.size(); ++i) {
         const std::string text = value_label(map.x, map.x.values[i]);
-        // The outer ones keep off the next panel's.
+        // Keeps the outer labels clear of the next panel's.
         const float half = 0.5f * write.measure(text, footer_text).x, beside = 0.4f * panel_gap.x;
         const float low = plot.min.x - beside + half, high = plot.max.x + beside - half;
         const float middle = frame.at(static_cast<double>(i), 0).x;
@@ -226,7 +226,7 @@ std::vector<MapLegendEntry> legend_entries(const StabilityMap &map,
     return entries;
 }
 
-// In rows from left to right, from y = 0 down; returns the height.
+// Lays the entries out in rows, left to right, from y = 0 down. Returns the height.
 float flow(const Writer &write, std::vector<MapLegendEntry> &entries) {
     float x = left_edge, y = 0;
     for (MapLegendEntry &entry : entries) {

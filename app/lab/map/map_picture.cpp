@@ -33,7 +33,7 @@ void draw_limit(ChartPen &pen, glm::vec2 p) {
     pen.mark(p, 0, limit_radius - 1.5f, ink);
 }
 
-// Dashed along its whole length.
+// The dash pattern continues across segments.
 void draw_curve(ChartPen &pen, const std::vector<glm::vec2> &points) {
     constexpr float dash = 7, period = 11;
     float along = 0;
@@ -48,7 +48,7 @@ void draw_curve(ChartPen &pen, const std::vector<glm::vec2> &points) {
     }
 }
 
-// Whether a curve runs through the box, or close by.
+// Whether a curve crosses the box or passes close by.
 bool is_crossed(const PixelBox &box, const std::vector<std::vector<glm::vec2>> &curves) {
     constexpr float close = 4;
     const PixelBox around{box.min - close, box.max + close};
@@ -60,7 +60,7 @@ bool is_crossed(const PixelBox &box, const std::vector<std::vector<glm::vec2>> &
     return false;
 }
 
-// Where a curve runs through it, on a halo of the cell's colour.
+// With a halo in the cell's colour if a curve crosses it.
 void draw_mark(ChartPen &pen, const MapCellBox &cell, bool crossed) {
     const unsigned rgb = info_of(cell.failing).colour;
     if (crossed)

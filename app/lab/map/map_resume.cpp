@@ -27,7 +27,7 @@ std::vector<std::string> map_key_columns(const StabilityMap &map) {
 }
 
 KnownRows read_map_csv(std::istream &in, const std::string &fingerprint) {
-    constexpr std::size_t read = 13; // then settings and where it was made; the run comes last
+    constexpr std::size_t read = 13; // then settings and where it was made; the fingerprint is last
     KnownRows known;
     for (std::vector<std::string> row = read_csv_row(in); !row.empty(); row = read_csv_row(in)) {
         if (row.size() <= read || row.back() != fingerprint)

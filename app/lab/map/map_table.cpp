@@ -14,7 +14,7 @@ namespace plumb {
 
 namespace {
 
-// What a failing is of: the missed expectation, say.
+// The failing, and its subject if it has one, such as the missed expectation.
 std::string in_words(const RunFailing &failing) {
     return std::string(info_of(failing.failing).name) +
            (failing.what.empty() ? "" : ": " + failing.what);
@@ -45,7 +45,7 @@ void write_map_csv(std::ostream &out, const StabilityMap &map) {
     for (const char *column : {"low", "high", "why", "what", "held_below", "time",
                                "max_penetration", "max_joint_drift", "max_energy_gain"})
         csv.cell(column);
-    std::vector<SettingNumber> settings; // those of the axes have their own columns
+    std::vector<SettingNumber> settings; // the axes have their own columns
     for (const SettingNumber number : setting_numbers())
         if (map.x.setting != number && map.y.setting != number)
             settings.push_back(number);

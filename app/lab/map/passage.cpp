@@ -13,20 +13,20 @@ namespace {
 
 struct Obstacle {
     std::string name;
-    ColliderDef collider; // its shape in the world
+    ColliderDef collider; // shape in world space
     Transform surface_pose;
 };
 
-// One body's way past one obstacle.
+// One body's path past one obstacle.
 struct Way {
     std::size_t mover = 0, obstacle = 0;
-    std::optional<Vec3> entered_by; // normal of the surface where the centre went in
+    std::optional<Vec3> entered_by; // surface normal where the centre went in
 };
 
 struct Mover {
     std::string name;
     std::size_t body = 0;
-    glm::dvec3 center{0}; // a step before
+    glm::dvec3 center{0}; // at the previous sample
 };
 
 bool joined(const SceneDesc &scene, const std::string &a, const std::string &b) {
@@ -40,7 +40,7 @@ Ray step_ray(const glm::dvec3 &from, const glm::dvec3 &to) {
     return {Vec3{from}, Vec3{to - from}, Real(1)};
 }
 
-// From a height field's top, or the front of a mesh's triangles; or any side where both are solid.
+// Counts a height field's top and a mesh's front; a mesh's back too if both sides are solid.
 bool crosses(const TriangleSurface &surface, const Transform &pose, const Ray &in_world) {
     const Ray ray{to_local_point(pose, in_world.origin), to_local_vector(pose, in_world.direction),
                   in_world.max_t};
@@ -56,7 +56,7 @@ bool crosses(const TriangleSurface &surface, const Transform &pose, const Ray &i
     return hit && hit->normal.y > Real(0);
 }
 
-// Whether the step brings the centre out of the solid on another side than it went in.
+// Whether the centre leaves the solid in this step on the opposite side from where it went in.
 bool comes_out_behind(const Shape &shape, const Ray &step, Way &way) {
     const std::optional<RayInterval> inside = ray_interval(shape, step);
     if (std::holds_alternative<HalfSpace>(shape))
@@ -65,7 +65,7 @@ bool comes_out_behind(const Shape &shape, const Ray &step, Way &way) {
         way.entered_by = inside->enter_normal;
     if (!way.entered_by || (inside && inside->t_exit >= Real(1)))
         return false;
-    // Where it came out is where it would go in on its way back.
+    // The reversed ray enters where this one leaves.
     const std::optional<RayInterval> back =
         ray_interval(shape, {step.origin + step.direction, -step.direction, Real(1)});
     const Vec3 left_by = back ? back->enter_normal : step.direction;
@@ -79,7 +79,7 @@ bool comes_out_behind(const Shape &shape, const Ray &step, Way &way) {
 struct PassageWatch::Parts {
     std::vector<Mover> movers;
     std::vector<Obstacle> obstacles;
-    std::vector<Way> ways; // mover by mover
+    std::vector<Way> ways; // grouped by mover
     std::string first;
     Frame frame; // of the last sample
 };

@@ -22,7 +22,7 @@ std::vector<std::string> known_methods() {
     return names;
 }
 
-// The scene and the options of a run at one point of the map, or of one of its axes alone.
+// The scene and run options at one point of the map, or of a single axis.
 class Point {
   public:
     Point(const SceneText &text, const MapAxis &x, const MapAxis *y, const RunOptions &base)
@@ -68,8 +68,7 @@ class Point {
     const RunOptions &base_;
 };
 
-// A number of the file takes whole numbers alone when the scene refuses what lies between two, and
-// nothing else.
+// A number in the file must be whole if the scene rejects a half-integer but accepts whole values.
 MapAxis settled(const SceneText &text, const MapAxis &given, const RunOptions &base) {
     MapAxis axis = with_whole_path(given, text.text);
     if (axis.setting)
@@ -88,8 +87,8 @@ MapAxis settled(const SceneText &text, const MapAxis &given, const RunOptions &b
     return axis;
 }
 
-// "stands, where body.box.repeat.count = 5": expectations that the scene has, and these of its
-// variants have not; the others judge those.
+// The scene's expectations that some variants along an axis lack, with the axis values; those
+// variants are judged by the rest.
 std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap &map,
                                        const RunOptions &base) {
     std::vector<std::string> unjudged;
@@ -125,13 +124,13 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
     return unjudged;
 }
 
-// Runs work items on all threads, and says how far they are.
+// Runs work items on all threads, and reports progress.
 class Runner {
   public:
     Runner(const SceneText &text, const StabilityMap &map, const MapOptions &options)
         : point_(text, map.x, &map.y, options.base), map_(map), options_(options) {}
 
-    // Nothing when it was interrupted.
+    // nullopt if interrupted.
     std::optional<MapRun> run(const MethodInfo &method, double x, double y) {
         const SceneDesc scene = point_.scene(x, y);
         const RunOptions run = point_.run(method, x, y);
@@ -156,10 +155,10 @@ class Runner {
                       judged.max_penetration, judged.max_joint_drift, judged.max_energy_gain};
     }
 
-    // As many runs as were planned need not be done.
+    // This many of the planned runs are not needed.
     void skip(int runs) { advance(static_cast<std::int64_t>(one_run) * runs); }
 
-    // An item is about so many runs.
+    // Each item takes about `runs` runs.
     template <typename Item, typename Work>
     void for_each(std::vector<Item> &items, int runs, double from, double to,
                   const std::string &what, const Work &work) {
@@ -242,7 +241,7 @@ std::vector<LimitItem> limits_to_find(StabilityMap &map, const KnownRows &known)
     return items;
 }
 
-// Halves the interval that has a held end and a failing one; false when interrupted.
+// Bisects the interval between a held and a failing end; false if interrupted.
 bool narrow_down(Runner &runner, const MapAxis &axis, LimitItem &item) {
     MapLimit &limit = item.limit;
     for (int i = 0; axis.whole ? limit.high - limit.low > 1 : i < limit_halvings; ++i) {
@@ -295,7 +294,7 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
 
     map.unjudged = find_unjudged(scene, map, options.base);
     Runner runner(scene, map, options);
-    std::vector<CellItem> cells; // that are not known
+    std::vector<CellItem> cells; // those not known
     for (MethodMap &of_method : map.methods) {
         of_method.cells.resize(map.x.values.size() * map.y.values.size());
         for (std::size_t row = 0; row < map.y.values.size(); ++row)
@@ -308,7 +307,7 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
                     cells.push_back({&of_method, column, row});
             }
     }
-    constexpr double grid_share = 0.7; // of the time, as a guess
+    constexpr double grid_share = 0.7; // of the time; a guess
     runner.for_each(cells, 1, 0, grid_share, "cells", [&](const CellItem &item) {
         item.map->cells[item.row * map.x.values.size() + item.column] =
             runner.run(*item.map->method, map.x.values[item.column], map.y.values[item.row]);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int curve_points = 400;
 
-// Of an undamped oscillator, by explicit methods; explicit Euler is stable at no step.
+// Explicit methods on an undamped oscillator; explicit Euler is stable at no step.
 struct SpringLimit {
     double omega_h;
     std::string_view text;
@@ -25,13 +25,13 @@ constexpr std::array spring_limits{
     SpringLimit{2 * std::numbers::sqrt2, "2√2", {"rk4"}},
 };
 
-// Naive impulses have contacts of what overlaps alone; all others know what comes nearer.
+// Naive impulses only make contacts for overlapping bodies; the others also for approaching ones.
 bool waits_for_overlap(const MethodInfo &method) {
     return method.name == "naive_impulses";
 }
 
 struct FlownAxis {
-    std::string body; // the name in the file, which its copies begin with
+    std::string body; // name in the file, and prefix of its copies' names
     int axis = 0;
 };
 
@@ -72,7 +72,7 @@ bool stands_across(const BoundsDesc &wall, const BoundsDesc &body, int axis) {
     return true;
 }
 
-// Along the axis, in the direction of flight: positive is ahead.
+// Extent along the axis, positive in the direction of flight.
 struct Span {
     double near = 0, far = 0;
     Span(const BoundsDesc &bounds, int axis, bool forwards)
@@ -80,7 +80,7 @@ struct Span {
           far(forwards ? bounds.max[axis] : -bounds.min[axis]) {}
 };
 
-// The only one of these bodies; null when there are none or several.
+// The only such body; null if there are none or several.
 template <typename Is> const BodyDesc *only_body(const SceneDesc &scene, const Is &is) {
     const BodyDesc *found = nullptr;
     for (const BodyDesc &body : scene.bodies)
@@ -206,13 +206,13 @@ std::optional<Oscillator> lone_oscillator(const SceneDesc &scene, const std::str
 
 namespace {
 
-// Velocity Verlet in its first substep, with u = omega h and s = rate h / 2: the kick's half goes
-// to p = 1 - s of the velocity, and the half that ends the substep, taken at what one correction
-// makes of that, to q p with q = 1 - s + s^2. In (x, h v) the substep is
+// Velocity Verlet in its first substep, with u = omega h and s = rate h / 2: the first half kick's
+// damping scales the velocity by p = 1 - s, and the second's, evaluated after one correction, by
+// q = 1 - s + s^2. In (x, h v) the substep is
 //   [ 1 - u^2/2                             p                ]
 //   [ -q u^2/2 - p (1 - u^2/2) u^2/2    q p - p^2 u^2/2 ]
-// of determinant p q and trace 1 - u^2/2 + p q - p^2 u^2/2. Of Jury's conditions the one on
-// -trace fails first: u^2 (1 + p^2) = 4 (1 + p q), whose sides meet once.
+// with determinant p q and trace 1 - u^2/2 + p q - p^2 u^2/2. Of Jury's conditions the one on
+// -trace fails first: u^2 (1 + p^2) = 4 (1 + p q), which has one root.
 double longest_verlet_step(double omega, double rate) {
     const auto is_stable = [&](double h) {
         const double u = omega * h, s = 0.5 * rate * h;
@@ -259,10 +259,10 @@ struct DtAxis {
     [[nodiscard]] glm::dvec2 point(double dt_value, double value) const {
         return along_x ? glm::dvec2(dt_value, value) : glm::dvec2(value, dt_value);
     }
-    // A value of the other axis for each dt.
+    // The other axis's value for each dt.
     template <typename Of> [[nodiscard]] std::vector<glm::dvec2> curve(const Of &value) const {
         std::vector<glm::dvec2> points;
-        // Beyond both ends, for the halves of the outer cells.
+        // Past both ends, to cover the outer halves of the outermost cells.
         const double low = 0.5 * dt.values.front(), high = 2 * dt.values.back();
         for (int i = 0; i <= curve_points; ++i) {
             const double at = low * std::pow(high / low, static_cast<double>(i) / curve_points);
@@ -272,7 +272,7 @@ struct DtAxis {
     }
 };
 
-// "coil", of an axis "spring.coil.TAIL".
+// "coil" for an axis "spring.coil.TAIL".
 std::optional<std::string> spring_of(const MapAxis &axis, std::string_view tail) {
     const std::string_view name = axis.name, head = "spring.";
     if (!name.starts_with(head) || !name.ends_with(tail) ||
@@ -313,14 +313,14 @@ void add_damped_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map
         return;
     for (const MethodMap &of_method : map.methods) {
         const int substeps = substeps_of(map, *of_method.method, base);
-        // Its later substeps begin with the acceleration that ended the one before.
+        // Its later substeps start with the acceleration from the end of the previous one.
         if (of_method.method->name == "velocity_verlet" && substeps > 1)
             continue;
         TheoryCurve curve;
         const double low = axes.other.values.front(), high = axes.other.values.back();
         for (int i = 0; i <= curve_points; ++i) {
             const double share = static_cast<double>(i) / curve_points;
-            // Beyond both ends, for the halves of the outer cells.
+            // Past both ends, to cover the outer halves of the outermost cells.
             const double damping =
                 low > 0 ? 0.5 * low * std::pow(4 * high / low, share) : 1.5 * high * share;
             if (const std::optional<double> h = longest_damped_step(
@@ -344,7 +344,7 @@ void add_damped_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map
     }
 }
 
-// "box", of an axis "body.box.repeat.count".
+// For an axis "body.box.repeat.count".
 void add_column(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes,
                 const RunOptions &base) {
     constexpr std::string_view head = "body.", tail = ".repeat.count";
@@ -396,7 +396,7 @@ void add_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
     for (const MethodMap &of_method : map.methods)
         if (of_method.method->name == "explicit_euler")
             curves.push_back({"theory: stable at no dt (explicit_euler)", {of_method.method}, {}});
-    // Those of one limit and as many substeps share a curve.
+    // Methods with the same limit and number of substeps share a curve.
     for (const SpringLimit &limit : spring_limits) {
         std::map<int, std::vector<const MethodInfo *>> by_substeps;
         for (const MethodMap &of_method : map.methods) {

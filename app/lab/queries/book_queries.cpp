@@ -13,7 +13,7 @@ namespace plumb::book {
 
 namespace {
 
-// One epsilon for all: relative above 1, absolute below.
+// One epsilon for everything: relative above 1, absolute below.
 bool nearly(float x, float y) {
     return std::abs(x - y) <=
            std::numeric_limits<float>::epsilon() * std::max({1.0f, std::abs(x), std::abs(y)});
@@ -25,11 +25,11 @@ float squared(const Vec3 &v) {
 
 Vec3 closest_on_segment(const Vec3 &a, const Vec3 &b, const Vec3 &point) {
     const Vec3 along = b - a;
-    const float t = glm::dot(point - a, along) / squared(along); // 0 / 0 for a segment of no length
+    const float t = glm::dot(point - a, along) / squared(along); // 0 / 0 for a zero-length segment
     return a + along * std::fmin(std::fmax(t, 0.0f), 1.0f);
 }
 
-// Where a ray meets the slabs of a box: t, or a negative number for a miss.
+// Where a ray hits the slabs of a box.
 struct SlabHit {
     bool hit = false;
     float t = 0;
@@ -44,14 +44,14 @@ SlabHit first_of(const std::array<float, 3> &one, const std::array<float, 3> &ot
     }
     if (exit < 0 || enter > exit)
         return {};
-    return {true, enter < 0 ? exit : enter}; // from inside: the way out
+    return {true, enter < 0 ? exit : enter}; // from inside: the exit
 }
 
 SlabHit slabs(const Aabb &box, const Vec3 &origin, const Vec3 &direction) {
     std::array<float, 3> one{};
     std::array<float, 3> other{};
     for (int i = 0; i < 3; ++i) {
-        // A component of zero becomes a hundred-thousandth: another ray.
+        // A zero component becomes 0.00001: a different ray.
         const float d = nearly(direction[i], 0) ? 0.00001f : direction[i];
         one[static_cast<std::size_t>(i)] = (box.min[i] - origin[i]) / d;
         other[static_cast<std::size_t>(i)] = (box.max[i] - origin[i]) / d;
@@ -79,7 +79,7 @@ SlabHit slabs(const Box &box, const Vec3 &origin, const Vec3 &direction) {
     return first_of(one, other);
 }
 
-// A segment is a ray whose hit is near enough; from inside, the hit is the way out.
+// A segment is a ray whose hit is near enough; from inside, the hit is the exit.
 bool is_within(const SlabHit &hit, const Vec3 &a, const Vec3 &b) {
     return hit.hit && hit.t >= 0 && hit.t * hit.t <= squared(b - a);
 }
@@ -93,7 +93,8 @@ Vec3 projected(const Vec3 &v, const Vec3 &on) {
     return on * (glm::dot(v, on) / glm::dot(on, on));
 }
 
-// The plane's hit, then barycentric coordinates between 0 and 1. One-sided: from behind it misses.
+// Hits the plane, then checks that barycentric coordinates are in 0..1. One-sided: rays from behind
+// miss.
 TriangleHit through(const Triangle &triangle, const Vec3 &origin, const Vec3 &direction) {
     const Vec3 normal =
         glm::normalize(glm::cross(triangle.b - triangle.a, triangle.c - triangle.a));
@@ -105,8 +106,8 @@ TriangleHit through(const Triangle &triangle, const Vec3 &origin, const Vec3 &di
     if (!(t >= 0))
         return {};
     const Vec3 point = origin + direction * t;
-    // The weight of a corner: how far the point is from the opposite edge, measured along what is
-    // left of an edge after its projection on that one.
+    // A corner's weight: the point's distance from the opposite edge, measured along the component
+    // of an adjacent edge perpendicular to it.
     const auto weight = [&](const Vec3 &corner, const Vec3 &next, const Vec3 &opposite) {
         const Vec3 edge = next - corner;
         const Vec3 v = edge - projected(edge, opposite);
@@ -159,8 +160,8 @@ Corners corners(const Aabb &box) {
     return result;
 }
 
-// Three axes of A, three of B, and nine cross products that are all of A's axes with A's own: zero
-// vectors, and A's axes again. No pair of edges is ever tried.
+// Three axes of A, three of B, and nine cross products, all of A's axes with each other: zero
+// vectors and A's axes again. No edge-edge axis is ever tested.
 bool overlap_on_book_axes(const Corners &a, const Mat3 &axes_a, const Corners &b,
                           const Mat3 &axes_b) {
     std::array<Vec3, 15> axes{axes_a[0], axes_a[1], axes_a[2], axes_b[0], axes_b[1], axes_b[2]};
@@ -171,7 +172,8 @@ bool overlap_on_book_axes(const Corners &a, const Mat3 &axes_a, const Corners &b
                        [&](const Vec3 &axis) { return overlap_along(a, b, axis); });
 }
 
-// The axis across two edges; for parallel ones another at right angles to the first.
+// The axis perpendicular to both edges; if they are parallel, another one perpendicular to the
+// first.
 Vec3 axis_across(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
     const Vec3 across = glm::cross(b - a, d - c);
     if (!nearly(squared(across), 0))
@@ -182,18 +184,18 @@ Vec3 axis_across(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d) {
 
 } // namespace
 
-// The set is open: a point on the surface is outside.
+// Open set: a point on the surface is outside.
 bool contains(const Sphere &sphere, const Vec3 &point) {
     return squared(point - sphere.center) < sphere.radius * sphere.radius;
 }
 
-// One epsilon for a squared distance: 0.3 mm at any size.
+// Absolute epsilon on the squared distance: 0.3 mm at any size.
 bool contains(const Segment &segment, const Vec3 &point) {
     return nearly(squared(closest_on_segment(segment.a, segment.b, point) - point), 0);
 }
 
-// Points above and below the triangle are called inside when they are near enough: only the signs
-// of two products of normals are asked.
+// Points above or below the triangle count as inside when near enough: only the signs of two dot
+// products of normals are checked.
 bool contains(const Triangle &triangle, const Vec3 &point) {
     const Vec3 a = triangle.a - point;
     const Vec3 b = triangle.b - point;
@@ -222,7 +224,7 @@ bool raycast(const Triangle &triangle, const Ray &ray) {
     return through(triangle, ray.origin, glm::normalize(ray.direction)).hit;
 }
 
-// A segment of no length has no direction: NaN.
+// A zero-length segment has no direction: NaN.
 bool linetest(const Aabb &box, const Vec3 &a, const Vec3 &b) {
     return is_within(slabs(box, a, glm::normalize(b - a)), a, b);
 }
@@ -263,7 +265,7 @@ bool overlaps_as_published(const Box &a, const Box &b) {
     return overlap_on_book_axes(both, axes_a, both, glm::mat3_cast(b.rotation));
 }
 
-// A flat triangle has zero axes, along which everything overlaps.
+// A degenerate triangle gives zero axes, along which everything overlaps.
 bool overlaps(const Triangle &a, const Aabb &b) {
     const std::array<Vec3, 3> points{a.a, a.b, a.c};
     const std::array<Vec3, 3> edges{a.b - a.a, a.c - a.b, a.a - a.c};
@@ -282,8 +284,8 @@ bool overlaps(const Triangle &a, const Aabb &b) {
     return true;
 }
 
-// The version that the book calls robust. Of coplanar triangles some pairs are never parted: the
-// edges' normals within the common plane are tried only where two edges are parallel.
+// The version the book calls robust. Some coplanar pairs are never separated: edge normals in the
+// common plane are tested only if two edges are parallel.
 bool overlaps(const Triangle &a, const Triangle &b) {
     const std::array<Vec3, 3> points_a{a.a, a.b, a.c};
     const std::array<Vec3, 3> points_b{b.a, b.b, b.c};

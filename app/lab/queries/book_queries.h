@@ -1,8 +1,8 @@
-// The queries of the Game Physics Cookbook as it states them: baselines whose failures are known.
+// The Game Physics Cookbook's queries as published: baselines with known failures.
 //
 // After G. Szauer, "Game Physics Cookbook" (Packt 2017), chapters 7 to 11 and the code published
-// with it; the formulas and the order of the operations are its own, the words are ours. Each
-// comment names what goes wrong. Nothing but charts and tests may use them.
+// with it; formulas and order of operations are the book's, the wording is ours. Each comment names
+// what goes wrong. For charts and tests only.
 #pragma once
 
 #include "engine/geometry/shapes.h"
@@ -13,7 +13,7 @@ bool contains(const Sphere &sphere, const Vec3 &point);
 bool contains(const Segment &segment, const Vec3 &point);
 bool contains(const Triangle &triangle, const Vec3 &point);
 
-// The direction is made a unit vector first, as the book's rays have one; max_t is not known there.
+// The direction is normalized first, since the book's rays have unit directions; it has no max_t.
 bool raycast(const Sphere &sphere, const Ray &ray);
 bool raycast(const Aabb &box, const Ray &ray);
 bool raycast(const Box &box, const Ray &ray);
@@ -29,8 +29,8 @@ bool overlaps(const Box &a, const Box &b);
 bool overlaps(const Triangle &a, const Aabb &b);
 bool overlaps(const Triangle &a, const Triangle &b);
 
-// The published test of two oriented boxes reads the first box where it means the second, so it
-// projects one box on both sides of the comparison.
+// The published OBB-OBB test reads the first box where it means the second, so it compares one
+// box's projection with itself.
 bool overlaps_as_published(const Box &a, const Box &b);
 
 } // namespace plumb::book

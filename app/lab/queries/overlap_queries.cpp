@@ -126,11 +126,11 @@ QueryCase triangle_triangle(Random &random, std::size_t adversarial) {
                 for (std::size_t i = 0; i < 3; ++i)
                     a[i].y = b[i].y = at.offset.y;
                 break;
-            case 1: // a common edge
+            case 1: // shared edge
                 b[0] = a[0];
                 b[1] = a[1];
                 break;
-            case 2: // a common corner
+            case 2: // shared corner
                 b[0] = a[0];
                 break;
             default:

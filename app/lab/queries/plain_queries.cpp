@@ -19,7 +19,7 @@ float squared(const Vec3 &v) {
 }
 
 bool slabs(const Aabb &box, const Vec3 &origin, const Vec3 &direction, float max_t) {
-    const Vec3 inverse = 1.0f / direction; // infinite for a zero, and 0 * infinity is NaN
+    const Vec3 inverse = 1.0f / direction; // infinite for a zero component; 0 * infinity is NaN
     const Vec3 one = (box.min - origin) * inverse;
     const Vec3 other = (box.max - origin) * inverse;
     const Vec3 low = glm::min(one, other);

@@ -36,7 +36,7 @@ QueryCase point_on_segment(Random &random, std::size_t adversarial) {
         random, adversarial,
         [&](const Lattice &at, Judged<Input> &one) {
             const oracle::Line line = any_segment(random, at);
-            // Half of them on the line, so that there is something to find.
+            // Half of the points are on the line, so that some are hits.
             oracle::Point p = any_point(random, at);
             if (random.next_index(2) == 0) {
                 const oracle::Int step = whole(random, 2);
@@ -63,7 +63,7 @@ QueryCase point_in_triangle(Random &random, std::size_t adversarial) {
         [&](const Lattice &at, Judged<Input> &one) {
             oracle::Corners corners = any_corners(random, at);
             oracle::Point p = any_point(random, at);
-            if (random.next_index(2) == 0) { // in one plane
+            if (random.next_index(2) == 0) { // coplanar
                 for (oracle::Point &corner : corners)
                     corner.y = at.offset.y;
                 p.y = at.offset.y;

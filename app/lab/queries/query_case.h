@@ -1,4 +1,4 @@
-// One charted query: its inputs, and how each method is asked and judged on them.
+// One charted query: its inputs, and how each method is run and judged on them.
 #pragma once
 
 #include "app/lab/queries/query_inputs.h"
@@ -18,7 +18,7 @@ template <typename A, typename B> struct Pair {
     B b;
 };
 
-// An input and its truth.
+// An input and its true answer.
 template <typename Input> struct Judged {
     Input input;
     bool truth = false;
@@ -69,7 +69,7 @@ QueryCase query(std::string name, Inputs<Input> &&inputs) {
 
 constexpr std::size_t timed_batch = 1024;
 
-// Inputs of a lattice, judged by whole numbers, and random ones to be timed.
+// Lattice inputs, judged in integers, and random ones for timing.
 template <typename Input, typename MakeCase, typename MakeTimed>
 Inputs<Input> gather(Random &random, std::size_t adversarial, const MakeCase &make_case,
                      const MakeTimed &make_timed) {
@@ -87,7 +87,7 @@ Inputs<Input> gather(Random &random, std::size_t adversarial, const MakeCase &ma
     return inputs;
 }
 
-// Adds what is judged with a margin.
+// Adds a family judged with a margin: inputs too close to call are redrawn.
 template <typename Input, typename Make>
 void add_family(Inputs<Input> &inputs, const char *name, std::size_t count, const Make &make) {
     inputs.families.emplace_back(name);

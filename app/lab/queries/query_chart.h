@@ -1,4 +1,4 @@
-// What each way to ask a geometric query costs, against how often it is wrong.
+// Cost of each implementation of a geometric query against how often it is wrong.
 #pragma once
 
 #include "app/lab/chart/panel_chart.h"
@@ -15,11 +15,11 @@
 namespace plumb {
 
 struct QueryChartOptions {
-    std::size_t adversarial = 200'000; // inputs of each query
+    std::size_t adversarial = 200'000; // inputs per query
     std::uint64_t seed = 1;
-    int repeats = 5;            // timings of each method, interleaved; their median counts
-    double timed = 0.02;        // s, at least, in each
-    std::function<bool()> stop; // asked often; true ends early with what there is
+    int repeats = 5;            // interleaved timings per method; the median counts
+    double timed = 0.02;        // minimum s per timing
+    std::function<bool()> stop; // polled often; true ends early with the results so far
     Progress progress;
 };
 
@@ -37,17 +37,17 @@ struct QueryRun {
 };
 
 struct QueryChart {
-    std::vector<QueryRun> runs; // query by query, in the order of QueryMethod
+    std::vector<QueryRun> runs; // grouped by query, in the order of QueryMethod
     QueryChartOptions options;
     bool interrupted = false;
 };
 
-// First judges each method, then times all, round after round, by Google Benchmark.
+// Judges each method, then times all of them in rounds, with Google Benchmark.
 [[nodiscard]] QueryChart chart_queries(const QueryChartOptions &options);
 
-// One row a query, method and family of inputs.
+// One row per query, method and input family.
 void write_query_csv(std::ostream &out, const QueryChart &chart);
-void print(std::ostream &out, const QueryChart &chart); // a table for people
+void print(std::ostream &out, const QueryChart &chart); // a human-readable table
 [[nodiscard]] PanelChart panel_chart(const QueryChart &chart, const std::string &command);
 
 struct QueryChartCommand {
@@ -58,7 +58,7 @@ struct QueryChartCommand {
 };
 
 // Writes out_dir/geometry.csv, geometry.svg and geometry.png, the table to `out` and everything
-// else to `err`. On Ctrl-C nothing that was complete is replaced; the rows so far stay in
+// else to `err`. On Ctrl-C no complete file is replaced; the rows so far stay in
 // geometry.csv.partial.
 [[nodiscard]] ExitCode chart_geometry(const QueryChartCommand &command, std::ostream &out,
                                       std::ostream &err);

@@ -9,7 +9,7 @@ namespace plumb {
 
 const std::vector<std::string> &lattice_families() {
     static const std::vector<std::string> families{
-        "on faces, edges and corners", // small numbers: coincidences everywhere
+        "on faces, edges and corners", // small numbers, so coincidences are common
         "anywhere", "far from the origin",
         "tiny and huge", // 2^-10 to 2^16 m
     };

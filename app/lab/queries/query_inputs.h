@@ -1,5 +1,5 @@
-// The inputs of charted queries, drawn at random: whole-numbered ones, whose truth is known
-// exactly, and ones like a program's, to be timed.
+// Random inputs for charted queries: integer ones with exactly known answers, and realistic ones
+// for timing.
 #pragma once
 
 #include "app/lab/queries/query_oracle.h"
@@ -12,7 +12,7 @@
 
 namespace plumb {
 
-// Where a case lies and how large it is. All its coordinates are whole numbers times `unit`.
+// A case's position and size. All its coordinates are integers times `unit`.
 struct Lattice {
     oracle::Int spread = 4; // coordinates about the offset
     oracle::Point offset;
@@ -27,7 +27,7 @@ struct Lattice {
 const std::vector<std::string> &lattice_families();
 Lattice any_lattice(Random &random, std::uint8_t &family);
 
-// A whole number from -reach to reach.
+// An integer from -reach to reach.
 oracle::Int whole(Random &random, oracle::Int reach);
 
 oracle::Point any_point(Random &random, const Lattice &lattice);
@@ -36,17 +36,17 @@ oracle::Ball any_ball(Random &random, const Lattice &lattice);
 oracle::Corners any_corners(Random &random, const Lattice &lattice); // one in eight is flat
 oracle::Line any_segment(Random &random, const Lattice &lattice);    // one in eight has no length
 
-// A vector with many zeros, and not zero itself.
+// A nonzero vector, often with zero components.
 oracle::Point any_direction(Random &random, oracle::Int spread);
 
-// A point on a face, an edge or a corner of a box, or within it; the end of an axis of a ball, or
-// its middle.
+// For a box, a point on a face, edge or corner, or inside; for a ball, an end of an axis or the
+// centre.
 oracle::Point any_place(Random &random, const oracle::Block &block);
 oracle::Point any_place(Random &random, const oracle::Ball &ball);
-// A corner, or the middle of an edge: triangles have even corners, so that it is whole.
+// A corner or the midpoint of an edge, an integer point because triangle corners are even.
 oracle::Point any_place(Random &random, const oracle::Corners &triangle);
 
-// Half of them through a place on the shape.
+// Half of the rays go through a point from any_place().
 template <typename Solid>
 oracle::Line any_ray(Random &random, const Lattice &lattice, const Solid &solid) {
     oracle::Line line{any_point(random, lattice), any_direction(random, lattice.spread)};
@@ -59,7 +59,7 @@ oracle::Line any_ray(Random &random, const Lattice &lattice, const Solid &solid)
     return line;
 }
 
-// Of half of them one end is on the shape, of a quarter both.
+// Half start at a point from any_place(); half of these also end at one.
 template <typename Solid>
 oracle::Line any_segment(Random &random, const Lattice &lattice, const Solid &solid) {
     const oracle::Line line = any_segment(random, lattice);
@@ -71,23 +71,23 @@ oracle::Line any_segment(Random &random, const Lattice &lattice, const Solid &so
     return {start, any_place(random, solid) - start, true};
 }
 
-// The same in floats, exactly.
+// Exact conversions to floats.
 Segment real_segment(const oracle::Line &line, const Lattice &lattice);
 Aabb real_aabb(const oracle::Block &block, const Lattice &lattice);
 Sphere real_sphere(const oracle::Ball &ball, const Lattice &lattice);
 Triangle real_triangle(const oracle::Corners &corners, const Lattice &lattice);
-// An oriented box that is not turned. Halves of whole numbers are as exact.
+// An oriented box without rotation. Halves of integers are exact too.
 Box real_box(const oracle::Block &block, const Lattice &lattice);
-// Zeros of either sign, and lengths from 2^-20 to 2^20.
+// Zero components of either sign; direction scaled by 2^-20 to 2^20.
 Ray real_ray(Random &random, const oracle::Line &line, const Lattice &lattice);
 
-// Anywhere, within a reach of the origin.
+// Components from -reach to reach.
 Vec3 any_vector(Random &random, double reach);
 Vec3 any_half(Random &random); // half extents from 0.1 to 1.1
 Quat any_rotation(Random &random);
 Box any_box(Random &random, double reach);
 
-// To be timed. Rays hit about half of the time: towards a shape of a size of about one.
+// For timing. Rays hit about half of the time: they aim at a shape about 1 in size.
 Ray timed_ray(Random &random);
 Triangle timed_triangle(Random &random, double reach);
 Aabb timed_aabb(Random &random, double reach);

@@ -1,4 +1,4 @@
-// The charted queries. Each draws its inputs from `random`, `adversarial` of them to be judged.
+// The charted queries. Each draws its inputs from `random`, and `adversarial` inputs to judge.
 #pragma once
 
 #include "app/lab/queries/query_set.h"

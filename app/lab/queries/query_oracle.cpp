@@ -13,7 +13,7 @@ Wide dot(const Point &a, const Point &b) {
     return Wide(a.x) * b.x + Wide(a.y) * b.y + Wide(a.z) * b.z;
 }
 
-// The sign of the volume spanned by three vectors.
+// Sign of the volume spanned by three vectors.
 int turn(const Point &a, const Point &b, const Point &c) {
     const Wide volume = a.x * (Wide(b.y) * c.z - Wide(b.z) * c.y) +
                         a.y * (Wide(b.z) * c.x - Wide(b.x) * c.z) +
@@ -38,8 +38,8 @@ Fraction fraction(Wide top, Wide bottom) {
     return bottom > 0 ? Fraction{top, bottom} : Fraction{-top, -bottom};
 }
 
-// Whether two lines of one plane meet: what is left after dropping the axis along which the plane's
-// normal is largest is as good as the plane.
+// Projects a plane to 2D by dropping the axis along which its normal is largest. Coplanar lines
+// meet if their projections do.
 struct Flat {
     int u = 0, v = 1;
 
@@ -62,7 +62,7 @@ bool between(Int a, Int low, Int high) {
     return std::min(low, high) <= a && a <= std::max(low, high);
 }
 
-// A line and a segment that lie in one plane.
+// A coplanar line and segment.
 bool meet_in_plane(const Line &line, const Point &a, const Point &b, const Flat &flat) {
     const Point edge = b - a;
     const Point to_a = a - line.origin;
@@ -73,7 +73,7 @@ bool meet_in_plane(const Line &line, const Point &a, const Point &b, const Flat 
         return t.top >= 0 && (!line.is_segment || t.top <= t.bottom) && s.top >= 0 &&
                s.top <= s.bottom;
     }
-    // Parallel, or one of them a point: they meet where an end of one lies on the other.
+    // Parallel, or one of them is a point: they meet if an end of one lies on the other.
     const auto on_line = [&](const Point &p) {
         const Point d = p - line.origin;
         const Point c = cross(d, line.along);
@@ -113,7 +113,7 @@ bool meets(const Line &line, const Ball &ball) {
         return true;
     if (line.is_segment && contains(ball, line.origin + line.along))
         return true;
-    // The foot of the centre on the line lies at t = b / a.
+    // The line's closest point to the centre is at t = b / a.
     const Wide a = dot(line.along, line.along);
     const Wide b = -dot(m, line.along);
     if (b < 0 || a == 0 || (line.is_segment && b > a))
@@ -149,7 +149,7 @@ bool meets(const Line &line, const Block &block) {
 bool meets(const Line &line, const Corners &triangle) {
     const auto &[a, b, c] = triangle;
     const Point normal = cross(b - a, c - a);
-    if (normal == Point{}) { // flat: it is its longest edge, and so the three of them
+    if (normal == Point{}) { // degenerate: the same set as its three edges
         for (std::size_t i = 0; i < 3; ++i) {
             const Point p = triangle[i];
             const Point q = triangle[(i + 1) % 3];
@@ -205,7 +205,7 @@ bool meets(const Block &a, const Block &b) {
     return true;
 }
 
-// Where a triangle and a box meet, an edge of one meets the other.
+// A triangle and a box meet if an edge of one meets the other.
 bool meets(const Corners &triangle, const Block &block) {
     for (std::size_t i = 0; i < 3; ++i)
         if (meets(Line{triangle[i], triangle[(i + 1) % 3] - triangle[i], true}, block))

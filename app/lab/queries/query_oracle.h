@@ -1,7 +1,7 @@
-// The truth about small cases, in whole numbers.
+// Exact answers for small cases, in integer arithmetic.
 //
-// Coordinates are integers of at most 2^14 in magnitude, so that every product below fits into 128
-// bits and no answer is rounded. Nothing here shares a formula with the engine.
+// Coordinates are integers of at most 2^14 in magnitude, so every product below fits in 128 bits
+// and nothing is rounded. Nothing here shares a formula with the engine.
 #pragma once
 
 #include <array>
@@ -33,10 +33,11 @@ struct Block { // an axis-aligned box
 };
 using Corners = std::array<Point, 3>;
 
-// Closed sets, all of them. A "line" starts at `origin`; `is_segment` cuts it at origin + along.
+// All shapes are closed sets. A "line" is a ray from `origin`; `is_segment` ends it at origin +
+// along.
 struct Line {
     Point origin;
-    Point along; // zero only for a segment: a point
+    Point along; // zero only for a degenerate segment: a point
     bool is_segment = false;
 };
 

@@ -1,4 +1,4 @@
-// The geometric queries that are charted: what is asked, by which methods, and the truth.
+// The charted geometric queries: inputs, methods and true answers.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class QueryMethod {
 
 [[nodiscard]] std::string_view query_method_name(QueryMethod method); // "book", "plain", "plumb"
 
-// How often a method was wrong on one family of inputs whose truth is known.
+// How often a method was wrong on one family of inputs with known answers.
 struct FamilyScore {
     std::string family;
     std::uint64_t asked = 0;
@@ -26,22 +26,22 @@ struct FamilyScore {
 
 struct MethodOfQuery {
     QueryMethod method = QueryMethod::ours;
-    // Asks each of the timed inputs once; returns how many answers were yes.
+    // Runs the query once on each timed input; returns the number of yes answers.
     std::function<std::uint64_t()> ask_all;
-    // Asks all adversarial inputs.
+    // Runs the query on all adversarial inputs.
     std::function<std::vector<FamilyScore>()> judge;
 };
 
 struct QueryCase {
     std::string name;        // "ray, box"
-    std::uint64_t batch = 0; // how many timed inputs there are: random ones, hot in the cache
+    std::uint64_t batch = 0; // number of timed inputs: random, hot in the cache
     std::vector<MethodOfQuery> methods;
 };
 
-// `adversarial` inputs for each query, drawn from `seed`. Most have whole numbers times a power of
-// two for coordinates, so that floats hold them exactly, and their truth is found in whole numbers
-// (query_oracle.h): touching counts as yes. Boxes turned at will are judged in long double, and
-// only those whose answer does not change when they grow or shrink by 1e-4 of their size.
+// `adversarial` inputs for each query, drawn from `seed`. Most have coordinates that are integers
+// times a power of two, exact in floats, and are judged in integers (query_oracle.h): touching
+// counts as yes. Arbitrarily rotated boxes are judged in long double, keeping only those whose
+// answer does not change when they grow or shrink by 1e-4 of their size.
 [[nodiscard]] std::vector<QueryCase> query_cases(std::uint64_t seed, std::size_t adversarial);
 
 } // namespace plumb

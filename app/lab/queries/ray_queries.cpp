@@ -80,7 +80,7 @@ QueryCase ray_triangle(Random &random, std::size_t adversarial) {
         [&](const Lattice &at, Judged<Input> &one) {
             oracle::Corners corners = any_corners(random, at);
             const oracle::Line line = any_ray(random, at, corners);
-            // The book's triangles have one side: it is asked from that side.
+            // The book's triangles are one-sided: query from that side.
             const auto facing = [&] {
                 const oracle::Point u = corners[1] - corners[0];
                 const oracle::Point v = corners[2] - corners[0];

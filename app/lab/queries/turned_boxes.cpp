@@ -91,11 +91,11 @@ Quat nearby(Random &random, const Quat &q) {
 
 Pair<Box, Box> edge_on_edge(Random &random) {
     const float quarter = 0.38268343f, rest = 0.92387953f; // sin and cos of 22.5 degrees
-    const Box a{Vec3{0}, Quat{rest, quarter, 0, 0}, Vec3{1, 0.5f, 0.5f}}; // an edge along x on top
+    const Box a{Vec3{0}, Quat{rest, quarter, 0, 0}, Vec3{1, 0.5f, 0.5f}}; // top edge along x
     const float gap = static_cast<float>(random.next_in(-0.2, 0.2));
     const float height = 0.5f * std::sqrt(2.0f);
     const Box b{Vec3{static_cast<float>(random.next_in(-0.3, 0.3)), 2 * height + gap, 0},
-                Quat{rest, 0, 0, quarter}, Vec3{0.5f, 0.5f, 1}}; // and along z below
+                Quat{rest, 0, 0, quarter}, Vec3{0.5f, 0.5f, 1}}; // bottom edge along z
     const Quat turn = any_rotation(random);
     const auto turned = [&](const Box &box) {
         return Box{turn * box.center, turn * box.rotation, box.half_extents};

@@ -15,7 +15,7 @@ namespace plumb {
 
 namespace {
 
-// How many runs came to what, and the words for it.
+// Counts the runs by outcome, and prints the totals.
 class Tally {
   public:
     void add(const CheckOutcome &outcome) {
@@ -57,7 +57,7 @@ class Tally {
     std::size_t within_ = 0, missed_ = 0, nothing_ = 0, skipped_ = 0;
 };
 
-// Whether it is run: not where the method cannot, nor where the options are refused.
+// False if the method cannot run the scene, or the options are refused.
 bool can_run(const SceneDesc &scene, const RunOptions &options) {
     try {
         return why_not(*resolve_run(scene, options).method, scene).empty();
@@ -158,7 +158,7 @@ ExitCode check_scenes(const CheckCommand &command, std::ostream &out, std::ostre
     const InterruptGuard interrupt;
     ProgressLine line(err);
     Tally tally;
-    // Of a scene without a world no method makes a difference.
+    // A scene without a world is the same for every method.
     const auto is_repeated = [&](const SceneDesc &scene, const RunOptions &options) {
         return !has_world(scene) && &options != &runs.front();
     };

@@ -18,7 +18,7 @@ double scaled(double error, double limit, double value) {
         ratio = 1 + error / (value != 0 ? std::abs(value) : 1);
     if (std::isinf(error))
         return error;
-    // Rounding and overflow change neither the verdict nor that there is a number.
+    // Round-off must not flip the verdict, nor overflow turn a number into infinity.
     if (error > limit)
         ratio = std::max(ratio, std::nextafter(1.0, 2.0));
     return std::min(ratio, std::numeric_limits<double>::max());

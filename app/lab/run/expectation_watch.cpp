@@ -11,7 +11,7 @@ namespace plumb {
 
 namespace {
 
-// The quantities of some expectations, each once.
+// The expectations' quantities, without duplicates.
 std::vector<QuantityName> quantities_of(const std::vector<ExpectDesc> &expects) {
     std::vector<QuantityName> names;
     for (const ExpectDesc &expect : expects) {
@@ -32,7 +32,7 @@ struct Samples {
     std::vector<double> times, values;
 };
 
-// The part of a course in [from, to], with the edges interpolated where no sample lies on them.
+// The part of a course in [from, to], interpolated at an edge that has no sample.
 Samples window(std::span<const double> times, std::span<const double> values, double from,
                double to, double slack) {
     Samples part;
@@ -55,7 +55,7 @@ Samples window(std::span<const double> times, std::span<const double> values, do
     return part;
 }
 
-// How far a course is from the curve that is expected, at the samples of its window.
+// Distance of a course from the expected curve, at each sample in its window.
 Samples distances(std::span<const double> times, std::span<const double> values,
                   const ExpectDesc &expect, double slack) {
     Samples part;
@@ -68,7 +68,7 @@ Samples distances(std::span<const double> times, std::span<const double> values,
     return part;
 }
 
-// Whether an outcome that is missed so far stays so, whatever comes.
+// Whether an outcome missed so far will stay missed, whatever happens next.
 bool beyond_hope(const ExpectOutcome &so_far, const ReductionInfo &reduction) {
     const ExpectDesc &desc = so_far.desc;
     const bool moving_level = reduction.uses_level && !desc.level;
@@ -95,7 +95,7 @@ ExpectationWatch::ExpectationWatch(const Simulation &simulation, std::vector<Exp
         if (reduction == nullptr)
             throw std::invalid_argument("there is no reduction \"" + expect.reduce + '"');
         end_ = std::max(end_, expect.to);
-        const QuantityInfo *quantity = find_quantity(expect.quantity); // the probe has found it
+        const QuantityInfo *quantity = find_quantity(expect.quantity); // the probe found it, too
         expects_.push_back({std::move(expect), quantity, reduction,
                             static_cast<std::size_t>(course - names.begin())});
     }
@@ -103,7 +103,7 @@ ExpectationWatch::ExpectationWatch(const Simulation &simulation, std::vector<Exp
 }
 
 void ExpectationWatch::sample(const Simulation &simulation) {
-    // A millionth of a step: more than time can be off by rounding, less than anything shows.
+    // A millionth of a step: more than time's round-off, too little to matter.
     slack_ = 1e-6 * simulation.settings().dt;
     const bool over = !times_.empty() && times_.back() >= end_ - slack_;
     if (over && also_now_.empty())
@@ -131,7 +131,7 @@ void ExpectationWatch::go_back(const Simulation &simulation) {
 
 bool ExpectationWatch::unseen(const Followed &expect) const {
     const double start = times_.front();
-    // Of "last" only the end of the window counts.
+    // For "last" only the end of the window counts.
     const double begin =
         expect.reduction->reduction == Reduction::last ? expect.desc.to : expect.desc.from;
     return begin < start - slack_ || (expect.quantity->since_start && start > slack_);
@@ -167,7 +167,7 @@ std::optional<double> ExpectationWatch::missed_since(std::size_t expectation) co
     };
     if (!is_missed(times_.size()))
         return {};
-    // Once it is missed it stays so: the first such number of samples is found by halving.
+    // Once missed it stays missed, so bisect for the smallest number of samples.
     std::size_t not_yet = 0;
     std::size_t missed = times_.size();
     while (missed - not_yet > 1) {

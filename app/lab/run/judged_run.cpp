@@ -24,7 +24,7 @@ bool finite(const BodyState &state) {
            std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
 }
 
-// Remembers where all was, to say where things went wrong.
+// Remembers the last positions, to say where a run diverged.
 class LastPositions {
   public:
     void note(const Simulation &simulation) { simulation.read(frame_, {}); }
@@ -140,7 +140,7 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
 
     const double end = run_end(scene, options.duration);
     const double start = simulation.time();
-    constexpr int looks = 32; // in a run, at whether to give up
+    constexpr int looks = 32; // per run, to see whether to give up
     double next_look = options.give_up ? start + (end - start) / looks : end;
     const auto any_missed = [&] {
         for (std::size_t i = 0; i < watch.size(); ++i)
@@ -153,7 +153,7 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
     std::size_t called = 0;
     follow(true);
     while (true) {
-        // A millionth of a step: more than time can be off by rounding, less than anything shows.
+        // A millionth of a step: more than time's round-off, too little to matter.
         const double slack = 1e-6 * simulation.settings().dt;
         if (simulation.time() >= end - slack)
             break;

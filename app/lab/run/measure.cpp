@@ -142,7 +142,7 @@ MeasureSummary measure_run(Simulation &simulation, const MeasureOptions &options
             std::max(summary.most_particle_contacts, report.particle_contacts);
         summary.impacts += report.impacts;
         summary.unresolved_impacts += report.unresolved_impacts;
-        // Nothing can be measured of a world that is not finite: its geometry makes no sense.
+        // A world that is not finite cannot be measured: its geometry makes no sense.
         Measures now;
         if (report.finite) {
             now = simulation.measure();

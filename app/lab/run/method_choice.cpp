@@ -9,7 +9,7 @@ namespace plumb {
 
 namespace {
 
-// "does not support joints" of one, "do not support joints" of several.
+// "does not support joints" -> "do not support joints".
 std::string of_several(std::string_view reason) {
     constexpr std::string_view one = "does ", several = "do ";
     return std::string(reason.starts_with(one) ? several : "") +

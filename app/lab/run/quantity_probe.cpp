@@ -9,7 +9,7 @@ namespace plumb {
 
 namespace {
 
-// What a particle has in common with a body.
+// A particle's state as a body's.
 BodyState as_body(const ParticleState &particle) {
     BodyState body;
     body.position = particle.position;
@@ -58,7 +58,7 @@ QuantityProbe::QuantityProbe(const Simulation &simulation, const std::vector<Qua
     add(simulation, names, &start);
 }
 
-// Whether any is of the whole scene.
+// Returns whether any quantity belongs to the whole scene.
 bool QuantityProbe::add(const Simulation &simulation, const std::vector<QuantityName> &names,
                         const RunStart *start) {
     simulation.read(frame_, {});

@@ -21,7 +21,7 @@ namespace plumb {
 
 namespace {
 
-// To a hundredth of the estimate: more digits would say nothing.
+// To a hundredth of the estimate: further digits mean nothing.
 std::string known_digits(double value, double estimate) {
     constexpr double finest = 1e-12, coarsest = 1;
     const double shown = std::clamp(estimate / 100, finest, coarsest);
@@ -31,7 +31,7 @@ std::string known_digits(double value, double estimate) {
     return text;
 }
 
-// To two digits, upwards.
+// Rounds up to two digits.
 double rounded_estimate(double change) {
     if (!std::isfinite(change))
         return std::numeric_limits<double>::infinity();
@@ -58,8 +58,8 @@ double farthest(const std::vector<double> &curve, const Course &course, const Ex
     return distance;
 }
 
-// As few values as come near enough to the course between them, to a sixteenth; none where it would
-// take more than there are steps.
+// The fewest values, to within a sixteenth, that interpolate the course closely enough; empty if
+// that takes more than there are steps.
 std::vector<double> curve_of(const Course &course, const ExpectDesc &desc) {
     for (std::size_t count = least_curve; count < course.times.size(); count += 1 + count / 16) {
         std::vector<double> curve;
@@ -72,8 +72,8 @@ std::vector<double> curve_of(const Course &course, const ExpectDesc &desc) {
     return {};
 }
 
-// How far the curve that was found before is from this course, whose own takes its place, or that
-// one if it is farther; NaN where there is none.
+// Replaces the curve by this course's own. Returns the distance from the course of the old or the
+// new one, whichever is larger; NaN if either is missing.
 double change_of_curve(RefinedTruth &truth, const Course &course) {
     const std::vector<double> before = std::exchange(truth.curve, curve_of(course, truth.desc));
     if (before.empty() || truth.curve.empty())
@@ -100,7 +100,7 @@ std::vector<RefinedTruth> refine(const SceneDesc &scene, const RefineOptions &op
     constexpr int substeps = 16;
     double dt = resolve_run(scene, {}).settings.dt;
     for (int halving = 0; halving <= options.halvings; ++halving, dt /= 2) {
-        // Only as far as the windows of those reach that are not settled.
+        // Only runs until the last window of the truths not settled yet.
         SceneDesc left = scene;
         left.expects.clear();
         for (const RefinedTruth &truth : truths)
@@ -224,7 +224,7 @@ ExitCode refine_scene(const ReferenceCommand &command, std::ostream &out, std::o
     line.clear();
     if (InterruptGuard::requested()) {
         err << "interrupted; nothing is written\n";
-        return ExitCode::fine; // the program says that it was interrupted
+        return ExitCode::fine; // main reports the interruption
     }
     if (truths.empty())
         out << "-     " << scene.name

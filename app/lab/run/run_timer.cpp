@@ -11,14 +11,14 @@ namespace plumb {
 
 namespace {
 
-// A timing lasts at least this long, so that the clock's own cost (below a microsecond) is lost in
-// it; a shorter segment is timed several times over.
+// The least duration of a timing, to make the clock's own cost (below a microsecond) negligible;
+// shorter segments are repeated.
 constexpr double shortest_timing = 0.01; // s
 constexpr int most_rounds = 1000;        // in one timing
 
-constexpr int noted = 32;            // in a run
-constexpr double whole_parts = 8;    // of which each takes as long as all others, if all is alike
-constexpr double unlike = 1.0 / 100; // of what a run takes: what two stretches of it may differ by
+constexpr int noted = 32;            // states per run
+constexpr double whole_parts = 8;    // equally long if the cost is steady
+constexpr double unlike = 1.0 / 100; // of the run's time: how far a part's stretches may differ
 
 } // namespace
 
@@ -35,7 +35,7 @@ void RunRecord::note(const Simulation &simulation, double used) {
 }
 
 std::vector<TimedPart> RunRecord::take_parts(const Simulation &simulation, double used) {
-    notes_.push_back({nullptr, simulation.step_count(), used}); // where the last stretch ends
+    notes_.push_back({nullptr, simulation.step_count(), used}); // end of the last stretch
     const auto steps_of = [&](std::size_t from, std::size_t to) {
         return static_cast<double>(notes_[to].step - notes_[from].step);
     };
@@ -48,7 +48,7 @@ std::vector<TimedPart> RunRecord::take_parts(const Simulation &simulation, doubl
         static_cast<std::uint64_t>(std::max(1L, std::lround(each_ / simulation.settings().dt)));
     std::vector<TimedPart> parts;
     for (std::size_t from = 0, to = 0; from < last; from = to) {
-        // As many stretches as take alike, up to a part's share of the time.
+        // Joins stretches of similar cost, up to a part's share of the time.
         for (to = from + 1; to < last && took(from, to + 1) <= 1.2 * all / whole_parts; ++to)
             if (std::abs(took(to, to + 1) - took(from, to) / static_cast<double>(to - from)) >
                 unlike * all)
@@ -58,7 +58,7 @@ std::vector<TimedPart> RunRecord::take_parts(const Simulation &simulation, doubl
             const std::uint64_t left = notes_[to].step - notes_[note].step;
             return is_one ? left : std::min(left, usual);
         };
-        // In the middle of them, as near as one of the notes lets it.
+        // Starts at the note that centres the part in them best.
         std::size_t start = from;
         const auto off_middle = [&](std::size_t note) {
             return std::abs(2 * steps_of(from, note) + static_cast<double>(steps_from(note)) -
@@ -100,7 +100,7 @@ std::optional<double> RunTimer::time(const std::function<bool()> &stop) const {
         return true;
     };
     const auto now = [&] { return wall_clock_ ? wall_time() : thread_cpu_time(); };
-    double a_step = 0; // s, in the mean of the run
+    double a_step = 0; // s, averaged over the run
     try {
         simulation_->restore(*parts_.front().start);
         // Brings code and data back into the caches after the other simulations' turn.

@@ -50,7 +50,7 @@ std::vector<double> values_between(SettingNumber setting, double low, double hig
             if (value >= low)
                 values.push_back(value);
     } else if (low > 0) {
-        // A little slack, so that 1/240..1/30 ends at 1/30 whatever the rounding.
+        // A little slack, so that 1/240..1/30 ends at 1/30 despite round-off.
         for (double value = low; value <= high * (1 + 1e-9); value *= 2)
             values.push_back(std::min(value, setting.setting().max));
     } else {
@@ -62,7 +62,7 @@ std::vector<double> values_between(SettingNumber setting, double low, double hig
     return values;
 }
 
-// The texts of whole numbers, multiplied, and then those of the others.
+// Whole numbers first, joined by `times`, then the others, joined by commas.
 template <typename Text>
 std::string whole_first(const std::vector<SweepAxis> &axes, const char *times, const Text &text) {
     std::string counts, others;
@@ -121,7 +121,7 @@ std::vector<SweepPoint> sweep_points(const std::vector<SweepAxis> &axes) {
                 throw std::invalid_argument(setting_name(axes[i].setting) +
                                             " is swept twice; give all its values in one sweep");
     std::vector<SweepPoint> points{{}};
-    // The last axis outermost: each axis before it repeats inside.
+    // The last axis varies slowest.
     for (auto axis = axes.rbegin(); axis != axes.rend(); ++axis) {
         std::vector<SweepPoint> extended;
         for (const SweepPoint &point : points)

@@ -16,7 +16,7 @@ namespace plumb {
 
 namespace {
 
-// What the copies of a `repeat` have in common: "crate" of "crate_12".
+// The name that the copies of a `repeat` share: "crate" for "crate_12".
 std::string stem(const std::string &name) {
     const std::size_t end = name.find_last_not_of("0123456789");
     return end != std::string::npos && end > 0 && end + 1 < name.size() && name[end] == '_'
@@ -32,14 +32,14 @@ std::uint32_t layers_of(const SceneDesc &scene) {
     return layers;
 }
 
-// Whether there is a layer that it does not ignore.
+// Whether the body does not ignore all of these layers.
 bool collides(const BodyDesc &body, std::uint32_t layers) {
     return std::ranges::any_of(body.colliders, [&](const ColliderDesc &collider) {
         return (~collider.filter.ignores & layers) != 0;
     });
 }
 
-// Whether two bodies could collide, wherever they are; beside those of that stem.
+// Whether any two bodies could collide, wherever they are, leaving out those with stem `but`.
 bool any_collide(const SceneDesc &scene, const std::string &but = {}) {
     const std::uint32_t layers = layers_of(scene);
     int bodies = 0;
@@ -68,7 +68,7 @@ void lock_rotation(BodyDesc &body) {
     body.angular_velocity = glm::dvec3(0);
 }
 
-// Of the one shape of a dynamic body that a sphere could stand for; else empty.
+// The name of a dynamic body's only shape, if a sphere could replace it; else empty.
 std::string_view shape_name(const BodyDesc &body) {
     if (body.kind != BodyKind::dynamic || body.colliders.size() != 1 || body.colliders[0].sensor)
         return {};
@@ -90,7 +90,7 @@ void make_sphere(BodyDesc &body) {
     collider.position = (box.min + box.max) / 2.0;
 }
 
-// Of all bodies with that stem.
+// Applies to all bodies with that stem.
 Simplification of_bodies(std::string what, const std::string &name, void (*apply)(BodyDesc &)) {
     return {std::move(what), [name, apply](SceneDesc &scene, RunOptions &) {
                 for (BodyDesc &body : scene.bodies)
@@ -125,8 +125,8 @@ bool expects_something_of_contacts(const SceneDesc &scene) {
     });
 }
 
-// Particles collide with bodies of every layer, and still do. What is expected of contacts would be
-// met for want of them.
+// Particles collide with bodies on every layer, and still do. Not tried if the scene expects
+// something of contacts: having none would meet it.
 std::vector<Simplification> without_collisions(const SceneDesc &scene, const ResolvedRun &run) {
     if (!run.method->contacts || !any_collide(scene) || expects_something_of_contacts(scene))
         return {};
@@ -139,7 +139,7 @@ std::vector<Simplification> without_collisions(const SceneDesc &scene, const Res
     const std::uint32_t layers = layers_of(scene);
     for (const BodyDesc *body : kinds_of_bodies(scene))
         if (const std::string name = stem(body->name);
-            collides(*body, layers) && any_collide(scene, name)) // else all are left out with its
+            collides(*body, layers) && any_collide(scene, name)) // else the same as all
             all.push_back(of_bodies("the collisions of " + name, name, ignore_all));
     for (Simplification &less : all)
         less.must_pay = true;
@@ -212,7 +212,7 @@ void leave_out(const std::vector<SceneDesc> &starts, const TuneOptions &options,
     const auto stopped = [&] { return options.stop && options.stop(); };
     std::vector<SceneDesc> model = starts;
     TunedRun full = tuning.runs[*tuning.chosen];
-    // Whether it is left out.
+    // Returns whether it was left out.
     const auto attempt = [&](const Simplification &less) {
         std::vector<SceneDesc> plain = model;
         RunOptions run = full.options;

@@ -10,10 +10,10 @@ namespace plumb {
 
 namespace {
 
-// What took so many times as long as another method is dearer, however noisy the machine.
+// A run this many times as expensive as another method's is dearer, however noisy the machine.
 constexpr double far_dearer = 4;
 
-// In a method's later rows while nothing has met the scene: there is no cost to stay below.
+// For a method's later rows while nothing has met the scene: there is no cost to beat yet.
 constexpr int most_without_bound = 64;
 
 RunOptions with_substeps(RunOptions options, int substeps) {
@@ -55,8 +55,8 @@ std::optional<SubstepSearch::Guess> SubstepSearch::guess(const RunOptions &optio
             known.max_substeps != s.max_substeps)
             continue;
         const double substeps = (s.substeps / s.dt) / (known.substeps / known.dt);
-        // Loads that ask for more substeps than the least do so whatever the least is. Of the
-        // others the work is in the substeps, and no less than half of it in the iterations.
+        // Loads that ask for more substeps than the minimum do so whatever the minimum is.
+        // Otherwise work scales with the substeps, and at least half of it with the iterations.
         const bool own = s.max_substeps > s.substeps;
         const double share = (1.0 + s.iterations) / (1.0 + known.iterations);
         const double by = own ? std::min(1.0, substeps) : substeps * std::min(1.0, share);
@@ -77,9 +77,9 @@ bool SubstepSearch::is_beaten(const ResolvedRun &run, const Guess &guess) const 
             return false;
         if (other.resolved.method != run.method)
             return guess.cost > far_dearer * other.cost;
-        // With coarser steps, collision may save what more substeps cost.
+        // Collision runs once per step, so coarser steps may make up for more substeps.
         const bool coarser = run.settings.dt > other.resolved.settings.dt;
-        const double reach = coarser ? 1.25 : 1 - 1e-9; // the same work over again is beaten, too
+        const double reach = coarser ? 1.25 : 1 - 1e-9; // equal work is beaten, too
         return other.resolved.precision <= run.precision && guess.work > reach * other.work;
     });
 }
@@ -90,7 +90,7 @@ bool SubstepSearch::is_beaten(const RunOptions &options) const {
 }
 
 bool SubstepSearch::any_like(const ResolvedRun &run) const {
-    // The scene's own tells nothing of other substeps where it missed.
+    // The scene's own run says nothing about other substeps if it missed.
     return std::ranges::any_of(runs_, [&](const TunedRun &other) {
         return other.resolved.method == run.method &&
                other.resolved.settings.max_substeps == run.settings.max_substeps &&
@@ -128,7 +128,7 @@ void SubstepSearch::descend(const TuneRow &row) {
         runs_, [](const TunedRun &run) { return run.verdict == TuneVerdict::met; });
     const int limit = any_met ? most_substeps : most_without_bound;
     int most = 0;
-    for (int step = most_substeps; step > 0; step /= 2) // the most that are not beaten
+    for (int step = most_substeps; step > 0; step /= 2) // the most not beaten
         if (most + step <= limit && !is_beaten(with_substeps(row.options, most + step)))
             most += step;
     if (most > 0 && !stopped_() && met(row, most))

@@ -11,7 +11,7 @@ namespace plumb {
 
 namespace {
 
-// With a share of each tolerance. Bounds that are not above zero have none that could be shared.
+// Scales each tolerance; an upper bound above zero is one, other bounds have none.
 SceneDesc tightened(SceneDesc scene, double share) {
     for (ExpectDesc &expect : scene.expects) {
         expect.tolerance *= share;
@@ -21,7 +21,7 @@ SceneDesc tightened(SceneDesc scene, double share) {
     return scene;
 }
 
-// What was measured, against the full tolerance.
+// Judges the measured values against the full tolerances.
 void judge_in_full(const SceneDesc &scene, const JudgedRun &judged, TunedRun &run) {
     for (std::size_t i = 0; i < judged.outcomes.size(); ++i) {
         const ExpectOutcome &outcome = judged.outcomes[i];

@@ -15,15 +15,14 @@ namespace plumb {
 
 namespace {
 
-// What a run took says roughly what it costs: so many times as much as another, and it is not
-// timed.
+// A run's cost before timing is rough: one this many times as dear as another is not timed.
 constexpr double out_of_question = 4;
 
 class Rows {
   public:
     Rows(const SceneDesc &scene, const TuneOptions &options) : scene_(scene), options_(options) {}
 
-    // The plainest first: what it finds keeps most of the others from being run.
+    // Simplest first: its results rule out most of the others.
     std::vector<TuneRow> of(const MethodInfo &method) const {
         std::vector<TuneRow> rows;
         RunOptions start = options_.base;
@@ -64,13 +63,13 @@ class Rows {
                 steps.push_back(factor * dt);
         return steps;
     }
-    // 0: as it is.
+    // 0: unchanged.
     std::vector<int> iteration_counts(const MethodInfo &method) const {
         if (is_given("iterations") || !reads(method, *find_setting("iterations")))
             return {0};
         return {1, 2, 4, 8};
     }
-    // False where there is no such mode, or another is given.
+    // False if the method has no such mode, or another is given.
     bool set_mode(const MethodInfo &method, TuneRow &row) const {
         if (!method.chooses_substeps())
             return row.fixed_substeps;
@@ -92,7 +91,7 @@ bool same_kind(const ResolvedRun &a, const ResolvedRun &b) {
     return a.method == b.method && a.precision == b.precision && a.settings.dt == b.settings.dt;
 }
 
-// Times those runs that may be the cheapest, with what they are compared with.
+// Times the runs that may be the cheapest, and the scene's own to compare with.
 void time_best(const Trial &trial, const TuneOptions &options, Tuning &tuning,
                const std::vector<std::size_t> &choices, const Progress &progress) {
     const auto run = [&](std::size_t i) -> const TunedRun & { return tuning.runs[i]; };
@@ -121,7 +120,7 @@ bool both_timed(const TunedRun &a, const TunedRun &b) {
     return !a.timings.empty() && !b.timings.empty();
 }
 
-// Of runs of one method that were not always dearer than the first of them, that of least work.
+// Of the runs of `first`'s method not always dearer than it, the one with the least work.
 std::size_t least_work(const Tuning &tuning, const std::vector<std::size_t> &choices,
                        std::size_t first) {
     std::size_t best = first;
@@ -134,8 +133,8 @@ std::size_t least_work(const Tuning &tuning, const std::vector<std::size_t> &cho
     return best;
 }
 
-// The cheapest of each method; of those that cost the same as the cheapest of all, the truest, and
-// of those as true the first in the list of methods.
+// Takes each method's cheapest run; of those that cost the same as the cheapest of all, the most
+// accurate, and on a tie the first in the list of methods.
 std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choices) {
     const auto cost = [&](std::size_t i) {
         const TunedRun &run = tuning.runs[i];
@@ -161,7 +160,7 @@ std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choic
     return best.value_or(least);
 }
 
-// The chosen settings with twice the substeps, timed beside all that were.
+// Runs the chosen settings with twice the substeps, and times it along with all timed runs.
 void add_dearer(const Trial &trial, const TuneOptions &options, SubstepSearch &search,
                 Tuning &tuning, const Progress &progress) {
     tuning.dearer.reset();
@@ -183,7 +182,7 @@ void add_dearer(const Trial &trial, const TuneOptions &options, SubstepSearch &s
     time_in_turns(runs, options, progress);
 }
 
-// Whether that met the scene, and was timed as cheaper than what is chosen in every round.
+// Whether that run met the scene, and was cheaper than the chosen one in every round.
 bool is_cheaper(const Tuning &tuning, std::optional<std::size_t> other) {
     return other && tuning.runs[*other].verdict == TuneVerdict::met &&
            both_timed(tuning.runs[*other], tuning.runs[*tuning.chosen]) &&
@@ -229,7 +228,7 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
         for (TuneRow &row : rows.of(*method))
             all.push_back(std::move(row));
     const auto stopped = [&] { return options.stop && options.stop(); };
-    double from = 0, to = 0; // of the part of the work that is going on
+    double from = 0, to = 0; // progress range of the current stage
     const auto progress = [&](double fraction, const std::string &what) {
         if (options.progress)
             options.progress(from + (to - from) * fraction, what);
@@ -259,7 +258,7 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
             time_best(trial, options, tuning, choices, progress);
         tuning.chosen = cheapest(tuning, choices);
     }
-    // More substeps may even be cheaper: what is stiffer comes to rest, and sleeps, earlier.
+    // More substeps may even be cheaper: a stiffer scene comes to rest, and sleeps, earlier.
     while (tuning.chosen && !rows.is_given("substeps") && !stopped()) {
         from = timing;
         to = comparing;

@@ -39,7 +39,7 @@ ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, 
 } // namespace
 
 double parse_budget(const std::string &text) {
-    constexpr double frames = 60; // a second
+    constexpr double frames = 60; // per second
     for (const auto &[unit, seconds] : {std::pair{"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}})
         if (text.ends_with(unit))
             try {
@@ -74,7 +74,7 @@ ExitCode tune_scene(const TuneCommand &command, std::ostream &out, std::ostream 
     out << std::flush;
     if (tuning.interrupted) {
         err << "interrupted after " << tuning.runs.size() << " settings; nothing is written\n";
-        return ExitCode::fine; // the program says that it was interrupted
+        return ExitCode::fine; // main reports the interruption
     }
     if (!tuning.found())
         return ExitCode::outside_tolerance;

@@ -1,4 +1,4 @@
-// What tuning came to, for people.
+// Prints what tuning found.
 #include "app/lab/run/method_choice.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
@@ -88,7 +88,7 @@ std::string ratio_text(double ratio) {
     return three_digits(ratio) + " times as much";
 }
 
-// As they were paired, where they were timed.
+// Compared round by round if both were timed.
 std::string times_as_much(const TunedRun &run, const TunedRun &other) {
     const bool timed = !run.timings.empty() && !other.timings.empty();
     return ratio_text(timed ? median_ratio(run.timings, other.timings) : run.cost / other.cost);
@@ -162,7 +162,7 @@ void print_plainer(std::ostream &out, const Tuning &tuning) {
     out << ".\n";
 }
 
-// The nearest to its tolerance of those that missed.
+// The run that missed by least.
 const TunedRun *nearest(const Tuning &tuning) {
     const TunedRun *best = nullptr;
     for (const TunedRun &run : tuning.runs)

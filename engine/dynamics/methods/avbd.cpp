@@ -1,20 +1,19 @@
 // AVBD, augmented vertex block descent: Giles, Diaz, Yuksel 2025, "Augmented Vertex Block Descent",
-// over Chen, Liu, Yang, Yuksel 2024, "Vertex Block Descent". A substep of implicit Euler as the
-// least of an energy: inertia about where a body would fly freely, and each row as a term of an
-// augmented Lagrangian (augmented_rows.h). A pass goes from body to body and puts each where the
-// energy is least as a function of its pose alone, the others held (eqs. 4 to 6, 13 and 17); then
-// every row's load becomes what it pushed with, and its stiffness grows with its error (eqs. 11,
-// 12 and 16). Loads and stiffnesses are remembered (eq. 19), and a part of an error that was there
-// before is left alone (eq. 18), so that it is not taken back as speed. Velocities are what the
-// poses did.
+// over Chen, Liu, Yang, Yuksel 2024, "Vertex Block Descent". An implicit Euler substep is the
+// minimum of an energy: inertia about the body's free-flight pose, plus one augmented Lagrangian
+// term per row (augmented_rows.h). A pass goes from body to body and moves each to the minimum of
+// the energy as a function of its pose alone, with the others held (eqs. 4 to 6, 13 and 17); then
+// each row's load becomes the force it pushed with, and its stiffness grows with its error (eqs.
+// 11, 12 and 16). Loads and stiffnesses are remembered (eq. 19), and part of an error that was
+// there before is left alone (eq. 18), so that correcting it does not turn into speed. Velocities
+// follow from the change in pose.
 //
-// First order, and dissipative, as implicit Euler is. As published but for this: stiffness is
-// measured by the mass that a row moves (settings.h: penalty_start), not in N/m, so that grams and
-// tons go by the same settings; a particle's springs
-// begin with their own stiffness, as in VBD, and its contacts with nothing remembered; how fast a
-// body fell, for the first guess, is what gravity and the remembered loads make; bounces, which the
-// paper has none of, are TGS Soft's; spin is gyroscopic by the implicit rule that all methods
-// share.
+// First order and dissipative, like implicit Euler. As published except: stiffness is relative to
+// the mass that a row moves (settings.h: penalty_start), not in N/m, so that the same settings fit
+// grams and tons; a particle's springs start with their own stiffness, as in VBD, and its contacts
+// with nothing remembered; for the first guess, a body's fall is computed from gravity and the
+// remembered loads; bounces, which the paper lacks, are TGS Soft's; gyroscopic spin uses the
+// implicit rule that all methods share.
 #include "engine/core/renew.h"
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
@@ -53,7 +52,7 @@ void stiffen(StepContext &context, const Stiffening &stiffening) {
 
 // ---- the substep
 
-// What is remembered of the last step.
+// Starts from the last step's loads and stiffnesses.
 void warm_start(StepContext &context, Real h) {
     SolverScratch &s = context.scratch;
     Descent &d = s.descent;
@@ -80,7 +79,7 @@ void warm_start(StepContext &context, Real h) {
     d.particle_contacts.resize(s.particle_contacts.size());
 }
 
-// The acceleration that the loads make, of each body.
+// Each body's acceleration from the loads.
 void accelerate(StepContext &context, std::vector<Vec3> &accelerations) {
     SolverScratch &s = context.scratch;
     renew(accelerations, context.bodies.size(), Vec3{Real(0)});
@@ -105,7 +104,7 @@ void accelerate(StepContext &context, std::vector<Vec3> &accelerations) {
         }
 }
 
-// Rows at the poses as they are now.
+// Begins all rows at the present poses.
 void begin_rows(StepContext &context, const Stiffening &stiffening) {
     SolverScratch &s = context.scratch;
     Descent &d = s.descent;
@@ -152,8 +151,8 @@ void begin_rows(StepContext &context, const Stiffening &stiffening) {
                         stiffening);
 }
 
-// To the first guess. What gravity would add counts as far as the body fell with it in the last
-// substep (Chen et al. 2024, sec. 3.7, adaptive initialisation).
+// Moves everything to the first guess. Gravity counts only as far as the body fell with it in the
+// last substep (Chen et al. 2024, sec. 3.7, adaptive initialisation).
 void predict(StepContext &context, const std::vector<Vec3> &accelerations, const Vec3 &gravity,
              Real h) {
     Descent &d = context.scratch.descent;

@@ -1,12 +1,12 @@
 // Backward (implicit) Euler for particles, springs and free bodies, linearised once a substep:
 // (M - h df/dv - h^2 df/dx) dv = h (f + h df/dx v), by sparse Cholesky factors (Baraff and
-// Witkin 1998, "Large Steps in Cloth Simulation", eq. (6)). First order; stable for any step, and
-// what it cannot follow it damps. Torques of free spin stay explicit.
+// Witkin 1998, "Large Steps in Cloth Simulation", eq. (6)). First order; stable for any step:
+// motion that the step cannot resolve is damped. Torques of free spin stay explicit.
 //
-// Across its line a spring under load is stiff by its force over its length; one that is pressed
-// would be soft there, and is taken as 0, so that the matrix stays positive (Choi and Ko 2002,
-// "Stable but Responsive Cloth", section 4). An attractor pulls the harder the nearer it is, which
-// is a soft spring, too; of that as much is taken as leaves the matrix half of the mass.
+// Across its line a loaded spring's stiffness is its force over its length. Under compression that
+// is negative and is taken as 0, so that the matrix stays positive definite (Choi and Ko 2002,
+// "Stable but Responsive Cloth", section 4). An attractor pulls harder the nearer it is, which is a
+// negative stiffness too; only as much of it is used as leaves the matrix half of the mass.
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
 
@@ -39,7 +39,7 @@ class System {
 
     void solve() {
         if (memory_.sides.empty())
-            return; // all is locked, pinned, or moves as told
+            return; // everything is locked, pinned or kinematic
         memory_.matrix.factor(static_cast<int>(memory_.sides.size()), memory_.entries);
         memory_.matrix.solve(memory_.sides);
         for (const std::uint32_t i : context_.moving()) {
@@ -151,7 +151,7 @@ class System {
 
     struct End {
         Unknowns unknowns;
-        std::array<glm::dvec3, 6> effects; // of each unknown on the end's velocity
+        std::array<glm::dvec3, 6> effects; // per unknown: its effect on the end's velocity
     };
     End end_of(const SpringEnd &end, const SpringPoint &point) const {
         End out{all_none(), {}};
@@ -208,7 +208,7 @@ class System {
     double h_;
 };
 
-// Without springs and attractors the matrix is that of each body by itself.
+// Without springs and attractors each body can be solved by itself.
 void kick_free_bodies(StepContext &context, const Accelerations &now, Real h) {
     for (std::size_t place = 0; place < context.moving().size(); ++place) {
         const std::uint32_t i = context.moving()[place];

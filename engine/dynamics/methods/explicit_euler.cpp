@@ -1,5 +1,5 @@
-// Explicit (forward) Euler for free bodies, particles and springs: poses and velocities both with
-// what they were at the start. First order; every undamped spring gains energy by it, at any step.
+// Explicit (forward) Euler for free bodies, particles and springs: poses and velocities both
+// advance by the rates at the start. First order; every undamped spring gains energy, at any step.
 // Hairer, Lubich, Wanner 2006, "Geometric Numerical Integration", eq. (I.1.6).
 #include "engine/dynamics/method.h"
 

@@ -1,13 +1,13 @@
-// Naive impulses with linear projection, as the Game Physics Cookbook has them (Szauer 2017,
-// chapter 15, "Linear impulse", "Angular impulse" and PhysicsSystem::Update; the numbers are those
-// of its code: five passes, 45 % of the depth beyond 1 cm). It shows what warm starting,
-// accumulated impulses and pushing along with turns are for: nothing is remembered, each pass
-// applies each contact's impulses anew, shared out evenly among its points, friction is cut to what
-// that one impulse allows, gravity comes after the impulses, and bodies that overlap are moved
-// apart without being turned. So what rests falls a little in each step, and stacks sink.
+// Naive impulses with linear projection, as in the Game Physics Cookbook (Szauer 2017, chapter 15,
+// "Linear impulse", "Angular impulse" and PhysicsSystem::Update; the numbers are from its code:
+// five passes, 45 % of the depth beyond 1 cm). It shows what warm starting, accumulated impulses
+// and corrections that also rotate are for: nothing is remembered, each pass computes each
+// contact's impulse from scratch and shares it evenly among the points, friction is clamped by that
+// one impulse alone, gravity comes after the impulses, and overlapping bodies are moved apart
+// without rotating. So resting bodies fall a little in each step, and stacks sink.
 //
-// Contacts are those that overlap when the step begins. Where the book takes the lesser restitution
-// of two bodies, a pair has that of all methods here, and free spin is theirs, too.
+// Only contacts that overlap at the start of the step count. The book takes the lesser of two
+// bodies' restitutions; here a pair's restitution, like free spin, is as in all other methods.
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
 
@@ -25,7 +25,7 @@ template <typename Contact> auto points_of(Contact &contact) {
     return std::span(contact.points).first(static_cast<std::size_t>(contact.count));
 }
 
-// Points that are apart as the step begins have no mass left (leave_out_what_is_apart).
+// leave_out_what_is_apart zeroes the mass of points that are apart at the start of the step.
 bool point_touches(const ContactPointConstraint &point) {
     return point.normal_mass > Real(0);
 }
@@ -35,8 +35,8 @@ void apply(SolverBody &a, SolverBody &b, const ContactPointConstraint &point, co
     b.apply_impulse(impulse, point.r_b);
 }
 
-// One point's share of the impulse that its speed asks for, then of friction against the speed that
-// was read before.
+// Applies one point's share of the normal impulse that its approach calls for, then of friction,
+// both for the velocity read at the start.
 void strike(const ContactConstraint &contact, ContactPointConstraint &point, SolverBody &a,
             SolverBody &b, Real share) {
     const Vec3 &n = contact.normal;
@@ -62,7 +62,7 @@ void strike(const ContactConstraint &contact, ContactPointConstraint &point, Sol
     point.impulse.z -= friction * glm::dot(t, contact.tangents.t2);
 }
 
-// Each pair is moved apart along its normal, by a part of its greatest depth.
+// Moves each pair apart along its normal by a share of its greatest depth beyond the slop.
 void project(StepContext &context) {
     const auto part = static_cast<Real>(context.settings.baumgarte);
     const auto slop = static_cast<Real>(context.settings.penetration_slop);
@@ -92,7 +92,7 @@ void leave_out_what_is_apart(StepContext &context) {
     }
 }
 
-// One pass: the impulse of each point is shared out among those of its contact.
+// One pass: each point's impulse is divided by its contact's number of touching points.
 void strike_all(StepContext &context) {
     for (ContactConstraint &contact : context.scratch.contacts) {
         const auto share =
@@ -104,7 +104,7 @@ void strike_all(StepContext &context) {
     context.report.constraint_passes += context.scratch.contacts.size();
 }
 
-// What struck in this substep and is elastic: that bounces, however slow it is.
+// Records elastic contacts that were hit in this substep: they bounce however slow they are.
 void record_bounces(StepContext &context) {
     for (const ContactConstraint &contact : context.scratch.contacts) {
         if (contact.restitution == Real(0))
@@ -127,7 +127,7 @@ void advance_naive_impulses(StepContext &context) {
     prepare_contacts(context);
     leave_out_what_is_apart(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        remember_contacts(context); // begins from zero
+        remember_contacts(context); // start from zero
         for (int i = 0; i < settings.iterations; ++i)
             strike_all(context);
         record_bounces(context);
@@ -135,7 +135,7 @@ void advance_naive_impulses(StepContext &context) {
         kick(context, gravity, h);
         drift(context, h);
     }
-    store_contacts(context); // to be seen, not used
+    store_contacts(context); // for display only
 }
 
 } // namespace

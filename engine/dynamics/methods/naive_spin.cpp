@@ -1,7 +1,7 @@
-// For comparison: free bodies whose angular velocity stays as it is in the world, as if all moments
-// of inertia were the same. Euler's equations (Landau, Lifshitz 1976, "Mechanics", eq. (36.5))
-// without their gyroscopic term: angular momentum and energy are those of another motion, however
-// short the step.
+// For comparison: free bodies whose angular velocity stays constant in the world, as if all moments
+// of inertia were equal: Euler's equations (Landau, Lifshitz 1976, "Mechanics", eq. (36.5)) without
+// the gyroscopic term. Angular momentum and energy are those of another motion, however short the
+// step.
 #include "engine/dynamics/methods/parts/free_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {

@@ -1,18 +1,19 @@
 // NNCG, the nonsmooth nonlinear conjugate gradient method: Silcowitz-Hansen, Niebe, Erleben 2010,
 // "A nonsmooth nonlinear conjugate gradient method for interactive contact force problems", The
 // Visual Computer 26, algorithm 1 (Fletcher and Reeves' beta, restarted wherever it exceeds 1). A
-// pass of projected Gauss-Seidel takes the impulses from f to F(f); f - F(f) is taken for a
-// gradient, and what the passes before did is repeated as far as it keeps shrinking. So an error
-// that Gauss-Seidel hands on from contact to contact, and that is cut by little a pass, goes in
-// about the square root of the passes. All else is as in sequential_impulses, whose pass it is.
+// pass of projected Gauss-Seidel takes the impulses from f to F(f); f - F(f) serves as the
+// gradient, and the previous passes' direction is followed on as long as the gradient shrinks. So
+// an error that Gauss-Seidel passes on from contact to contact, reducing it only a little per pass,
+// is gone in about the square root of the passes. Everything else is as in sequential_impulses,
+// including the pass itself.
 #include "engine/dynamics/methods/parts/impulse_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Calls use(impulse, remembered) for each number of each row's, in order: after the warm start,
-// what is remembered is the direction in which the search goes.
+// Calls use(impulse, remembered) for each row's component, in order. After the warm start,
+// `remembered` holds the search direction.
 template <typename Use> void for_each_impulse(SolverScratch &scratch, Use &&use) {
     const auto use_all = [&](Vec3 &impulse, Vec3 &remembered) {
         for (int i = 0; i < 3; ++i)
@@ -41,7 +42,7 @@ void go_on(StepContext &context, Real share) {
 template <typename Pass> void search(StepContext &context, const Pass &pass) {
     SolverScratch &s = context.scratch;
     for_each_impulse(s, [](Real, Real &direction) { direction = Real(0); });
-    double last = 0; // |F(f) - f|^2 of the pass before
+    double last = 0; // |F(f) - f|^2 of the previous pass
     for (int i = 0; i < context.settings.iterations; ++i) {
         std::vector<Real> &change = s.changes;
         change.clear();
@@ -55,7 +56,7 @@ template <typename Pass> void search(StepContext &context, const Pass &pass) {
             ++next;
         });
         if (squared == 0 || i + 1 == context.settings.iterations)
-            return; // no pass would change anything any more
+            return; // converged, or that was the last pass
         const bool shrinks = i > 0 && squared <= last;
         const Real beta = shrinks ? static_cast<Real>(squared / last) : Real(0);
         if (shrinks)

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-// One line for each method; each is a function of that name, in a file of its own, that returns its
-// row.
+// One line per method: the function of that name, in its own file, returns the method's row.
 #define PLUMB_METHODS(METHOD)                                                                      \
     METHOD(soft_step)                                                                              \
     METHOD(tgs_soft)                                                                               \

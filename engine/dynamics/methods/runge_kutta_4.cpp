@@ -43,7 +43,7 @@ Motion rate_of(const Motion &state, const Body &body, const Vec3 &acceleration) 
     return {state.velocity, turning, acceleration, torque_free - body.angular_damping * spin};
 }
 
-// Where the substep began, the present stage, its rate, and the weighted sum of rates.
+// The state at the substep's start, the present stage, its rate, and the weighted sum of rates.
 template <typename Item> struct Stages {
     std::vector<Item> &items;
     std::size_t count;
@@ -61,13 +61,13 @@ template <typename Item> struct Stages {
 };
 
 struct Coefficients {
-    Real reach;  // from the start to where the rate is taken, in h
+    Real reach;  // time from the start to where the rate is taken, in h
     Real weight; // of that rate, in h / 6
 };
 constexpr std::array<Coefficients, 4> tableau{
     {{Real(0), Real(1)}, {Real(0.5), Real(2)}, {Real(0.5), Real(2)}, {Real(1), Real(1)}}};
 
-// The motion that forces are taken at.
+// Sets the motion at which forces are evaluated.
 void place(SolverBody &motion, const Motion &stage, const Body &body) {
     motion.position = stage.position;
     motion.velocity = stage.velocity;
@@ -79,7 +79,7 @@ void place(SolverBody &motion, const Motion &stage, const Body &body) {
 void take_substep(StepContext &context, Real h) {
     const auto moving = context.moving();
     const bool has_particles = context.active.has_particles;
-    // Otherwise no force asks where things are.
+    // Otherwise no force depends on positions.
     const bool reads_places = has_particles || !context.model.attractors.empty();
     Accelerations &now = context.scratch.accelerations[0];
     Stages<Motion> bodies(context.scratch.motions, moving.size());

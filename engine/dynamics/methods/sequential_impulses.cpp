@@ -1,10 +1,10 @@
 // Sequential impulses: projected Gauss-Seidel on velocities with accumulated, warm-started
 // impulses, and Baumgarte's bias against drift. Catto 2005, "Iterative Dynamics with Temporal
-// Coherence"; Catto 2006, "Fast and Simple Physics using Sequential Impulses". With pseudo
-// velocities against penetration, and joints whose turns are foreseen: impulse_substeps.h says why.
-// That, impacts that are propagated in sweeps, the implicit gyroscopic term and the order of passes
-// are ours: a contact's points are taken from the first to the last and back in turns. Always from
-// the first, each pass leaves the last one too much, stacks sway by it, and eight cubes fall.
+// Coherence"; Catto 2006, "Fast and Simple Physics using Sequential Impulses". Penetration is
+// removed by pseudo velocities, and joints foresee turns; impulse_substeps.h says why. That,
+// impacts propagated in sweeps, the implicit gyroscopic term and the order of passes are ours:
+// passes visit a contact's points forwards and backwards in turn. If they always started from the
+// first, each would leave too much to the last; stacks then sway, and eight cubes fall.
 #include "engine/dynamics/methods/parts/impulse_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {

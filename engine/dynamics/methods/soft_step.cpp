@@ -1,17 +1,17 @@
-// Soft step: small substeps, soft constraints, and a relaxing pass that takes the softness' push
-// out of the velocities again. Catto 2024, "Solver2D" (there TGS Soft); Macklin et al. 2019, "Small
-// Steps in Physics Simulation", for why substeps beat iterations.
+// Soft step: small substeps, soft constraints, and a relaxation pass that removes the softness push
+// from the velocities. Catto 2024, "Solver2D" (there TGS Soft); Macklin et al. 2019, "Small Steps
+// in Physics Simulation", for why substeps beat iterations.
 //
-// This is not the method that article calls Soft Step. What is different here: gravity comes in two
-// halves, before the move and after it, each with its half of the remembered impulses; joints are
-// solved for the poses at the substep's end, and relaxed with their lever arms there. That is the
-// order of RATTLE (Andersen 1983), a scheme of second order, at the price of one more pass over the
-// bodies: a pendulum keeps its energy, which the plain scheme loses at the rate omega^2 h.
+// This is not the method that article calls Soft Step. What differs: gravity is applied in two
+// halves, before and after the move, each with half of the remembered impulses; joints are solved
+// for the poses at the substep's end and relaxed with the lever arms there. That is the order of
+// RATTLE (Andersen 1983), a second-order scheme, at the cost of one more pass over the bodies: a
+// pendulum keeps its energy, which the plain scheme loses at the rate omega^2 h.
 //
-// And joints that hang together without many loops are solved together, with the limits that bear
-// something, as long as the substep can follow them, and again after the contacts of their bodies;
-// contacts of what rests are kept as they were found (kept_travel), those of what moves fast for
-// its size are found where it will be (looks_ahead), and all are solved in columns.
+// Also, connected joints with few loops are solved together with their loaded limits, as long as
+// the substep can follow them, and once more after their bodies' contacts. Resting bodies keep
+// their contacts as found (kept_travel); bodies that move fast for their size are collided where
+// they will be (looks_ahead). All contacts are solved in columns.
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/method.h"
@@ -26,17 +26,18 @@ int holding_passes(const StepContext &context) {
     return context.settings.iterations + (context.active.pace.settles ? 1 : 0);
 }
 
-// One pass takes only a part of the push out of the velocities of what lies on each other: a stack
-// that lands would be thrown up again, and a heavy slab by what it lands on. Where something was
-// struck there are up to two for each contact that it may go through, as long as they change
-// something (still_relaxes). A blow lasts a few steps, so they may cost a multiple of the budget;
-// but where that buys only a few they do nothing for what is tall, and there is one as elsewhere.
+// One pass removes only part of the push from the velocities of stacked bodies: a stack would
+// bounce back up on landing, and a heavy slab would be launched by whatever it lands on. So a hit
+// gets up to two passes for each contact that it may travel through, as long as they still change
+// something (still_relaxes). A hit lasts only a few steps, so its passes may cost a multiple of the
+// budget; but if that affords only a few, they do nothing for a tall stack, and the usual number is
+// run.
 int relaxing_passes(const StepContext &context) {
     constexpr std::size_t for_each_contact = 2, most = 128, least = 24, budgets = 16;
     const StepSettings &settings = context.settings;
     const auto affordable =
         static_cast<std::size_t>(settings.substep_budget / settings.substeps) * budgets;
-    // Each group's share of the budget is that of its contacts.
+    // Each group gets a share of the budget in proportion to its contacts.
     const std::size_t passes =
         affordable / (context.contacts.size() + context.active.joints.size() + 1);
     const int usual = holding_passes(context);
@@ -46,7 +47,7 @@ int relaxing_passes(const StepContext &context) {
     return std::max(static_cast<int>(std::min({passes, wanted, most})), usual);
 }
 
-// Whether the pass before changed enough for another one.
+// Whether the last pass changed enough to be worth another.
 bool still_relaxes(const StepContext &context, const ContactBias &relax_bias) {
     constexpr Real enough = Real(0.2); // of struck_speed
     return any_is_corrected(context, enough * relax_bias.struck_speed);
@@ -55,7 +56,7 @@ bool still_relaxes(const StepContext &context, const ContactBias &relax_bias) {
 void advance_soft_step(StepContext &context) {
     const StepSettings &settings = context.settings;
     const Vec3 gravity{settings.gravity};
-    if (context.active.is_free()) { // nothing of what follows would do anything
+    if (context.active.is_free()) { // nothing to solve
         fly_freely(context, gravity);
         return;
     }
@@ -72,21 +73,21 @@ void advance_soft_step(StepContext &context) {
 
     ContactBias relax_bias;
     relax_bias.loaded_only = true;
-    // Twice as stiff against what does not give way: the ground bears all that stands on it (Catto
-    // 2024, Solver2D). From 2.25 times on, some of what bears several of its own weights rocks, and
-    // walks off.
+    // Twice as stiff against immovable bodies: the ground carries everything that stands on it
+    // (Catto 2024, Solver2D). From 2.25 times up, some bodies that carry several times their own
+    // weight rock and walk away.
     contact_bias.on_static =
         make_soft(Real(2) * static_cast<Real>(settings.contact_frequency_ratio) * rate,
                   static_cast<Real>(settings.contact_damping_ratio), h);
     contact_bias.struck_speed = relax_bias.struck_speed =
         glm::length(gravity) * static_cast<Real>(settings.dt);
 
-    // Finer substeps than four push no faster than those: what lies on the joints is pushed, too,
-    // and does not give all of it back.
+    // More than four substeps push no faster than four: bodies resting on the joints are pushed
+    // too, and not all of that speed is removed again.
     const Real push_share = std::min(Real(1), Real(4) * h / static_cast<Real>(settings.dt));
 
-    // First for the poses at the substep's end, with half of the forces and springs by the first
-    // half of the midpoint rule; then for the velocities there.
+    // First for the poses at the substep's end, with half of the forces and the first half of the
+    // springs' midpoint rule; then for the velocities there.
     const JointPass holding{.softness = joint_softness,
                             .held_share = Real(0.5),
                             .push_share = push_share,
@@ -106,22 +107,22 @@ void advance_soft_step(StepContext &context) {
     prepare_joint_columns(context);
     const bool has_particles = context.active.has_particles;
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        // There and back, then back and there: one pass leaves most to the points that come last,
-        // and always the same ones would feed slow sways: a pyramid of base 25 would never rest,
-        // and what is heavy on light would walk.
+        // Forwards then backwards, in the next substep the other way round: a pass leaves most to
+        // the points visited last, and if those were always the same they would feed slow swaying:
+        // a pyramid of base 25 would never come to rest, and heavy bodies on light ones would walk.
         contact_bias.backwards = context.active.pace.alternates && substep % 2 == 1;
         relax_bias.backwards = context.active.pace.alternates && substep % 2 == 0;
         follow_loads(context, h);
         if (substep == 0)
             weigh_joints(context);
-        else // the poses are those of the substep before
+        else // poses are still those of the previous substep
             weigh_changed_joints(context);
         resolve_impacts(context, h);
         meet_contact_columns(context);
         begin_flights(context, gravity, h, Kick::around);
         remember_joints(context);
         warm_start_joints(context, Real(0.5), Springs::midpoint);
-        turn_contact_columns(context, Real(0.5) * h); // friction takes a rider along the chord
+        turn_contact_columns(context, Real(0.5) * h); // friction carries a rider along the chord
         warm_start_contact_columns(context, Real(0.5), true);
         note_lasting_loads(context);
         if (has_particles) {
@@ -137,8 +138,8 @@ void advance_soft_step(StepContext &context) {
             }
             solve_contact_columns(context, contact_bias, h);
         }
-        // Contacts give way, joints that are solved together do not: what is jointed would be
-        // pulled apart by what it lies on, and never rest.
+        // Contacts give way, joints solved together do not: jointed bodies would be pulled apart by
+        // whatever they rest on, and never come to rest.
         hold_touched_groups(context, holding);
         end_flights(context, h, Kick::around);
         if (has_particles)
@@ -163,7 +164,7 @@ void advance_soft_step(StepContext &context) {
         }
         hold_touched_groups(context, relaxing);
         recall_borne(context);
-        store_joint_columns(context); // for what the next substep makes of their loads
+        store_joint_columns(context); // the next substep's follow_loads reads them
         if (has_particles)
             restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
     }

@@ -1,8 +1,8 @@
 // Free bodies whose spin is split into turns about their principal axes (McLachlan 1993, "Explicit
 // Lie-Poisson Integration and the Euler Equations"; Touma and Wisdom 1994, "Lie-Poisson Integrators
 // for Rigid Body Dynamics in the Solar System"; Hairer, Lubich, Wanner 2006, "Geometric Numerical
-// Integration", sec. VII.5.3). Second order and symplectic: energy errs by the square of the step
-// and stays there; the angular momentum in the world is kept but for rounding. Explicit.
+// Integration", sec. VII.5.3). Second order and symplectic: the energy error is of the order of the
+// step squared and does not grow; world angular momentum is conserved up to rounding. Explicit.
 #include "engine/dynamics/methods/parts/free_substeps.h"
 
 #include <array>
@@ -13,7 +13,7 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // The flow of the kinetic energy's part M_k^2 / (2 I_k) over h: the body turns about its axis k by
-// h M_k / I_k, and its angular momentum M, in the body's axes, as far the other way (Hairer,
+// h M_k / I_k, and its angular momentum M, in body axes, by the same angle the other way (Hairer,
 // Lubich, Wanner 2006, sec. VII.5.3, "Splitting Methods").
 void turn_about(std::size_t k, const Body &body, Real h, Quat &rotation, Vec3 &momentum) {
     const int a = static_cast<int>((k + 1) % 3);
@@ -25,7 +25,7 @@ void turn_about(std::size_t k, const Body &body, Real h, Quat &rotation, Vec3 &m
     Vec3 part{Real(0)};
     part[axis] = s;
     rotation = rotation * Quat{c, part.x, part.y, part.z};
-    // By the double angle, as what is left of M after (1 - cos, sin): small where the turn is.
+    // By the double angle, as changes to M by 1 - cos and sin: small when the turn is.
     const Real less = Real(2) * s * s;
     const Real sine = Real(2) * s * c;
     const Real before = momentum[a];
@@ -33,7 +33,7 @@ void turn_about(std::size_t k, const Body &body, Real h, Quat &rotation, Vec3 &m
     momentum[b] -= sine * before + less * momentum[b];
 }
 
-// Strang's composition: half of the first and second, all of the third, and back.
+// Strang's composition: half of the first and second, all of the third, then back.
 void split_turn(SolverBody &motion, const Body &body, Real h) {
     struct Part {
         std::size_t axis;

@@ -1,10 +1,10 @@
-// Stormer-Verlet for free bodies, particles and springs, as drift, kick, drift: the places half way
-// obey x(n+1) - 2 x(n) + x(n-1) = h^2 a(x(n)) (Verlet 1967; Hairer, Lubich, Wanner 2006, "Geometric
-// Numerical Integration", section I.1.4), and nothing has to be remembered of the step before.
-// Second order, symplectic; one evaluation a substep.
+// Stormer-Verlet for free bodies, particles and springs, as drift, kick, drift: the midpoint
+// positions obey x(n+1) - 2 x(n) + x(n-1) = h^2 a(x(n)) (Verlet 1967; Hairer, Lubich, Wanner 2006,
+// "Geometric Numerical Integration", section I.1.4), and nothing has to be remembered from the
+// previous step. Second order, symplectic; one evaluation per substep.
 //
-// What depends on velocities is taken at the mean of those before and after the kick, by one
-// correction more.
+// Velocity-dependent forces are taken at the mean of the velocities before and after the kick, by
+// one extra correction.
 #include "engine/dynamics/method.h"
 
 namespace plumb::inline PLUMB_PRECISION {

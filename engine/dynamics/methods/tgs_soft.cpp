@@ -1,12 +1,12 @@
-// TGS Soft: small substeps, soft contacts and joints, and a relaxing pass that takes the softness'
-// push out of the velocities again; bounces once, at the end of the step. Catto 2024, "Solver2D";
+// TGS Soft: small substeps, soft contacts and joints, and a relaxation pass that removes the
+// softness push from the velocities; bounces once, at the end of the step. Catto 2024, "Solver2D";
 // Macklin et al. 2019, "Small Steps in Physics Simulation", for why substeps beat iterations.
 //
-// As there contacts are twice as stiff against what does not move. What differs: lever arms are
+// As there, contacts are twice as stiff against immovable bodies. What differs: lever arms stay
 // those of the step's start, as in that article's Soft Step (turned with their bodies, they make
-// balls that roll gain a tenth of their speed, and 2.7 times of it over tiles); and the frequencies
-// are shares of the substep rate, without a cap in hertz. Bounces, joints' frequency and damping,
-// and the push velocity are ours.
+// rolling balls gain a tenth of their speed, and 2.7 times of it over tiles); and frequencies are
+// fractions of the substep rate, without a cap in hertz. Bounces, joint frequency and damping, and
+// the push velocity are ours.
 #include "engine/dynamics/method.h"
 
 namespace plumb::inline PLUMB_PRECISION {

@@ -1,8 +1,8 @@
-// Velocity Verlet for free bodies, particles and springs: half a kick, drift, half a kick (Swope,
+// Velocity Verlet for free bodies, particles and springs: half kick, drift, half kick (Swope,
 // Andersen, Berens, Wilson 1982; Hairer, Lubich, Wanner 2006, "Geometric Numerical Integration",
 // eq. (I.1.17)). Second order, symplectic; the last evaluation is the next substep's first.
 //
-// What depends on velocities is taken at those of the end, by one correction more.
+// Velocity-dependent forces are taken at the end velocities, by one extra correction.
 #include "engine/dynamics/method.h"
 
 namespace plumb::inline PLUMB_PRECISION {

@@ -1,15 +1,16 @@
 // XPBD for rigid bodies: Mueller, Macklin, Chentanez, Jeschke, Kim 2020, "Detailed Rigid Body
 // Simulation with Extended Position Based Dynamics", algorithm 2, and Macklin, Mueller, Chentanez
 // 2016, "XPBD: Position-Based Simulation of Compliant Constrained Dynamics", eqs. (18) and (26) for
-// what is compliant. Poses are predicted, then corrected by each constraint in turn, along its
-// direction at the present poses; velocities are what the poses did within the substep, and are
-// corrected for dynamic friction and restitution. Nothing is remembered from substep to substep.
+// compliant constraints. Poses are predicted, then corrected by each constraint in turn, along its
+// direction at the present poses; velocities follow from the change in pose over the substep and
+// are then corrected for dynamic friction and restitution. Nothing is remembered from substep to
+// substep.
 //
-// First order, and dissipative: the direction of a joint at the predicted pose takes energy away as
-// it turns, and turning by the normalised quaternion takes a spin's. As published but for this:
-// friction's bound is an impulse here (the paper's mixes it with a speed; Catto 2024, "Solver2D",
-// notes the same), restitution_threshold stands for the paper's 2 |g| h, spin is gyroscopic by the
-// implicit rule that all methods share.
+// First order and dissipative: a joint that turns loses energy because its direction is taken at
+// the predicted pose, and a spin because it turns by the normalised quaternion. As published
+// except: friction's bound is an impulse here (the paper's mixes it with a speed; Catto 2024,
+// "Solver2D", notes the same); restitution_threshold replaces the paper's 2 |g| h; gyroscopic spin
+// uses the implicit rule that all methods share.
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
 #include "engine/dynamics/methods/parts/pose_correction.h"
@@ -60,7 +61,7 @@ void correct(const RowBlock &rows, SolverBody &a, SolverBody &b, const Vec3 &p, 
     }
 }
 
-// Rigid rows all at once, along their error: the paper's vector constraints.
+// All rigid rows together, along their error: the paper's vector constraints.
 void solve_rigid(JointConstraint &joint, SolverBody &a, SolverBody &b, Real h) {
     Vec3 error = joint.rows.error;
     if (joint.rows.bounds == RowBounds::at_least)
@@ -78,7 +79,7 @@ void solve_rigid(JointConstraint &joint, SolverBody &a, SolverBody &b, Real h) {
     correct(joint.rows, a, b, along(joint.rows, change), h);
 }
 
-// One row of a spring, whose frequency and damping are those of the mass that it moves.
+// One row of a spring; its frequency and damping are those of the mass that it moves.
 void solve_spring(JointConstraint &joint, SolverBody &a, SolverBody &b, int row, Real h) {
     const RowBlock &rows = joint.rows;
     const Real error = rows.error[row];
@@ -133,7 +134,7 @@ void solve_joint_poses(StepContext &context, Real h) {
                    });
 }
 
-// Motors drive speeds, by as much as their force does in a substep.
+// Motors act on velocities, limited to their force over a substep.
 void solve_motors(StepContext &context, Real h) {
     for_each_block(context, [&](JointConstraint &joint, SolverBody &a, SolverBody &b,
                                 const auto &refresh) {
@@ -161,7 +162,7 @@ void solve_motors(StepContext &context, Real h) {
     });
 }
 
-// No constraint bears anything yet; how fast what touches approaches.
+// Clears accumulated impulses and notes approach speeds.
 void begin(StepContext &context) {
     remember_joints(context);
     remember_contacts(context);
@@ -169,7 +170,7 @@ void begin(StepContext &context) {
     begin_particle_corrections(context);
 }
 
-// What constraints bore in the last substep, as impulses.
+// Stores the last substep's lambdas as impulses.
 void store(StepContext &context, Real h) {
     for (JointConstraint &joint : context.scratch.joints)
         joint.impulse /= h;

@@ -1,4 +1,4 @@
-// The chart calls true enough what `check` calls within tolerance, and nothing else.
+// A chart calls a run fine exactly when `check` finds it within tolerance.
 #include "app/lab/chart/chart.h"
 #include "app/lab/run/check.h"
 
@@ -68,7 +68,7 @@ TEST_P(ChartAndCheck, Agree) {
     expect_agreement(chart);
 }
 
-// Settings of which a chart by the first expectation alone said another thing than `check`.
+// Settings where a chart that used only the first expectation disagreed with `check`.
 INSTANTIATE_TEST_SUITE_P(Settings, ChartAndCheck,
                          testing::Values(Case{"ten_boxes", "stacking/ten_box_stack.toml",
                                               "sequential_impulses", "substeps=4,8",
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Settings, ChartAndCheck,
                                               "substeps=1", "iterations=1"}),
                          [](const auto &each) { return std::string(each.param.name); });
 
-// Free fall, held to things drawn at random near what comes out: about half of them are missed.
+// Free fall against random expectations close to the actual result: about half are missed.
 TEST(ChartAndCheck, AgreeOnAnythingThatABallIsHeldTo) {
     Random random(11);
     int fine = 0, outside = 0;
@@ -157,8 +157,8 @@ TEST(ChartAndCheck, AgreeOnProbes) {
     }
 }
 
-// The dominoes fall with every setting that runs them: nothing is lacking from that bound, and the
-// chart tells them apart by what else the scene expects.
+// The dominoes fall with every setting that runs them, so that bound is always met, and the chart
+// tells the settings apart by the scene's other expectations.
 TEST(ChartAndCheck, TheDominoesHaveSomethingToShow) {
     ChartOptions options;
     options.methods = {"soft_step"};

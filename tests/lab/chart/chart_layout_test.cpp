@@ -50,7 +50,7 @@ TEST(ChartLayout, LabelsOverlapNothing) {
                 ASSERT_NE(label.mark, layout.labels[j].mark);
             }
             for (std::size_t m = 0; m < layout.marks.size(); ++m) {
-                // The label's nearest point to the mark's centre: outside the round mark.
+                // The label's closest point to the mark's centre: outside the round mark.
                 const glm::vec2 p = layout.marks[m];
                 const glm::vec2 nearest = glm::max(label.box.min, glm::min(p, label.box.max));
                 ASSERT_GE(std::hypot(nearest.x - p.x, nearest.y - p.y), mark_radius)
@@ -61,7 +61,7 @@ TEST(ChartLayout, LabelsOverlapNothing) {
 }
 
 TEST(ChartLayout, EveryMarkWithRoomHasItsLabel) {
-    // On a diagonal, 40 pixels apart and more: nothing is in the way.
+    // On a diagonal, at least 40 pixels apart: nothing is in the way.
     ChartContent content;
     content.series.push_back({"one", 0, {{}}});
     for (int i = 0; i < 10; ++i) {
@@ -75,7 +75,7 @@ TEST(ChartLayout, EveryMarkWithRoomHasItsLabel) {
     const ChartLayout layout = lay_out(content, text_size);
     EXPECT_EQ(layout.labels.size(), 10U);
     for (const PlacedLabel &label : layout.labels) {
-        // And near it: within the mark's radius, the widest gap and half the text.
+        // And close to it: within the mark's radius, the widest gap and half the text.
         const glm::vec2 centre = 0.5f * (label.box.min + label.box.max);
         const glm::vec2 p = layout.marks[label.mark];
         EXPECT_LT(std::hypot(centre.x - p.x, centre.y - p.y), 45);
@@ -96,8 +96,8 @@ TEST(ChartLayout, PixelsFollowTheLogarithms) {
     EXPECT_FALSE(layout.failed_line);
     EXPECT_FALSE(layout.zero_line);
     EXPECT_FALSE(layout.limit_line);
-    // Equal ratios are equal distances; dearer is to the right, worse is above. Pixels are floats
-    // below 1200: rounding stays below 1e-3.
+    // Equal ratios are equal distances; costlier is to the right, worse is higher up. Pixels are
+    // floats below 1200: round-off stays below 1e-3.
     EXPECT_NEAR(layout.marks[1].x - layout.marks[0].x, layout.marks[2].x - layout.marks[1].x, 1e-3);
     EXPECT_GT(layout.marks[1].x, layout.marks[0].x);
     EXPECT_NEAR(layout.marks[1].y - layout.marks[0].y, layout.marks[2].y - layout.marks[1].y, 1e-3);
@@ -134,14 +134,14 @@ TEST(ChartLayout, FailuresGoToTheTopAndZerosToTheBottom) {
     EXPECT_GT(layout.marks[2].y, layout.field.min.y);
     EXPECT_LT(layout.marks[2].y, *layout.limit_line);
     EXPECT_LT(*layout.limit_line, layout.field.max.y);
-    // The staircase goes right and down only.
+    // The staircase only goes right and down.
     for (std::size_t i = 1; i < layout.pareto_steps.size(); ++i) {
         EXPECT_GE(layout.pareto_steps[i].x, layout.pareto_steps[i - 1].x);
         EXPECT_GE(layout.pareto_steps[i].y, layout.pareto_steps[i - 1].y);
     }
 }
 
-// A bound that every run keeps: the errors are exactly 0, and that is all there is to show.
+// A bound that every run keeps: all errors are exactly 0, and there is nothing else to show.
 TEST(ChartLayout, NothingButZeros) {
     ChartContent content;
     content.limit = 0;
@@ -161,9 +161,9 @@ TEST(ChartLayout, NothingButZeros) {
     EXPECT_TRUE(layout.plot.contains(layout.limit_text));
     for (const glm::vec2 &mark : layout.marks) {
         EXPECT_EQ(mark.y, *layout.zero_line);
-        EXPECT_GT(mark.y, *layout.limit_line); // in the band of what is true enough
+        EXPECT_GT(mark.y, *layout.limit_line); // inside the band of runs within tolerance
     }
-    // One that falls short brings the scale back, and zeros go to the floor.
+    // One run with an error brings the scale back, and zeros go to the bottom.
     content.marks[0].error = 0.1;
     const ChartLayout scale = lay_out(content, text_size);
     EXPECT_FALSE(scale.error_ticks.empty());

@@ -1,4 +1,4 @@
-// Charts that are interrupted, cut into shards and put together again.
+// Charts that are interrupted, sharded and merged again.
 #include "app/lab/chart/chart_rows.h"
 
 #include "app/lab/provenance.h"
@@ -24,7 +24,7 @@ KnownRuns known(const std::string &text, const std::string &fingerprint = "f") {
     return read_known_runs(in, falling_scene(), fingerprint);
 }
 
-// Counts how often a simulation is made.
+// Counts how many simulations are made.
 MakeSimulation counting(int &made, int broken) {
     return [&made, inner = fakes(broken)](const SceneDesc &scene, const RunOptions &options) {
         ++made;
@@ -45,7 +45,7 @@ TEST(ChartRows, WhatIsKnownIsNotRunAgain) {
     EXPECT_TRUE(known(whole, "another").empty());
     // What a killed program leaves: its last row is cut off.
     EXPECT_EQ(known(whole.substr(0, whole.size() - 5)).size(), 3U);
-    // Another scene's rows are not understood.
+    // Rows of another scene are not accepted.
     SceneDesc other = falling_scene();
     other.expects[0].name = "z";
     std::istringstream in(whole);
@@ -63,7 +63,7 @@ TEST(ChartRows, AnInterruptedChartGoesOn) {
     options.stop = {};
     options.known = known(table(part));
     EXPECT_EQ(options.known.size(), 2U);
-    // One that is not true stays as it is: it is not judged anew.
+    // A tampered result stays as it is: known runs are not judged again.
     for (auto &[key, run] : options.known)
         run.run.outcomes[0] = judge(run.run.outcomes[0].desc, 1.25);
     const SceneChart chart = chart_scene(falling_scene(), options);
@@ -105,7 +105,7 @@ TEST(ChartRows, ShardsMakeTheWholeChart) {
         EXPECT_EQ(a.point, b.point);
         EXPECT_EQ(b.timings.size(), a.timings.size());
     }
-    SceneDesc other = scene; // which expects the same
+    SceneDesc other = scene; // has the same expectations
     other.name = "another";
     EXPECT_THROW((void)merged_chart(other, tables), std::invalid_argument);
     tables.pop_back();

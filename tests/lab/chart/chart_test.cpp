@@ -1,4 +1,4 @@
-// Charts of fake simulations, whose errors are known, and of one real scene.
+// Charts of fake simulations with known errors, and of one real scene.
 #include "app/lab/chart/chart.h"
 
 #include "app/lab/chart/chart_image.h"
@@ -39,15 +39,15 @@ TEST(Chart, ErrorsAreThoseOfAFullRun) {
             EXPECT_EQ(run.run.divergence->step, 30U);
             continue;
         }
-        EXPECT_NEAR(run.error, 1.0 / n, 1e-12); // rounding of a number near 1
+        EXPECT_NEAR(run.error, 1.0 / n, 1e-12); // round-off of a number near 1
         EXPECT_EQ(run.status, n == 1 ? ChartStatus::outside : ChartStatus::fine);
         EXPECT_EQ(run.timings.size(), 3U);
-        // The fake's work: so many passes a step, 60 steps a second.
+        // The fake's work: this many passes a step, 60 steps a second.
         EXPECT_NEAR(run.body_passes, 60 * 2, 1e-9);
         EXPECT_NEAR(run.constraint_passes, 60 * 3, 1e-9);
     }
     std::vector<CostAndError> choices;
-    for (const ChartRun &run : chart.runs) // what is not true enough is never on it
+    for (const ChartRun &run : chart.runs) // runs outside the tolerance are never on the front
         choices.push_back({run.cost, run.status == ChartStatus::fine
                                          ? run.error
                                          : std::numeric_limits<double>::infinity()});
@@ -71,7 +71,7 @@ TEST(Chart, ErrorsOfACurveAreItsWorstOrItsMean) {
         ASSERT_EQ(chart.runs.size(), 4U);
         for (const ChartRun &run : chart.runs) {
             const double error = (mean ? 0.5 : 1) / run.resolved.settings.substeps;
-            EXPECT_NEAR(run.error, error, 1e-12); // rounding of numbers near 1
+            EXPECT_NEAR(run.error, error, 1e-12); // round-off of numbers near 1
             EXPECT_EQ(run.status, error > 0.3 ? ChartStatus::outside : ChartStatus::fine);
         }
     }
@@ -83,7 +83,7 @@ TEST(Chart, FixedAndAdaptiveSubstepsAreTwoCurves) {
     options.methods = {"soft_step", "tgs_soft"};
     options.sweep = {parse_sweep("substeps=1,4")};
     SceneDesc scene = falling_scene();
-    scene.world.settings.give(&StepSettings::max_substeps, 1); // of its own; the default is 128
+    scene.world.settings.give(&StepSettings::max_substeps, 1); // the scene's own; default 128
     const SceneChart chart = chart_scene(scene, options);
     std::vector<std::pair<int, int>> runs;
     for (const ChartRun &run : chart.runs)
@@ -100,7 +100,7 @@ TEST(Chart, FixedAndAdaptiveSubstepsAreTwoCurves) {
     std::ostringstream table;
     print(table, chart);
     EXPECT_NE(table.str().find(" 4..128 "), std::string::npos) << table.str();
-    // Where the most is given, or swept, that alone.
+    // If the maximum is given or swept, only that one.
     options.base.settings.give(&StepSettings::max_substeps, 8);
     EXPECT_EQ(chart_scene(scene, options).runs.size(), 4U);
     options.base = {};
@@ -218,8 +218,8 @@ TEST(Chart, WithoutExpectationsTheErrorThatAppliesIsCharted) {
     EXPECT_EQ(chart.runs.at(0).error, 0.25);
 }
 
-// As falling_scene, and the ball is not to go farther than 1.3 m: 1 substep misses both, 2 substeps
-// the way alone, at 1.5 of 1.3 m; 4 and 8 meet both.
+// falling_scene, but the ball must also go no farther than 1.3 m. 1 substep misses both; 2 substeps
+// miss only the distance, with 1.5 m instead of 1.3 m; 4 and 8 meet both.
 SceneDesc two_expectations() {
     SceneDesc scene = falling_scene();
     scene.expects[0].tolerance = 0.6;
@@ -266,7 +266,7 @@ TEST(Chart, TheErrorIsTheWorstOfAllInUnitsOfItsTolerance) {
     std::ostringstream table;
     print(table, chart);
     EXPECT_NE(table.str().find("outside; worst: y"), std::string::npos) << table.str();
-    // On the picture a letter each, and what the letters stand for.
+    // The picture shows one letter each, and a key to the letters.
     const ChartContent content = chart_content(chart, "");
     EXPECT_EQ(content.marks.at(0).label, "1 a");
     EXPECT_EQ(content.marks.at(1).label, "2 b");
@@ -290,7 +290,7 @@ TEST(Chart, OneOfSeveralExpectationsIsInItsOwnUnitAndTheVerdictStaysTheScenes) {
     const ChartContent content = chart_content(chart, "");
     EXPECT_TRUE(content.worst.empty());
     EXPECT_EQ(content.marks.at(1).label, "2");
-    EXPECT_TRUE(content.marks[1].outside); // below the line, and yet not true enough
+    EXPECT_TRUE(content.marks[1].outside); // below the line, and yet outside its tolerance
     EXPECT_LT(content.marks[1].error, *content.limit);
     EXPECT_FALSE(content.marks[1].pareto);
     options.expect = "z";
@@ -315,7 +315,7 @@ TEST(Chart, LinesJoinTheFirstAxisOfEachMethod) {
     EXPECT_EQ(content.footer.back(), "command");
 }
 
-// Free fall from rest is what every method can do; the truth is g t^2 / 2.
+// Every method can do free fall from rest; the truth is g t^2 / 2.
 TEST(Chart, RealMethodsOnFreeFall) {
     SceneDesc scene = falling_scene();
     scene.world.precision = Precision::f64;
@@ -351,10 +351,10 @@ TEST(ChartImage, IsDrawnAndDependsOnItsContent) {
             colours.insert((c.r << 16) | (c.g << 8) | c.b);
             inked += c != background ? 1U : 0U;
         }
-    // The plot alone is white on the tinted background: 836 x 536 of 1200 x 800.
+    // The plot itself is white on the tinted background: 836 x 536 of 1200 x 800.
     EXPECT_GT(inked, 836U * 500U);
-    EXPECT_GT(colours.size(), 100U); // smooth edges of lines and letters
-    // The last mark's own blue is there, at its place.
+    EXPECT_GT(colours.size(), 100U); // antialiased lines and letters
+    // The last mark's own blue is there, in its place.
     const ChartContent content = chart_content(chart, "command");
     const ChartLayout layout =
         lay_out(content, [](std::string_view, float) { return glm::vec2(10, 10); });
@@ -362,8 +362,8 @@ TEST(ChartImage, IsDrawnAndDependsOnItsContent) {
         return image.at(static_cast<int>(layout.marks[i].x), static_cast<int>(layout.marks[i].y));
     };
     EXPECT_EQ(at_mark(3), glm::u8vec3(0, 0x72, 0xb2));
-    EXPECT_EQ(at_mark(0), glm::u8vec3(255));  // hollow, for it is outside
-    EXPECT_EQ(painter.paint(content), image); // the same again
+    EXPECT_EQ(at_mark(0), glm::u8vec3(255));  // hollow, because it is outside
+    EXPECT_EQ(painter.paint(content), image); // the same result again
     chart.runs[0].error *= 2;
     EXPECT_NE(painter.paint(chart_content(chart, "command")), image);
 }

@@ -19,7 +19,7 @@ TEST(Convergence, TheOrderIsThatOfThePowerLawAlone) {
     std::vector<std::pair<double, double>> points;
     for (int k = 0; k < 8; ++k) {
         const double dt = std::pow(0.5, k);
-        // Too coarse for two steps, then 3 dt^2, then what rounding leaves.
+        // Two steps that are too coarse, then 3 dt^2, then the round-off floor.
         points.emplace_back(dt, k < 2 ? 1e6 * std::pow(dt, 9) : std::max(3 * dt * dt, 2e-3));
     }
     const auto fitted = fitted_order(points);
@@ -127,12 +127,12 @@ TEST(ChartBudget, IsALineWithTheCornerShadedOrSaysWhereItIs) {
     content.budget = 1000;
     layout = lay_out(content, measure);
     EXPECT_FALSE(layout.budget_line);
-    EXPECT_EQ(layout.corner->max.x, layout.plot.max.x); // all that is true enough
+    EXPECT_EQ(layout.corner->max.x, layout.plot.max.x); // everything within tolerance
     EXPECT_EQ(layout.budget_label, "60 Hz: 1 ks »");
     content.budget = 1e-6;
     layout = lay_out(content, measure);
     EXPECT_FALSE(layout.budget_line);
-    EXPECT_FALSE(layout.corner); // nothing is
+    EXPECT_FALSE(layout.corner); // nothing is within the budget
 }
 
 TEST(ChartFailures, ACrossSaysWhy) {
@@ -155,7 +155,7 @@ TEST(ChartSvg, SaysWhatThePictureSays) {
     for (const char *text : {">Fall &lt; rise &amp; so on: what truth costs<", ">the command<",
                              ">2 not finite<", ">8<", ">Soft step<", "#0072b2"})
         EXPECT_NE(svg.find(text), std::string::npos) << text;
-    EXPECT_EQ(svg.find('&'), svg.find("&lt;")); // none that is bare before it
+    EXPECT_EQ(svg.find('&'), svg.find("&lt;")); // no bare ampersand before it
     std::size_t opened = 0, closed = 0;
     for (std::size_t i = svg.find("<text"); i != std::string::npos; i = svg.find("<text", i + 1))
         ++opened;

@@ -1,4 +1,4 @@
-// A scene whose errors are known, for tests of charts.
+// A scene with known errors, for tests of charts.
 #pragma once
 
 #include "app/lab/chart/chart.h"
@@ -28,7 +28,7 @@ inline SceneDesc falling_scene() {
     return scene;
 }
 
-// Ends at x = 1 + 1 / substeps; with `broken` substeps it diverges half way.
+// Ends at x = 1 + 1 / substeps; with `broken` substeps it diverges halfway.
 inline MakeSimulation fakes(int broken = 0) {
     return [broken](const SceneDesc &scene, const RunOptions &options) {
         const ResolvedRun run = resolve_run(scene, options);

@@ -63,7 +63,7 @@ TEST(LogAxis, TicksAscendLieInTheRangeAndAreLabelledSparingly) {
             }
             labels += ticks[i].label.empty() ? 0 : 1;
         }
-        // A range of d decades meets at most d + 1 whole powers, or 3 d + 1 with 2s and 5s.
+        // A range of d decades holds at most d + 1 powers of ten, or 3 d + 1 ticks with 2s and 5s.
         ASSERT_LE(labels, 11);
         ASSERT_GE(labels, 2);
     }

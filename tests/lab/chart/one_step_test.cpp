@@ -83,7 +83,7 @@ TEST(OneStep, AFrameIsAsManyStepsAsMake60Hz) {
     options.duration = 0.1;
     const OneStepStates states(scene, options);
     EXPECT_DOUBLE_EQ(states.frame(), 1.0 / 60);
-    EXPECT_EQ(states.instants(), 3U); // of six, half to remember by
+    EXPECT_EQ(states.instants(), 3U); // of six; half only warm up the solver
     RunOptions run;
     run.method = "rk4";
     run.settings.give(&StepSettings::dt, 1.0 / 50);
@@ -127,7 +127,7 @@ TEST(OneStep, WhatASolverRemembersIsItsOwn) {
     EXPECT_GE(warm.worst, warm.rms);
 }
 
-// A box that tumbles: the accurate run is soft_step's, and these take its contacts otherwise.
+// A tumbling box: the accurate run uses soft_step, and these methods treat contacts differently.
 TEST(OneStep, AnotherMethodWithAShortDtComesToTheSame) {
     const SceneDesc scene = scene_of(R"(
 [[body]]
@@ -173,7 +173,7 @@ angular_velocity = [0, 2, 0]
     options.duration = 1;
     const OneStepStates states(scene, options);
     const OneStepStates::Make make = maker("rk4");
-    EXPECT_LT(states.error_of(make).worst, 1e-10); // rk4 errs by (w h / 2)^5 / 120, too
+    EXPECT_LT(states.error_of(make).worst, 1e-10); // rk4 itself errs by (w h / 2)^5 / 120
     OneStepError error = states.error_of([&](SceneDesc state) {
         state.bodies[0].angular_velocity = {};
         return make(state);
@@ -222,7 +222,7 @@ TEST(OneStepChart, IsOfTheseErrorsAndComesBackFromItsTables) {
         EXPECT_EQ(run.error, run.one_step.rms);
         EXPECT_GT(run.cost, 0);
     }
-    EXPECT_NEAR(chart.runs[0].error / chart.runs[1].error, 4, 0.5); // of second order
+    EXPECT_NEAR(chart.runs[0].error / chart.runs[1].error, 4, 0.5); // second order
     std::ostringstream table;
     print(table, chart);
     EXPECT_NE(table.str().find("m  fine, Pareto front; farthest "), std::string::npos)
@@ -239,7 +239,7 @@ TEST(OneStepChart, IsOfTheseErrorsAndComesBackFromItsTables) {
     for (std::size_t i = 0; i < 4; ++i)
         EXPECT_EQ(merged.runs[i].error, chart.runs[i].error);
 
-    // Gone on from, nothing but the accurate run is run again.
+    // Resumed, only the accurate run is repeated.
     std::istringstream in(csv.str());
     options.known = read_known_runs(in, scene, fingerprint);
     EXPECT_EQ(options.known.size(), 4U);
@@ -289,7 +289,7 @@ TEST(OneStepChart, WhatIsNotTenTimesAsFarOffAsTheAccurateRunIsNotToldApart) {
     EXPECT_TRUE(chart.told_apart(chart.runs[0]));
     EXPECT_FALSE(chart.told_apart(chart.runs[1]));
     EXPECT_TRUE(chart.runs[0].pareto && chart.runs[1].pareto);
-    EXPECT_FALSE(chart.runs[2].pareto); // dearer, and not known to be truer
+    EXPECT_FALSE(chart.runs[2].pareto); // costs more, and not known to be more accurate
     const ChartContent content = chart_content(chart, "");
     EXPECT_EQ(content.floor_label, "not resolved below 10 µm");
     const auto size = [](std::string_view text, float height) {
@@ -299,7 +299,7 @@ TEST(OneStepChart, WhatIsNotTenTimesAsFarOffAsTheAccurateRunIsNotToldApart) {
     ASSERT_TRUE(layout.floor_line);
     EXPECT_GT(*layout.floor_line, layout.marks[0].y);
     EXPECT_LT(*layout.floor_line, layout.marks[1].y);
-    chart.steps_from->own_error.rms = 1e-12; // far below them all: no room is spent on it
+    chart.steps_from->own_error.rms = 1e-12; // far below all of them: it takes no space
     EXPECT_FALSE(lay_out(chart_content(chart, ""), size).floor_line);
 }
 

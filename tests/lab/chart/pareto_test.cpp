@@ -9,7 +9,7 @@
 namespace plumb {
 namespace {
 
-// By the definition: all pairs.
+// By definition: compares all pairs.
 std::vector<bool> brute_force(const std::vector<CostAndError> &choices) {
     std::vector<bool> front;
     for (const CostAndError &a : choices) {

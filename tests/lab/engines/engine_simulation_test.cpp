@@ -1,4 +1,4 @@
-// A pretended engine, whose motion is a closed formula, seen through the adaptor.
+// A fake engine with closed-form motion, seen through the adaptor.
 #include "app/lab/engines/engine_simulation.h"
 
 #include "app/lab/chart/chart.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double gravity = 9.81;
 
-// Falls as it should, but for an error that an iteration each halves.
+// Falls correctly except for an error that each iteration halves.
 class FallingEngine final : public Engine {
   public:
     explicit FallingEngine(const EngineScene &scene) : scene_(scene) {}
@@ -76,7 +76,7 @@ TEST(EngineSimulation, IsMeasuredByItsPosesAndVelocities) {
     const SceneDesc scene = ball_above_floor();
     EXPECT_EQ(why_not(engine, scene), "");
     GivenSettings given;
-    given.give(&StepSettings::iterations, 40); // as good as exact
+    given.give(&StepSettings::iterations, 40); // practically exact
     given.give(&StepSettings::substeps, 4);
     const ResolvedRun run = resolve_run(engine, scene, given);
     const auto simulation = engine_simulation(engine, scene, run);
@@ -89,7 +89,7 @@ TEST(EngineSimulation, IsMeasuredByItsPosesAndVelocities) {
     EXPECT_NEAR(now.kinetic_energy, 0.5 * 2 * gravity * gravity, 1e-9);
     EXPECT_NEAR(now.potential_energy, 2 * gravity * (5.2 - 0.5 * gravity), 1e-9);
     EXPECT_NEAR(now.linear_momentum.y, -2 * gravity, 1e-9);
-    EXPECT_NEAR(now.max_penetration, 0.5 - (5.2 - 0.5 * gravity), 1e-9); // the ball's, in the plane
+    EXPECT_NEAR(now.max_penetration, 0.5 - (5.2 - 0.5 * gravity), 1e-9); // ball in plane
     EXPECT_EQ(simulation->report().constraint_passes, 4U * 5);
     EXPECT_TRUE(simulation->report().finite);
     simulation->restore(*start);
@@ -117,7 +117,7 @@ TEST(EngineSimulation, StandsOnTheChartBesideTheMethods) {
     EXPECT_EQ(chart_content(chart, "").series.back().name, "Pretended, double");
 }
 
-// Semi-implicit Euler, which remembers how often it was put.
+// Semi-implicit Euler that counts the calls of put().
 class SteppedEngine final : public Engine {
   public:
     explicit SteppedEngine(const EngineScene &scene) : dt_(scene.dt()) {
@@ -161,7 +161,7 @@ TEST(EngineSimulation, SingleStepsAreOfOneEngineThatIsPutFromStateToState) {
     const double h = 1.0 / 120; // g h t / 2
     EXPECT_NEAR(run.one_step.rms, 0.5 * gravity * h / 60, 1e-9);
     EXPECT_NEAR(run.one_step.worst, run.one_step.rms, 1e-9);
-    EXPECT_EQ(SteppedEngine::most_puts, 29); // of 30 states; with the first it was made
+    EXPECT_EQ(SteppedEngine::most_puts, 29); // of 30 states; it was created with the first
 }
 
 TEST(EngineSimulation, WhatTheAdapterDoesNotSupportIsLeftOutWithAReason) {

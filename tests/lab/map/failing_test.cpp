@@ -102,7 +102,7 @@ TEST(Failing, GoesByTheQuantityThatWasMissed) {
               Failing::never_rests);
 }
 
-// "drift" and "max_abs" measure how far energy went, not which way.
+// "drift" and "max_abs" measure how far the energy went, not which way.
 TEST(Failing, TellsEnergyLostFromEnergyGained) {
     for (const char *reduce : {"drift", "max_abs"}) {
         ExpectOutcome outcome = missed("e", "energy_error", Is::at_most, 0.01, 0.2);
@@ -129,7 +129,7 @@ TEST(Failing, AsksNothingOfItsOwnWhereTheSceneDoes) {
     EXPECT_EQ(why_failed(scene, run, "").failing, Failing::none);
     scene.expects.clear();
     EXPECT_EQ(why_failed(scene, run, "").failing, Failing::energy_grew);
-    // A spring brings its own energy, and its drift is its motion.
+    // A spring adds its own energy, and its drift is its motion.
     scene.joints.emplace_back().frequency = 2;
     run.end_joint_drift = 1;
     EXPECT_EQ(why_failed(scene, run, "").failing, Failing::penetration);
@@ -174,7 +174,7 @@ TEST(PassageWatch, LetsABodyGoBackOrAround) {
     EXPECT_EQ(passage({{-1, 0, 0}, {-0.05, 0, 0}, {-0.3, 0, 0}}), "");
     EXPECT_EQ(passage({{-1, 0, 0}, {-1, 4, 0}, {1, 4, 0}, {1, 0, 0}}), "");
     EXPECT_EQ(passage({{-1, 2.9, 0}, {0, 2.9, 0}, {0, 3.5, 0}}), ""); // pushed out over the top
-    EXPECT_EQ(passage({{0, 0, 0}, {1, 0, 0}}), "");                   // it began inside
+    EXPECT_EQ(passage({{0, 0, 0}, {1, 0, 0}}), "");                   // starts inside
     EXPECT_EQ(passage({{-2, 0.95, 0}, {2, 0.95, 0}}, "pillar"), "");  // a graze
     EXPECT_EQ(passage({{-2, 0.2, 0}, {2, 0.2, 0}}, "pillar"), "ball through pillar");
 }

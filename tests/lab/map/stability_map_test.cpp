@@ -1,4 +1,4 @@
-// Maps on grids small enough to know what must come out.
+// Maps on grids small enough to know what the result must be.
 #include "app/lab/map/stability_map.h"
 
 #include "app/lab/map/map_resume.h"
@@ -17,9 +17,9 @@
 namespace plumb {
 namespace {
 
-// At rest before a wall, and struck by one ten times as heavy that touches it: it leaves at 10/11
-// of the striker's speed, and is 0.3 m from the middle of the wall, half of whose thickness and
-// half of its own size are 0.15 m.
+// Starts at rest before a wall, and is struck by a body ten times as heavy that touches it. It
+// leaves at 10/11 of the striker's speed, 0.3 m from the middle of the wall; half the wall's
+// thickness and half its own size add up to 0.15 m.
 constexpr const char *struck = R"(
 title = "Struck"
 [world]
@@ -50,7 +50,7 @@ position = [-0.5, 0, 0]
 velocity = [20, 0, 0]
 )";
 
-// Falls from rest for a second; by s = g t^2 / 2 it comes to 5.095 m, whatever the step.
+// Falls from rest for a second: 5.095 m by s = g t^2 / 2, whatever the step.
 constexpr const char *falling_ball = R"(
 [world]
 dt = "1/60"
@@ -95,7 +95,7 @@ std::string csv_of(const StabilityMap &map) {
     return csv.str();
 }
 
-// v dt = thickness + size, and v = 10/11 of the striker's.
+// v dt = thickness + size, with v = 10/11 of the striker's speed.
 double theory_dt(double speed) {
     return (0.1 + 0.2) / (speed * 10 / 11);
 }
@@ -107,7 +107,7 @@ TEST(StabilityMap, WhatIsStruckPassesAWallWhereTheoryHasItUnlessTheMethodLooksAh
     ASSERT_EQ(map.methods.size(), 4U);
     for (const MethodMap &of_method : map.methods) {
         if (of_method.method->name == "naive_impulses") {
-            // Which knows nothing of what approaches, and for which that is no limit.
+            // It ignores approaching bodies, and this is not its limit.
             ASSERT_FALSE(of_method.limits.empty());
             EXPECT_LT(of_method.limits.front().high, 0.6 * theory_dt(of_method.limits.front().y));
             continue;
@@ -117,7 +117,7 @@ TEST(StabilityMap, WhatIsStruckPassesAWallWhereTheoryHasItUnlessTheMethodLooksAh
         for (std::size_t row = 0; row < 3; ++row)
             for (std::size_t column = 0; column < 9; ++column) {
                 const double dt = map.x.values[column];
-                // Within a cell of the limit, either.
+                // Within a cell of the limit either result will do.
                 if (!looks && std::abs(std::log2(dt / theory_dt(map.y.values[row]))) <= 0.5)
                     continue;
                 const bool passes = !looks && dt > theory_dt(map.y.values[row]);
@@ -146,7 +146,7 @@ TEST(StabilityMap, WhatIsStruckPassesAWallWhereTheoryHasItUnlessTheMethodLooksAh
     }
 }
 
-// The rest of that cell is the striker, who presses on while the solver has not converged.
+// The deviation within that cell is the striker's: it pushes on until the solver converges.
 TEST(StabilityMap, AConvergedMethodPassesAWallJustWhereTheoryHasIt) {
     MapOptions options;
     options.methods = {"sequential_impulses"};
@@ -172,7 +172,7 @@ TEST(StabilityMap, TheoryIsReadFromTheScene) {
     EXPECT_EQ(curves[0].methods[0]->name, "tgs_soft");
     for (const glm::dvec2 &point : curves[0].points)
         EXPECT_NEAR(point.x, theory_dt(point.y), 1e-12);
-    // Not for a body that does not strike, nor where there is nothing to pass through.
+    // Neither for a body that strikes nothing, nor without a wall to pass through.
     EXPECT_FALSE(struck_before_wall(map.scene, "resting", 0));
     EXPECT_FALSE(struck_before_wall(map.scene, "heavy", 1));
     SceneDesc open = map.scene;
@@ -181,8 +181,8 @@ TEST(StabilityMap, TheoryIsReadFromTheScene) {
     EXPECT_TRUE(struck_before_wall(map.scene, "heavy", 0));
 }
 
-// An oscillator of omega, let go at rest: explicit methods are stable up to omega h = 2, or 2
-// sqrt(2) of RK4.
+// An oscillator of angular frequency omega, released at rest: explicit methods are stable up to
+// omega h = 2, RK4 up to 2 sqrt(2).
 TEST(StabilityMap, ASpringIsThrownWhereTheoryHasIt) {
     constexpr const char *spring = R"(
 [world]
@@ -258,7 +258,7 @@ TEST(StabilityMap, ASpringWithDampingOrANeighbourHasNoTheory) {
     EXPECT_FALSE(swings_by_itself(scene, "coil"));
 }
 
-// Watched for so many seconds; omega = 10.
+// Watched for that many seconds; omega = 10.
 std::string damped_spring(int seconds) {
     return R"(
 [world]
@@ -285,7 +285,7 @@ source = "linear stability"
 )";
 }
 
-// Along the spring x'' = -omega^2 x - (c / m) x': the longest stable step is where an eigenvalue of
+// For the spring x'' = -omega^2 x - (c / m) x', the longest stable step is where an eigenvalue of
 // the step leaves the unit circle.
 TEST(StabilityMap, ADampedSpringIsThrownWhereTheoryHasIt) {
     const std::string spring = damped_spring(20);
@@ -336,8 +336,8 @@ TEST(StabilityMap, ADampedSpringIsThrownWhereTheoryHasIt) {
     EXPECT_NEAR(longest_damped_step("explicit_euler", 10, 1).value_or(0), 0.01, 1e-12);
 }
 
-// One substep of velocity Verlet, as the method takes it: whether it shrinks x'' = -omega^2 x -
-// rate x' in the end, by the eigenvalues of its matrix.
+// Whether one substep of velocity Verlet, as the method does it, damps x'' = -omega^2 x - rate x'
+// in the long run, by the eigenvalues of its matrix.
 bool verlet_shrinks(double omega, double rate, double h) {
     const auto step = [&](double x, double v) {
         const double half = v + h / 2 * (-omega * omega * x - rate * v);
@@ -355,7 +355,7 @@ bool verlet_shrinks(double omega, double rate, double h) {
 
 TEST(StabilityMap, VelocityVerletThrowsADampedSpringWhereItsMatrixSays) {
     const std::string spring = damped_spring(40);
-    // omega = 10; from a fifth of the critical damping to four times that.
+    // omega = 10; from a fifth of critical damping to four times that.
     for (const double rate : {4.0, 20.0, 40.0, 80.0}) {
         const double h = longest_damped_step("velocity_verlet", 10, rate).value_or(0);
         EXPECT_TRUE(verlet_shrinks(10, rate, 0.999999 * h)) << rate;
@@ -382,7 +382,7 @@ TEST(StabilityMap, VelocityVerletThrowsADampedSpringWhereItsMatrixSays) {
     EXPECT_TRUE(theory_of(map, options.base).empty());
 }
 
-// A column that leans a little under a gravity that does stays so, or buckles.
+// A column that leans slightly, under slightly tilted gravity, stays that way or buckles.
 TEST(StabilityMap, AColumnOfCubesBucklesWhereGreenhillHasIt) {
     constexpr const char *column = R"(
 [world]
@@ -431,11 +431,11 @@ source = "it stands"
         }
     }
     options.base.settings.give(parse_setting("kept_travel=0.005"));
-    EXPECT_EQ(theory_of(map, options.base).size(), 1U); // of TGS Soft, which keeps none
+    EXPECT_EQ(theory_of(map, options.base).size(), 1U); // TGS Soft's, which keeps no travel
 }
 
-// Lanes whose balls start an eighth of that way on from each other: above 9/8 of the limit one at
-// least is not seen in time, below it none passes.
+// Lanes whose balls start an eighth of that distance apart: above 9/8 of the limit at least one
+// goes undetected, below the limit none passes.
 TEST(StabilityMap, WhatIsThrownPassesAWallWhereTheoryHasIt) {
     constexpr const char *thrown = R"(
 [world]
@@ -480,7 +480,7 @@ repeat = { kind = "line", count = 11, step = [-0.01875, 0, 0.8] }
             EXPECT_LT(found, 1.02 * 9 / 8 * 0.15);
         }
     }
-    // Not from within the wall, nor where there is another body.
+    // Neither from inside the wall, nor towards another body.
     EXPECT_TRUE(way_into_wall(map.scene, "ball", 0));
     EXPECT_FALSE(way_into_wall(map.scene, "ball", 1));
     SceneDesc within = map.scene;
@@ -491,8 +491,8 @@ repeat = { kind = "line", count = 11, step = [-0.01875, 0, 0.8] }
     EXPECT_FALSE(way_into_wall(other, "ball", 0));
 }
 
-// Semi-implicit Euler falls by g t (t + dt) / 2: 5.085 m, the least that is true enough, it comes
-// to with 1 + dt = 2 (10 - 5.085) / g. RK4 makes no error in free fall.
+// Semi-implicit Euler falls g t (t + dt) / 2. It reaches 5.085 m, the least within tolerance, when
+// 1 + dt = 2 (10 - 5.085) / g. RK4 makes no error in free fall.
 TEST(StabilityMap, FindsTheStepUpToWhichAnIntegratorIsTrueEnough) {
     const StabilityMap map = map_of(falling_ball, "dt=1/2000..1/25:5log", "gravity.y=-9.81,-9.8",
                                     {"semi_implicit_euler", "rk4"});
@@ -587,7 +587,7 @@ source = "rigid"
     std::ostringstream text;
     print(text, map);
     EXPECT_NE(text.str().find(map.unjudged[0]), std::string::npos);
-    // Where nothing else is expected there is nothing to hold it to.
+    // With no other expectation there is nothing to judge it by.
     EXPECT_NE(complaint(stack.c_str(), "dt=1/120,1/60", "body.box.repeat.count=2,4")
                   .find("no expectation is left"),
               std::string::npos);
@@ -626,7 +626,7 @@ TEST(StabilityMap, SaysWhatIsWrongWithAnAxis) {
                  std::invalid_argument);
 }
 
-// A map that goes on from any of its first rows comes to the same table.
+// A map resumed from any of its first rows gives the same table.
 TEST(StabilityMap, GoesOnFromWhatIsLeftOfIt) {
     const SceneText scene{"scene.toml", struck};
     const MapAxis x = parse_map_axis("dt=0.005..0.08:4log"),
@@ -646,7 +646,7 @@ TEST(StabilityMap, GoesOnFromWhatIsLeftOfIt) {
         EXPECT_GT(options.known.cells.size(), 2U);
         EXPECT_EQ(run(), whole) << length;
     }
-    // What is known is not run: a row that is not true stays as it is.
+    // Known cells are not run again: even a false row stays as it is.
     for (auto &[place, known] : options.known.cells)
         known.failing = {Failing::drift, "a \"chain\", torn"};
     options.known.limits.clear();

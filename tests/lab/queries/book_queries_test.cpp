@@ -1,4 +1,4 @@
-// The failures of the book's queries, pinned down: were one mended by accident, its row on the
+// Pins down the failures of the book's queries: if one were fixed by accident, its row on the
 // charts would mean nothing.
 #include "app/lab/queries/book_queries.h"
 
@@ -43,7 +43,7 @@ TEST(BookQueries, PublishedBoxTestCallsAllPairsOverlapping) {
     }
 }
 
-// With the second box read where it is meant, boxes that only an edge of each parts still overlap.
+// As corrected, it still reports overlap for boxes that only an edge-edge axis separates.
 TEST(BookQueries, BoxTestNeverTriesEdgesAgainstEdges) {
     const float s = 0.38268343f, c = 0.92387953f; // 45 degrees
     const Box a{Vec3{0}, Quat{c, s, 0, 0}, Vec3{1, 0.5f, 0.5f}};
@@ -56,7 +56,7 @@ TEST(BookQueries, LinetestMissesEverySegmentWhollyInsideABox) {
     Random random(2);
     const Aabb aligned{Vec3{-1}, Vec3{1}};
     for (int trial = 0; trial < 1000; ++trial) {
-        // Short ones: the way out lies beyond their ends.
+        // Short segments: the exit lies beyond their ends.
         const Vec3 a = any_vector(random, 0.5), b = a + any_vector(random, 0.2);
         EXPECT_FALSE(book::linetest(aligned, a, b));
         EXPECT_TRUE(linetest(aligned, a, b));
@@ -66,7 +66,7 @@ TEST(BookQueries, LinetestMissesEverySegmentWhollyInsideABox) {
     }
 }
 
-// How many of 1000 the book misses; ours misses none.
+// How many of 1000 rays the book misses; ours misses none.
 template <typename Make> int missed(std::uint64_t seed, const Make &make) {
     Random random(seed);
     int count = 0;
@@ -78,8 +78,8 @@ template <typename Make> int missed(std::uint64_t seed, const Make &make) {
     return count;
 }
 
-// Along an axis within a face: the zero components become a hundred-thousandth, and the ray leaves
-// the face before it comes to the box, or not, depending on which face it is.
+// Along an axis, inside a face: the zero components become 1e-5, and whether the ray leaves the
+// face before it reaches the box depends on which face it is.
 TEST(BookQueries, RaysInFacesAreLostOrNotByChance) {
     const auto in_face = [](Random &random) {
         const Vec3 half{0.5f, 0.75f, 1.0f};
@@ -97,7 +97,7 @@ TEST(BookQueries, RaysInFacesAreLostOrNotByChance) {
     EXPECT_LT(count, 700);
 }
 
-// Far away the replaced zero leads past a box that the ray goes straight through.
+// From far away, the replaced zero takes the ray past a box that it really goes straight through.
 TEST(BookQueries, ZeroReplacedByASmallNumberIsAnotherRay) {
     const Aabb box{{-1, 1e-3f, -1}, {1, 0.5f, 1}};
     const Ray along_x{{-1000, 0.4999f, 0}, {1, 0, 0}};
@@ -121,7 +121,7 @@ TEST(BookQueries, APointOverATriangleIsInIt) {
     EXPECT_FALSE(contains(triangle, {1, 0.5f, 1}));
 }
 
-// Of coplanar triangles on a small lattice the book is wrong about many, ours about none.
+// For coplanar triangles on a small lattice the book gets many wrong, ours none.
 TEST(BookQueries, CoplanarTriangles) {
     Random random(4);
     int wrong = 0;
@@ -148,11 +148,11 @@ TEST(BookQueries, CoplanarTriangles) {
 
 struct Pinned {
     const char *query;
-    double book, plain, ours; // wrong answers, of a hundred
+    double book, plain, ours; // wrong answers, in per cent
 };
 
-// The rates on the charts' own inputs. Ours are never wrong. Rounding decides a few of the others':
-// 0.3 of a hundred is allowed.
+// Error rates on the charts' own inputs. Ours is never wrong. Round-off decides a few of the
+// others' answers: 0.3 per cent is allowed.
 TEST(QueryCases, RatesOfWrongAnswers) {
     const Pinned pinned[] = {
         {"point in sphere", 0.89, 0, 0},

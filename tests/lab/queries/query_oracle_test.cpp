@@ -10,8 +10,8 @@
 namespace plumb::oracle {
 namespace {
 
-// Cases small enough to look at every point of a fine grid: what meets has a common point on it
-// when all crossings lie on multiples of 1 / lcm of the slopes, so the grid can only prove a yes.
+// Cases small enough to check every point of a fine grid. Shapes that meet share a grid point when
+// all crossings lie on multiples of 1 / lcm of the slopes, so the grid can only prove a yes.
 constexpr Int grid = 12;
 
 Point any_point(Random &random, Int reach) {
@@ -36,7 +36,7 @@ TEST(QueryOracle, PointsOfLinesThatLieInShapesProveThatTheyMeet) {
         const Block block{{std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)},
                           {std::max(p.x, q.x), std::max(p.y, q.y), std::max(p.z, q.z)}};
         const Ball ball{any_point(random, 3), static_cast<Int>(random.next_index(4))};
-        // Everything twelve times as large, and the line's twelfths.
+        // Everything scaled by twelve, and the line's points at its twelfths.
         const Block big_block{scaled(block.min, grid), scaled(block.max, grid)};
         const Ball big_ball{scaled(ball.center, grid), ball.radius * grid};
         for (Int k = 0; k <= grid; ++k) {

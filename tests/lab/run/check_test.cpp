@@ -94,7 +94,7 @@ TEST_F(LabCommands, BadInput) {
     EXPECT_THROW((void)measure_scene(measure, out_, err_), std::system_error);
 }
 
-// Nothing was promised, so nothing was kept.
+// No expectation, so none was met.
 TEST_F(LabCommands, CheckCountsScenesThatExpectNothingApart) {
     const std::string ball = fall.substr(0, fall.find("[[expect]]"));
     CheckCommand command;
@@ -114,7 +114,7 @@ TEST_F(LabCommands, CheckCountsScenesThatExpectNothingApart) {
         << out_.str();
 }
 
-// What the method cannot run is no run.
+// Scenes that the method cannot run do not count as runs.
 TEST_F(LabCommands, CheckSkipsWhatTheMethodCannotRun) {
     const fs::path pendulum = PLUMB_SOURCE_DIR "/scenes/joints/pendulum.toml";
     CheckCommand command;
@@ -185,7 +185,7 @@ TEST_F(LabCommands, MeasureWritesItsTableWhole) {
     command.out.clear();
     std::ostringstream table;
     EXPECT_EQ(measure_scene(command, table, err_), ExitCode::fine);
-    EXPECT_EQ(read_csv(table.str()).size(), 1U + 31); // and nothing but the table
+    EXPECT_EQ(read_csv(table.str()).size(), 1U + 31); // and only the table
 }
 
 TEST_F(LabCommands, ChartWritesTableAndPicture) {

@@ -1,4 +1,4 @@
-// Judging against motions that are known in closed form.
+// Judging motions known in closed form.
 #include "app/lab/run/judged_run.h"
 
 #include "app/lab/run/expectation_watch.h"
@@ -65,7 +65,7 @@ TEST(Expectation, FreeFall) {
         EXPECT_TRUE(run.outcomes[i].judged());
     }
     EXPECT_NE(run.outcomes[4].verdict, Verdict::met);
-    // The measured height is exact but for rounding (a dozen roundings of numbers below 128).
+    // The measured height is exact up to round-off (a dozen round-offs of numbers below 128).
     EXPECT_NEAR(run.outcomes[4].error, 0.5, 1e-12);
     EXPECT_EQ(run.outcomes[4].limit, 0.25);
     EXPECT_FALSE(run.all_met());
@@ -89,7 +89,7 @@ double wave(double t) {
     return 0.4 * std::sin(2 * pi * t / 0.7 + 0.3);
 }
 
-// Held to a curve of the wave through `count` values.
+// Expects the curve of the wave, sampled at `count` values.
 ExpectDesc curve_of_wave(const std::string &reduce, double from, double to, int count,
                          double tolerance) {
     ExpectDesc desc = expect_of("position.x", reduce, from, to, 0, tolerance);
@@ -98,8 +98,8 @@ ExpectDesc curve_of_wave(const std::string &reduce, double from, double to, int 
     return desc;
 }
 
-// Steps that do not meet the window's edges nor the curve's values. The curve itself is off by up
-// to a (w h)^4 / 24 = 2e-6 m.
+// Steps that fall neither on the window's edges nor on the curve's values. The curve itself is off
+// by up to a (w h)^4 / 24 = 2e-6 m.
 TEST(Expectation, CurvesAreMissedByTheirWorstOrTheirMean) {
     FakeSimulation fake(0.013);
     fake.state_at = [](double t) {
@@ -215,7 +215,7 @@ TEST(Expectation, ErrorsInUnitsOfTheirTolerance) {
     EXPECT_TRUE(std::isinf(judge(bound(Relation::at_most, 4), -INFINITY).scaled_error));
 }
 
-// Whatever the numbers and their rounding: met exactly when the scaled error is at most 1, and
+// Whatever the numbers and their round-off: met exactly when the scaled error is at most 1, and
 // finite whenever the measured value is.
 TEST(Expectation, TheScaledErrorAndTheVerdictNeverDisagree) {
     Random random(7);
@@ -232,7 +232,7 @@ TEST(Expectation, TheScaledErrorAndTheVerdictNeverDisagree) {
         if (random.next_index(16) == 0)
             desc.value = 0;
         double value = any();
-        // As near to the edge as there are numbers.
+        // As close to the edge as floating point allows.
         if (random.next_index(2) == 0) {
             value = desc.value + (random.next_index(2) == 0 ? desc.tolerance : -desc.tolerance);
             for (std::uint32_t ulps = random.next_index(4); ulps > 0; --ulps)
@@ -262,7 +262,7 @@ TEST(Expectation, DivergenceEndsTheRunAndSaysWhenAndWhere) {
     EXPECT_EQ(run.divergence->body, "ball");
     ASSERT_TRUE(run.divergence->last_position);
     EXPECT_DOUBLE_EQ(run.divergence->last_position->x, 3 * 0.6);
-    EXPECT_EQ(run.outcomes[0].verdict, Verdict::met); // its window ended before
+    EXPECT_EQ(run.outcomes[0].verdict, Verdict::met); // its window ended earlier
     EXPECT_FALSE(run.outcomes[1].judged());
     EXPECT_NE(run.outcomes[1].verdict, Verdict::met);
     EXPECT_FALSE(run.all_met());
@@ -293,7 +293,7 @@ TEST(Expectation, StopEndsTheRun) {
 }
 
 TEST(Expectation, FollowedErrorsAreTheWorstOfTheRun) {
-    FakeSimulation fake(0.125); // a power of two: t = 0.5 is met exactly
+    FakeSimulation fake(0.125); // a power of two: t = 0.5 is hit exactly
     fake.measures_at = [](double t) {
         Measures measures;
         measures.kinetic_energy = 3 + t * t; // grows to 4
@@ -318,10 +318,10 @@ TEST(Expectation, FollowedErrorsAreTheWorstOfTheRun) {
     EXPECT_DOUBLE_EQ(run.max_joint_drift, 0.1);
     EXPECT_DOUBLE_EQ(run.max_energy_change, 1);
     EXPECT_DOUBLE_EQ(run.max_energy_error, 0.25); // of 3 + |-1|
-    EXPECT_EQ(fake.measure_calls, 1 + 9);         // the probe's start, and each sample: once
+    EXPECT_EQ(fake.measure_calls, 1 + 9);         // the probe's start, then once per sample
 }
 
-// x grows by 1 m/s, and z falls as much.
+// x grows by 1 m/s, and z falls at the same rate.
 FakeSimulation moving(double dt) {
     FakeSimulation fake(dt);
     fake.state_at = [](double t) {
@@ -350,13 +350,13 @@ TEST(ExpectationWatch, IsPendingUntilTheWindowEnds) {
     }
     EXPECT_EQ(watch.outcome(0).verdict, Verdict::met) << watch.outcome(0).measured;
     EXPECT_EQ(watch.outcome(1).verdict, Verdict::met);
-    // What comes later changes nothing.
+    // Later values change nothing.
     fake.step();
     watch.sample(fake);
     EXPECT_EQ(watch.outcome(1).measured, 1);
 }
 
-// As soon as nothing that can still come helps, and not a step before.
+// As soon as no later value can help, and not a step earlier.
 TEST(ExpectationWatch, WhatCanNoLongerBeMetIsMissedAtOnce) {
     using Relation = ExpectDesc::Relation;
     const auto with = [](const char *quantity, const char *reduce, Relation relation, double value,
@@ -379,7 +379,7 @@ TEST(ExpectationWatch, WhatCanNoLongerBeMetIsMissedAtOnce) {
         with("position.x", "max", Relation::at_least, 100),
         with("position.z", "min", Relation::at_most, -100),
         with("position.x", "max", Relation::equals, 100, 0.1),
-        with("position.x", "crossings", Relation::at_most, 0), // of a level that moves
+        with("position.x", "crossings", Relation::at_most, 0), // crossings of a moving level
     };
     std::vector<ExpectDesc> all = doomed;
     all.insert(all.end(), open.begin(), open.end());
@@ -399,7 +399,7 @@ TEST(ExpectationWatch, WhatCanNoLongerBeMetIsMissedAtOnce) {
         EXPECT_TRUE(watch.outcome(i).judged());
 }
 
-// The worst at once, when it is too far; the mean, which may yet fall, at the end.
+// The worst error is judged immediately once too large; the mean, which may yet fall, at the end.
 TEST(ExpectationWatch, WhatIsTooFarFromItsCurveIsMissedAtOnce) {
     const auto at_rest = [](const char *reduce) {
         ExpectDesc desc = expect_of("position.x", reduce, 0, 4, 0, 0.5);
@@ -422,7 +422,7 @@ TEST(ExpectationWatch, WhatIsTooFarFromItsCurveIsMissedAtOnce) {
     EXPECT_EQ(watch.outcome(1).measured, 2);
 }
 
-// A run that goes back and forth is judged as one that never did.
+// A run that steps back and forth is judged like one that never did.
 TEST(ExpectationWatch, GoingBackForgetsWhatCameAfter) {
     const std::vector<ExpectDesc> expects{expect_of("position.x", "max", 0, 1, 0.3, 0.01),
                                           expect_of("position.x", "mean", 0.2, 0.9, 0.55, 1e-9),
@@ -459,8 +459,8 @@ TEST(ExpectationWatch, GoingBackForgetsWhatCameAfter) {
     }
 }
 
-// A run from a saved state has not seen the windows that began before it, nor what displacement
-// counts from.
+// A run from a saved state has not seen the windows that began before it, nor the position that
+// displacement counts from.
 TEST(ExpectationWatch, WhatTheRunHasNotSeenIsNotJudged) {
     FakeSimulation fake = moving(0.125);
     for (int i = 0; i < 8; ++i)
@@ -508,7 +508,7 @@ TEST(QuantityProbe, ReadsBodiesAndScales) {
     const std::vector<double> values = probe.sample(fake);
     constexpr double rounding = 1e-15;
     EXPECT_NEAR(values[0], pi / 2, rounding);
-    EXPECT_NEAR(values[1], 5, 5 * rounding); // the world's z is the body's y now
+    EXPECT_NEAR(values[1], 5, 5 * rounding); // the world's z is now the body's y
     EXPECT_NEAR(values[2], 0, 5 * rounding);
     EXPECT_NEAR(values[3], 0.5 / (2 * 5), rounding);         // m |v| = 2 * 5
     EXPECT_NEAR(values[4], 0.5 / (2 * 5 + 3 * 5), rounding); // |r x m v| + |I w|, r normal to v

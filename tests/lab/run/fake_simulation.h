@@ -1,4 +1,4 @@
-// A simulation whose motion is a closed formula of time, to test what watches simulations.
+// A simulation with closed-form motion, to test the code that watches simulations.
 #pragma once
 
 #include "engine/core/check.h"

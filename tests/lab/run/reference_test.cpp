@@ -1,4 +1,4 @@
-// Truths by refinement: against closed forms, those of the scenes, and written into a file.
+// Truths by refinement: against closed forms, against those in the scenes, and written to a file.
 #include "app/lab/run/reference.h"
 
 #include "engine/scene/expect.h"
@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// It hangs on a soft joint of 1 Hz, and falls by sag (1 - cos w t), sag = g / w^2: by all of it in
-// a quarter of a period.
+// The bob hangs on a soft joint of 1 Hz and falls by sag (1 - cos w t), sag = g / w^2: the full sag
+// after a quarter period.
 std::string sagging(const std::string &equals, const std::string &estimate) {
     return R"([[body]]
 name = "bob"
@@ -44,7 +44,7 @@ equals = )" +
 }
 const double sagging_truth = 9.81 / (4 * std::numbers::pi * std::numbers::pi);
 
-// Its height over time, with an end that no step meets.
+// Its displacement over time, with window edges that fall between steps.
 std::string sagging_curve(const std::string &equals, const std::string &reduce) {
     return sagging("0", "0").substr(0, sagging("0", "0").find("[[expect]]")) + R"([[expect]]
 name = "way"
@@ -100,7 +100,7 @@ TEST(Refinement, OfACurveSettlesAtTheClosedFormWithAboutAsFewValuesAsItTakes) {
     EXPECT_TRUE(truth.settled());
     EXPECT_FALSE(truth.agrees());
     EXPECT_NEAR(truth.value, 2 * sagging_truth, 1e-3); // from a curve that stays at 0
-    // Off by 1/20 of the tolerance at intervals of (5e-5 * 24 / (sag w^4))^(1/4) = 0.03 s at most.
+    // Off by 1/20 of the tolerance at intervals of at most (5e-5 * 24 / (sag w^4))^(1/4) = 0.03 s.
     EXPECT_GT(truth.curve.size(), 30U);
     EXPECT_LT(truth.curve.size(), 50U);
     double error = 0;
@@ -114,7 +114,7 @@ TEST(Refinement, OfACurveSettlesAtTheClosedFormWithAboutAsFewValuesAsItTakes) {
 }
 
 TEST(Refinement, OfWhatDependsOnTheStepDoesNotSettle) {
-    // A joint that breaks does so at the end of the first step, however short.
+    // A breaking joint breaks at the end of the first step, however short.
     const SceneFileResult file = load_scene(PLUMB_SOURCE_DIR "/scenes/joints/breaking.toml");
     RefineOptions options;
     options.halvings = 2;
@@ -129,7 +129,7 @@ TEST(Refinement, OfWhatDependsOnTheStepDoesNotSettle) {
     EXPECT_TRUE(refine(file.scene, options).empty());
 }
 
-// Those that have no closed form.
+// Those without a closed form.
 TEST(Refinement, OfTheScenesIsWhatTheyHave) {
     int count = 0;
     for (const fs::directory_entry &file :
@@ -148,8 +148,8 @@ TEST(Refinement, OfTheScenesIsWhatTheyHave) {
     EXPECT_GE(count, 1);
 }
 
-// Two points of 1 kg on massless rods of 1 m, at the angles a and b from the vertical, and how fast
-// these change: Lagrange's equations,
+// Two point masses of 1 kg on massless rods of 1 m, at angles a and b from the vertical, and their
+// rates. Lagrange's equations:
 //   2 a'' + cos(a - b) b'' + sin(a - b) b'^2 + 2 g sin a = 0
 //   cos(a - b) a'' + b'' - sin(a - b) a'^2 + g sin b = 0
 using Angles = std::array<double, 4>;
@@ -164,7 +164,7 @@ Angles change_of(const Angles &now) {
             (2 * second - c * first) / determinant};
 }
 
-// A step of Runge and Kutta.
+// One Runge-Kutta step.
 Angles stepped(const Angles &now, double h) {
     const auto ahead = [&](double way, const Angles &rate) {
         Angles there = now;
@@ -180,14 +180,14 @@ Angles stepped(const Angles &now, double h) {
     return ahead(h, mean);
 }
 
-// The curve in the scene came from the engine; this knows nothing of it. Half its step changes it
-// by less than 1e-12 m.
+// The curve in the scene came from the engine; this one is independent of it. Halving its step
+// changes it by less than 1e-12 m.
 TEST(Refinement, OfTheDoublePendulumIsWhatItsEquationsSay) {
     const SceneFileResult file = load_scene(PLUMB_SOURCE_DIR "/scenes/joints/double_pendulum.toml");
     const ExpectDesc &expect = file.scene.expects.at(0);
     ASSERT_FALSE(expect.curve.empty());
     ASSERT_TRUE(expect.estimate);
-    constexpr int steps = 64; // from value to value
+    constexpr int steps = 64; // from one value to the next
     const int last = static_cast<int>(expect.curve.size() - 1) * steps;
     const double h = expect.to / last;
     Angles now{std::numbers::pi / 4, std::numbers::pi / 2, 0, 0};
@@ -255,7 +255,7 @@ TEST_F(Reference, WithoutAnEstimateThereIsNoneToWrite) {
     text.erase(text.find("estimate"), text.find("source") - text.find("estimate"));
     put(text);
     EXPECT_THROW((void)command(true), std::invalid_argument);
-    EXPECT_EQ(command(false), ExitCode::fine); // said, and no more
+    EXPECT_EQ(command(false), ExitCode::fine); // reported, and no more
     EXPECT_NE(out_.str().find("OTHER"), std::string::npos) << out_.str();
 }
 

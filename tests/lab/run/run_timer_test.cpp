@@ -1,4 +1,4 @@
-// The parts of a run that are timed.
+// Which parts of a run are timed.
 #include "app/lab/run/run_timer.h"
 
 #include "tests/lab/run/fake_simulation.h"
@@ -9,7 +9,7 @@
 namespace plumb {
 namespace {
 
-// Of a run of which a step takes so long, by its share of the run.
+// The parts of a run in which a step takes cost(fraction of the run done).
 std::vector<TimedPart> parts_of(double end, double timed,
                                 const std::function<double(double)> &cost) {
     FakeSimulation fake(1.0 / 64);
@@ -48,9 +48,9 @@ TEST(RunTimer, AShortRunIsTimedAsAWhole) {
     }
 }
 
-// What falls asleep takes a thousandth from there on; a blow takes a hundred times as much for a
-// moment; what falls apart takes less and less. Of bursts as short as a part, of which one to four
-// times as much takes its turn, eight parts are a sample: its mean is off by a sixth, as a rule.
+// A scene that falls asleep takes a thousandth from then on; an impact takes a hundred times as
+// much for a moment; a collapse takes less and less. If bursts as short as a part cost one to four
+// times as much in turn, eight parts are only a sample: their mean is typically off by a sixth.
 TEST(RunTimer, PartsStandForARunThatDoesNot) {
     const std::function<double(double)> courses[] = {
         [](double t) { return t < 0.04 ? 1 : 1e-3; },

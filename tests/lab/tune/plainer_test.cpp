@@ -1,4 +1,4 @@
-// What scenes can do without, and what they cannot.
+// What scenes can do without and what they need.
 #include "tests/lab/tune/printed.h"
 
 #include "app/lab/tune/plainer.h"
@@ -38,7 +38,7 @@ std::vector<std::string> collisions_of(const Tuning &tuning) {
     return names;
 }
 
-// Three balls in a row fall from 10 m, each with these lines of its own; what the first expects.
+// Three balls in a row fall from 10 m, each with these lines added; the first has an expectation.
 std::string falling_balls(std::string_view lines) {
     return R"(
 [[body]]
@@ -60,7 +60,7 @@ source = "s = g t^2 / 2"
 )";
 }
 
-// A ball that is dropped on the floor, beside another that flies by itself, and a post far off.
+// A ball dropped on the floor, another one flying free, and a post far away.
 constexpr const char *one_lands = R"(
 [[body]]
 name = "floor"
@@ -139,7 +139,7 @@ TEST(Plainer, BallsThatNeverMeetNeedNoCollisions) {
     const PlainerModel &free = without(tuning, "collisions");
     EXPECT_TRUE(free.is_enough) << printed(tuning);
     EXPECT_LT(free.times_as_dear, 0.8); // no broad phase: about a third
-    // Not each body's, too, once all are left out.
+    // Once all collisions are off, those of single bodies are not tried as well.
     EXPECT_EQ(collisions_of(tuning), (std::vector<std::string>{"collisions"}));
 }
 
@@ -151,7 +151,7 @@ TEST(Plainer, CollisionsThatAreOffAreNotTried) {
     }
 }
 
-// Where nothing collides nothing overlaps, but that is not what is meant by it.
+// With no collisions nothing overlaps, but that is not what such an expectation means.
 TEST(Plainer, WhatIsExpectedOfContactsNeedsThem) {
     const std::string text = falling_balls("") + R"(
 [[expect]]
@@ -180,7 +180,7 @@ TEST(Plainer, WhatLandsMustCollideAndWhatFliesNeedNot) {
     EXPECT_TRUE(without(tuning, "the collisions of flier").is_enough) << printed(tuning);
 }
 
-// With the floor's left out nothing is left that a ball could meet.
+// Without the floor's collisions the ball has nothing left to hit.
 TEST(Plainer, OfTwoBodiesNeitherIsTriedByItself) {
     std::string text = one_lands;
     const std::size_t from = text.find("[[body]]\nname = \"flier\"");
@@ -192,7 +192,7 @@ TEST(Plainer, OfTwoBodiesNeitherIsTriedByItself) {
     EXPECT_EQ(without(tuning, "collisions").run.verdict, TuneVerdict::missed);
 }
 
-// Noise is not told as a cost.
+// Noise is not reported as a cost.
 TEST(Plainer, SaysTheCostWhereItIsLess) {
     Tuning tuning;
     tuning.runs.emplace_back().resolved = resolve_run({}, {});

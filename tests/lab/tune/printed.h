@@ -1,4 +1,4 @@
-// What tests of the tuner share.
+// Shared by the tuner's tests.
 #pragma once
 
 #include "app/lab/tune/tune.h"

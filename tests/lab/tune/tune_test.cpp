@@ -1,4 +1,4 @@
-// The cheapest settings of scenes whose errors are known in closed form, and of some that ship.
+// The cheapest settings for scenes with closed-form errors, and for some that ship.
 #include "tests/lab/tune/printed.h"
 
 #include "app/lab/tune/starts.h"
@@ -16,7 +16,7 @@
 namespace plumb {
 namespace {
 
-// With semi-implicit Euler it falls g h t / 2 too far in t = 1 s, h the substep.
+// Semi-implicit Euler falls g h t / 2 too far in t = 1 s, with h the substep.
 constexpr const char *falling_box = R"(
 [world]
 dt = "1/60"
@@ -77,7 +77,7 @@ TEST(Tune, FindsTheFewestSubstepsThatTheMarginAllows) {
         ASSERT_TRUE(tuning.dearer);
         EXPECT_EQ(tuning.runs[*tuning.dearer].resolved.settings.substeps, 2 * n);
         EXPECT_NEAR(tuning.runs[*tuning.dearer].error, fall_error(2 * n), 1e-3);
-        // By doubling, then halving the gap, beside the scene's own and twice the chosen ones.
+        // Doubling, then bisection, plus the scene's own settings and twice the chosen ones.
         EXPECT_LE(tuning.runs.size(), 12U) << printed(tuning);
         for (const TunedRun &run : tuning.runs) {
             const StepSettings &s = run.resolved.settings;
@@ -160,7 +160,7 @@ TEST(Tune, TakesDoubleOnlyWhereFloatIsTooCoarse) {
         }
         TuneOptions options = quick({"rk4"}, {"dt=1/60", "substeps=1"});
         options.base.precision.reset();
-        options.starts = 0; // others are a millionth of the place away
+        options.starts = 0; // other starts differ by a millionth of the position
         const Tuning tuning = tune_scene({"fall.toml", text}, options);
         ASSERT_TRUE(tuning.found()) << printed(tuning);
         EXPECT_EQ(tuning.runs[*tuning.chosen].resolved.precision,
@@ -183,7 +183,7 @@ TEST(Tune, ASceneThatIsHeldToNothingIsRefused) {
     EXPECT_THROW((void)tune_scene({"fall.toml", falling_box}, options), std::invalid_argument);
 }
 
-// Against every combination one by one: no other that meets the scene is less work.
+// Against every combination one by one: none that meets the scene costs less work.
 TEST(Tune, NothingThatMeetsASceneIsLessWork) {
     for (const char *name : {"contact/bounce_half.toml", "contact/slide_to_roll.toml"}) {
         const SceneText text = shipped(name);

@@ -1,5 +1,5 @@
-// Every scene that moves runs at tuned settings: it meets what it expects with the margin and from
-// other starts, and what is next to them and less work does not.
+// Every scene that moves runs at tuned settings: it meets its expectations with the margin and
+// from other starts, and neighbouring settings that cost less work do not.
 #include "app/lab/tune/starts.h"
 #include "app/lab/tune/trial.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// All others run at what `plumb tune` found: a new scene, too, or it says why not here.
+// All other scenes run at what `plumb tune` found. A new scene must too, or say here why not.
 const std::map<std::string, std::string> &not_tuned() {
     static const std::string cloth = "cloth", particles = "springs between many particles";
     static const std::map<std::string, std::string> why{
@@ -36,8 +36,8 @@ const std::map<std::string, std::string> &not_tuned() {
     return why;
 }
 
-// Their islands take substeps of their own, as what is grabbed or thrown in may need them, though
-// the same for all would be less work.
+// Their islands choose their own substeps, as grabbed or thrown-in bodies may need them, although
+// one number for all would be less work.
 const std::set<std::string> &keep_own_substeps() {
     static const std::set<std::string> names{
         "bounce_half", "slide_to_roll", "slope_slides",     "rope",  "long_chain", "compounds",
@@ -45,8 +45,8 @@ const std::set<std::string> &keep_own_substeps() {
     return names;
 }
 
-// The scene as it stands, and as many others as tuning tries. Of heaps, where chance plays in, only
-// the first from which what is cheaper misses.
+// The scene as it stands, and as many variations as tuning tries. For heaps, where chance plays a
+// part, only the first variation at which cheaper settings miss.
 std::vector<SceneDesc> starts_to_try(const SceneText &text, const std::string &name) {
     static const std::map<std::string, int> misses_from{
         {"666", 5}, {"kapla", 6}, {"mesh_terrain", 9}};
@@ -115,7 +115,7 @@ class TunedScene : public testing::TestWithParam<fs::path> {
     StepSettings settings;
 };
 
-// One substep, half of them, one iteration.
+// One substep less, half the substeps, one iteration less.
 void TunedScene::expect_that_fewer_are_not_cheaper() const {
     const auto &[substeps, iterations, most] =
         std::tie(settings.substeps, settings.iterations, settings.max_substeps);
@@ -127,8 +127,8 @@ void TunedScene::expect_that_fewer_are_not_cheaper() const {
         expect_not_cheaper(run(substeps, iterations - 1, most));
 }
 
-// Where all take the same: as many substeps of more iterations as may be less work, no less than
-// half of which is in the iterations.
+// If all islands take the same substeps: more iterations, and the most substeps that could still be
+// less work, with at least half of the work in the iterations.
 void TunedScene::expect_that_more_iterations_are_not_cheaper() const {
     if (chooses_substeps())
         return;
@@ -140,7 +140,8 @@ void TunedScene::expect_that_more_iterations_are_not_cheaper() const {
     }
 }
 
-// Where each island takes its own: as many as their least, else as may be less work.
+// If each island chooses its own: the same for all, first their minimum, then the most that could
+// still be less work.
 void TunedScene::expect_that_the_same_for_all_are_not_cheaper() const {
     if (!chooses_substeps())
         return;

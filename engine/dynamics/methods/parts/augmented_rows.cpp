@@ -20,7 +20,7 @@ Real Stiffening::grown(Real stiffness, Real unit, Real most, Real error) const {
 
 // ---- contacts
 
-// What is apart may come as near as it is: only overlap is left alone for a while.
+// A gap may close completely; only of overlap a share is left alone.
 void begin_point(AugmentedPoint &point, Real separation, const Stiffening &stiffening) {
     PointPenalty &penalty = point.penalty;
     penalty.normal =
@@ -32,8 +32,8 @@ void begin_point(AugmentedPoint &point, Real separation, const Stiffening &stiff
     point.load *= stiffening.kept_error * stiffening.kept; // (19)
 }
 
-// What is cut to its bounds is as stiff as it was: too stiff a model makes a body's step short, and
-// without it bodies that touch and part within a step are thrown.
+// Clamped forces keep their full stiffness: too stiff a model only shortens a body's step, but
+// without it bodies that touch and separate within a step are launched.
 PointForce force_of(const AugmentedPoint &point, const Vec3 &way, Real friction) {
     const PointPenalty &penalty = point.penalty;
     PointForce out;
@@ -154,7 +154,7 @@ Vec3 end_pass(AugmentedBlock &block, const RowBlock &rows, Real change,
         if (!now.is_bounded[static_cast<std::size_t>(i)])
             block.stiffness[i] =
                 stiffening.grown(block.stiffness[i], block.unit[i], block.most[i], now.error[i]);
-    if (!(rows.frequency > Real(0))) // a spring's force is that of its stiffness alone
+    if (!(rows.frequency > Real(0))) // a spring has no load, only its stiffness
         block.load = now.force;
     return now.force;
 }

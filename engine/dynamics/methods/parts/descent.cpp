@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::uint32_t nowhere = UINT32_MAX;
 
-// Of all vectors of the turn the one next to that of free flight.
+// Of all rotation vectors for the turn, the one closest to free flight's.
 Vec3 turned_since_start(const DescentBody &own, Real h) {
     const AxisAngle about = axis_angle(own.turn);
     constexpr Real whole = Real(2) * std::numbers::pi_v<Real>;
@@ -32,7 +32,8 @@ Vec3 turned_since_start(const DescentBody &own, Real h) {
 
 // ---- what acts on what
 
-// Calls use(of a body or particle, use) for all that acts on anything, in a fixed order.
+// Calls of_body(body, use) or of_particle(particle, use) for each body or particle of every joint,
+// spring and contact, in a fixed order.
 template <typename OfBody, typename OfParticle>
 void for_each_use(StepContext &context, OfBody &&of_body, OfParticle &&of_particle) {
     SolverScratch &s = context.scratch;
@@ -94,7 +95,7 @@ void gather_uses(StepContext &context) {
             uses->first[i] += uses->first[i - 1];
         uses->all.resize(uses->first.back());
     }
-    // Each is put at its end, which then is the beginning of the next.
+    // Filling advances each start to its end, where the next one starts.
     const auto put = [](DescentUses &uses, std::uint32_t at, const DescentUse &use) {
         uses.all[uses.first[at]++] = use;
     };
@@ -121,8 +122,7 @@ namespace {
 
 // ---- rows at the present poses
 
-// How far a place of a body at `arm` has come in the substep, to first order in its turn: contacts
-// are a truncated Taylor series about the substep's start (sec. 4).
+// Displacement of a body's point at `arm` in the substep, to first order in the rotation.
 Vec3 way_at(const SolverBody &body, const Vec3 &arm, Real h) {
     return h * body.velocity + glm::cross(body.turned, arm);
 }
@@ -153,7 +153,6 @@ AugmentedBlock &augmented(StepContext &context, const JointConstraint &joint) {
     return s.descent.blocks[static_cast<std::size_t>(&joint - s.joints.data())];
 }
 
-// How far what a motor drives has come in the substep.
 Real driven(StepContext &context, const JointConstraint &joint, Real h) {
     if (joint.rows.bounds != RowBounds::motor)
         return Real(0);
@@ -167,14 +166,14 @@ Real driven(StepContext &context, const JointConstraint &joint, Real h) {
 
 namespace {
 
-// A spring's force towards its rest length and how that changes, along its line and aside.
+// A spring's force towards its rest length, and its stiffness along and across its line.
 struct SpringPull {
     Vec3 axis{Real(0)}; // unit, from a to b
     Vec3 arm_a{Real(0)};
     Vec3 arm_b{Real(0)};
     Real force = Real(0); // N, along the axis on b
     Real stiffness = Real(0);
-    Real aside = Real(0); // |f| / length: that of its second derivative, 1 - n n^T
+    Real aside = Real(0); // |f| / length: factor of 1 - n n^T in its second derivative
 };
 
 // The lengths of the columns of 1 - n n^T.

@@ -1,4 +1,4 @@
-// The frame of methods that differ in nothing but how a free body turns.
+// Shared by methods that differ only in how a free body turns.
 #pragma once
 
 #include "engine/dynamics/method.h"
@@ -7,10 +7,10 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// The substeps of free bodies: half a kick, half of the damping, the move, and the same in reverse
-// (Strang 1968, eq. 5; exact under uniform gravity alone, second order with damping).
-// `turn(motion, body, h)` advances rotation and angular velocity by h seconds (torque-free); bodies
-// whose spin is constant turn by it as they are.
+// All substeps of free bodies: half a kick, half the damping, the move, then the same in reverse
+// (Strang 1968, eq. 5; exact under uniform gravity alone, second order with damping). `turn(motion,
+// body, h)` advances rotation and angular velocity by h seconds (torque-free); bodies whose spin is
+// constant simply turn by it.
 template <typename Turn> void advance_free_bodies(StepContext &context, const Turn &turn) {
     const Real h = context.substep();
     const Vec3 gravity{context.settings.gravity};

@@ -1,4 +1,4 @@
-// Memory of a method that solves for all velocities at once.
+// Working memory of a method that solves for all velocities together.
 #pragma once
 
 #include "engine/math/sparse_cholesky.h"
@@ -9,13 +9,13 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 struct ImplicitSystem {
-    // Up to six unknowns of a body or particle: changes of velocity along the world's axes, then of
+    // Up to six unknowns of a body or particle: changes in velocity along the world axes, then in
     // spin about them; -1 where nothing changes.
     using Unknowns = std::array<int, 6>;
-    std::vector<Unknowns> bodies; // of the model
+    std::vector<Unknowns> bodies; // per body of the model
     std::vector<Unknowns> particles;
     std::vector<MatrixEntry> entries;
-    std::vector<double> sides; // of each unknown; then the solution
+    std::vector<double> sides; // right-hand side per unknown; then the solution
     SparseCholesky matrix;
 };
 

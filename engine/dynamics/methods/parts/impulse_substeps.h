@@ -1,22 +1,22 @@
-// The step that methods share which solve for impulses by repeated passes over all rows:
-// what overlaps is pushed apart and what has come apart is pulled together, by pseudo velocities or
-// through the velocities. How the passes are put together is the method's.
+// The step shared by methods that solve for impulses in repeated passes over all rows. Penetration
+// is pushed out and joint drift pulled in, by pseudo velocities or through the velocities. How the
+// passes are combined is up to the method.
 //
-// By pseudo velocities (split_impulse): the bias is solved for by itself, from zero, moves the
-// bodies and is forgotten (Cline and Pai 2003, "Post-Stabilization for Rigid Body Simulation
+// By pseudo velocities (split_impulse): the bias is solved for separately, from zero, moves the
+// bodies and is then forgotten (Cline and Pai 2003, "Post-Stabilization for Rigid Body Simulation
 // with Contact and Constraints"; Box2D has tried it beside Baumgarte's). In the velocities it would
-// be warm started in the next step as if it were load. Passes that cut a mode's error by a share s
-// a step, with a bias of beta, then follow, in units of the step, y' = v, v' = u, u' = -s (u + v +
-// beta y) for penetration, velocity and load, which grows wherever s < beta: with four corners a
+// be warm started in the next step like a load. Passes that cut a mode's error by a share s per
+// step, with a bias of beta, then follow y' = v, v' = u, u' = -s (u + v + beta y), in units of the
+// step, for penetration, velocity and load. That grows wherever s < beta: with four corners per
 // contact, six cubes rock for ever at ten passes.
 //
-// Joints are corrected through the velocities all the same, unless asked, at about half the cost.
-// So that a chain whose joints propagate errors slowly does not gain the more energy the shorter
-// the step, beta shrinks with a step of less than a 60th of a second: Baumgarte's rate (1972) does
-// not grow. What anchors are to leave their circles by is taken off beforehand (foresee_turns), not
-// waited for: a bias alone holds a pendulum where its drift has grown enough to make up for it.
-// Beside pseudo velocities nothing is foreseen: no chain gains energy then, but what swings, pulled
-// back along chords, loses three times as much.
+// Joints are still corrected through the velocities by default, at about half the cost. For steps
+// shorter than 1/60 s, beta shrinks with the step, so that Baumgarte's rate (1972) does not grow:
+// otherwise a chain whose joints propagate errors slowly would gain more energy the shorter the
+// step. The distance by which anchors would leave their circles is removed beforehand
+// (foresee_turns): with a bias alone a pendulum hangs where its drift has grown enough to balance
+// it. With pseudo velocities for joints nothing is foreseen: no chain gains energy then, but
+// swinging bodies, pulled back along chords, lose three times as much.
 #pragma once
 
 #include "engine/dynamics/bodies/motion.h"
@@ -34,9 +34,9 @@ inline ContactBias in_order(ContactBias bias, PointOrder order) {
     return bias;
 }
 
-// Pseudo velocities stand in the velocities' place, their impulses in that of the impulses: both
-// are put back. Springs, motors and particles know nothing of them. They start from zero each time,
-// so that no order of points lasts: turned round as well, ten cubes fell after 50 s.
+// Pseudo velocities and their impulses temporarily replace the real ones, which are restored at the
+// end. Springs, motors and particles are left out. They start from zero each time, so the effect of
+// a point order does not build up: with alternating orders here, too, ten cubes fell after 50 s.
 template <typename Solve>
 void correct_poses(StepContext &context, const ContactBias &bias, const Softness &pull, Real h,
                    Solve &&solve) {
@@ -84,15 +84,15 @@ void correct_poses(StepContext &context, const ContactBias &bias, const Softness
     }
 }
 
-// Of the settings, in `advance_by_impulses`.
+// The settings that advance_by_impulses reads.
 inline std::vector<SettingGroup> read_by_impulses() {
     return {SettingGroup::constraints, SettingGroup::speculative, SettingGroup::baumgarte,
             SettingGroup::split,       SettingGroup::push,        SettingGroup::threshold,
             SettingGroup::impacts,     SettingGroup::gyroscopic};
 }
 
-// `solve` is called with a pass over all rows, and may do it as often as it likes, with the points
-// of each contact in either order.
+// `solve` gets a pass over all rows and may call it any number of times, with each contact's points
+// in either order.
 template <typename Solve> void advance_by_impulses(StepContext &context, Solve &&solve) {
     const StepSettings &settings = context.settings;
     const Real h = context.substep();
@@ -136,7 +136,7 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
         });
         end_flights(context, h, Kick::before);
         drift_particles(context, h);
-        // Speeds that only took penetration back end with the substep.
+        // Speeds that only removed penetration end with the substep.
         solve_particle_contacts(context, {.loaded_only = true}, h);
         restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
         if (splits)

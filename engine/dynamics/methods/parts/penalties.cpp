@@ -1,4 +1,4 @@
-// What a world remembers of how stiff its rows have become (penalty.h).
+// How a world remembers the stiffness of its rows (penalty.h).
 #include "engine/core/renew.h"
 #include "engine/dynamics/world.h"
 
@@ -6,7 +6,7 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Of the points that a contact had before, known by feature.
+// Points get the penalties of those their contact had before, matched by feature id.
 void World::load_penalties() {
     Scratch &s = scratch_;
     if (!method_->info.keeps_penalties()) {
@@ -34,7 +34,7 @@ void World::load_penalties() {
     }
 }
 
-// After gather_memory, which has found the places.
+// Call after gather_memory, which finds the places.
 void World::gather_penalties() {
     Scratch &s = scratch_;
     if (!method_->info.keeps_penalties()) {
@@ -56,7 +56,7 @@ void World::gather_penalties() {
                     s.next_penalties.begin() + s.next_memory[to].first_point);
 }
 
-// As remember_contact: the points are the last of State::points.
+// Like remember_contact: the points are the last ones of State::points.
 void World::remember_penalties(std::span<const PointPenalty> penalties, std::size_t point_count) {
     std::vector<PointPenalty> &all = state_.penalties.points;
     if (penalties.empty() && all.empty())

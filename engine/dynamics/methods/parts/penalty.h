@@ -1,5 +1,5 @@
-// What a method of augmented Lagrangians remembers of its rows besides their loads: how stiff each
-// has become. Empty under all other methods.
+// What an augmented Lagrangian method remembers of its rows besides their loads: how stiff each has
+// become. Empty for all other methods.
 #pragma once
 
 #include "engine/dynamics/joints/joint.h"
@@ -8,11 +8,11 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Of a contact point.
+// One contact point's.
 struct PointPenalty {
     Real normal = Real(0); // N/m; 0: not known yet
     Real tangential = Real(0);
-    // How far the two have slid against each other since friction holds them (m), along the two
+    // How far the surfaces have slipped since friction began to hold them (m), along the two
     // vectors of tangent_basis(normal).
     Vec2 slip{Real(0)};
 };

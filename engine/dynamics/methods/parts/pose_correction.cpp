@@ -29,7 +29,6 @@ Real inverse_effective_mass(const RowBlock &rows, const SolverBody &a, const Sol
                                          : inverse_effective_mass(a, b, rows.r_a, rows.r_b, n);
 }
 
-// q += 1/2 [angle, 0] q, normalised: eqs. (8) and (9), and algorithm 2's prediction.
 void turn_pose(SolverBody &body, const Vec3 &angle) {
     if (angle == Vec3{Real(0)})
         return;
@@ -43,7 +42,6 @@ void turn_pose(SolverBody &body, const Vec3 &angle) {
     body.turned = (whole.w < Real(0) ? Real(-1) : Real(1)) * Vec3{whole.x, whole.y, whole.z};
 }
 
-// `p` is an impulse times a time (kg m), at r from the centre of mass.
 void shift_pose(SolverBody &body, const Vec3 &p, const Vec3 &r, Real h) {
     const Vec3 way = body.inv_mass * p;
     body.position += way;
@@ -57,7 +55,6 @@ void shift_poses(SolverBody &a, SolverBody &b, const Vec3 &r_a, const Vec3 &r_b,
     shift_pose(b, p, r_b, h);
 }
 
-// How far the material at r has come in this substep (m).
 Vec3 way_of(const SolverBody &body, const Vec3 &r, Real h) {
     const Real w = std::sqrt(std::max(Real(0), Real(1) - glm::dot(body.turned, body.turned)));
     const Vec3 turning = glm::cross(body.turned, r);
@@ -72,10 +69,10 @@ Vec3 way_between(const SolverBody &a, const SolverBody &b, const Vec3 &r_a, cons
 
 namespace {
 
-// Friction and restitution are alike for two bodies and for a particle and a body.
+// Friction and restitution, shared by body and particle contacts.
 
-// Static friction (sec. 3.5): what the two came along each other in this substep is taken back, if
-// the cone allows all of it. Returns the change of lambda (kg m), along the surface.
+// Static friction (sec. 3.5): undoes this substep's tangential displacement if the friction cone
+// allows all of it. Returns the change in lambda (kg m), along the surface.
 Vec3 static_friction(const Vec3 &way, const Vec3 &normal, const Vec3 &lambda, Real friction,
                      const TangentBasis &tangents, auto &&inverse_mass_along) {
     const Vec3 slid = way - glm::dot(way, normal) * normal;
@@ -91,7 +88,7 @@ Vec3 static_friction(const Vec3 &way, const Vec3 &normal, const Vec3 &lambda, Re
     return glm::dot(total, total) < limit * limit ? change : Vec3{Real(0)};
 }
 
-// Dynamic friction (sec. 3.6): the impulse that stops what slides, cut to the cone.
+// Dynamic friction (sec. 3.6): the impulse that stops sliding, clamped to the friction cone.
 Vec3 dynamic_friction(const Vec3 &speed, const Vec3 &normal, Real limit,
                       auto &&inverse_mass_along) {
     const Vec3 sliding = speed - glm::dot(speed, normal) * normal;
@@ -103,8 +100,8 @@ Vec3 dynamic_friction(const Vec3 &speed, const Vec3 &normal, Real limit,
     return inverse > Real(0) ? -std::min(size / inverse, limit) * t : Vec3{Real(0)};
 }
 
-// Restitution (sec. 3.6): the normal speed that is wanted, which is 0 where there is none, so that
-// what took back overlap is gone again.
+// Restitution (sec. 3.6): the target normal speed; 0 where nothing bounces, so that the speed from
+// removing penetration is gone again.
 Real wanted_speed(Real approach, Real restitution, Real threshold) {
     return approach < -threshold ? -restitution * approach : Real(0);
 }
@@ -123,8 +120,8 @@ void turn_arms(const StepContext &context, const ContactConstraint &contact,
     point.r_b = b.rotation * point.core_b - (point.rounding - rounding_a) * contact.normal;
 }
 
-// Calls use(contact, k, a, b) for each point, once its arms are those of the present poses, and
-// done(contact) after the last of each contact.
+// Calls use(contact, k, a, b) for each point, with its arms at the present poses, and done(contact)
+// after each contact's last point.
 template <typename Use, typename Done>
 void for_each_point(StepContext &context, Use &&use, Done &&done) {
     for (ContactConstraint &contact : context.scratch.contacts) {
@@ -139,7 +136,7 @@ void for_each_point(StepContext &context, Use &&use, Done &&done) {
     context.report.constraint_passes += context.scratch.contacts.size();
 }
 
-// Calls use(contact, point, a, b) likewise.
+// The same, calling use(contact, point, a, b).
 template <typename Use> void for_each_point(StepContext &context, Use &&use) {
     for_each_point(
         context,
@@ -185,7 +182,7 @@ void solve_contact_poses(StepContext &context, Real h) {
 
 void solve_contact_velocities(StepContext &context, Real h) {
     const auto threshold = static_cast<Real>(context.settings.restitution_threshold);
-    std::array<Real, 4> bounced{}; // the normal impulse of each point of a contact that bounces
+    std::array<Real, 4> bounced{}; // normal impulse per point of a bouncing contact
     const auto solve = [&](const ContactConstraint &contact, ContactPointConstraint &point,
                            SolverBody &a, SolverBody &b) -> Real {
         if (point.impulse.x == Real(0))
@@ -226,7 +223,7 @@ void solve_contact_velocities(StepContext &context, Real h) {
 
 namespace {
 
-// What a spring's end is fastened to, as far as it moves.
+// What a spring's end is attached to, and how it moves.
 struct End {
     StepContext &context;
     const SpringEnd &end;
@@ -266,7 +263,7 @@ void End::correct(const Vec3 &p) const {
         shift_pose(context.bodies[end.index], p, at.arm, h);
 }
 
-// Calls use(contact, row, body) for each contact of a particle.
+// Calls use(contact, row, body) for each particle contact.
 template <typename Use> void for_each_particle_contact(StepContext &context, Use &&use) {
     for (ParticleContactConstraint &row : context.scratch.particle_contacts) {
         const ParticleContact &contact = context.particle_contacts[row.contact];

@@ -64,7 +64,7 @@ RigidBlock::Step RigidBlock::solve() const {
     return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
 }
 
-// The point R r, of which along e the second derivative by a turn is (e r^T + r e^T) / 2 - (e r) 1.
+// The second derivative of the point R r along e by a turn is (e r^T + r e^T) / 2 - (e r) 1.
 Vec3 turn_stiffness(const Vec3 &force, const Vec3 &arm) {
     const Real along = glm::dot(force, arm);
     Vec3 lengths{Real(0)};

@@ -1,5 +1,5 @@
-// The six degrees of freedom of one body in an energy that is minimised body by body (Chen, Liu,
-// Yang, Yuksel 2024, "Vertex Block Descent").
+// The six degrees of freedom of one body in an energy minimised body by body (Chen, Liu, Yang,
+// Yuksel 2024, "Vertex Block Descent").
 #pragma once
 
 #include "engine/math/types.h"
@@ -9,27 +9,27 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 // A quadratic model of the energy about a body's pose: its second derivative and the forces, first
-// along the world's axes, then about them.
+// along the world axes, then about them.
 class RigidBlock {
   public:
-    // Inertia over the square of the substep (kg/s^2, N m), and the force and torque that it makes
-    // where the body is.
+    // Mass and inertia over h^2 (kg/s^2, N m), and the inertial force and torque at the body's
+    // current pose.
     RigidBlock(const Vec3 &mass, const Mat3 &inertia, const Vec3 &force, const Vec3 &torque);
 
-    // A row whose place changes by dot(linear, way) + dot(angular, turn): it pushes with `force`
-    // along itself, less by `stiffness` for each unit of way.
+    // A row whose position changes by dot(linear, way) + dot(angular, turn): it pushes along itself
+    // with `force`, less `stiffness` per unit of that change.
     void add_row(const Vec3 &linear, const Vec3 &angular, Real stiffness, Real force);
-    // Only the stiffness, against turns about the world's axes.
+    // Stiffness alone, against turns about the world axes.
     void add_turn_stiffness(const Vec3 &stiffness);
-    // Nothing moves along (0 to 2) or about (3 to 5) that axis of the world.
+    // Blocks motion along (0 to 2) or about (3 to 5) that world axis.
     void lock(std::size_t axis);
 
     struct Step {
         Vec3 way{Real(0)};  // m
         Vec3 turn{Real(0)}; // rad, world
     };
-    // To where the model is least. No step when the second derivative is not positive definite, as
-    // without inertia.
+    // The step to the model's minimum. No step if the second derivative is not positive definite,
+    // e.g. without inertia.
     Step solve() const;
 
   private:
@@ -38,9 +38,9 @@ class RigidBlock {
     std::array<Real, 6> force_{};
 };
 
-// The sum of |f| times the lengths of the columns of a point's second derivative by a turn, for a
-// force f at the end of an arm: what stands for it on the diagonal (Giles, Diaz, Yuksel 2025,
-// "Augmented Vertex Block Descent", sec. 3.5), N m.
+// For a force at the end of an arm, the column lengths of the matrix of force times the point's
+// second derivative by a turn. They stand in for that matrix as a diagonal (Giles, Diaz, Yuksel
+// 2025, "Augmented Vertex Block Descent", sec. 3.5), N m.
 Vec3 turn_stiffness(const Vec3 &force, const Vec3 &arm);
 
 } // namespace plumb::inline PLUMB_PRECISION

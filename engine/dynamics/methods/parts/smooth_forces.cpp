@@ -18,7 +18,7 @@ Vec3 torque_free(const Body &body, const SolverBody &motion) {
     return -(motion.inv_inertia * glm::cross(motion.angular_velocity, momentum));
 }
 
-// The places of bodies in context.moving() are ascending.
+// A body's place in context.moving(), which is ascending; moving.size() if it is not there.
 std::size_t place_of(const StepContext &context, std::uint32_t body) {
     const auto moving = context.moving();
     const auto found = std::ranges::lower_bound(moving, body);
@@ -27,7 +27,7 @@ std::size_t place_of(const StepContext &context, std::uint32_t body) {
                : moving.size();
 }
 
-// Adds what a spring's force does to what its end is fastened to.
+// Adds a spring's force to whatever its end is attached to.
 void add_force(const StepContext &context, const SpringEnd &end, const Vec3 &arm, const Vec3 &force,
                Accelerations &out) {
     if (end.kind == SpringEnd::Kind::particle)

@@ -1,5 +1,5 @@
 // The one acceleration function of the smooth methods: gravity, attractors, springs, damping and
-// the torque of free spin, at the present motions.
+// the torque of free spin, at the present state.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -10,12 +10,12 @@ namespace plumb::inline PLUMB_PRECISION {
 
 struct StepContext;
 
-// Of what moves: bodies by their place in context.moving(), particles by index; world axes.
+// Moving bodies by their place in context.moving(), particles by index; world axes.
 struct Accelerations {
     struct OfBody {
         Vec3 linear{Real(0)};
         Vec3 angular{Real(0)};
-        Vec3 torque{Real(0)}; // of the springs alone (N m), about the centre of mass
+        Vec3 torque{Real(0)}; // from springs alone (N m), about the centre of mass
     };
     std::vector<OfBody> bodies;
     std::vector<Vec3> particles;
@@ -23,20 +23,21 @@ struct Accelerations {
 
 // Counts one pass over bodies, particles and springs.
 void find_accelerations(StepContext &context, Accelerations &out);
-// The same without the bodies' angular accelerations, for who has Euler's equations in body axes.
+// The same without the bodies' angular accelerations, for methods that solve Euler's equations in
+// body axes.
 void find_linear_accelerations(StepContext &context, Accelerations &out);
 
-// v += h a, with the accelerations at the present motions; then x += h v.
+// v += h a, with the accelerations at the present state; then x += h v.
 void kick_smoothly(StepContext &context, Real h);
 void drift_smoothly(StepContext &context, Real h);
-// v += h a, with accelerations that are given.
+// v += h a, with the given accelerations.
 void kick_smoothly(StepContext &context, const Accelerations &by, Real h);
 
-// For a second evaluation within a substep: velocities as they were when they were remembered.
+// Save and restore velocities, for a second evaluation within a substep.
 void remember_velocities(StepContext &context);
 void restore_velocities(StepContext &context);
 
-// Whether any of them depends on velocities.
+// Whether any acceleration depends on velocities.
 bool depend_on_velocities(const StepContext &context);
 
 } // namespace plumb::inline PLUMB_PRECISION
