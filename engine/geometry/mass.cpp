@@ -184,8 +184,8 @@ Mat3 inertia(const ConvexHull &hull, Real mass) {
 }
 
 // Jacobi's method (Golub, Van Loan 2013, "Matrix Computations", 8.5): rotates in one coordinate
-// plane after the other until the matrix is diagonal. Four rounds are enough for a 3 x 3 matrix of
-// doubles.
+// plane after the other until the matrix is diagonal. Four rounds are usually enough for a 3 x 3
+// matrix of doubles; eight are allowed.
 PrincipalFrame principal_frame(const Mat3 &inertia) {
     glm::dmat3 m(inertia);
     PLUMB_CHECK(std::isfinite(m[0][0] + m[1][0] + m[2][0] + m[1][1] + m[2][1] + m[2][2]),

@@ -65,7 +65,7 @@ StepSettings settings_of(const WorldDesc &world, const MethodInfo &method);
 // Sets the world's method and settings; the previous method moves to other_methods.
 void set_run(WorldDesc &world, const MethodInfo &method, const StepSettings &settings);
 
-// Empty when the method can run the scene, else why not ("rk4 has no contacts, and ...").
+// Empty when the method can run the scene, else why not ("rk4 does not support contacts, and ...").
 std::string why_not(const MethodInfo &method, const SceneDesc &scene);
 
 class Simulation {

@@ -2,12 +2,11 @@
 
 #include "engine/dynamics/colours.h"
 #include "engine/dynamics/contacts/approach.h"
-#include "engine/dynamics/contacts/rolling_contact.h"
+#include "engine/dynamics/contacts/friction_patch.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include <glm/geometric.hpp>
 
@@ -81,69 +80,6 @@ bool is_found_again(const StepContext &context, const Contact &contact) {
            are_lone(context, contact) && !are_balls(context, contact);
 }
 
-// Whether two bodies spin flat on each other: about the contact normal, and too fast for friction
-// to stop within a step or so. While a body tips, its load moves to other points from one substep
-// to the next.
-bool spin_flat(const StepContext &context, const Contact &contact) {
-    constexpr Real slow = Real(0.25), flat = Real(0.125);
-    const Vec3 &n = contact.manifold.normal;
-    const Vec3 spin = context.bodies[contact.key.b].angular_velocity -
-                      context.bodies[contact.key.a].angular_velocity;
-    const Real along = glm::dot(spin, n);
-    const Vec3 across = spin - along * n;
-    if (!(glm::dot(across, across) < flat * flat * along * along))
-        return false;
-    const Vec3 &first = contact.anchors[0].arm_a;
-    Real squared = Real(0);
-    for (std::size_t k = 1; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
-        const Vec3 from = contact.anchors[k].arm_a - first;
-        squared = std::max(squared, glm::dot(from, from));
-    }
-    const Vec3 gravity{context.settings.gravity};
-    const Real speed = slow * static_cast<Real>(context.settings.dt) * glm::length(gravity);
-    return along * along * squared > speed * speed;
-}
-
-// How much friction's lever arms are shortened where bodies spin on each other. Contact points lie
-// on the outline of the contact patch; under even pressure friction acts closer to the centre and
-// slows a spin less. The ratio is the mean distance of the patch from its centre over that of the
-// outline's corners: 1/2 for a line, 2/3 for a disc, and (sqrt(2) + ln(1 + sqrt(2))) / (3 sqrt(2))
-// = 0.541 for a square. For rectangles of aspect ratio x it grows from 1/2 to that roughly as x (2
-// - x). 1 without spin, when friction does not slide.
-Real spread_of(const StepContext &context, const Contact &contact) {
-    constexpr Real line = Real(0.5), square = Real(0.541), disc = Real(2) / Real(3);
-    const auto count = static_cast<std::size_t>(contact.manifold.count);
-    if (count == 1 || !spin_flat(context, contact))
-        return Real(1);
-    if (count == 2)
-        return line;
-    std::array<Vec3, 4> on_a{}, on_b{};
-    for (std::size_t k = 0; k < count; ++k) {
-        on_a[k] = contact.anchors[k].core_a;
-        on_b[k] = contact.anchors[k].core_b;
-    }
-    if (is_round_patch(context.model.colliders[contact.collider_a], std::span(on_a).first(count)) ||
-        is_round_patch(context.model.colliders[contact.collider_b], std::span(on_b).first(count)))
-        return disc;
-    Vec3 middle{Real(0)};
-    for (std::size_t k = 0; k < count; ++k)
-        middle += contact.anchors[k].arm_a / static_cast<Real>(count);
-    const TangentBasis tangents = tangent_basis(contact.manifold.normal);
-    Real xx = Real(0), xy = Real(0), yy = Real(0);
-    for (std::size_t k = 0; k < count; ++k) {
-        const Vec3 from = contact.anchors[k].arm_a - middle;
-        const Real x = glm::dot(from, tangents.t1), y = glm::dot(from, tangents.t2);
-        xx += x * x;
-        xy += x * y;
-        yy += y * y;
-    }
-    const Real half_difference = Real(0.5) * (xx - yy);
-    const Real mean = Real(0.5) * (xx + yy);
-    const Real apart = std::sqrt(half_difference * half_difference + xy * xy);
-    const Real ratio = std::sqrt(std::max(mean - apart, Real(0)) / (mean + apart));
-    return line + (square - line) * ratio * (Real(2) - ratio);
-}
-
 void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,
                std::uint32_t index) {
     const Contact &contact = context.contacts[index];
@@ -170,7 +106,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
     block.bounces.lanes[lane] = contact.restitution > Real(0) ? Real(1) : Real(0);
-    const Real spread = spread_of(context, contact);
+    const Real spread = patch_spread(context, contact);
     block.spread.lanes[lane] = spread;
     block.spins = block.spins || spread < Real(1);
     block.rounding_a.lanes[lane] = contact.rounding_a;

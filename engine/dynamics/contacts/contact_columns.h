@@ -63,7 +63,7 @@ struct ContactBlock {
     Column struck;    // 1 where the bodies closed faster than struck_speed in this substep
     Column corrected; // the most that the last pass changed a point's speed (m/s)
     Column began;     // sum of the normal impulses remembered as it began (N s)
-    // Friction's lever arms about the centre of pressure, as a share of the points' (spread_of).
+    // Friction's lever arms about the centre of pressure, as a share of the points' (patch_spread).
     Column spread;
     Column rounding_a; // radius of a round surface beyond its core (m)
     Column rounding_b;

@@ -91,6 +91,15 @@ HWY_INLINE Turns turns(const Vector &r_a, const Vector &r_b, const Vector &u) {
     return {cross(r_a, u), cross(r_b, u)};
 }
 
+HWY_INLINE Vector nowhere() {
+    const Lanes zero = hn::Zero(tag);
+    return {zero, zero, zero};
+}
+HWY_INLINE Vector choose(Mask which, const Vector &yes, const Vector &no) {
+    return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y),
+            hn::IfThenElse(which, yes.z, no.z)};
+}
+
 // Where friction acts (ContactBlock::spread): at the contact points, drawn in toward the centre of
 // pressure of the remembered impulses.
 struct Patch {
@@ -108,13 +117,12 @@ struct Patch {
 HWY_INLINE Patch patch_of(const ContactBlock &block, std::size_t lane) {
     const Lanes zero = hn::Zero(tag);
     const Lanes one = all(Real(1));
-    const Vector nowhere{zero, zero, zero};
-    Patch patch{block.spins, one, nowhere, nowhere};
+    Patch patch{block.spins, one, nowhere(), nowhere()};
     if (!patch.is_spread)
         return patch;
     Lanes sum = zero;
-    Vector sum_a = nowhere;
-    Vector sum_b = nowhere;
+    Vector sum_a = nowhere();
+    Vector sum_b = nowhere();
     for (int k = 0; k < block.points_used; ++k) {
         const ContactBlock::Point &point = block.points[k];
         const Lanes borne = load(point.remembered.x, lane);
@@ -237,12 +245,17 @@ void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
             const Vector normal = times(starts[k].x, n);
             const Vector along_1 = times(starts[k].y, t1);
             const Vector along_2 = times(starts[k].z, t2);
-            if (patch.is_spread) {
-                pair.apply(normal, r_a, r_b);
-                pair.apply(plus(along_1, along_2), patch.arm_a(r_a), patch.arm_b(r_b));
-            } else {
-                pair.apply(plus(plus(normal, along_1), along_2), r_a, r_b);
+            const Vector whole = plus(plus(normal, along_1), along_2);
+            if (!patch.is_spread) {
+                pair.apply(whole, r_a, r_b);
+                continue;
             }
+            // Lanes that do not spin get the same bits as in a block where none does (but for the
+            // sign of a zero).
+            const auto spins = hn::Lt(patch.spread, all(Real(1)));
+            pair.apply(choose(spins, normal, whole), r_a, r_b);
+            pair.apply(choose(spins, plus(along_1, along_2), nowhere()), patch.arm_a(r_a),
+                       patch.arm_b(r_b));
         }
         store_pair(pair, block, bodies, lane);
     }

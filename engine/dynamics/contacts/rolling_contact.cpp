@@ -82,28 +82,10 @@ Vec3 seen_after(const Vec3 &normal, const Vec3 &turn) {
     return turned(identity_rotation, -turn, Real(1)) * normal;
 }
 
-// Whether it has faces on which the four points of a contact leave long arcs.
-bool has_wide_face(const ConvexHull &hull) {
-    return hull.mesh->most_corners > 6;
-}
-
 } // namespace
 
 bool has_rim(const Collider &a, const Collider &b) {
     return std::holds_alternative<Cylinder>(a.shape) || std::holds_alternative<Cylinder>(b.shape);
-}
-
-bool is_round_patch(const Collider &collider, std::span<const Vec3> points) {
-    if (const auto *hull = std::get_if<ConvexHull>(&collider.shape))
-        return has_wide_face(*hull);
-    const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
-    if (cylinder == nullptr)
-        return false;
-    const Vec3 axis = glm::normalize(cylinder->b - cylinder->a);
-    return std::ranges::all_of(points, [&](const Vec3 &point) {
-        const Vec3 from = point - cylinder->a;
-        return glm::length(from - glm::dot(from, axis) * axis) > Real(0.99) * cylinder->radius;
-    });
 }
 
 Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const Vec3 &out,
@@ -148,6 +130,11 @@ void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &o
 namespace {
 
 constexpr std::uint32_t next_corner_feature = 0xFFFE0000U; // and its number
+
+// Whether it has faces on which the four points of a contact leave long arcs.
+bool has_wide_face(const ConvexHull &hull) {
+    return hull.mesh->most_corners > 6;
+}
 
 struct Corner {
     std::uint32_t vertex;

@@ -5,15 +5,10 @@
 #include "engine/dynamics/bodies/body.h"
 #include "engine/dynamics/contacts/inner_edges.h"
 
-#include <span>
-
 namespace plumb::inline PLUMB_PRECISION {
 
 // Whether one of two colliders is a cylinder.
 bool has_rim(const Collider &a, const Collider &b);
-// Whether contact points (in the body's mass frame) lie on the rim of a cylinder, or on a hull with
-// faces of more than six corners: the patch they enclose is about a disc.
-bool is_round_patch(const Collider &collider, std::span<const Vec3> points);
 
 // Sine of the least angle between a cylinder's side and a plane at which it stands on a rim; below
 // that the cylinder counts as round there (Contact::rounding_a).

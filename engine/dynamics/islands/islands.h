@@ -24,6 +24,10 @@ struct Pace {
     bool is_asleep() const { return rested == asleep; }
 };
 
+// The speed below which a body or particle may be at rest (m/s): a share of what `pull` (m/s^2)
+// adds in a 60th of a second, or in a step if that is longer.
+double rest_speed(double pull, double dt);
+
 // How an island is stepped.
 struct IslandPace {
     int substeps = 0;

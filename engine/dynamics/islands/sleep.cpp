@@ -13,10 +13,8 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // A body is at rest if it moves less in sleep_after than substep_tolerance of its width, and no
-// faster than a share of what gravity adds in a 60th of a second or in a longer step, or than the
-// rounding of positions makes it. Without gravity a body that drifts is never at rest.
-constexpr double rest_share = 4e-3;
-constexpr double usual_dt = 1.0 / 60;
+// faster than rest_speed or than the rounding of positions makes it. Without gravity a body that
+// drifts is never at rest.
 constexpr double roundings = 2; // per substep
 
 double rest_time(const StepSettings &settings) {
@@ -29,6 +27,11 @@ bool is_zero(const Vec3 &v) {
 }
 
 } // namespace
+
+double rest_speed(double pull, double dt) {
+    constexpr double share = 4e-3, usual_dt = 1.0 / 60;
+    return share * pull * std::max(dt, usual_dt);
+}
 
 bool World::sleeps() const {
     return settings_.sleep_after > 0 &&
@@ -142,9 +145,8 @@ bool World::is_at_rest(std::uint32_t index) const {
                                                 std::max({place.x, place.y, place.z}));
     const double substep = settings_.dt / std::max<int>(scratch_.paces[index].substeps, 1);
     const double pull = glm::length(glm::dvec3{pull_on(index)});
-    const double slow = pull > 0 ? std::max(rest_share * pull * std::max(settings_.dt, usual_dt),
-                                            roundings * rounding / substep)
-                                 : 0;
+    const double slow =
+        pull > 0 ? std::max(rest_speed(pull, settings_.dt), roundings * rounding / substep) : 0;
     if (static_cast<double>(glm::dot(motion.velocity, motion.velocity)) > 2 * slow * slow)
         return false;      // far from it, as most moving bodies are
     Real extent = Real(0); // round bodies too: a spin that cannot be seen is still kept

@@ -5,7 +5,7 @@
 // gradient, and the previous passes' direction is followed on as long as the gradient shrinks. So
 // an error that Gauss-Seidel passes on from contact to contact, reducing it only a little per pass,
 // is gone in about the square root of the passes. Everything else is as in sequential_impulses,
-// including the pass itself.
+// including the pass itself, but that it always runs forwards.
 #include "engine/dynamics/methods/parts/impulse_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {

@@ -15,10 +15,6 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Slower particles are at rest: a share of the speed that gravity adds in a 60th of a second, or in
-// a step if that is longer.
-constexpr double particle_rest_share = 4e-3;
-
 // The fastest spring's rate times the substep to ask for, a little below the limit that springs can
 // follow (spring_constraint.cpp), since they turn and tighten within the step. And the same for the
 // damping rate: one pass over strong dampers on light particles loses what they should pass on.
@@ -123,9 +119,7 @@ bool World::needs_particle_contacts() const {
 }
 
 bool World::is_particle_at_rest(const ParticleMotion &motion) const {
-    const double pull = glm::length(settings_.gravity);
-    const auto limit =
-        static_cast<Real>(particle_rest_share * pull * std::max(settings_.dt, 1.0 / 60));
+    const auto limit = static_cast<Real>(rest_speed(glm::length(settings_.gravity), settings_.dt));
     return glm::dot(motion.velocity, motion.velocity) <= limit * limit;
 }
 
