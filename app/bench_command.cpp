@@ -51,8 +51,8 @@ int bench(const BenchArguments &arguments, const CommonOptions &common) {
     if (!std::filesystem::exists(program)) {
         std::cerr << "plumb: there is no " << program.string()
                   << "; `./plumb bench " + arguments.what +
-                         "` in the source folder installs the libraries "
-                         "to compare with, and builds it\n";
+                         "` in the source folder installs the libraries to compare with and "
+                         "builds it\n";
         return code_of(ExitCode::bad_input);
     }
     std::vector<std::string> passed_on{program.string(),
@@ -85,25 +85,26 @@ void add_bench(CommandLine &line) {
         "bench", "Compares the engine with other libraries (run it as ./plumb bench WHAT)");
     bench_command
         ->add_option("WHAT", arguments->what,
-                     "geometry: what queries cost; dynamics: what steps of the same scenes cost in "
-                     "several engines, and how wrong they are; scenes: writes these as files, to "
-                     "run, chart and map; truth: what each engine makes of small problems whose "
-                     "answer is known, beside the aim")
+                     "geometry: cost of queries; dynamics: cost and error of a step of the same "
+                     "scenes in several engines; scenes: writes those scenes as files, to run, "
+                     "chart and map; truth: what each engine reaches in small problems with known "
+                     "answers, beside the aim")
         ->required()
         ->check(CLI::IsMember({"geometry", "dynamics", "scenes", "truth"}));
     bench_command
-        ->add_option("--rounds", arguments->rounds, "geometry: of timings; their median counts")
+        ->add_option("--rounds", arguments->rounds,
+                     "geometry: rounds of timings; the median counts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     bench_command
         ->add_option(
             "--only", arguments->only,
             "dynamics, scenes, truth: the scenes or problems of that name, else those whose names "
-            "begin so (all)")
+            "start with it (all)")
         ->type_name("NAME,...");
     bench_command
         ->add_option("--seconds", arguments->seconds,
-                     "dynamics: how long a scene is run at most, in its own time (0.25 to 5, by "
+                     "dynamics: most simulated seconds per scene (0.25 to 5, depending on the "
                      "scene)")
         ->check(positive());
     bench_command
@@ -112,7 +113,8 @@ void add_bench(CommandLine &line) {
         ->check(CLI::Range(0.0001, 10.0))
         ->capture_default_str();
     bench_command
-        ->add_option("--threads", arguments->threads, "dynamics: of Plumb, beside one; 1: only one")
+        ->add_option("--threads", arguments->threads,
+                     "dynamics: Plumb's threads, timed beside one; 1: one only")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
     add_out(*bench_command, line.common, "out");

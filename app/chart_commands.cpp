@@ -52,20 +52,20 @@ void add_chart(CommandLine &line) {
     CLI::App *chart_command = line.app.add_subcommand(
         "chart",
         "Charts each method's cost against its error, as CSV, PNG and SVG: of scenes, or of "
-        "geometric queries (`plumb chart geometry`, with --repeats and --out alone)");
+        "geometric queries (`plumb chart geometry`, which takes only --repeats and --out)");
     add_scenes(*chart_command, line.common);
-    chart_command->add_option("--methods", arguments->methods, "Of " + method_names() + " (all)")
+    chart_command->add_option("--methods", arguments->methods, "Methods (all): " + method_names())
         ->type_name("METHOD,...");
     chart_command
         ->add_option("--sweep", arguments->sweeps,
-                     "What to vary, any setting from `plumb list --settings`: substeps=1..16 "
-                     "(the default), iterations=1,2,8, dt=1/240..1/30; also precision=float,double "
-                     "and threads=1,2 (then in wall time); may be given several times")
+                     "Setting to sweep, any from `plumb list --settings`: substeps=1..16 (the "
+                     "default), iterations=1,2,8, dt=1/240..1/30; also precision=float,double and "
+                     "threads=1,2 (then in wall time); may be repeated")
         ->allow_extra_args(false);
     chart_command->add_option(
         "--expect", arguments->command.options.expect,
         "Name of one expectation to chart, in its own unit (the worst of all, "
-        "each in units of its tolerance)");
+        "each in units of its own tolerance)");
     chart_command
         ->add_option("--repeats", arguments->command.options.repeats, "Timings of each run")
         ->check(CLI::Range(1, 1000))
@@ -73,27 +73,27 @@ void add_chart(CommandLine &line) {
     chart_command
         ->add_option(
             "--with", arguments->engines,
-            "Other engines beside the methods, judged by the same measures: bullet, ode (in a "
+            "Other engines to chart beside the methods, by the same measures: bullet, ode (in a "
             "build with PLUMB_BENCH=ON)")
         ->type_name("ENGINE,...");
     chart_command
         ->add_option("--budget", arguments->budget,
-                     "What a frame of 1/60 s may cost, drawn as a line (all of it, 60 Hz)")
+                     "Time a frame of 1/60 s may cost, drawn as a line (all of it: 60 Hz)")
         ->type_name("1ms");
     chart_command->add_flag("--convergence", arguments->command.options.convergence,
-                            "Error against dt with fitted orders, nothing timed: dt=1/960..1/30 "
-                            "unless --sweep has another, one substep, and double");
+                            "Error against dt with fitted orders, untimed: in double, with one "
+                            "substep, over dt=1/960..1/30 unless --sweep says otherwise");
     chart_command->add_flag(
         "--one-step", arguments->command.options.one_step,
-        "For motion that is chaotic: the error of one step (of a frame of 60 Hz, if that is longer)"
-        " from states of one accurate run in double, the same for every method");
+        "For chaotic motion: the error of one step (of a 60 Hz frame, if that is longer) from "
+        "states of one accurate run in double, the same for every method");
     chart_command
         ->add_option("--seed", arguments->command.options.seed,
                      "Random seed for the order of the timings in each round")
         ->capture_default_str();
     chart_command
         ->add_option("--shard", arguments->shard,
-                     "Runs the I-th of N parts of a chart, for `plumb merge`: no pictures")
+                     "Runs part I of N of a chart, without pictures, for `plumb merge`")
         ->type_name("I/N");
     add_out(*chart_command, line.common, "out");
     add_run_options(*chart_command, line.common, true);
@@ -130,10 +130,10 @@ void add_chart(CommandLine &line) {
 void add_merge(CommandLine &line) {
     const auto command = std::make_shared<MergeCommand>();
     CLI::App *merge_command = line.app.add_subcommand(
-        "merge", "Makes one chart of the tables that `plumb chart --shard` wrote");
-    merge_command->add_option("CSV", command->tables, "All of them, in any order")->required();
+        "merge", "Merges the tables written by `plumb chart --shard` into one chart");
+    merge_command->add_option("CSV", command->tables, "All the tables, in any order")->required();
     merge_command->add_option("--scene", command->scene,
-                              "The scene's file, where it is not one of `plumb list`");
+                              "The scene's file, if `plumb list` does not have it");
     add_out(*merge_command, line.common, "out");
     merge_command->callback([=, &line] {
         command->find_scene = [&line](const std::string &name) {

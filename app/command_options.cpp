@@ -56,7 +56,7 @@ std::vector<std::string> parse_list(const std::string &text) {
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
         if (end == begin)
-            throw std::invalid_argument("'" + text + "' has nothing between two commas");
+            throw std::invalid_argument("'" + text + "' has an empty item");
         items.push_back(text.substr(begin, end - begin));
         begin = end + 1;
     }
@@ -71,8 +71,8 @@ std::vector<std::uint64_t> parse_steps(const std::string &text) {
         const auto read = std::from_chars(item.data(), end, step);
         if (read.ec != std::errc{} || read.ptr != end || step > most_steps)
             throw std::invalid_argument("--at: '" + item +
-                                        "' must be a step, a whole number up to 1000000000, as in "
-                                        "0,60,240");
+                                        "' must be a whole number of steps up to 1000000000, as "
+                                        "in 0,60,240");
         steps.push_back(step);
     }
     return steps;
@@ -86,14 +86,13 @@ CLI::Range step_range() {
 void add_scenes(CLI::App &command, CommonOptions &common) {
     command
         .add_option("SCENE", common.scenes,
-                    "Scene files, or names from `plumb list`; a folder stands for all in it")
+                    "Scene files, names from `plumb list`, or folders (all scenes in them)")
         ->required();
 }
 
 void add_threads(CLI::App &command, CommonOptions &common) {
     command
-        .add_option("--threads", common.threads,
-                    "Threads; the results are the same with any number")
+        .add_option("--threads", common.threads, "Number of threads; results do not depend on it")
         ->check(CLI::Range(1, 256))
         ->capture_default_str();
 }
@@ -101,14 +100,14 @@ void add_threads(CLI::App &command, CommonOptions &common) {
 void add_run_options(CLI::App &command, CommonOptions &common, bool chart) {
     if (!chart)
         command.add_option("--method", common.method,
-                           "Instead of the scene's own: " + method_names());
+                           "Method, instead of the scene's: " + method_names());
     add_setting(command, common, "--set", "",
-                "A setting from `plumb list --settings`, as in substeps=8, dt=1/120 or "
-                "gravity=0,-3,0; may be given several times",
+                "A setting from `plumb list --settings`, such as substeps=8, dt=1/120 or "
+                "gravity=0,-3,0; may be repeated",
                 "NAME=VALUE");
     for (const char *name : {"dt", "substeps", "iterations"})
         add_setting(command, common, std::string("--") + name, std::string(name) + "=",
-                    "The same as --set " + std::string(name) + "=VALUE", "VALUE");
+                    "Short for --set " + std::string(name) + "=VALUE", "VALUE");
     command.add_option("--precision", common.precision, "float or double")
         ->check(CLI::IsMember({"float", "double"}));
     if (!chart) // charts are timed on one thread
@@ -118,14 +117,15 @@ void add_run_options(CLI::App &command, CommonOptions &common, bool chart) {
 void add_gl(CLI::App &command, CommonOptions &common) {
     command
         .add_option("--gl", common.gl,
-                    "Where to draw: window, osmesa (in memory), or auto, which tries in this order")
+                    "Where to draw: window, osmesa (in memory), or auto (osmesa, unless `run` can "
+                    "open a window)")
         ->check(CLI::IsMember({"auto", "window", "osmesa"}))
         ->capture_default_str();
 }
 
 void add_out(CLI::App &command, CommonOptions &common, const std::string &by_default) {
     common.out = by_default;
-    command.add_option("--out", common.out, "Folder for what is made")->capture_default_str();
+    command.add_option("--out", common.out, "Output folder")->capture_default_str();
 }
 
 } // namespace plumb

@@ -62,8 +62,7 @@ void add_out(CLI::App &command, CommonOptions &common, const std::string &by_def
 template <typename T>
 void add_ui_scale(CLI::App &command, T &scale, const std::string &by_default) {
     command
-        .add_option("--ui-scale", scale,
-                    "How large text and panels are, 0.5 to 4 (" + by_default + ")")
+        .add_option("--ui-scale", scale, "Scale of text and panels, 0.5 to 4 (" + by_default + ")")
         ->check(CLI::Range(0.5, 4.0));
 }
 

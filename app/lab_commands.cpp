@@ -40,7 +40,8 @@ void add_check(CommandLine &line) {
         line.app.add_subcommand("check", "Runs scenes and checks their expectations");
     add_scenes(*check_command, line.common);
     add_run_options(*check_command, line.common);
-    check_command->add_flag("--all-methods", *all_methods, "Every method that can run the scene");
+    check_command->add_flag("--all-methods", *all_methods,
+                            "Checks every method that can run the scene");
     check_command->callback([=, &line] {
         TaskPool tasks(line.common.threads);
         CheckCommand command;
@@ -62,11 +63,10 @@ void add_measure(CommandLine &line) {
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()
         ->expected(1);
-    measure_command->add_option("--steps", arguments->steps, "How far to run")
+    measure_command->add_option("--steps", arguments->steps, "Steps to run")
         ->check(step_range())
         ->capture_default_str();
-    measure_command->add_option("--csv", arguments->csv,
-                                "Where to write the table (standard output)");
+    measure_command->add_option("--csv", arguments->csv, "CSV file to write (standard output)");
     add_run_options(*measure_command, line.common);
     measure_command->callback([=, &line] {
         TaskPool tasks(line.common.threads);
@@ -83,33 +83,33 @@ void add_measure(CommandLine &line) {
 void add_map(CommandLine &line) {
     const auto arguments = std::make_shared<MapArguments>();
     CLI::App *map_command = line.app.add_subcommand(
-        "map", "Maps where each method holds a scene and why it fails, over two numbers: a grid of "
-               "runs, with the limit between held and failed found by bisection along x");
+        "map", "Maps where each method holds a scene and why it fails, over two parameters: a grid "
+               "of runs, with the limits between held and failed found by bisection along x");
     map_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()
         ->expected(1);
     const std::string axis_about =
-        "a setting from `plumb list --settings`, or a number of the scene file by its path, such "
-        "as body.ball.velocity.x, material.steel.friction or body.box.repeat.count, of which the "
-        "key alone will do where the file has it once (of velocity = [0, 5, 0] the one that is not "
-        "0): stiffness; N values (10) in equal steps, or "
-        "in equal ratios with log, as in dt=1/480..1/30:9log; or a list, substeps=1,2,4";
+        "a setting from `plumb list --settings`, or the path of a number in the scene file, such "
+        "as body.ball.velocity.x, material.steel.friction or body.box.repeat.count; its key alone "
+        "(stiffness) will do if the file has it only once (of velocity = [0, 5, 0], the component "
+        "that is not 0). N values (10) in equal steps, or in equal ratios with log: "
+        "dt=1/480..1/30:9log; or a list: substeps=1,2,4";
     map_command->add_option("--x", arguments->x, "The x axis: " + axis_about)
         ->required()
         ->type_name("NAME=FROM..TO[:N][log]");
-    map_command->add_option("--y", arguments->y, "The y axis, in the same way")
+    map_command->add_option("--y", arguments->y, "The y axis, in the same form")
         ->required()
         ->type_name("NAME=FROM..TO[:N][log]");
-    map_command->add_option("--methods", arguments->methods, "Of " + method_names() + " (all)")
+    map_command->add_option("--methods", arguments->methods, "Methods (all): " + method_names())
         ->type_name("METHOD,...");
     map_command->add_option("--image", arguments->command.image,
-                            "Where to draw the map: a PNG, or an SVG if its name ends so");
+                            "Picture of the map to write: a PNG, or an SVG if named *.svg");
     map_command->add_option("--csv", arguments->command.csv,
-                            "Where to write every cell and limit, as a table");
+                            "CSV file to write, with every cell and limit");
     map_command
         ->add_option("--seconds", arguments->command.options.duration,
-                     "Duration of each run of a scene without expectations (5)")
+                     "Simulated seconds per run of a scene without expectations (5)")
         ->check(positive());
     add_run_options(*map_command, line.common, true);
     add_threads(*map_command, line.common);
@@ -133,45 +133,44 @@ void add_tune(CommandLine &line) {
     CLI::App *tune_command = line.app.add_subcommand(
         "tune",
         "Finds the cheapest method, precision, dt, substeps and iterations with which a scene "
-        "meets all its expectations, with a margin and from several starts, and what its model can "
-        "then do without: " +
-            model_parts_text() +
-            ". What is given by --methods, --precision, --set and the like is kept");
+        "meets all its expectations, with a margin and from several starts, and then what its "
+        "model can do without: " +
+            model_parts_text() + ". Anything given by --methods, --set and the like stays fixed");
     tune_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()
         ->expected(1);
-    tune_command->add_option("--methods", arguments->methods, "Of " + method_names() + " (all)")
+    tune_command->add_option("--methods", arguments->methods, "Methods (all): " + method_names())
         ->type_name("METHOD,...");
     tune_command
         ->add_option(
             "--tolerance", arguments->command.options.tolerance,
-            "The share of each tolerance that may be used: the rest is the margin (lower bounds "
+            "Fraction of each tolerance that may be used; the rest is the margin (lower bounds "
             "have none)")
         ->check(CLI::Range(0.01, 1.0))
         ->capture_default_str();
     tune_command
         ->add_option("--starts", arguments->command.options.starts,
-                     "How often each is run beside the scene as it stands: with bodies shifted by "
-                     "up to a millionth, and another seed for what the file scatters")
+                     "Further runs of each candidate, beside the scene as it stands: with bodies "
+                     "shifted by up to a millionth, and another seed for what the file scatters")
         ->check(CLI::Range(0, 100))
         ->capture_default_str();
     tune_command
         ->add_option("--budget", arguments->budget,
-                     "The most CPU time that a frame of 1/60 s may cost; when the cheapest costs "
-                     "more, the exit code is 1")
+                     "Most CPU time that a frame of 1/60 s may cost; exit code 1 if the cheapest "
+                     "costs more")
         ->type_name("1ms");
     tune_command
         ->add_option("--repeats", arguments->command.options.repeats,
-                     "Timings of each that may be the cheapest, in turns")
+                     "Timings of each candidate for the cheapest, interleaved")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     tune_command->add_flag("--explain", arguments->command.explain,
-                           "Prints what was tried, what each cost and what it missed");
+                           "Prints what was tried, what it cost and what it missed");
     tune_command->add_flag("--write", arguments->command.write,
-                           "Writes the settings that were chosen, sleep among them, into the "
-                           "scene's file, and leaves all else in it as it is: what bodies can do "
-                           "without is only said");
+                           "Writes the chosen settings, including sleep, into the scene's file and "
+                           "leaves the rest of it alone; what bodies can do without is only "
+                           "reported");
     add_run_options(*tune_command, line.common, true);
     tune_command->callback([=, &line] {
         arguments->command.scene = line.common.scene_paths().front();
@@ -197,7 +196,7 @@ void add_reference(CommandLine &line) {
     reference_command->add_flag(
         "--write", command->write,
         "Writes those that have an `estimate` into the scene's file, with their estimates, and "
-        "leaves all else in it as it is");
+        "leaves the rest of it alone");
     reference_command->callback([=, &line] {
         command->scene = line.common.scene_paths().front();
         line.result = code_of(refine_scene(*command, std::cout, std::cerr));

@@ -21,14 +21,14 @@ namespace plumb {
 namespace {
 
 constexpr const char *exit_codes = "Exit codes:\n"
-                                   "  0  fine\n"
-                                   "  1  outside a tolerance, or pictures or a replay differ; "
-                                   "nothing tuned meets the scene\n"
-                                   "  2  a bad scene or argument\n"
+                                   "  0  success\n"
+                                   "  1  out of tolerance; pictures or a replay differ; or no "
+                                   "settings meet the scene\n"
+                                   "  2  bad scene or argument\n"
                                    "  3  the world diverged\n"
                                    "  4  no GL context\n"
-                                   "  5  output could not be written, or memory ran out\n"
-                                   "130  interrupted by Ctrl-C (143: by SIGTERM); what was done "
+                                   "  5  output could not be written, or out of memory\n"
+                                   "130  interrupted by Ctrl-C (143: by SIGTERM); finished work "
                                    "is kept\n";
 
 // The command as typed, for a chart's footer.
@@ -61,7 +61,7 @@ std::string why_unknown(const CLI::App &app, std::span<char *> arguments) {
         const std::string_view near = nearest_word(name, candidates);
         const std::string called = "plumb " + command.get_name();
         return called + " has no option " + std::string(name) + "; " +
-               (near.empty() ? called + " --help tells which it has"
+               (near.empty() ? "see " + called + " --help"
                              : "did you mean " + std::string(near) + "?");
     }
     return {};
@@ -69,7 +69,7 @@ std::string why_unknown(const CLI::App &app, std::span<char *> arguments) {
 
 int main_with_errors(int argc, char **argv) {
     CLI::App app(
-        "Plumb: a physics sandbox that charts what a method costs against how true it is.");
+        "Plumb: a physics sandbox that measures what each method costs and how accurate it is.");
     app.name("plumb");
     app.footer(exit_codes);
     app.require_subcommand(0, 1);
@@ -107,7 +107,7 @@ int main_with_errors(int argc, char **argv) {
                 names.push_back(command->get_name());
             const std::vector<std::string_view> candidates(names.begin(), names.end());
             const auto scene = std::ranges::find(common.catalogue, argv[1], &SceneEntry::name);
-            std::cerr << "plumb: there is no command '" << argv[1] << "'; "
+            std::cerr << "plumb: unknown command '" << argv[1] << "'; "
                       << (scene != common.catalogue.end()
                               ? "to open the scene: plumb run " + scene->name
                               : did_you_mean(argv[1], candidates))
@@ -139,7 +139,7 @@ template <typename Work> int reported(const Work &work) {
         what = error.what();
         code = ExitCode::no_room;
     } catch (const std::bad_alloc &) {
-        what = "out of memory; scenes/README.md says what a scene may ask for";
+        what = "out of memory; scenes/README.md lists the limits of a scene";
         code = ExitCode::no_room;
     } catch (const std::exception &error) {
         what = error.what();

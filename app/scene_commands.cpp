@@ -147,7 +147,7 @@ int compare(const std::filesystem::path &a_path, const std::filesystem::path &b_
                   << b.height << '\n';
         return code_of(ExitCode::outside_tolerance);
     }
-    std::cout << "largest difference of a channel  " << difference.max_difference << " of 255\n"
+    std::cout << "largest channel difference       " << difference.max_difference << " of 255\n"
               << "mean difference                  " << difference.mean_difference << " of 255\n"
               << "pixels more than 2 off           " << 100 * difference.fraction_beyond << " %\n"
               << "FLIP, mean                       " << difference.flip_mean << '\n'
@@ -179,26 +179,27 @@ struct CompareArguments {
 std::function<int()> add_run(CommandLine &line) {
     const auto arguments = std::make_shared<RunArguments>();
     CLI::App *run_command = line.app.add_subcommand(
-        "run", "Opens the sandbox (the default). Without a display: draws the scene to a PNG");
+        "run", "Opens the sandbox (the default); without a display, draws the scene to a PNG");
     run_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->expected(0, 1);
     add_run_options(*run_command, line.common);
     add_gl(*run_command, line.common);
     add_out(*run_command, line.common, "out");
-    run_command->add_option("--size", line.common.size, "Of the window: WIDTHxHEIGHT (1280x800)");
+    run_command->add_option("--size", line.common.size, "Window size, WIDTHxHEIGHT (1280x800)");
     run_command
         ->add_option("--samples", arguments->samples,
-                     "Of multisampling; 1: none (4, or 1 where there is no GPU)")
+                     "Multisampling samples; 1: none (4, or 1 without a GPU)")
         ->check(CLI::Range(1, 16));
     add_ui_scale(*run_command, arguments->ui_scale, "the monitor's");
-    run_command->add_option("--frames", arguments->frames, "Ends after so many frames")
+    run_command->add_option("--frames", arguments->frames, "Quits after this many frames")
         ->check(positive());
     run_command->add_option("--screenshot", arguments->screenshot,
-                            "Where to write the last frame, a PNG");
-    run_command->add_option("--record", arguments->record,
-                            "Where to write the run at its end, with all that was done to it, for "
-                            "`plumb replay`");
+                            "PNG file to write the last frame to");
+    run_command->add_option(
+        "--record", arguments->record,
+        "File to write the run to when it ends, with everything done to it, for "
+        "`plumb replay`");
     run_command->callback([=, &line] { line.result = run(line.common, *arguments); });
     return [=, &line] { return run(line.common, *arguments); };
 }
@@ -207,13 +208,15 @@ void add_replay(CommandLine &line) {
     const auto arguments = std::make_shared<ReplayArguments>();
     CLI::App *replay_command = line.app.add_subcommand(
         "replay",
-        "Runs a recording again in the sandbox, or where there is no display without it, and says "
+        "Replays a recording in the sandbox, or without it if there is no display, and says "
         "whether and where it differs");
     replay_command
-        ->add_option("FILE", arguments->command.recording, "From `plumb run --record FILE`")
+        ->add_option("FILE", arguments->command.recording,
+                     "Recording from `plumb run --record FILE`")
         ->required();
-    replay_command->add_flag("--no-window", arguments->no_window,
-                             "Without the sandbox: as fast as it goes, and prints the last hash");
+    replay_command->add_flag(
+        "--no-window", arguments->no_window,
+        "Replays without the sandbox, at full speed, and prints the last hash");
     add_out(*replay_command, line.common, "out");
     add_threads(*replay_command, line.common);
     replay_command->callback([=, &line] {
@@ -228,19 +231,19 @@ void add_snapshot(CommandLine &line) {
     add_scenes(*snapshot_command, line.common);
     auto *at = snapshot_command->add_option("--at", arguments->at, "Steps to draw: 0,60,240")
                    ->type_name("STEP,...");
-    auto *every = snapshot_command
-                      ->add_option("--every", arguments->every, "Draws every so many steps, from 0")
-                      ->check(positive())
-                      ->excludes(at);
+    auto *every =
+        snapshot_command->add_option("--every", arguments->every, "Draws every N-th step, from 0")
+            ->check(positive())
+            ->excludes(at);
     auto *steps =
         snapshot_command
-            ->add_option("--steps", arguments->steps, "How far to run; alone: draws that step")
+            ->add_option("--steps", arguments->steps, "Steps to run; on its own, draws the last")
             ->check(step_range());
     every->needs(steps);
     snapshot_command->add_option("--size", line.common.size, "WIDTHxHEIGHT (1280x720)");
     add_out(*snapshot_command, line.common, "out");
     snapshot_command->add_flag("--ui", arguments->panels, "With the sandbox's panels");
-    snapshot_command->add_option("--samples", arguments->samples, "Of multisampling; 1: none")
+    snapshot_command->add_option("--samples", arguments->samples, "Multisampling samples; 1: none")
         ->check(CLI::Range(1, 16))
         ->capture_default_str();
     add_ui_scale(*snapshot_command, arguments->ui_scale, "1");
@@ -252,7 +255,7 @@ void add_snapshot(CommandLine &line) {
 void add_list(CommandLine &line) {
     const auto arguments = std::make_shared<ListArguments>();
     CLI::App *list_command = line.app.add_subcommand("list", "Lists the scenes");
-    list_command->add_flag("--json", arguments->json, "For programs");
+    list_command->add_flag("--json", arguments->json, "As JSON");
     auto *list_keys =
         list_command->add_flag("--keys", arguments->keys, "Keys and mouse instead, as a table");
     auto *list_settings =
@@ -273,9 +276,9 @@ void add_list(CommandLine &line) {
 void add_hash(CommandLine &line) {
     const auto steps = std::make_shared<std::uint64_t>(0);
     CLI::App *hash_command = line.app.add_subcommand(
-        "hash", "Prints a hash of the state: the same state, the same hash");
+        "hash", "Prints a hash of the state: equal states have equal hashes");
     add_scenes(*hash_command, line.common);
-    hash_command->add_option("--steps", *steps, "How far to run first")
+    hash_command->add_option("--steps", *steps, "Steps to run first")
         ->check(step_range())
         ->required();
     add_run_options(*hash_command, line.common);
@@ -296,12 +299,11 @@ void add_compare(CommandLine &line) {
     compare_command->add_option("A", arguments->a)->required();
     compare_command->add_option("B", arguments->b)->required();
     compare_command
-        ->add_option("--tolerance", arguments->tolerance,
-                     "Largest difference of a channel that passes")
+        ->add_option("--tolerance", arguments->tolerance, "Largest channel difference that passes")
         ->check(CLI::Range(0, 255))
         ->capture_default_str();
     compare_command->add_option("--difference", arguments->difference,
-                                "Where to write a picture of the difference");
+                                "PNG file to write a picture of the difference to");
     compare_command->callback([=, &line] {
         line.result =
             compare(arguments->a, arguments->b, arguments->tolerance, arguments->difference);

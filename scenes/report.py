@@ -32,7 +32,7 @@ PUBLISHED = ROOT / "scenes/report"
 
 CHOSEN = re.compile(r"is (?P<method>\w+) with (?P<substeps>\S+) substeps?"
                     r"(, (?P<iterations>\d+) iterations?)? and a dt of (?P<dt>\S+ s), in "
-                    r"(?P<precision>\w+): (?P<cost>\S+) ms of CPU time for a simulated second, worst "
+                    r"(?P<precision>\w+): (?P<cost>\S+) ms of CPU time per simulated second, worst "
                     r"error (?P<error>\S+) of its tolerance( \((?P<worst>[^)]*)\))?")
 
 

@@ -55,7 +55,7 @@ ContextResult create_context(const ContextRequest &request) {
             attempts += std::string("\n  osmesa: ") + error.what();
         }
     }
-    throw ContextError("no OpenGL 3.3 context could be made:" + attempts);
+    throw ContextError("no OpenGL 3.3 context could be created:" + attempts);
 }
 
 } // namespace plumb

@@ -61,7 +61,7 @@ void Framebuffer::create() {
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
     if (size_.x < 1 || size_.y < 1 || size_.x > largest || size_.y > largest)
         throw std::runtime_error("a framebuffer of " + std::to_string(size_.x) + " x " +
-                                 std::to_string(size_.y) + " pixels is not within 1 and " +
+                                 std::to_string(size_.y) + " pixels: each side must be 1 to " +
                                  std::to_string(largest));
     GLint most_samples = 1;
     glGetIntegerv(GL_MAX_SAMPLES, &most_samples);

@@ -34,7 +34,7 @@ Mesh box_mesh() {
 }
 
 Mesh sphere_mesh(int splits) {
-    PLUMB_CHECK(splits >= 0 && splits <= 5, "a sphere is split 0 to 5 times, not " << splits);
+    PLUMB_CHECK(splits >= 0 && splits <= 5, "a sphere can be split 0 to 5 times, not " << splits);
     const float g = std::numbers::phi_v<float>;
     std::vector<glm::vec3> points{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
                                   {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
@@ -75,7 +75,7 @@ Mesh sphere_mesh(int splits) {
 
 Mesh capsule_mesh(int segments, int rings) {
     PLUMB_CHECK(segments >= 3 && rings >= 1 && (2 * rings + 2) * (segments + 1) < 65536,
-                "no capsule of " << segments << " segments and " << rings << " rings");
+                "no capsule with " << segments << " segments and " << rings << " rings");
     Mesh mesh;
     const float quarter = std::numbers::pi_v<float> / 2;
     // From the lower pole up; the equator appears twice, once for each end.
@@ -105,7 +105,7 @@ Mesh capsule_mesh(int segments, int rings) {
 
 Mesh cylinder_mesh(int segments) {
     PLUMB_CHECK(segments >= 3 && 4 * segments + 6 < 65536,
-                "no cylinder of " << segments << " segments");
+                "no cylinder with " << segments << " segments");
     Mesh mesh;
     const auto rim = [&](int segment) {
         const float around = 2 * std::numbers::pi_v<float> * static_cast<float>(segment) /

@@ -31,7 +31,7 @@ class OsmesaContext final : public GlContext {
                                                         0};
         context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
         if (!context_)
-            throw ContextError("OSMesa makes no OpenGL 3.3 core context");
+            throw ContextError("OSMesa cannot create an OpenGL 3.3 core context");
         try {
             make_current();
             if (gladLoadGL(reinterpret_cast<GLADloadfunc>(OSMesaGetProcAddress)) == 0)

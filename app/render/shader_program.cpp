@@ -29,7 +29,7 @@ void append_file(const std::filesystem::path &dir, const std::string &name,
                  const std::string &definition, int depth, Source &source) {
     const std::string path = (dir / name).string();
     if (depth > 8)
-        throw std::runtime_error(path + ": includes go round in a circle");
+        throw std::runtime_error(path + ": circular #include");
     std::ifstream file(path);
     if (!file)
         throw std::runtime_error(path + ": cannot read the shader");
@@ -48,7 +48,7 @@ void append_file(const std::filesystem::path &dir, const std::string &name,
         const std::size_t end = line.find('"', directive.size());
         if (end == std::string::npos)
             throw std::runtime_error(path + ":" + std::to_string(number) +
-                                     ": an include without its closing quote");
+                                     ": #include without a closing quote");
         append_file(dir, line.substr(directive.size(), end - directive.size()), definition,
                     depth + 1, source);
     }

@@ -20,7 +20,7 @@ class WindowContext final : public GlContext, public Window {
     explicit WindowContext(const ContextRequest &request) {
         // Without a display glfwInit fails, which tells the caller to fall back.
         if (glfwInit() == GLFW_FALSE)
-            throw ContextError(last_error("GLFW does not start"));
+            throw ContextError(last_error("GLFW failed to start"));
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

@@ -28,7 +28,7 @@ std::optional<ActionInfo> row(Action action) {
         // clang-format off
     case Action::pause:
         return ActionInfo{action, "Pause",
-                          "Pauses and continues.",
+                          "Pauses or resumes.",
                           Place::transport, false, {plain('p'), plain(' ')}};
     case Action::step:
         return ActionInfo{action, "Step",
@@ -40,7 +40,7 @@ std::optional<ActionInfo> row(Action action) {
                           Place::transport, true, {shift(right)}};
     case Action::step_back:
         return ActionInfo{action, "Step back",
-                          "One step back, to the very state before it.",
+                          "One step back, to the exact state before it.",
                           Place::transport, true, {plain(','), plain(left)}};
     case Action::step_back_5:
         return ActionInfo{action, "5 back",
@@ -48,7 +48,7 @@ std::optional<ActionInfo> row(Action action) {
                           Place::transport, true, {shift(left)}};
     case Action::restart:
         return ActionInfo{action, "Restart",
-                          "From the start, with the method and settings chosen.",
+                          "From the start, with the current method and settings.",
                           Place::transport, false, {plain('r'), plain(backspace)}};
     case Action::slower:
         return ActionInfo{action, "Slower",
@@ -60,7 +60,7 @@ std::optional<ActionInfo> row(Action action) {
                           Place::transport, true, {plain('='), plain('+')}};
     case Action::find_scene:
         return ActionInfo{action, "Find scene",
-                          "Type a part of its name; Enter opens the first.",
+                          "Type part of its name; Enter opens the first match.",
                           Place::scenes, false, {ctrl('o')}};
     case Action::previous_scene:
         return ActionInfo{action, "Previous scene",
@@ -72,11 +72,11 @@ std::optional<ActionInfo> row(Action action) {
                           Place::scenes, true, {plain(']')}};
     case Action::reload:
         return ActionInfo{action, "Reload",
-                          "Reads the file again; camera and pause stay.",
+                          "Rereads the file; keeps camera and pause.",
                           Place::scenes, false, {ctrl('l')}};
     case Action::save_scene:
         return ActionInfo{action, "Save",
-                          "Writes the present state as a scene file.",
+                          "Writes the current state as a scene file.",
                           Place::scenes, false, {ctrl('s')}};
     case Action::previous_method:
         return ActionInfo{action, "Previous method",
@@ -104,15 +104,15 @@ std::optional<ActionInfo> row(Action action) {
                           Place::view, false, {plain('b')}};
     case Action::toggle_velocities:
         return ActionInfo{action, "Velocities",
-                          "How far each body goes in a quarter second.",
+                          "How far each body moves in a quarter second.",
                           Place::view, false, {plain('v')}};
     case Action::frame:
         return ActionInfo{action, "Frame",
-                          "Shows the selected body, or all that moves.",
+                          "Frames the selected body, or everything that moves.",
                           Place::view, false, {plain('f')}};
     case Action::home:
         return ActionInfo{action, "Home",
-                          "The scene's own camera, which goes along when all that moves would leave the picture.",
+                          "The scene's own camera, which follows when everything that moves would leave the view.",
                           Place::view, false, {plain(home)}};
     case Action::toggle_help:
         return ActionInfo{action, "Help",
@@ -132,7 +132,7 @@ std::optional<ActionInfo> row(Action action) {
                           Place::general, false, {plain('l')}};
     case Action::toggle_ghost:
         return ActionInfo{action, "Ghost",
-                          "The same by another method, translucent beside the first.",
+                          "The same scene by a second method, drawn translucent.",
                           Place::general, false, {plain('g')}};
     case Action::larger_panels:
         return ActionInfo{action, "Larger panels",
@@ -144,11 +144,11 @@ std::optional<ActionInfo> row(Action action) {
                           Place::general, true, {ctrl('-')}};
     case Action::screenshot:
         return ActionInfo{action, "Screenshot",
-                          "Writes what is seen as a PNG.",
+                          "Saves the view as a PNG.",
                           Place::general, false, {ctrl('p')}};
     case Action::dismiss:
         return ActionInfo{action, "Back",
-                          "Closes a list, help, search or messages; then lets go of what is held; "
+                          "Closes a list, help, search or messages; then releases what is held; "
                           "then clears the selection.",
                           Place::general, false, {plain(escape)}};
     case Action::quit:
@@ -228,11 +228,11 @@ std::span<const MouseInfo> mouse_gestures() {
                   "The body, particle or cloth under the pointer; empty space deselects."},
         MouseInfo{"Left drag on a disc", "Move a probe", "By one of its points; R puts it back."},
         MouseInfo{"Ctrl + left drag", "Grab",
-                  "Pulls what is under the pointer by the point that was grabbed."},
+                  "Pulls what is under the pointer by the point grabbed."},
         MouseInfo{"Shift + click", "Shoot", "A ball from the camera."},
         MouseInfo{"Left drag", "Orbit", "Turns the camera around its target."},
         MouseInfo{"Right drag", "Pan", "Moves the camera sideways."},
-        MouseInfo{"Wheel", "Zoom", "Nearer and farther."},
+        MouseInfo{"Wheel", "Zoom", "In and out."},
     };
     return rows;
 }

@@ -314,7 +314,7 @@ SandboxResult run_sandbox(const SandboxOptions &options) {
         return {run_in_window(options, *window, made.context->is_software()), {}};
     if (options.max_frames)
         return {run_off_screen(options, made.context->is_software()), {}};
-    return {0, made.why_no_window.empty() ? "drawing in memory was asked for" : made.why_no_window};
+    return {0, made.why_no_window.empty() ? "osmesa was requested" : made.why_no_window};
 }
 
 } // namespace plumb

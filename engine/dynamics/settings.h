@@ -84,95 +84,96 @@ struct SettingRow {
 
 inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"gravity", &StepSettings::gravity, "m/s^2", -1e9, 1e9, SettingGroup::world,
-     "The acceleration of every free dynamic body."},
-    {"dt", &StepSettings::dt, "s", 1e-9, 1, SettingGroup::world,
-     "Time that one step takes in the world."},
+     "Gravitational acceleration of dynamic bodies and particles."},
+    {"dt", &StepSettings::dt, "s", 1e-9, 1, SettingGroup::world, "Simulated time per step."},
     {"substeps", &StepSettings::substeps, "", 1, 10000, SettingGroup::step,
-     "Into how many parts a step is cut; collision is found once a step."},
+     "Substeps per step; collision detection runs once per step."},
     {"max_substeps", &StepSettings::max_substeps, "", 1, 10000, SettingGroup::chosen,
-     "Above substeps: bodies that act on each other take as many substeps, from substeps to these, "
-     "as their loads ask for; else all take substeps."},
+     "If above substeps, each island takes as many as its loads need, from substeps up to this; "
+     "otherwise all take substeps."},
     {"substep_tolerance", &StepSettings::substep_tolerance, "", 1e-9, 1, SettingGroup::chosen,
-     "How deep a resting contact may be, as a share of the bodies' least width, and how far a "
-     "joint may drift, as a share of its arms: the depth falls with the square of the substeps."},
+     "Allowed penetration of a resting contact, as a fraction of the bodies' smallest width, and "
+     "allowed joint drift, as a fraction of the lever arms; both fall with the square of the "
+     "substeps."},
     {"substep_budget", &StepSettings::substep_budget, "", 0, 65536, SettingGroup::chosen,
-     "How much work bodies may cost together, in contacts and joints times substeps, before they "
-     "get fewer substeps than they ask for: what is small is made true, what is large stays "
-     "fast. A blow may cost sixteen times as much."},
+     "Work that all islands together may cost, in contacts and joints times substeps, before they "
+     "get fewer substeps than they need: small islands stay accurate, large ones fast. An impact "
+     "may cost sixteen times as much."},
     {"sleep_after", &StepSettings::sleep_after, "s", 0, 1e9, SettingGroup::sleep,
-     "Bodies that act on each other and have been at rest for so long sleep, and cost nothing, "
-     "until something touches them or they are changed; 0: never."},
+     "Islands at rest for this long fall asleep and cost nothing until something touches or "
+     "changes them; 0: never."},
     {"iterations", &StepSettings::iterations, "", 1, 10000, SettingGroup::constraints,
-     "Passes over all constraints in each substep; soft_step makes one more over few contacts that "
-     "move slowly and do not rest yet, and more after a blow."},
+     "Passes over all constraints per substep; soft_step adds one for small, slow islands not yet "
+     "at rest, and more after an impact."},
     {"speculative_distance", &StepSettings::speculative_distance, "m", 0, 1e9,
      SettingGroup::speculative,
-     "Contacts closer than this are made before they touch, so that nothing falls into its "
-     "neighbour within a step; no more than a fifth of the smaller body's width. Bodies that "
-     "approach each other get their relative motion on top."},
+     "Contacts are created this far before bodies touch, so that nothing sinks into its neighbour "
+     "within a step; at most a fifth of the smaller body's width. Relative motion during the step "
+     "is added."},
     {"kept_travel", &StepSettings::kept_travel, "m", 0, 1e9, SettingGroup::kept,
-     "Contacts of several points are kept as they were found until the surfaces have moved so far "
-     "against each other, and no more than a twentieth of the smaller body's width; 0: found again "
-     "in each step. Whole faces that get fewer substeps than they ask for stay for all of that "
-     "twentieth while they move slowly against each other. Well below speculative_distance, so "
-     "that no corner that was left out comes to touch."},
+     "Manifolds of two or more points are reused until the surfaces have moved this far relative "
+     "to each other, at most a twentieth of the smaller body's width; 0: recomputed every step. "
+     "Full faces that get fewer substeps than they need are kept for the whole twentieth while "
+     "they move slowly. Keep it well below speculative_distance, so that no omitted corner comes "
+     "to touch."},
     {"penetration_slop", &StepSettings::penetration_slop, "m", 0, 1e9, SettingGroup::baumgarte,
-     "Penetration that is left alone, so that contacts persist."},
+     "Penetration left uncorrected, so that contacts persist."},
     {"baumgarte", &StepSettings::baumgarte, "", 0, 1, SettingGroup::baumgarte,
-     "Fraction of the penetration, or of a joint's drift, that is removed in a substep (Baumgarte "
-     "1972); of drift, that sequential_impulses and nncg remove in 1/60 s where substeps are "
-     "shorter."},
+     "Fraction of penetration or joint drift removed per substep (Baumgarte 1972). If substeps are "
+     "shorter than 1/60 s, sequential_impulses and nncg remove that fraction of drift per 1/60 s, "
+     "unless split_impulse is 2."},
     {"split_impulse", &StepSettings::split_impulse, "", 0, 2, SettingGroup::split,
-     "What is corrected by pseudo velocities, which are then forgotten (split impulse), not "
-     "through the velocities: 0 nothing, and stacks rock; 1 contacts; 2 joints too, and no "
-     "chain gains energy, but what swings loses more."},
+     "What is corrected by pseudo velocities that are then discarded (split impulse), not through "
+     "the velocities: 0 nothing, and stacks rock; 1 contacts; 2 joints too, and no chain gains "
+     "energy, but swinging bodies lose more."},
     {"contact_frequency_ratio", &StepSettings::contact_frequency_ratio, "", 1e-6, 1000,
      SettingGroup::soft,
-     "Natural frequency of a soft contact as a fraction of the substep rate: above 1/4 the spring "
-     "is under-sampled, 1/8 lets it settle between neighbours; soft_step doubles it against what "
-     "does not move (Catto 2024, Solver2D)."},
+     "Natural frequency of soft contacts as a fraction of the substep rate: above 1/4 the spring "
+     "is under-sampled, 1/8 lets it settle between neighbours. Doubled against immovable bodies "
+     "(Catto 2024, Solver2D)."},
     {"contact_damping_ratio", &StepSettings::contact_damping_ratio, "", 0, 1e6, SettingGroup::soft,
-     "Damping of a soft contact; 1 is critical, and what soft_step takes: with more a pyramid "
-     "rocks for ever."},
+     "Damping ratio of soft contacts; 1 is critical, and soft_step's default: with more, pyramids "
+     "rock forever."},
     {"joint_frequency_ratio", &StepSettings::joint_frequency_ratio, "", 1e-6, 1000,
      SettingGroup::soft,
-     "Natural frequency of a soft joint as a fraction of the substep rate: stiffer keeps a "
-     "pendulum truer, and tears a chain of ten with a hundredfold weight at its end apart at four "
-     "substeps; 0.2 with a damping of 5 is the stiffest that holds both."},
+     "Natural frequency of soft joints as a fraction of the substep rate. Stiffer joints make a "
+     "pendulum more accurate, but at four substeps tear apart a chain of ten with a hundredfold "
+     "weight at its end; 0.2 with a damping ratio of 5 is the stiffest that handles both."},
     {"joint_damping_ratio", &StepSettings::joint_damping_ratio, "", 0, 1e6, SettingGroup::soft,
-     "Damping of a soft joint; 1 is critical."},
+     "Damping ratio of soft joints; 1 is critical."},
     {"push_velocity", &StepSettings::push_velocity, "m/s", 0, 1e9, SettingGroup::push,
-     "The fastest that overlapping bodies are pushed apart."},
+     "Maximum speed at which overlapping bodies are pushed apart; in soft_step, also at which "
+     "joints are pulled together."},
     {"restitution_threshold", &StepSettings::restitution_threshold, "m/s", 0, 1e9,
-     SettingGroup::threshold, "Slower impacts do not bounce, so that bodies come to rest."},
+     SettingGroup::threshold,
+     "Impacts slower than this do not bounce, so that bodies come to rest."},
     {"impact_lookahead", &StepSettings::impact_lookahead, "substeps", 0, 1000,
      SettingGroup::impacts,
-     "An impact counts when it would happen within so many substeps: a hair less than one, and the "
-     "solver would stop the body before it bounces; a little early does no harm, as the rebound "
-     "accounts for the gap."},
+     "Impacts due within this many substeps are resolved now. Below one, the solver would stop a "
+     "body before it bounces; slightly early does no harm, as the rebound accounts for the gap."},
     {"impact_sweeps", &StepSettings::impact_sweeps, "", 0, 10000, SettingGroup::impacts,
-     "How often an impact may be propagated from contact to contact within one substep; 0: nothing "
-     "bounces."},
+     "Maximum number of sweeps that propagate impacts from contact to contact in a substep; 0: "
+     "nothing bounces."},
     {"impact_passes", &StepSettings::impact_passes, "", 1, 10000, SettingGroup::impacts,
-     "Gauss-Seidel passes by which points that are struck together share an impact; four corners "
-     "of a box agree to float precision after about 16."},
+     "Gauss-Seidel passes over the points that share an impact; four corners of a box converge to "
+     "float precision in about 16."},
     {"gyroscopic_iterations", &StepSettings::gyroscopic_iterations, "", 0, 100,
      SettingGroup::gyroscopic,
-     "Newton steps for the implicit gyroscopic term; three reach rounding up to a third of a "
-     "radian a substep."},
+     "Newton steps for the implicit gyroscopic term; three reach rounding error up to a third of a "
+     "radian per substep."},
     {"penalty_start", &StepSettings::penalty_start, "", 1e-6, 1e6, SettingGroup::penalty,
-     "The least stiffness of a contact or joint, as a share of the mass that it moves over the "
-     "square of the substep: with 1 a pass takes back half of an error."},
+     "Minimum stiffness of a contact or joint, in units of its effective mass over the substep "
+     "squared: at 1, a pass removes half of an error."},
     {"penalty_growth", &StepSettings::penalty_growth, "1/m", 0, 1e9, SettingGroup::penalty,
-     "How much stiffer, in the same unit, a pass makes what is off by a metre or a radian: beta of "
-     "Giles, Diaz and Yuksel 2025."},
+     "Stiffness, in the same unit, that a pass adds per metre or radian of error: beta of Giles, "
+     "Diaz and Yuksel 2025."},
     {"penalty_limit", &StepSettings::penalty_limit, "", 1e-6, 1e9, SettingGroup::penalty,
-     "The greatest stiffness, in the same unit."},
+     "Maximum stiffness, in the same unit."},
     {"penalty_kept", &StepSettings::penalty_kept, "", 0, 1, SettingGroup::penalty,
-     "The share of stiffness and load that is kept from substep to substep: their gamma."},
+     "Fraction of stiffness and load kept from substep to substep: gamma of Giles et al. 2025."},
     {"error_kept", &StepSettings::error_kept, "", 0, 1, SettingGroup::penalty,
-     "The share of an overlap, or of a joint's drift, that a substep leaves as it found it: their "
-     "alpha, of which the load, too, is kept no more."},
+     "Fraction of the initial penetration or joint drift that a substep leaves uncorrected; it "
+     "also scales the kept load: alpha of Giles et al. 2025."},
 });
 
 namespace settings_detail {

@@ -23,7 +23,7 @@ void check_pose(const Transform &pose) {
                                               << pose.position.x << ", " << pose.position.y << ", "
                                               << pose.position.z);
     PLUMB_CHECK(is_unit(glm::dot(pose.rotation, pose.rotation)),
-                "body rotation must be of unit length, got " << glm::length(pose.rotation));
+                "body rotation must have unit length, got " << glm::length(pose.rotation));
 }
 
 void check_velocity(const Vec3 &velocity, const Vec3 &angular_velocity) {
@@ -37,7 +37,7 @@ void check_collider(const ColliderDef &collider) {
                 "friction must not be negative, got " << collider.material.friction);
     PLUMB_CHECK(collider.material.restitution >= 0 && collider.material.restitution <= 1,
                 "restitution must be 0 to 1, got " << collider.material.restitution);
-    PLUMB_CHECK(collider.filter.layer < 32, "a layer is 0 to 31, got " << collider.filter.layer);
+    PLUMB_CHECK(collider.filter.layer < 32, "layer must be 0 to 31, got " << collider.filter.layer);
     check_not_negative("density", collider.density);
 }
 
@@ -94,7 +94,7 @@ World::World(std::string_view method, const StepSettings &settings)
 
 void World::set_method(std::string_view method) {
     const Method *found = find_method(method);
-    PLUMB_CHECK(found != nullptr, "no method is called '" << method << "'");
+    PLUMB_CHECK(found != nullptr, "there is no method '" << method << "'");
     wake_all();
     method_ = found;
 }
@@ -333,7 +333,7 @@ JointId World::add_joint(const JointDef &def) {
     const auto index_of = [&](BodyId id) {
         if (id == BodyId{})
             return Joint::world;
-        PLUMB_CHECK(is_alive(id), "joint names body " << id.index << ", which is not alive");
+        PLUMB_CHECK(is_alive(id), "joint refers to body " << id.index << ", which is not alive");
         return id.index;
     };
     const std::uint32_t a = index_of(def.a);
@@ -342,7 +342,7 @@ JointId World::add_joint(const JointDef &def) {
     PLUMB_CHECK(is_finite(def.anchor_a_local) && is_finite(def.anchor_b_local),
                 "joint anchors must be finite");
     for (const Quat &frame : {def.frame_a_local, def.frame_b_local})
-        PLUMB_CHECK(is_unit(glm::dot(frame, frame)), "a joint's frames must be of unit length");
+        PLUMB_CHECK(is_unit(glm::dot(frame, frame)), "a joint's frames must have unit length");
     PLUMB_CHECK(def.type != JointType::distance ||
                     (def.max_length > 0 && std::isfinite(def.max_length) && def.min_length >= 0 &&
                      def.min_length <= def.max_length),
@@ -354,8 +354,8 @@ JointId World::add_joint(const JointDef &def) {
     if (def.limits)
         PLUMB_CHECK(std::isfinite(def.limits->lower) && std::isfinite(def.limits->upper) &&
                         def.limits->lower <= def.limits->upper,
-                    "a joint's limits must be in order, got " << def.limits->lower << " and "
-                                                              << def.limits->upper);
+                    "a joint's lower limit must not exceed its upper, got "
+                        << def.limits->lower << " and " << def.limits->upper);
     if (def.motor) {
         PLUMB_CHECK(std::isfinite(def.motor->speed),
                     "a motor's speed must be finite, got " << def.motor->speed);
@@ -469,7 +469,7 @@ void World::set_motion(BodyId id, const Transform &pose, const Vec3 &velocity,
 
 void World::apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
-    PLUMB_CHECK(is_finite(impulse) && is_finite(point), "an impulse must be finite");
+    PLUMB_CHECK(is_finite(impulse) && is_finite(point), "an impulse and its point must be finite");
     const Body &body = bodies()[id.index];
     if (body.kind != BodyKind::dynamic)
         return;
@@ -487,7 +487,7 @@ void World::apply_impulse(BodyId id, const Vec3 &impulse, const Vec3 &point) {
 void World::grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real max_force,
                  const GrabSpring &spring) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
-    PLUMB_CHECK(is_finite(point_local), "a grab must be finite");
+    PLUMB_CHECK(is_finite(point_local), "a grab's point must be finite");
     const Grab grab = grab_of(target, max_force, spring);
     const Body &body = bodies()[id.index];
     if (body.kind != BodyKind::dynamic)
@@ -500,7 +500,7 @@ void World::grab(BodyId id, const Vec3 &point_local, const Vec3 &target, Real ma
 }
 
 void World::move_grab(const Vec3 &target) {
-    PLUMB_CHECK(is_finite(target), "a grab must be finite");
+    PLUMB_CHECK(is_finite(target), "a grab's target must be finite");
     if (state_.grab.is_holding() || state_.grab.holds_particle())
         state_.grab.target = target;
 }
@@ -528,7 +528,7 @@ void World::set_clock(const StateClock &clock) {
 void World::hold(const Grab &grab) {
     PLUMB_CHECK(is_finite(grab.point_local) && is_finite(grab.impulse) &&
                     std::isfinite(grab.held_mass) && grab.held_mass >= Real(0),
-                "a grab must be finite");
+                "a grab's point, impulse and held_mass must be finite, held_mass not negative");
     PLUMB_CHECK(!grab.is_holding() || (grab.body < bodies().size() && bodies()[grab.body].alive),
                 "there is no body " << grab.body);
     PLUMB_CHECK(!grab.holds_particle() || grab.particle < model_->particles.size(),
@@ -549,7 +549,7 @@ void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
                              std::span<const PointPenalty> penalties) {
     PLUMB_CHECK(key.a < key.b && key.b < bodies().size() && bodies()[key.a].alive &&
                     bodies()[key.b].alive,
-                "a remembered contact names a body that is not alive");
+                "a saved contact refers to a body that is not alive");
     PLUMB_CHECK(!points.empty() && points.size() <= 4,
                 "a contact has 1 to 4 points, got " << points.size());
     const ContactMemory memory{key, static_cast<std::uint32_t>(state_.points.size()),

@@ -20,7 +20,7 @@ using Column = std::span<const Real>;
 std::size_t count_of(std::initializer_list<Column> columns) {
     const std::size_t count = columns.begin()->size();
     for (const Column &column : columns)
-        PLUMB_CHECK(column.size() == count, "the columns of a batch must have one length, got "
+        PLUMB_CHECK(column.size() == count, "the columns of a batch must have the same length, got "
                                                 << count << " and " << column.size());
     return count;
 }
@@ -64,7 +64,7 @@ Ray at(const RayBatch &rays, std::size_t i) {
 }
 
 void check_room(std::size_t room, std::size_t count) {
-    PLUMB_CHECK(room >= bit_words(count), "the answers to " << count << " questions need "
+    PLUMB_CHECK(room >= bit_words(count), "the answers to " << count << " queries need "
                                                             << bit_words(count) << " words, got "
                                                             << room);
 }
@@ -72,7 +72,7 @@ void check_room(std::size_t room, std::size_t count) {
 void check_room(const IntervalBatch &intervals, std::size_t count) {
     check_room(intervals.is_met.size(), count);
     const std::size_t room = std::min(intervals.t_enter.size(), intervals.t_exit.size());
-    PLUMB_CHECK(room >= count, count << " intervals need as many numbers, got room for " << room);
+    PLUMB_CHECK(room >= count, count << " intervals need as many elements, got " << room);
 }
 
 // The kernels only report that some number is invalid. To find out which, run the scalar function
@@ -80,7 +80,7 @@ void check_room(const IntervalBatch &intervals, std::size_t count) {
 template <typename Ask> void refuse(std::size_t count, Ask &&ask) {
     for (std::size_t i = 0; i < count; ++i)
         ask(i);
-    PLUMB_CHECK(false, "a batch of " << count << " holds a number that is not valid");
+    PLUMB_CHECK(false, "a batch of " << count << " contains an invalid number");
 }
 
 // Calls fix(i) for every set bit.
@@ -210,8 +210,8 @@ std::optional<BatchHit> raycast(const TriangleBatch &triangles, const Ray &ray) 
 
 void overlaps(const AabbBatch &a, const AabbBatch &b, std::span<std::uint64_t> answers) {
     const std::size_t count = count_of(a);
-    PLUMB_CHECK(count_of(b) == count,
-                "pairs need two batches of one length, got " << count << " and " << count_of(b));
+    PLUMB_CHECK(count_of(b) == count, "pairs need two batches of the same length, got "
+                                          << count << " and " << count_of(b));
     check_room(answers.size(), count);
     if (!kernels::overlaps(a, b, answers.data()))
         refuse(count, [&](std::size_t i) { (void)overlaps(at(a, i), at(b, i)); });

@@ -101,7 +101,8 @@ Circle reaching_all(const Vec2 &center, std::span<const Vec2> points) {
 // 1999, "Fast and robust smallest enclosing balls". Takes a few rounds for any number of points,
 // and nothing is random.
 Circle containing_circle(std::span<const Vec2> points) {
-    PLUMB_CHECK(!points.empty(), "a circle around no points was asked for, got " << points.size());
+    PLUMB_CHECK(!points.empty(),
+                "a containing circle needs at least one point, got " << points.size());
     for (const Vec2 &point : points)
         check_valid(point);
 
@@ -140,7 +141,7 @@ Circle containing_circle(std::span<const Vec2> points) {
 
 Rectangle containing_rectangle(std::span<const Vec2> points) {
     PLUMB_CHECK(!points.empty(),
-                "a rectangle around no points was asked for, got " << points.size());
+                "a containing rectangle needs at least one point, got " << points.size());
     Rectangle rectangle{points[0], points[0]};
     for (const Vec2 &point : points) {
         check_valid(point);

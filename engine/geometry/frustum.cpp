@@ -165,7 +165,7 @@ Frustum frustum_of(const Mat4 &view_projection) {
         const double length = glm::length(glm::dvec3{plane});
         PLUMB_CHECK(length > 0.0 && std::isfinite(length),
                     "a frustum has six planes, but plane "
-                        << face << " of this matrix is at infinity: its normal has the length "
+                        << face << " of this matrix is at infinity: its normal has length "
                         << length);
         frustum.planes[static_cast<std::size_t>(face)] = {narrow(glm::dvec3{plane} / length),
                                                           static_cast<Real>(-plane.w / length)};
@@ -294,7 +294,7 @@ bool overlaps(const Frustum &frustum, const Box &box) {
 Vec3 unproject(const Vec2 &pixel, Real depth, const Mat4 &inverse_view_projection,
                const Viewport &viewport) {
     PLUMB_CHECK(viewport.size.x > Real(0) && viewport.size.y > Real(0),
-                "viewport must not be empty, got the size " << Printed{viewport.size});
+                "viewport must not be empty, got size " << Printed{viewport.size});
     PLUMB_CHECK(std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(depth),
                 "pixel and depth must be finite, got " << Printed{pixel} << " and " << depth);
     const Vec2 part = (pixel - viewport.origin) / viewport.size;
@@ -303,8 +303,8 @@ Vec3 unproject(const Vec2 &pixel, Real depth, const Mat4 &inverse_view_projectio
     const Vec4 world = inverse_view_projection * clip;
     const Vec3 point = Vec3{world} / world.w;
     PLUMB_CHECK(std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z),
-                "a pixel must have a finite point, but pixel " << Printed{pixel} << " has "
-                                                               << Printed{point});
+                "a pixel must unproject to a finite point, but pixel "
+                    << Printed{pixel} << " gives " << Printed{point});
     return point;
 }
 

@@ -59,7 +59,7 @@ void check_counts(const HeightField &field) {
                                                                   << field.columns);
     PLUMB_CHECK(field.heights.size() == std::size_t(field.rows) * std::size_t(field.columns),
                 "a height field of " << field.rows << " rows and " << field.columns
-                                     << " columns needs as many heights, got "
+                                     << " columns needs rows x columns heights, got "
                                      << field.heights.size());
     PLUMB_CHECK(field.spacing > Real(0) && std::isfinite(field.spacing) && is_finite(field.origin),
                 "a height field's spacing must be positive and its origin finite, got "
@@ -151,7 +151,8 @@ void check_valid(const HeightField &field) {
         const Lines lines = lines_across(field, axis);
         for (int i = 0; i + 1 < lines.count; ++i)
             PLUMB_CHECK(lines.place(i) < lines.place(i + 1) && std::isfinite(lines.place(i + 1)),
-                        "a spacing of " << field.spacing << " is lost at " << lines.place(i));
+                        "a spacing of " << field.spacing << " is lost to rounding at "
+                                        << lines.place(i));
     }
 }
 
@@ -175,8 +176,9 @@ std::uint32_t triangle_count(const HeightField &field) {
 }
 
 Triangle triangle(const HeightField &field, std::uint32_t index) {
-    PLUMB_DEBUG_CHECK(index < triangle_count(field),
-                      "there are " << triangle_count(field) << " triangles, asked for " << index);
+    PLUMB_DEBUG_CHECK(index < triangle_count(field), "triangle index must be below "
+                                                         << triangle_count(field) << ", got "
+                                                         << index);
     const int cell = static_cast<int>(index / 2);
     const int row = cell / (field.columns - 1);
     const int column = cell % (field.columns - 1);

@@ -84,7 +84,7 @@ Vec3 inertia_of(const Cylinder &cylinder, Real mass) {
 
 Vec3 inertia_of(const HalfSpace &half_space, Real mass) {
     PLUMB_CHECK(false, "a half-space has no inertia; its offset is "
-                           << half_space.offset << " and the mass asked for " << mass);
+                           << half_space.offset << " and the given mass " << mass);
 }
 
 Vec3 inertia_of(const ConvexHull &hull, Real mass) {
@@ -189,8 +189,8 @@ Mat3 inertia(const ConvexHull &hull, Real mass) {
 PrincipalFrame principal_frame(const Mat3 &inertia) {
     glm::dmat3 m(inertia);
     PLUMB_CHECK(std::isfinite(m[0][0] + m[1][0] + m[2][0] + m[1][1] + m[2][1] + m[2][2]),
-                "inertia must be finite, got the diagonal (" << m[0][0] << ", " << m[1][1] << ", "
-                                                             << m[2][2] << ')');
+                "inertia must be finite, got diagonal (" << m[0][0] << ", " << m[1][1] << ", "
+                                                         << m[2][2] << ')');
     glm::dmat3 axes(1.0);
     for (int round = 0; round < 8; ++round)
         for (const auto &[p, q] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {

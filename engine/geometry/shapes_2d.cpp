@@ -49,7 +49,7 @@ OrientedRectangle oriented_rectangle(const Vec2 &center, Real angle, const Vec2 
 }
 
 Compound2::Compound2(std::vector<Part2> parts) : parts_(std::move(parts)) {
-    PLUMB_CHECK(!parts_.empty(), "a compound has at least one part, got " << parts_.size());
+    PLUMB_CHECK(!parts_.empty(), "a compound needs at least one part, got " << parts_.size());
     for (const Part2 &part : parts_) {
         const Rectangle box = std::visit(
             [](const auto &shape) {

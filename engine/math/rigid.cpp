@@ -64,7 +64,7 @@ Mat4 rigid_inverse(const Mat4 &m) {
         for (int i = 0; i < 3; ++i)
             PLUMB_CHECK(std::abs(product[j][i] - Real(i == j)) <= Real(2e-3),
                         "a rigid matrix has orthonormal columns, but columns "
-                            << i << " and " << j << " have the dot product " << product[j][i]);
+                            << i << " and " << j << " have dot product " << product[j][i]);
     PLUMB_CHECK((Vec4{m[0][3], m[1][3], m[2][3], m[3][3]} == Vec4{0, 0, 0, 1}),
                 "a rigid matrix has the last row (0, 0, 0, 1), got w " << m[3][3]);
 #endif

@@ -83,21 +83,20 @@ constexpr std::array all_quantities{
                  },
                  "angle between the body's y axis and where it pointed at t = 0, 0..pi", true},
     QuantityInfo{"length", "m", [](const SpringState &now) { return now.length; },
-                 "distance of the spring's ends"},
+                 "distance between the spring's ends"},
     QuantityInfo{"strain", "1",
                  [](const SpringState &now) { return now.length / now.rest_length - 1; },
-                 "length / rest_length - 1 of the spring, below 0 when it is shorter"},
+                 "length / rest_length - 1 of the spring, negative when compressed"},
     QuantityInfo{
         "kinetic_energy", "J",
         [](const Measures &now, const SceneStart &) { return now.kinetic_energy; },
         "of all dynamic bodies and particles, translation and rotation: sum of m v.v / 2 + w.I w / "
         "2"},
-    QuantityInfo{
-        "potential_energy", "J",
-        [](const Measures &now, const SceneStart &) { return now.potential_energy; },
-        "of all dynamic bodies and particles in gravity: sum of -m g.r, r from the world's "
-        "origin; by attractors: sum of -m mu / |r|, r from them; and of springs that are not torn: "
-        "sum of k (l - l0)^2 / 2"},
+    QuantityInfo{"potential_energy", "J",
+                 [](const Measures &now, const SceneStart &) { return now.potential_energy; },
+                 "of all dynamic bodies and particles in gravity: sum of -m g.r, r from the "
+                 "world's origin; due to attractors: sum of -m mu / |r|, r from the attractor; and "
+                 "of springs that are not torn: sum of k (l - l0)^2 / 2"},
     QuantityInfo{"energy", "J",
                  [](const Measures &now, const SceneStart &) { return now.energy(); },
                  "kinetic_energy + potential_energy"},
@@ -128,44 +127,41 @@ constexpr std::array all_quantities{
                  true},
     QuantityInfo{"penetration", "m",
                  [](const Measures &now, const SceneStart &) { return now.max_penetration; },
-                 "depth of the deepest contact point of the scene; 0 when nothing overlaps", false,
+                 "depth of the deepest contact point in the scene; 0 when nothing overlaps", false,
                  false, true},
     QuantityInfo{"mean_penetration", "m",
                  [](const Measures &now, const SceneStart &) { return now.mean_penetration; },
-                 "mean depth of the contact points that penetrate; 0 without contact points", false,
-                 false, true},
-    QuantityInfo{
-        "joint_drift", "m",
-        [](const Measures &now, const SceneStart &) { return now.max_joint_drift; },
-        "largest error of any joint: the distance between the anchors (of a slider: across its "
-        "axis), or that beyond its least or greatest length (distance); with it, as the other leg "
-        "of a right angle, the tilt of a hinge, the turn of a slider or fixed joint, and what is "
-        "beyond a limit, 1 rad as 1 m"},
-    QuantityInfo{
-        "signorini_residual", "W",
-        [](const Measures &now, const SceneStart &) { return now.signorini_residual; },
-        "of the law of Signorini: the largest |n v| of a contact point's normal force and the "
-        "velocity along it, 0 where what separates is not pushed",
-        false, false, true},
+                 "mean depth of the contact points that penetrate; 0 without any", false, false,
+                 true},
+    QuantityInfo{"joint_drift", "m",
+                 [](const Measures &now, const SceneStart &) { return now.max_joint_drift; },
+                 "largest error of any joint: the distance between the anchors (slider: across its "
+                 "axis) or beyond the minimum or maximum length (distance), root-sum-square with "
+                 "the tilt of a hinge, the rotation of a slider or fixed joint, and the excess "
+                 "beyond a limit; 1 rad counts as 1 m"},
+    QuantityInfo{"signorini_residual", "W",
+                 [](const Measures &now, const SceneStart &) { return now.signorini_residual; },
+                 "Signorini's law: largest |n v| of a contact point's normal force n and normal "
+                 "velocity v; 0 if separating points are not pushed",
+                 false, false, true},
     QuantityInfo{"cone_residual", "N",
                  [](const Measures &now, const SceneStart &) { return now.cone_residual; },
-                 "of Coulomb's cone: the largest |t| - mu n by which friction is beyond it", false,
-                 false, true},
-    QuantityInfo{
-        "dissipation_residual", "W",
-        [](const Measures &now, const SceneStart &) { return now.dissipation_residual; },
-        "of maximal dissipation: the largest mu n |w| + t.w of a point's friction t and sliding w, "
-        "0 where friction slows what slides in full",
-        false, false, true},
+                 "Coulomb's cone: largest |t| - mu n by which friction exceeds it", false, false,
+                 true},
+    QuantityInfo{"dissipation_residual", "W",
+                 [](const Measures &now, const SceneStart &) { return now.dissipation_residual; },
+                 "maximal dissipation: largest mu n |w| + t.w of a point's friction t and sliding "
+                 "velocity w; 0 if friction fully opposes sliding",
+                 false, false, true},
     QuantityInfo{"contact_power", "W",
                  [](const Measures &now, const SceneStart &) { return now.contact_power; },
-                 "sum of n v + t.w over all contact points: what friction takes is below 0; above "
-                 "it contacts give energy",
+                 "sum of n v + t.w over all contact points: negative where friction dissipates, "
+                 "positive where contacts add energy",
                  false, false, true},
     QuantityInfo{"max_strain", "1",
                  [](const Measures &now, const SceneStart &) { return now.max_strain; },
-                 "largest |length / rest_length - 1| of all springs that are not torn, those of "
-                 "cloth among them; 0 without any"},
+                 "largest |length / rest_length - 1| of all springs that are not torn, including "
+                 "those of cloth; 0 without any"},
 };
 
 constexpr std::array all_reductions{
@@ -182,8 +178,8 @@ constexpr std::array all_reductions{
     ReductionInfo{"crossings", Reduction::crossings, true,
                   "how often the value crosses `level`, up or down", true},
     ReductionInfo{"first_crossing", Reduction::first_crossing, true,
-                  "when the value first crosses `level`, up or down, in s from the start of the "
-                  "window; how long that is where it never does",
+                  "time (s) from the start of the window to the first crossing of `level`, up or "
+                  "down; the window's length if there is none",
                   true},
 };
 

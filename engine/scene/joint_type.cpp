@@ -19,9 +19,9 @@ std::vector<JointKey> limits_and_motor(std::string_view unit, const Bounds &boun
     const bool is_angle = unit == "rad";
     return {{"limits", &JointDesc::limits, unit, bounds, "", what, "none"},
             {"motor_speed", &JointDesc::motor_speed, is_angle ? "rad/s" : "m/s", moderate,
-             "max_motor_force", "what the motor drives it to; with it the motor is on", "no motor"},
+             "max_motor_force", "target speed; setting it turns the motor on", "no motor"},
             {"max_motor_force", &JointDesc::max_motor_force, force, not_negative, "",
-             is_angle ? "the motor's greatest torque" : "the motor's greatest force", "0"}};
+             is_angle ? "the motor's maximum torque" : "the motor's maximum force", "0"}};
 }
 
 // Null past the last type.
@@ -46,29 +46,29 @@ const JointTypeInfo *find(JointType type) {
         static const JointTypeInfo info{
             type,
             "distance",
-            "holds two points at a distance, like a rod; between a least and a greatest one, like "
-            "a rope; or, with a `frequency`, like a spring",
-            "a rod, a rope that hangs slack where it is longer, or a coil",
+            "keeps two points at a fixed distance, like a rod; between a minimum and a maximum, "
+            "like a rope; or, with a `frequency`, like a spring",
+            "a rod, a rope that sags when slack, or a coil",
             Anchors::apart,
             Frames::none,
             "Length",
             false,
-            {{"length", JointKey::Length{}, "m", positive, "", "least and greatest length at once",
-              "the distance of the anchors at the start"},
+            {{"length", JointKey::Length{}, "m", positive, "", "minimum and maximum length at once",
+              "the distance between the anchors at the start"},
              {"min_length", &JointDesc::min_length, "m", not_negative, "max_length",
-              "the least distance of the anchors", "0"},
+              "the minimum distance between the anchors", "0"},
              {"max_length", &JointDesc::max_length, "m", positive, "",
-              "the greatest distance of the anchors", ""}},
-            {"the length, or the greatest", "the least length"}};
+              "the maximum distance between the anchors", ""}},
+            {"length or maximum length", "minimum length"}};
         return &info;
     }
     case JointType::hinge: {
         static const JointTypeInfo info{
             type,
             "hinge",
-            "holds two points and an axis together; the angle is how far b has turned about the "
-            "axis against a",
-            "its axis, and about it the arc of its limits with a hand at the present angle",
+            "holds two points and an axis together; the angle is b's rotation about the axis "
+            "relative to a",
+            "its axis, and around it the arc of its limits with a hand at the current angle",
             Anchors::together,
             Frames::axis,
             "Angle",
@@ -81,16 +81,16 @@ const JointTypeInfo *find(JointType type) {
         static const JointTypeInfo info{
             type,
             "slider",
-            "lets b move along the axis alone, without turning against a; the position is how far "
-            "its anchor is ahead of a's along the axis",
+            "lets b move only along the axis, without rotating relative to a; the position is how "
+            "far b's anchor is ahead of a's along the axis",
             "its rail, with a stop at each limit",
             Anchors::on_axis,
             Frames::axis,
             "Position",
             false,
             limits_and_motor("m", moderate, "N", "`[lower, upper]` position"),
-            {"aside along y", "aside along z", "turn about x", "turn about y", "turn about z",
-             "lower limit", "upper limit", "motor"}};
+            {"shift along y", "shift along z", "rotation about x", "rotation about y",
+             "rotation about z", "lower limit", "upper limit", "motor"}};
         return &info;
     }
     case JointType::fixed: {
@@ -104,7 +104,7 @@ const JointTypeInfo *find(JointType type) {
             "",
             false,
             {},
-            {"x", "y", "z", "turn about x", "turn about y", "turn about z"}};
+            {"x", "y", "z", "rotation about x", "rotation about y", "rotation about z"}};
         return &info;
     }
     }
@@ -133,15 +133,15 @@ std::string text_of(const JointKey &key) {
 const std::vector<JointKey> &common_joint_keys() {
     static const std::vector<JointKey> keys{
         {"frequency", &JointDesc::frequency, "Hz", not_negative, "",
-         "how fast its spring swings with the bodies on it", "0: rigid"},
+         "the natural frequency of its spring with the bodies on it", "0: rigid"},
         {"damping_ratio", &JointDesc::damping_ratio, "", not_negative, "frequency",
-         "of that spring: from 1 on it comes to rest without swinging", "1"},
+         "of that spring: at 1 or more it settles without oscillating", "1"},
         {"break_force", &JointDesc::break_force, "N", not_negative, "",
-         "it breaks when it would need more to hold its anchors", "0: never"},
+         "it breaks when holding its anchors would take more", "0: never"},
         {"collide_connected", &JointDesc::collide_connected, "", yes_or_no, "",
          "whether the two bodies also collide with each other", "false"},
-        {"broken", &JointDesc::broken, "", yes_or_no, "",
-         "whether it has broken: what a saved scene remembers", "false"}};
+        {"broken", &JointDesc::broken, "", yes_or_no, "", "whether it has broken; for saved scenes",
+         "false"}};
     return keys;
 }
 

@@ -49,11 +49,10 @@ std::string read_all(std::istream &in) {
         in.read(block.data(), static_cast<std::streamsize>(block.size()));
         all.append(block, 0, static_cast<std::size_t>(in.gcount()));
         if (all.size() > max_obj_bytes)
-            throw Refusal{0, "the file is too large",
-                          text("it may have ", max_obj_bytes, " bytes at most")};
+            throw Refusal{0, "the file is too large", text("at most ", max_obj_bytes, " bytes")};
     }
     if (in.bad())
-        throw Refusal{0, "the file cannot be read", "is it a file, and may it be read?"};
+        throw Refusal{0, "the file cannot be read", "check that it is a readable file"};
     return all;
 }
 
@@ -67,7 +66,7 @@ std::string_view next_token(std::string_view &line) {
 
 double read_coordinate(std::string_view token, std::size_t line) {
     if (token.empty())
-        throw Refusal{line, "a vertex with less than three numbers", "v x y z"};
+        throw Refusal{line, "a vertex with fewer than three numbers", "v x y z"};
     std::string_view digits = token;
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-')
         digits.remove_prefix(1);
@@ -75,7 +74,7 @@ double read_coordinate(std::string_view token, std::size_t line) {
     const auto [end, problem] =
         std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (problem == std::errc::result_out_of_range)
-        throw Refusal{line, "a number that no double holds: " + quoted(token),
+        throw Refusal{line, "a number out of the range of double: " + quoted(token),
                       text("coordinates from ", -max_obj_coordinate, " to ", max_obj_coordinate)};
     if (problem != std::errc() || end != digits.data() + digits.size())
         throw Refusal{line, "not a number: " + quoted(token), "v x y z, such as v 0.5 -1 2e-3"};
@@ -111,14 +110,14 @@ void check_face(std::string_view rest, std::size_t line) {
             break;
         if (!is_corner(token))
             throw Refusal{line, "not a corner of a face: " + quoted(token),
-                          "a vertex's number, such as 7, 7/1, 7//3, 7/1/3 or -1"};
+                          "a vertex index, such as 7, 7/1, 7//3, 7/1/3 or -1"};
         ++corners;
     }
     if (corners < 3)
         throw Refusal{line, text("a face with ", corners, " corners"), "three or more"};
     if (corners > max_obj_polygon_corners)
         throw Refusal{line, text("a face with ", corners, " corners"),
-                      text(max_obj_polygon_corners, " at most; cut it up")};
+                      text(max_obj_polygon_corners, " at most; split it up")};
 }
 
 // The relevant lines of a file and their contents.
@@ -214,7 +213,7 @@ class Cutter {
     [[noreturn]] static void refuse_crossing(std::size_t count, std::size_t line) {
         throw Refusal{line,
                       text("a face of ", count, " corners whose outline crosses or touches itself"),
-                      "cut it into triangles"};
+                      "split it into triangles"};
     }
 
     // Bound on the relative error of a sum of `count` products of differences, as a fraction of
@@ -318,7 +317,7 @@ class Cutter {
             return false;
         for (std::size_t i = next_[last]; i != first; i = next_[i]) {
             if (++tests_ > max_obj_corner_tests)
-                throw Refusal{line, "polygons that take too long to cut up", "triangles"};
+                throw Refusal{line, "polygons that take too long to triangulate", "use triangles"};
             const Flat &p = flat_[i];
             if (turn(a, b, p) < 0 || turn(b, c, p) < 0 || turn(c, a, p) < 0)
                 continue;

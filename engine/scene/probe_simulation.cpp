@@ -36,8 +36,7 @@ class ProbeSimulation final : public Simulation {
         } else if (const auto *changed = std::get_if<SetSettings>(&command)) {
             changed->settings.apply_to(run_.settings);
         } else {
-            throw std::invalid_argument(
-                "this scene has only probes, and no world that a body could be in");
+            throw std::invalid_argument("this scene has only probes, no world for bodies");
         }
     }
 

@@ -102,7 +102,7 @@ template <typename... Kinds> std::string rows(const std::variant<Kinds...> *) {
 } // namespace
 
 std::string shape_reference() {
-    return "| shape | its fields | bodies | placed in a probe by | what "
+    return "| shape | fields | bodies | placed in a probe by | what it is "
            "|\n|---|---|---|---|---|\n" +
            rows(static_cast<const ProbeShape *>(nullptr));
 }

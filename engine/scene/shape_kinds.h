@@ -73,7 +73,7 @@ template <> struct Kind<AabbDesc> {
     static constexpr KindInfo info{.name = "aabb",
                                    .with_article = "an aabb",
                                    .size = "its size is half_extents",
-                                   .about = "a box along the world's axes",
+                                   .about = "a box aligned with the world's axes",
                                    .placing = Placing::position};
     static void fields(AabbDesc &b, auto &visitor) { visitor.size("half_extents", b.half_extents); }
 };
@@ -83,8 +83,8 @@ template <> struct Kind<CapsuleDesc> {
         .name = "capsule",
         .with_article = "a capsule",
         .size = "its size is half_height and radius",
-        .about = "along its y axis, a cylinder of height 2 `half_height` with a half sphere on "
-                 "each end"};
+        .about =
+            "along its y axis, a cylinder of height 2 `half_height` with a hemisphere at each end"};
     static void fields(CapsuleDesc &c, auto &visitor) {
         visitor.length("half_height", c.half_height,
                        "half_height = metres, without the round ends");
@@ -104,21 +104,20 @@ template <> struct Kind<CylinderDesc> {
 };
 
 template <> struct Kind<PlaneDesc> {
-    static constexpr KindInfo info{
-        .name = "plane",
-        .with_article = "a plane",
-        .size = "it is infinite: the solid below y = 0 of its frame",
-        .about = "all that lies below y = 0 of its frame is solid. Instead of a rotation it may "
-                 "have a `normal` of unit length",
-        .moves = Moves::as_told};
+    static constexpr KindInfo info{.name = "plane",
+                                   .with_article = "a plane",
+                                   .size = "it is infinite: the solid below y = 0 of its frame",
+                                   .about = "everything below y = 0 of its frame is solid. Instead "
+                                            "of a rotation it may have a unit `normal`",
+                                   .moves = Moves::as_told};
     static void fields(PlaneDesc &, auto &) {}
 };
 
 template <> struct Kind<SegmentDesc> {
     static constexpr KindInfo info{.name = "segment",
                                    .with_article = "a segment",
-                                   .size = "its size is its points",
-                                   .about = "two points of the world",
+                                   .size = "it is given by its points",
+                                   .about = "two points in world coordinates",
                                    .placing = Placing::by_its_points};
     static void fields(SegmentDesc &s, auto &visitor) { visitor.corners("points", s.points); }
 };
@@ -126,8 +125,8 @@ template <> struct Kind<SegmentDesc> {
 template <> struct Kind<TriangleDesc> {
     static constexpr KindInfo info{.name = "triangle",
                                    .with_article = "a triangle",
-                                   .size = "its size is its points",
-                                   .about = "three points of the world",
+                                   .size = "it is given by its points",
+                                   .about = "three points in world coordinates",
                                    .placing = Placing::by_its_points};
     static void fields(TriangleDesc &t, auto &visitor) { visitor.corners("points", t.points); }
 };
@@ -158,9 +157,10 @@ template <> struct Kind<MeshDesc> {
         .name = "mesh",
         .with_article = "a mesh",
         .size = "its size is that of its model, file or vertices",
-        .about = "triangles: as given, counter-clockwise from their fronts; or those of a "
-                 "Wavefront OBJ file, times `scale`; or a model, `half_extents` the half of the "
-                 "whole. Bodies meet its fronts alone, or both `sides`. At most 100,000 triangles",
+        .about =
+            "triangles: as given, counter-clockwise seen from the front; or those of a Wavefront "
+            "OBJ file, times `scale`; or a model with these `half_extents`. Bodies collide with "
+            "its front side only, or with both `sides`. At most 100,000 triangles",
         .moves = Moves::never};
     static void fields(MeshDesc &m, auto &visitor) {
         visitor.either(
@@ -191,9 +191,9 @@ template <> struct Kind<HeightFieldDesc> {
         .name = "height_field",
         .with_article = "a height field",
         .size = "its size is half_extents, or that of its heights",
-        .about = "ground seen from above, about its position: rows of `heights` along x, one row "
-                 "after the other along z, `spacing` apart; or hills within `half_extents`, with "
-                 "`detail` squares along x. Bodies meet its top alone",
+        .about = "ground centred on its position: rows of `heights` along x, one after another "
+                 "along z, `spacing` apart; or hills within `half_extents`, with `detail` squares "
+                 "along x. Bodies collide with its top side only",
         .placing = Placing::position,
         .moves = Moves::never};
     static void fields(HeightFieldDesc &f, auto &visitor) {
@@ -215,7 +215,7 @@ template <> struct Kind<HeightFieldDesc> {
 template <> struct Kind<FlatSegmentDesc> {
     static constexpr KindInfo info{.name = "flat_segment",
                                    .with_article = "a flat segment",
-                                   .size = "its size is its points",
+                                   .size = "it is given by its points",
                                    .about = "two points `[x, y]`",
                                    .placing = Placing::by_its_points,
                                    .is_flat = true};
@@ -236,7 +236,7 @@ template <> struct Kind<RectangleDesc> {
     static constexpr KindInfo info{.name = "rectangle",
                                    .with_article = "a rectangle",
                                    .size = "its size is half_extents",
-                                   .about = "along the axes",
+                                   .about = "axis-aligned",
                                    .placing = Placing::position,
                                    .is_flat = true};
     static void fields(RectangleDesc &r, auto &visitor) {
@@ -248,7 +248,7 @@ template <> struct Kind<OrientedRectangleDesc> {
     static constexpr KindInfo info{.name = "oriented_rectangle",
                                    .with_article = "an oriented rectangle",
                                    .size = "its size is half_extents",
-                                   .about = "turned counter-clockwise",
+                                   .about = "rotated counter-clockwise",
                                    .placing = Placing::position,
                                    .is_flat = true};
     static void fields(OrientedRectangleDesc &r, auto &visitor) {
@@ -262,7 +262,7 @@ template <> struct Kind<FlatCompoundDesc> {
                                    .with_article = "a compound",
                                    .size = "its size is that of its parts",
                                    .about = "circles, rectangles and oriented rectangles, each "
-                                            "with a `position` about the compound's",
+                                            "with a `position` relative to the compound's",
                                    .placing = Placing::position,
                                    .is_flat = true};
     static void fields(FlatCompoundDesc &c, auto &visitor) { visitor.parts("parts", c.parts); }

@@ -47,7 +47,7 @@ ResolvedRun resolve_run(const SceneDesc &scene, const RunOptions &options) {
     run.method = find_method_info(name);
     if (run.method == nullptr) {
         std::ostringstream text;
-        text << "no method is called '" << name << "'; ";
+        text << "there is no method '" << name << "'; ";
         std::vector<std::string_view> names;
         for (const MethodInfo &info : method_infos())
             names.push_back(info.name);

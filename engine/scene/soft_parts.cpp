@@ -60,7 +60,7 @@ SoftParts::SoftParts(const SceneDesc &scene) {
             return {Kind::body, body->second, anchor};
         if (const auto particle = find_particle(name))
             return {Kind::particle, *particle, glm::dvec3(0)};
-        throw std::invalid_argument("there is no particle and no body \"" + name + '"');
+        throw std::invalid_argument("there is no particle or body \"" + name + '"');
     };
     for (std::size_t i = 0; i < scene.springs.size(); ++i) {
         const SpringDesc &desc = scene.springs[i];

@@ -16,7 +16,7 @@ void check_box(const Aabb &box, std::size_t item) {
     constexpr Real reach = Real(1e15);
     for (int i = 0; i < 3; ++i)
         PLUMB_CHECK(-reach <= box.min[i] && box.min[i] <= box.max[i] && box.max[i] <= reach,
-                    "box " << item << " of a tree must be not empty and within " << reach
+                    "box " << item << " of a tree must be nonempty and within " << reach
                            << " m, got [" << box.min[i] << ", " << box.max[i] << "] on axis " << i);
 }
 
@@ -235,7 +235,8 @@ struct Bvh::Builder {
 };
 
 Bvh::Bvh(std::span<const Aabb> boxes) : first_{0} {
-    PLUMB_CHECK(boxes.size() < leaf_bit, "a tree holds less than 2^31 boxes, got " << boxes.size());
+    PLUMB_CHECK(boxes.size() < leaf_bit,
+                "a tree holds fewer than 2^31 boxes, got " << boxes.size());
     if (boxes.empty())
         return;
     const Builder builder(boxes);
@@ -247,8 +248,9 @@ Bvh::Bvh(std::span<const Aabb> boxes) : first_{0} {
 }
 
 void Bvh::refit(std::span<const Aabb> boxes) {
-    PLUMB_CHECK(boxes.size() == size(), "a tree is refitted to as many boxes as it was built from, "
-                                            << size() << ", got " << boxes.size());
+    PLUMB_CHECK(boxes.size() == size(),
+                "a tree must be refitted to as many boxes as it was built from, "
+                    << size() << ", got " << boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
         check_box(boxes[i], i);
     for (std::size_t index = nodes_.size(); index-- > 0;) {

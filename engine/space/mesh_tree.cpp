@@ -36,7 +36,7 @@ bool is_within_reach(const Vec3 &point) {
 }
 
 void check_point_of_mesh(const Vec3 &point) {
-    PLUMB_CHECK(is_within_reach(point), "a point asked of a mesh must be finite and within "
+    PLUMB_CHECK(is_within_reach(point), "a mesh's query point must be finite and within "
                                             << mesh_reach << " m, got " << Printed{point});
 }
 
@@ -62,9 +62,9 @@ void check_ray_of_mesh(const Ray &ray) {
     PLUMB_CHECK(is_within_reach(ray.origin), "ray origin must be finite and within "
                                                  << mesh_reach << " m, got "
                                                  << Printed{ray.origin});
-    PLUMB_CHECK(has_direction, "ray direction must be of a length from " << least_length << " to "
-                                                                         << most_length << ", got "
-                                                                         << Printed{ray.direction});
+    PLUMB_CHECK(has_direction, "ray direction must have a length from " << least_length << " to "
+                                                                        << most_length << ", got "
+                                                                        << Printed{ray.direction});
     PLUMB_CHECK(!std::isnan(ray.max_t), "ray max_t must be a number, got " << ray.max_t);
 }
 
@@ -94,9 +94,9 @@ MeshTree::MeshTree(TriangleMesh mesh) : mesh_(std::move(mesh)), tree_(boxes_of(m
 }
 
 void MeshTree::move_vertices(std::span<const Vec3> vertices) {
-    PLUMB_CHECK(vertices.size() == mesh_.vertices.size(),
-                "a mesh keeps the number of its vertices, " << mesh_.vertices.size() << ", got "
-                                                            << vertices.size());
+    PLUMB_CHECK(vertices.size() == mesh_.vertices.size(), "a mesh's vertex count must stay "
+                                                              << mesh_.vertices.size() << ", got "
+                                                              << vertices.size());
     TriangleMesh moved{{vertices.begin(), vertices.end()}, mesh_.triangles};
     tree_.refit(boxes_of(moved));
     mesh_ = std::move(moved);

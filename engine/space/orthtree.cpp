@@ -67,7 +67,7 @@ Orthtree<Dim>::Orthtree(const Box &world, int max_depth, int capacity)
     for (int i = 0; i < Dim; ++i)
         PLUMB_CHECK(std::isfinite(world.min[i]) && std::isfinite(world.max[i]) &&
                         world.min[i] < world.max[i],
-                    "the world of a tree must be finite and have a size, got ["
+                    "the world of a tree must be finite and nonempty, got ["
                         << world.min[i] << ", " << world.max[i] << "] on axis " << i);
     PLUMB_CHECK(max_depth >= 0 && max_depth <= depth_limit,
                 "max_depth must be in [0, " << depth_limit << "], got " << max_depth);

@@ -47,7 +47,6 @@ class Scene : public testing::TestWithParam<fs::path> {};
 // few per cent, and it does not propagate impulses. AVBD damps swings most of all, bounces like TGS
 // Soft, and its passes add energy to fast-moving cloth. Naive impulses never come to rest, and
 // naive spin never tumbles.
-// rests, and under naive spin nothing tumbles.
 //
 // The number bounds the error of the expectation missed by most, in units of its tolerance: a
 // quarter above the measured one. Null if the method must meet the scene.

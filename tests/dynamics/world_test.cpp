@@ -117,7 +117,7 @@ TEST(World, MisuseIsNamedWithItsValue) {
     refused("velocity must be finite",
             [&](BodyDef &d) { d.angular_velocity.z = std::numeric_limits<Real>::infinity(); });
     refused("unit length, got 2", [&](BodyDef &d) { d.pose.rotation.w = Real(2); });
-    refused("rotation must be of unit length", [&](BodyDef &d) { d.pose.rotation.x = Real(nan); });
+    refused("rotation must have unit length", [&](BodyDef &d) { d.pose.rotation.x = Real(nan); });
     refused("friction must not be negative, got -0.25",
             [&](BodyDef &d) { d.colliders.front().material.friction = Real(-0.25); });
     refused("restitution must be 0 to 1, got 1.5",
@@ -129,7 +129,7 @@ TEST(World, MisuseIsNamedWithItsValue) {
     refused("half-space cannot be dynamic",
             [&](BodyDef &d) { d.colliders.front().shape = HalfSpace{}; });
     refused("-1", [&](BodyDef &d) { d.colliders.front().shape = ball(-1); });
-    refused("a dynamic body needs an extent",
+    refused("a dynamic body needs positive, finite moments of inertia",
             [&](BodyDef &d) { d.colliders.front().shape = ball(0); });
     EXPECT_TRUE(world.bodies().empty()); // nothing is left behind
 

@@ -308,7 +308,7 @@ TEST(HeightField, MisuseNamesTheValue) {
     says([&] { height_at(bad, Real(0), Real(0)); }, "-3");
     bad.spacing = Real(1e-30);
     bad.origin.x = Real(7);
-    says([&] { check_valid(bad); }, "lost at 7");
+    says([&] { check_valid(bad); }, "lost to rounding at 7");
     bad = good;
     bad.heights[2] = nan;
     says([&] { check_valid(bad); }, "nan");

@@ -247,28 +247,29 @@ TEST(ObjFile, OneMessageNamesTheLineTheFaultAndTheRemedy) {
          "model.obj:5: a face with vertex -5; there are 4 vertices before this line"},
         {square + "\nf 1 2\n", "model.obj:6: a face with 2 corners; three or more"},
         {square + "f\n", "model.obj:5: a face with 0 corners; three or more"},
-        {square + "f 1 2 x\n", "model.obj:5: not a corner of a face: 'x'; a vertex's number, such "
+        {square + "f 1 2 x\n", "model.obj:5: not a corner of a face: 'x'; a vertex index, such "
                                "as 7, 7/1, 7//3, 7/1/3 or -1"},
-        {square + "f 1 2 3/\n", "model.obj:5: not a corner of a face: '3/'; a vertex's number, "
-                                "such as 7, 7/1, 7//3, 7/1/3 or -1"},
+        {square + "f 1 2 3/\n", "model.obj:5: not a corner of a face: '3/'; a vertex index, such "
+                                "as 7, 7/1, 7//3, 7/1/3 or -1"},
         {square + "f 1 2 99999999999\n",
-         "model.obj:5: not a corner of a face: '99999999999'; a vertex's number, such as 7, 7/1, "
+         "model.obj:5: not a corner of a face: '99999999999'; a vertex index, such as 7, 7/1, "
          "7//3, 7/1/3 or -1"},
-        {"v 0 0\n", "model.obj:1: a vertex with less than three numbers; v x y z"},
+        {"v 0 0\n", "model.obj:1: a vertex with fewer than three numbers; v x y z"},
         {"v 0 0 nan\n", "model.obj:1: a coordinate that is not finite or too large: 'nan'; "
                         "coordinates from -1e+08 to 1e+08"},
         {"v 0 -inf 0\n", "model.obj:1: a coordinate that is not finite or too large: '-inf'; "
                          "coordinates from -1e+08 to 1e+08"},
         {"v 0 1e9 0\n", "model.obj:1: a coordinate that is not finite or too large: '1e9'; "
                         "coordinates from -1e+08 to 1e+08"},
-        {"v 0 1e999 0\n", "model.obj:1: a number that no double holds: '1e999'; coordinates from "
-                          "-1e+08 to 1e+08"},
+        {"v 0 1e999 0\n",
+         "model.obj:1: a number out of the range of double: '1e999'; coordinates from "
+         "-1e+08 to 1e+08"},
         {"v 0 one 0\n", "model.obj:1: not a number: 'one'; v x y z, such as v 0.5 -1 2e-3"},
         {"v 0 0,5 0\n", "model.obj:1: not a number: '0,5'; v x y z, such as v 0.5 -1 2e-3"},
         {"v 0 0x1 0\n", "model.obj:1: not a number: '0x1'; v x y z, such as v 0.5 -1 2e-3"},
         {square + "f 1 3 2 4\n",
          "model.obj:5: a face of 4 corners whose outline crosses or touches "
-         "itself; cut it into triangles"},
+         "itself; split it into triangles"},
         {std::string("v 0 0 0\0", 8) + "\nf 1 2 3", "model.obj:1: a zero byte; a text file"},
         {"v 0 0 \x1b[31mred\n",
          "model.obj:1: not a number: '?[31mred'; v x y z, such as v 0.5 -1 2e-3"},

@@ -309,10 +309,10 @@ camera = { eye = [1, 1, 1], target = [1, 1, 1], near = 2, far = 1 }
     EXPECT_TRUE(has(all, R"(p.toml:3:7: error: unknown ask "raycst"; did you mean "raycast"?)"));
     EXPECT_TRUE(has(all, R"(p.toml:8:21: error: unknown shape "spere"; did you mean "sphere"?)"));
     EXPECT_TRUE(has(all, "has none of ray and segment") || has(all, "ray = {")) << all;
-    EXPECT_TRUE(has(all, R"(another probe is named "b" already, at line 6)"));
+    EXPECT_TRUE(has(all, R"(another probe is already named "b", at line 6)"));
     EXPECT_TRUE(has(all, "radius is -1; it must be a positive number"));
     EXPECT_TRUE(has(all, R"(ask = "contains" has no ray)"));
-    EXPECT_TRUE(has(all, "has 0 good points"));
+    EXPECT_TRUE(has(all, "has 0 valid points"));
     EXPECT_TRUE(has(all, R"([[probe]] "c" has 1 shape; ask = "overlap" takes 2 to)"));
     EXPECT_TRUE(has(all, R"(ask = "overlap" has no value "overlaps"; did you mean "overlap"?)"));
     EXPECT_TRUE(has(all, "has no source"));
@@ -352,7 +352,7 @@ TEST(ProbeFile, AMeshFileThatCannotBeUsedIsAnErrorInTheSceneAndInTheFile) {
         has(said_of(R"(file = "none.obj")"), R"(cannot read "none.obj"; it must be a file)"));
     for (const char *name : {"/etc/passwd", "../gear.obj", "folder/gear.obj", "..", ".", ""}) {
         const std::string all = said_of("file = \"" + std::string(name) + "\"");
-        EXPECT_TRUE(has(all, "is no name of a file beside the scene")) << all;
+        EXPECT_TRUE(has(all, "is not the name of a file beside the scene")) << all;
     }
     EXPECT_TRUE(has(said_of("file = 3"), "file is a number"));
     EXPECT_TRUE(has(said_of(R"(model = "ball", file = "bad.obj")"), "has both model and file"));

@@ -13,16 +13,16 @@ const std::vector<SceneFileError> &errors() {
 @b = 3
 )",
          {"Error while parsing array: expected comma or closing ']', saw 'b'; see https://toml.io "
-          "for how TOML is written"}},
+          "for the syntax"}},
         {"SyntaxDuplicateKey",
          R"(title = "a"
 title = @"b"
 )",
          {"Error while parsing key-value pair: cannot redefine existing string 'title'; see "
-          "https://toml.io for how TOML is written"}},
+          "https://toml.io for the syntax"}},
         {"SyntaxInvalidUtf8",
          "title = @\"\xff\"\n",
-         {"Encountered invalid utf-8 sequence; see https://toml.io for how TOML is written"}},
+         {"Encountered invalid utf-8 sequence; see https://toml.io for the syntax"}},
         {"UnknownTopLevelKey",
          R"(@titel = "x"
 )",
@@ -31,15 +31,15 @@ title = @"b"
          R"([world]
 @zzzzzz = 1
 )",
-         {R"(unknown key "zzzzzz" in [world]; there are gravity, dt, substeps, max_substeps, substep_tolerance, substep_budget, sleep_after, iterations, speculative_distance, kept_travel, penetration_slop, baumgarte, split_impulse, contact_frequency_ratio, contact_damping_ratio, joint_frequency_ratio, joint_damping_ratio, push_velocity, restitution_threshold, impact_lookahead and 11 more)"}},
+         {R"(unknown key "zzzzzz" in [world]; choose from gravity, dt, substeps, max_substeps, substep_tolerance, substep_budget, sleep_after, iterations, speculative_distance, kept_travel, penetration_slop, baumgarte, split_impulse, contact_frequency_ratio, contact_damping_ratio, joint_frequency_ratio, joint_damping_ratio, push_velocity, restitution_threshold, impact_lookahead and 11 more)"}},
         {"UnknownTable",
          R"([@lights]
 )",
-         {R"(unknown key "lights" in the top level of a scene; there are title, description, world, methods, camera, material, body, attractor, particle, cloth, spring, joint, probe, expect, state)"}},
+         {R"(unknown key "lights" in the top level of a scene; choose from title, description, world, methods, camera, material, body, attractor, particle, cloth, spring, joint, probe, expect, state)"}},
         {"UnknownKeyAfterWideCharacters",
          R"(camera = { target = [0, 0, 0], @"ä" = 1 }
 )",
-         {R"(unknown key "ä" in [camera]; there are target, distance, yaw_deg, yaw, pitch_deg, pitch, fov_deg, fov)"}},
+         {R"(unknown key "ä" in [camera]; choose from target, distance, yaw_deg, yaw, pitch_deg, pitch, fov_deg, fov)"}},
         {"TableWanted",
          R"(@world = 3
 )",
@@ -109,7 +109,7 @@ distance = @2020-01-01
 distance = 1e400@
 )",
          {"Error while parsing floating-point: '1e400' is not representable in 64 bits; see "
-          "https://toml.io for how TOML is written"}},
+          "https://toml.io for the syntax"}},
         {"NegativeMass",
          ball + R"(mass = @-1
 )",
@@ -129,7 +129,7 @@ shape = "box"
 half_extents = [1e6, 1e6, 1e6]
 density = @1e5
 )",
-         {"density times volume makes a mass of 8e+23 kg; it must be a positive number, from 1e-9 "
+         {"density times volume gives a mass of 8e+23 kg; it must be a positive number, from 1e-9 "
           "to 1e9; give a mass"}},
         {"MassOfMaterialBeyondRange",
          R"([[body]]
@@ -137,7 +137,7 @@ name = "a"
 shape = @"sphere"
 radius = 1e-7
 )",
-         {"density times volume makes a mass of 4.18879020478639e-18 kg; it must be a positive "
+         {"density times volume gives a mass of 4.18879020478639e-18 kg; it must be a positive "
           "number, from 1e-9 to 1e9; give a mass"}},
         {"NegativeRadius",
          R"([[body]]
@@ -233,7 +233,7 @@ baumgarte = @1.5
          R"([world]
 precision = @"single"
 )",
-         {R"(unknown precision "single"; there are float, double)"}},
+         {R"(unknown precision "single"; choose from float, double)"}},
         {"Seed",
          R"([world]
 seed = @-4
@@ -297,14 +297,14 @@ radius = 1
 name = @"ball"
 shape = "plane"
 )",
-         {R"(another body is named "ball" already, at line 2; each body needs a name of its own)"}},
+         {R"(another body is already named "ball", at line 2; each body needs a name of its own)"}},
         {"DuplicateMaterial",
          R"([[material]]
 name = "m"
 [[material]]
 name = @"m"
 )",
-         {R"(another material is named "m" already, at line 2; each material needs a name of its own)"}},
+         {R"(another material is already named "m", at line 2; each material needs a name of its own)"}},
         {"DuplicateExpect",
          expect + R"(to = 1
 at_most = 1
@@ -315,7 +315,7 @@ source = "by hand"
 to = 1
 at_most = 1
 )",
-         {R"(another expect is named "e" already, at line 2; each expect needs a name of its own)"}},
+         {R"(another expect is already named "e", at line 2; each expect needs a name of its own)"}},
         {"DuplicateOfRepeated",
          R"([[body]]
 name = "link_2"
@@ -327,7 +327,7 @@ shape = "sphere"
 radius = 0.1
 repeat = { kind = "line", count = 4, step = [1, 0, 0] }
 )",
-         {R"(another body is named "link_2" already, at line 2; each body needs a name of its own)"}},
+         {R"(another body is already named "link_2", at line 2; each body needs a name of its own)"}},
         {"UnknownMaterial",
          R"([[material]]
 name = "steel"
@@ -356,7 +356,7 @@ shape = @"spere"
         {"UnknownKind",
          ball + R"(kind = @"fixed"
 )",
-         {R"(unknown kind "fixed"; there are static, kinematic, dynamic)"}},
+         {R"(unknown kind "fixed"; choose from static, kinematic, dynamic)"}},
         {"MissingRadius",
          R"(@[[body]]
 name = "a"
@@ -401,7 +401,7 @@ name = "a"
 shape = "plane"
 @mass = 3
 )",
-         {"a plane has no mass; it is infinite and never moves by itself"}},
+         {"a plane has no mass; it is infinite and never moves under forces"}},
         {"TwoRotations",
          ball + R"(rotation_deg = [0, 0, 0]
 @orientation = [1, 0, 0, 0]
@@ -442,12 +442,12 @@ angle_deg = 30
          ball + R"(kind = "static"
 @velocity = [1, 0, 0]
 )",
-         {R"(a static body has no velocity; kind = "kinematic" moves as told, "dynamic" by forces)"}},
+         {R"(a static body has no velocity; kind = "kinematic" moves at its velocity, "dynamic" under forces)"}},
         {"StaticAngularVelocity",
          ball + R"(kind = "static"
 @angular_velocity_deg = [1, 0, 0]
 )",
-         {R"(a static body has no angular_velocity_deg; kind = "kinematic" moves as told, "dynamic" by forces)"}},
+         {R"(a static body has no angular_velocity_deg; kind = "kinematic" moves at its velocity, "dynamic" under forces)"}},
         {"ColourName",
          ball + R"(color = @"red"
 )",
@@ -475,7 +475,7 @@ angle_deg = 30
         {"RepeatUnknownKey",
          ball + R"(repeat = { kind = "ring", count = 3, radius = 2, @face = true }
 )",
-         {R"(unknown key "face" in the ring repeat of [[body]] "ball"; there are kind, count, radius, facing)"}},
+         {R"(unknown key "face" in the ring repeat of [[body]] "ball"; choose from kind, count, radius, facing)"}},
         {"RepeatMissingCount",
          ball + R"(repeat = @{ kind = "stack" }
 )",

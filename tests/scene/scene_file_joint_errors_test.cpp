@@ -40,8 +40,8 @@ body_a = @"c"
 body_b = @"nowhere"
 anchor = [0, 0, 0]
 )",
-         {R"(there is no body "c"; there are a, b)",
-          R"(there is no body "nowhere"; there are a, b)"}},
+         {R"(there is no body "c"; choose from a, b)",
+          R"(there is no body "nowhere"; choose from a, b)"}},
         {"JointNearBody",
          ball + R"([[joint]]
 name = "j"
@@ -83,7 +83,7 @@ body_a = "a"
 body_b = "b"
 anchor_a = [0, 0, 0]
 )",
-         {R"([[joint]] "j" has no anchor_b; anchor = [x, y, z] is one point of the world for both bodies, anchor_b one for this body, anchor_b_local one in its frame)"}},
+         {R"([[joint]] "j" has no anchor_b; anchor = [x, y, z] is one world point for both bodies, anchor_b one for this body, anchor_b_local one in its frame)"}},
         {"JointTwoAnchors",
          two + joint + R"(anchor = [0, 0, 0]
 @anchor_b = [0, 0, 0]
@@ -106,7 +106,7 @@ body_a = "a"
 body_b = "b"
 anchor = [0, 0, 0]
 )",
-         {R"(the anchors of [[joint]] "j" are 0 m apart, which cannot be its length; give a length of its own: a positive number, from 1e-9 to 1e9)"}},
+         {R"(the anchors of [[joint]] "j" are 0 m apart, which cannot be its length; give it a length: a positive number, from 1e-9 to 1e9)"}},
         {"DuplicateJoint",
          two + joint + R"(anchor = [0, 0, 0]
 [[joint]]
@@ -115,14 +115,14 @@ type = "distance"
 body_a = "a"
 body_b = "b"
 )",
-         {R"(another joint is named "j" already, at line 11; each joint needs a name of its own)"}},
+         {R"(another joint is already named "j", at line 11; each joint needs a name of its own)"}},
         {"ChainOfSingle",
          two + R"([[joint]]
 name = "j"
 type = "ball"
 chain = @"a"
 )",
-         {R"(the body "a" is not repeated; a chain runs through the copies of a body with repeat)"}},
+         {R"(the body "a" is not repeated; a chain connects the copies of a body with repeat)"}},
         {"ChainUnknown",
          chain + R"([[joint]]
 name = "j"
@@ -137,7 +137,7 @@ name = "j"
 type = "ball"
 chain = @"ball"
 )",
-         {R"(there is only one "ball"; a chain needs two bodies at least)"}},
+         {R"(there is only one "ball"; a chain needs at least two bodies)"}},
         {"ChainWithBody",
          chain + R"([[joint]]
 name = "j"
@@ -145,7 +145,7 @@ type = "ball"
 chain = "link"
 @body_a = "link_0"
 )",
-         {"a chain has no body_a; its bodies are the copies of a repeated one, its anchors in "
+         {"a chain has no body_a; its bodies are the copies of a repeated body, its anchors are in "
           "their frames: anchor_a_local, anchor_b_local"}},
         {"ChainWithOneAnchor",
          chain + R"([[joint]]
@@ -154,7 +154,7 @@ type = "ball"
 chain = "link"
 anchor_a_local = @[1, 0, 0]
 )",
-         {R"([[joint]] "j" has only one of anchor_a_local and anchor_b_local; give both, or neither: then a distance joint holds the centres, and any other sits halfway between them)"}},
+         {R"([[joint]] "j" has only one of anchor_a_local and anchor_b_local; give both, or neither: a distance joint then connects the centres, any other sits halfway between them)"}},
         {"JointKeysOfOthers",
          two + joint + R"(anchor = [0, 0, 0]
 @axis = [1, 0, 0]
@@ -176,7 +176,7 @@ type = "hinge"
 body_b = "b"
 anchor = [0, 0, 0]
 )",
-         {R"([[joint]] "j" has none of axis, frame_a_local; axis = [x, y, z] is a unit direction of the world at the start)"}},
+         {R"([[joint]] "j" has none of axis, frame_a_local; axis = [x, y, z] is a unit vector in world coordinates at the start)"}},
         {"HingeWithAxisAndFrames",
          two + hinge + R"(@frame_a_local = [1, 0, 0, 0]
 @frame_b_local = [1, 0, 0, 0]
@@ -204,7 +204,7 @@ axis = @[0, 0, 0]
         {"LimitsTheWrongWayRound",
          two + hinge + R"(limits_deg = @[90, -90]
 )",
-         {"the lower of limits_deg is above the upper; write [lower, upper]"}},
+         {"the lower value of limits_deg is above the upper; write [lower, upper]"}},
         {"LimitsBeyondHalfATurn",
          two + hinge + R"(limits = [@-4, 0]
 )",
@@ -221,12 +221,12 @@ axis = @[0, 0, 0]
         {"MotorWithoutForce",
          two + hinge + R"(motor_speed_deg = @90
 )",
-         {R"([[joint]] "j" has motor_speed_deg but no max_motor_force; give max_motor_force, the motor's greatest torque (N m))"}},
+         {R"([[joint]] "j" has motor_speed_deg but no max_motor_force; give max_motor_force, the motor's maximum torque (N m))"}},
         {"DampingOfWhatIsRigid",
          two + joint + R"(anchor = [0, 0, 0]
 damping_ratio = @0.5
 )",
-         {R"([[joint]] "j" has damping_ratio but no frequency; give frequency, how fast its spring swings with the bodies on it (Hz))"}},
+         {R"([[joint]] "j" has damping_ratio but no frequency; give frequency, the natural frequency of its spring with the bodies on it (Hz))"}},
         {"NegativeFrequency",
          two + joint + R"(anchor = [0, 0, 0]
 frequency = @-1
@@ -245,7 +245,7 @@ frequency = @-1
         {"RopeWithoutEnd",
          two + rope + R"(min_length = @4
 )",
-         {R"([[joint]] "j" has min_length but no max_length; give max_length, the greatest distance of the anchors (m))"}},
+         {R"([[joint]] "j" has min_length but no max_length; give max_length, the maximum distance between the anchors (m))"}},
         {"RopeTheWrongWayRound",
          two + rope + R"(max_length = 4
 min_length = @5
@@ -255,7 +255,7 @@ min_length = @5
         {"TooFewImpulses",
          two + hinge + R"(impulses = @[1, 2, 3]
 )",
-         {"impulses has 3 elements; of a hinge joint it must be an array of 8 numbers"}},
+         {"impulses has 3 elements; for a hinge joint it must be an array of 8 numbers"}},
         {"UnknownTypeAndUnknownBody",
          two + R"([[joint]]
 name = "j"
@@ -263,7 +263,7 @@ type = @"hing"
 body_b = @"c"
 )",
          {R"(unknown type "hing"; did you mean "hinge"?)",
-          R"(there is no body "c"; there are a, b)"}},
+          R"(there is no body "c"; choose from a, b)"}},
     };
     return all;
 }

@@ -25,13 +25,13 @@ to = 1
 at_most = 1
 source = "x"
 )",
-         {R"([[expect]] "e" has no body; speed is of one body: which?)"}},
+         {R"([[expect]] "e" has no body; speed is measured on one body: which?)"}},
         {"ExpectUnwantedBody",
          ball + expect + R"(@body = "ball"
 to = 1
 at_most = 1
 )",
-         {"energy has no body; it is of the whole scene"}},
+         {"energy has no body; it is measured on the whole scene"}},
         {"ExpectUnknownBody",
          ball + R"([[expect]]
 name = "e"
@@ -95,7 +95,7 @@ to = 1
 equals = 1
 source = "x"
 )",
-         {R"([[expect]] "e" has no tolerance; how far the truth may be missed, in the quantity's unit)"}},
+         {R"([[expect]] "e" has no tolerance; the allowed error, in the quantity's unit)"}},
         {"ExpectZeroTolerance",
          expect + R"(to = 1
 equals = 1
@@ -107,21 +107,22 @@ tolerance = @0
 at_most = 1
 @tolerance = 1
 )",
-         {"a bound has no tolerance; put it into the bound itself"}},
+         {"a bound has no tolerance; include it in the bound"}},
         {"ExpectEstimateOfBound",
          expect + R"(to = 1
 at_most = 1
 @estimate = 0
 )",
-         {"a bound has no estimate; truths have one that refinement found"}},
+         {"a bound has no estimate; only a truth found by refinement has one"}},
         {"ExpectCoarseEstimate",
          expect + R"(to = 1
 equals = 1
 tolerance = 0.5
 estimate = @0.05
 )",
-         {"the estimate of 0.05 is not less than a tenth of the tolerance of 0.5; a truth is known "
-          "ten times as well as it is held to; `plumb reference SCENE --write` refines it"}},
+         {"the estimate of 0.05 is not less than a tenth of the tolerance of 0.5; a truth must be "
+          "known ten times more accurately than its tolerance; `plumb reference SCENE --write` "
+          "refines it"}},
         {"ExpectNegativeEstimate",
          expect + R"(to = 1
 equals = 1
@@ -135,8 +136,9 @@ reduce = "mean"
 equals = @[1, 2, 3]
 tolerance = 0.5
 )",
-         {"equals is a curve of 3 values; write at least 4, evenly from the start of the window to "
-          "its end; `plumb reference SCENE --write` finds them where there is an estimate"}},
+         {"equals is a curve of 3 values; write at least 4, evenly spaced from the start of the "
+          "window to its end; `plumb reference SCENE --write` computes them if there is an "
+          "estimate"}},
         {"ExpectCurveOfAnInstant",
          expect + R"(from = @1
 to = 1
@@ -144,7 +146,7 @@ reduce = "max"
 equals = [1, 2, 3, 4]
 tolerance = 0.5
 )",
-         {"the window of a curve is the instant 1 s; from must be before to"}},
+         {"the curve's window is the single instant 1 s; from must be before to"}},
         {"ExpectCurveWithoutWindow",
          R"(@[[expect]]
 name = "e"
@@ -171,13 +173,13 @@ reduce = @"period"
 equals = [1, 2, 3, 4]
 tolerance = 0.5
 )",
-         {R"(equals is a curve, and reduce = "period"; how far the quantity is from a curve is reduced by "max" or "mean")"}},
+         {R"(equals is a curve, and reduce = "period"; the distance from a curve can be reduced by "max" or "mean")"}},
         {"ExpectCurveReducedByDefault",
          expect + R"(to = 1
 equals = @[1, 2, 3, 4]
 tolerance = 0.5
 )",
-         {R"(equals is a curve, and reduce = "last"; how far the quantity is from a curve is reduced by "max" or "mean")"}},
+         {R"(equals is a curve, and reduce = "last"; the distance from a curve can be reduced by "max" or "mean")"}},
         {"ExpectCurveAsBound",
          expect + R"(to = 1
 reduce = "max"
@@ -245,7 +247,7 @@ target = [0, 0, 0]
 max_force = 1
 held_mass = @-1
 )",
-         {R"(there is no particle "p")", "held_mass is -1; it must be a number from 0 on"}},
+         {R"(there is no particle "p")", "held_mass is -1; it must be a number of at least 0"}},
         {"ContactUnknownBody",
          two + R"([[state.contact]]
 body_a = "a"
@@ -253,7 +255,7 @@ body_b = @"d"
 features = []
 impulses = []
 )",
-         {R"(there is no body "d"; there are a, b)"}},
+         {R"(there is no body "d"; choose from a, b)"}},
         {"ContactWithItself",
          two + R"([[state.contact]]
 body_a = "a"
@@ -269,7 +271,7 @@ body_b = "b"
 features = [1, 2]
 impulses = @[[0, 0, 0]]
 )",
-         {"there are 2 features and 1 impulses; there must be as many of one as of the other"}},
+         {"there are 2 features and 1 impulses; the numbers must match"}},
         {"ContactFeature",
          two + R"([[state.contact]]
 body_a = "a"

@@ -149,13 +149,13 @@ const std::vector<SceneFileError> &errors() {
          {R"(unknown key "mas" in [[particle]] "p"; did you mean "mass"?)"}},
         {"ParticleTwice",
          bob + "[[particle]]\nname = @\"bob\"\n",
-         {R"(another particle is named "bob" already, at line 2; each particle needs a name of its own)"}},
+         {R"(another particle is already named "bob", at line 2; each particle needs a name of its own)"}},
         {"ParticleCalledAsABody",
          ball + "[[particle]]\nname = @\"ball\"\n",
-         {R"(a body is named "ball" already; springs and expectations call bodies, particles and cloths by their names alone)"}},
+         {R"(a body is already named "ball"; springs and expectations refer to bodies, particles and cloths by name alone)"}},
         {"ClothCalledAsAParticle",
          bob + "[[cloth]]\nname = @\"bob\"\n",
-         {R"(a particle is named "bob" already; springs and expectations call bodies, particles and cloths by their names alone)"}},
+         {R"(a particle is already named "bob"; springs and expectations refer to bodies, particles and cloths by name alone)"}},
         {"ParticleWorld",
          "[[particle]]\nname = @\"world\"\n",
          {R"("world" cannot be the name of a particle; it stands for the world in joints and springs)"}},
@@ -176,7 +176,7 @@ const std::vector<SceneFileError> &errors() {
          {R"(there is no material "silk")"}},
         {"SpringUnknownEnd",
          bob + spring + "a = \"bob\"\nb = @\"bib\"\n",
-         {R"(there is no particle and no body "bib"; did you mean "bob"?)"}},
+         {R"(there is no particle or body "bib"; did you mean "bob"?)"}},
         {"SpringUnknownBody",
          ball + spring + "a = \"ball\"\nb = @\"bal\"\n",
          {R"(there is no body "bal"; did you mean "ball"?)"}},
@@ -188,19 +188,19 @@ const std::vector<SceneFileError> &errors() {
          {R"([[spring]] "s" joins "bob" to itself; a and b must differ)"}},
         {"SpringWorldWithoutAnchor",
          bob + "@" + spring + "a = \"bob\"\n",
-         {R"([[spring]] "s" has none of anchor_b, anchor_b_local; anchor_b = [x, y, z] is a point of the world)"}},
+         {R"([[spring]] "s" has none of anchor_b, anchor_b_local; anchor_b = [x, y, z] is a point in world coordinates)"}},
         {"SpringAnchorOfAParticle",
          bob + nail + spring + "a = \"bob\"\nb = \"nail\"\nanchor_b = @[0, 0, 0]\n",
          {"a particle has no anchor_b; it is pulled at its centre"}},
         {"SpringNoStiffness",
          bob + nail + "@[[spring]]\nname = \"s\"\na = \"bob\"\nb = \"nail\"\n",
-         {R"([[spring]] "s" has none of stiffness, frequency; how stiff is it, in N/m, or Hz?)"}},
+         {R"([[spring]] "s" has none of stiffness, frequency; how stiff is it, in N/m or Hz?)"}},
         {"SpringRestLength",
          bob + nail + spring + "a = \"bob\"\nb = \"nail\"\nrest_length = @0\n",
          {"rest_length is 0; it must be a positive number, from 1e-9 to 1e9"}},
         {"SpringEndsAtOnePlace",
          bob + "@" + spring + "a = \"bob\"\nanchor_b = [0, 0, 0]\n",
-         {R"(the ends of [[spring]] "s" are 0 m apart, which cannot be its rest length; give a rest_length of its own: a positive number, from 1e-9 to 1e9)"}},
+         {R"(the ends of [[spring]] "s" are 0 m apart, which cannot be its rest length; give it a rest_length: a positive number, from 1e-9 to 1e9)"}},
         {"SpringFrequencyOfWhatNeverMoves",
          nail + "[[spring]]\nname = \"s\"\na = \"nail\"\nanchor_b = [0, 0, 0]\nfrequency = @3\n",
          {R"(neither end of [[spring]] "s" moves, so it has no frequency; give its stiffness and damping)"}},
@@ -241,7 +241,7 @@ const std::vector<SceneFileError> &errors() {
           "velocities has 1 elements; it must be an array of 12 vectors, one for each particle"}},
         {"ClothHalfAState",
          sheet + "positions = @[]\n",
-         {R"([[cloth]] "sheet" has only one of positions and velocities; give both, of all its particles)"}},
+         {R"([[cloth]] "sheet" has only one of positions and velocities; give both, for all its particles)"}},
         {"ClothTornNotThere",
          sheet + "torn = [@99]\n",
          {"torn[0] is 99; it must be a whole number from 0 to 38"}},
@@ -250,7 +250,7 @@ const std::vector<SceneFileError> &errors() {
          {R"(cannot read "no.obj"; it must be a file beside the scene)"}},
         {"ClothFileElsewhere",
          "[[cloth]]\nname = \"c\"\nfile = @\"../no.obj\"\n",
-         {R"("../no.obj" is no name of a file beside the scene; file = "name.obj", without folders)"}},
+         {R"("../no.obj" is not the name of a file beside the scene; file = "name.obj", without folders)"}},
         {"ClothFileWithCells",
          "[[cloth]]\nname = \"c\"\nfile = @\"no.obj\"\n@cells = [1, 1]\n",
          {R"(cannot read "no.obj"; it must be a file beside the scene)",
@@ -273,8 +273,8 @@ const std::vector<SceneFileError> &errors() {
         {"ExpectStrainOfABody",
          bob + "@[[expect]]\nname = \"e\"\nquantity = \"strain\"\n@body = \"bob\"\nto = 1\n"
                "at_most = 1\nsource = \"s\"\n",
-         {R"([[expect]] "e" has no spring; strain is of one spring: which?)",
-          R"(strain has no body; it is of a spring: spring = "...")"}},
+         {R"([[expect]] "e" has no spring; strain is measured on one spring: which?)",
+          R"(strain has no body; it is measured on a spring: spring = "...")"}},
     };
     return all;
 }
@@ -323,13 +323,14 @@ TEST_F(ClothMesh, IsMadeOfVerticesAndEdges) {
 
 TEST_F(ClothMesh, WhatMakesNoClothIsRefused) {
     for (const auto &[file, flaw] :
-         {std::pair("loose.obj", "its vertex 3 is no corner of a triangle"),
+         {std::pair("loose.obj", "its vertex 3 is not a corner of any triangle"),
           std::pair("flat.obj", "its edge from vertex 0 to vertex 1 has no length")}) {
         const SceneFileResult result = read("file = \"" + std::string(file) + "\"\n");
         ASSERT_EQ(result.messages.size(), 1U);
-        EXPECT_EQ(format_message("s", result.messages.front()),
-                  "s:3:8: error: \"" + std::string(file) + "\" makes no cloth: " + flaw +
-                      "; each vertex must be a corner, and each edge have a length");
+        EXPECT_EQ(
+            format_message("s", result.messages.front()),
+            "s:3:8: error: \"" + std::string(file) + "\" cannot be a cloth: " + flaw +
+                "; each vertex must be a corner of a triangle, and each edge must have a length");
     }
     const SceneFileResult pin = read("file = \"square.obj\"\npins = [4]\n");
     ASSERT_EQ(pin.messages.size(), 1U);

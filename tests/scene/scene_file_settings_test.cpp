@@ -139,14 +139,15 @@ TEST(SceneFileSettings, AnEndWithoutALineEndStays) {
 TEST(SceneFileSettings, ALayoutThatItCannotChangeIsRefused) {
     for (const char *world : {"world = { dt = 0.01, substeps = 8 }\n", "world.substeps = 8\n",
                               "world = { substeps = 8, precision = \"float\" }\n"})
-        EXPECT_NE(complaint(std::string(world) + ball, with({"substeps=2"})).find("on one line"),
-                  std::string::npos)
+        EXPECT_NE(
+            complaint(std::string(world) + ball, with({"substeps=2"})).find("on a line of its own"),
+            std::string::npos)
             << world;
     EXPECT_NE(complaint(std::string("description = \"\"\"\n[world]\nsubsteps = 3\n\"\"\"\nworld = "
                                     "{ substeps = 8 }\n") +
                             ball,
                         with({"substeps=2"}))
-                  .find("on one line"),
+                  .find("on a line of its own"),
               std::string::npos);
 }
 

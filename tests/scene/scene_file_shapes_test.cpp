@@ -162,10 +162,10 @@ TEST(SceneFileShapes, MistakesAreToldWhereTheyAre) {
            "s.toml:1:1: error: [[body]] \"a\" has no half_height; half_height = metres");
     expect("shape = \"hull\"", "[[body]] \"a\" has none of points, file");
     expect("shape = \"hull\"\npoints = [[0, 0, 0]]",
-           "s.toml:4:10: error: [[body]] \"a\" has 1 good points; it takes 4 to");
+           "s.toml:4:10: error: [[body]] \"a\" has 1 valid points; it takes 4 to");
     expect("shape = \"hull\"\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]",
-           "s.toml:4:10: error: these 4 points have no solid hull; it takes four that are not in "
-           "one plane");
+           "s.toml:4:10: error: these 4 points have no solid hull; it takes four that are not "
+           "coplanar");
     expect("shape = \"hull\"\n" + tetrahedron + "\nscale = 2",
            "s.toml:5:1: error: a hull with points has no scale");
     expect("shape = \"mesh\"\nkind = \"dynamic\"\n" + pyramid_mesh,
@@ -178,7 +178,7 @@ TEST(SceneFileShapes, MistakesAreToldWhereTheyAre) {
            "s.toml:5:21: error: triangles[0][2] is 3; it must be a whole number from 0 to 2");
     expect("shape = \"mesh\"\nmodel = \"ball\"\nhalf_extents = [1, 1, 1]\nsides = \"none\"",
            "s.toml:6:9: error: unknown sides \"none\"; did you mean \"one\"?");
-    expect("shape = \"mesh\"\nfile = \"../x.obj\"", "is no name of a file beside the scene");
+    expect("shape = \"mesh\"\nfile = \"../x.obj\"", "is not the name of a file beside the scene");
     expect("shape = \"height_field\"\nheights = [[1, 2], [3]]\nspacing = 1",
            "s.toml:4:20: error: heights[1] has 1 heights");
     expect("shape = \"height_field\"\nhalf_extents = [1e-9, 1, 1e9]", "heights; at most 1000000");
@@ -192,12 +192,12 @@ TEST(SceneFileShapes, MistakesAreToldWhereTheyAre) {
     expect("shapes = [{ shape = \"sphere\", radius = 1, material = \"x\" }]",
            "there is no material \"x\"");
     expect("shape = \"sphere\"\nradius = 1\ninertia = [1, 1, 3]",
-           "s.toml:5:11: error: no body has these moments of inertia");
+           "s.toml:5:11: error: impossible moments of inertia");
     expect("shape = \"sphere\"\nradius = 1\nlocked = [\"w\"]", "unknown axis \"w\"");
     expect("shape = \"sphere\"\nradius = 1\nlayer = 32",
            "layer is 32; it must be a whole number from 0 to 31");
     expect("shape = \"sphere\"\nradius = 1\nsensor = true",
-           "density times volume makes a mass of 0 kg");
+           "density times volume gives a mass of 0 kg");
 }
 
 TEST(SceneFileShapes, APointsFileIsScaledAndNamedAgain) {

@@ -66,7 +66,7 @@ TEST(SceneFileTruths, WhatCannotBeWrittenIsRefused) {
     EXPECT_EQ(complaint(fall("5", "0 "), {"other", {5}, 0}),
               "[[expect]] \"other\" has no estimate");
     const std::string layout =
-        "write [[expect]] as a table, with each key and its value on one line of its own";
+        "write [[expect]] as a table, with each key and its value on a line of its own";
     EXPECT_EQ(complaint(fall("5", "0 "), {"way", {5}, 0.01}),
               layout); // not a tenth of the tolerance
     EXPECT_EQ(complaint("expect = [{ name = \"e\", quantity = \"energy\", to = 1, equals = 1, "

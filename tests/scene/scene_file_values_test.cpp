@@ -276,8 +276,8 @@ TEST(SceneFileValues, LoadSaysWhenItCannotRead) {
         ASSERT_EQ(result.messages.size(), 1U);
         EXPECT_EQ(result.messages[0].line, 0U);
         EXPECT_EQ(format_message(path.string(), result.messages[0]),
-                  path.string() + ": error: the file cannot be read; check that it exists and that "
-                                  "you may read it");
+                  path.string() +
+                      ": error: the file cannot be read; check that it exists and is readable");
     }
 }
 

@@ -98,9 +98,9 @@ TEST(SceneWarnings, FarAwayFloatIsTooCoarse) {
         return body("near", sphere) + body("far", sphere + "position = [" + x + ", 0, 0]");
     };
     EXPECT_EQ(warnings(at("1e5")),
-              (None{"s.toml:6:1: warning: \"far\" is 1e+05 m from the origin, where places in "
-                    "float are 0.00781 m apart: too coarse to follow how it moves; "
-                    "world.precision = \"double\", or all of it nearer to the origin"}));
+              (None{"s.toml:6:1: warning: \"far\" is 1e+05 m from the origin, where float "
+                    "positions are 0.00781 m apart: too coarse to simulate its motion; "
+                    "world.precision = \"double\", or move the scene closer to the origin"}));
     EXPECT_EQ(warnings(at("1000")), None{});
     EXPECT_EQ(warnings("[world]\nprecision = \"double\"\n" + at("1e5")), None{});
     // Small bodies suffer first, and one warning covers many.
@@ -142,8 +142,8 @@ TEST(SceneWarnings, MassRatio) {
     EXPECT_EQ(
         warnings(pair("150", "1")),
         (None{"s.toml:6:1: warning: \"a\" and \"b\" touch, and their masses differ by a factor "
-              "of 150; iterative solvers converge slowly above 100: bring them nearer, or "
-              "expect many iterations"}));
+              "of 150; iterative solvers converge slowly above 100: make the masses more similar, "
+              "or expect many iterations"}));
     EXPECT_EQ(warnings(pair("100", "1")), None{});
     EXPECT_EQ(warnings(pair("150", "2")), None{});
     const std::vector<std::string> joined =
@@ -160,12 +160,11 @@ TEST(SceneWarnings, JointsThatMoveNothingOrJerk) {
                                "anchor = [0, 0, 0]\n"),
               (None{"s.toml:6:1: warning: joint \"j\" moves nothing: neither of its bodies is "
                     "dynamic"}));
-    EXPECT_EQ(
-        warnings(body("a", sphere) + "[[joint]]\nname = \"j\"\ntype = \"ball\"\n"
-                                     "body_a = \"a\"\nanchor_a = [0, 0, 0]\n"
-                                     "anchor_b = [0, 0.25, 0]\n"),
-        (None{"s.toml:6:1: warning: the two anchors of ball joint \"j\" start 0.25 m apart; they "
-              "should be one point, or the first step will jerk them together"}));
+    EXPECT_EQ(warnings(body("a", sphere) + "[[joint]]\nname = \"j\"\ntype = \"ball\"\n"
+                                           "body_a = \"a\"\nanchor_a = [0, 0, 0]\n"
+                                           "anchor_b = [0, 0.25, 0]\n"),
+              (None{"s.toml:6:1: warning: the two anchors of ball joint \"j\" start 0.25 m apart; "
+                    "they should coincide, or the first step will jerk them together"}));
 }
 
 TEST(SceneWarnings, AnchorsThatEachTypeKeepsTogether) {
@@ -179,7 +178,7 @@ TEST(SceneWarnings, AnchorsThatEachTypeKeepsTogether) {
     EXPECT_EQ(joint("type = \"fixed\"\n").size(), 1U);
     EXPECT_EQ(joint("type = \"slider\"\naxis = [1, 0, 0]\n"),
               (None{"s.toml:6:1: warning: the two anchors of slider joint \"j\" start 0.25 m apart "
-                    "across its axis; they should be one point, or the first step will jerk them "
+                    "across its axis; they should coincide, or the first step will jerk them "
                     "together"}));
     EXPECT_EQ(joint("type = \"slider\"\naxis = [0, 1, 0]\n"), None{}); // allowed along its axis
     EXPECT_EQ(joint("type = \"ball\"\nfrequency = 2\n"), None{});      // a stretched spring

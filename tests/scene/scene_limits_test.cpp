@@ -54,7 +54,7 @@ TEST(SceneLimits, BodiesInOnePlace) {
         {"",
          body("first", "position = [1e6, 0, 0]") + "@" + body("heap", line_of(3000, 1e-4)),
          {"with \"heap_2449\" more than 3000000 pairs of bodies touch or overlap at the "
-          "start; each pair takes memory: put the bodies apart (fast ones reach as far as "
+          "start; each pair takes memory: move the bodies apart (fast ones reach as far as "
           "they move in a step)"}});
     // Static ones too: they are checked once.
     EXPECT_FALSE(parse_scene(body("heap", "kind = \"static\"\n" + line_of(3000, 1e-4)), "s").ok());
@@ -101,14 +101,12 @@ TEST(SceneLimits, TrianglesOfAllBodies) {
     most.erase(most.find('@'), 1);
     EXPECT_TRUE(fine(most));
     const std::string suggestion = " here; a scene holds at most 4000000";
-    expect_messages(
-        {"",
-         most + "@" + knots("knot", 1, 5),
-         {"too many triangles of surfaces: 3997696 before this, and 65536" + suggestion}});
-    expect_messages(
-        {"",
-         knots("knots", 2000, 0),
-         {"too many triangles of surfaces: 0 before this, and 131072000" + suggestion}});
+    expect_messages({"",
+                     most + "@" + knots("knot", 1, 5),
+                     {"too many surface triangles: 3997696 before this, and 65536" + suggestion}});
+    expect_messages({"",
+                     knots("knots", 2000, 0),
+                     {"too many surface triangles: 0 before this, and 131072000" + suggestion}});
     // A field of 51 by 1001 heights has 50 000 squares.
     const std::string field = "shape = \"height_field\"\nhalf_extents = [1, 1, 20]\ndetail = 50\n";
     EXPECT_TRUE(fine("[[body]]\nname = \"hills\"\n" + field +
@@ -158,7 +156,7 @@ TEST(SceneLimits, ProbesTogether) {
         "shapes = [" + repeated("{ shape = \"sphere\", radius = 1 }", ", ", 300) + "]";
     expect_only(probe(0, "ask = \"contains\"\n" + points + spheres) +
                     probe(1, "ask = \"contains\"\n" + points + spheres),
-                "with [[probe]] \"p1\" the scene's probes have 1200000 pairs to ask about (a shape "
+                "with [[probe]] \"p1\" the scene's probes have 1200000 pairs to query (a shape "
                 "and a point, or two shapes); all probes of a scene have at most 1000000");
 
     std::string circles;
@@ -192,10 +190,9 @@ TEST(SceneLimits, AFileHasALargestSize) {
     std::filesystem::resize_file(path, max_scene_file_bytes + 1);
     const SceneFileResult result = load_scene(path);
     ASSERT_EQ(result.messages.size(), 1U);
-    EXPECT_EQ(
-        format_message("s.toml", result.messages[0]),
-        "s.toml: error: the file is too large; a scene file has at most 64 MiB; `repeat` makes "
-        "many bodies of a few lines");
+    EXPECT_EQ(format_message("s.toml", result.messages[0]),
+              "s.toml: error: the file is too large; a scene file has at most 64 MiB; `repeat` "
+              "makes many bodies from a few lines");
 }
 
 } // namespace

@@ -158,7 +158,7 @@ class Charting {
         if (options_.shard.n < 1 || options_.shard.n > options_.shard.of)
             throw std::invalid_argument("a shard is I/N with I from 1 to N");
         if (options_.one_step && (options_.convergence || !options_.expect.empty()))
-            throw std::invalid_argument("--one-step goes neither with --convergence nor with "
+            throw std::invalid_argument("--one-step cannot be combined with --convergence or "
                                         "--expect");
         if (options_.convergence && options_.precisions.empty() && !options_.base.precision)
             options_.precisions = {Precision::f64};
@@ -168,7 +168,7 @@ class Charting {
         if (options_.convergence &&
             (chart_.sweep.size() != 1 || chart_.sweep.front().setting.setting().name != "dt"))
             throw std::invalid_argument(
-                "a convergence chart goes through dt alone: --sweep dt=1/960..1/30");
+                "a convergence chart sweeps dt alone: --sweep dt=1/960..1/30");
         chart_.measure = choose_measure(scene, options_.expect);
         chart_.repeats = options_.convergence ? 0 : options_.repeats;
         chart_.timed = std::min(options_.timed, end_);

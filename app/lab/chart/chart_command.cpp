@@ -126,7 +126,7 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
     options.known = read_known_runs(known, scene, fingerprint);
     const bool goes_on = !options.known.empty();
     if (goes_on)
-        err << "going on from " << earlier.place().string() << '\n';
+        err << "resuming from " << earlier.place().string() << '\n';
     const SceneChart chart = chart_scene(scene, options);
     line.clear();
     ExitCode code = code_of(chart, err);
@@ -160,7 +160,7 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
     for (const SweepAxis &axis : sweep_of(command.options))
         refuse_given(axis.setting, given.settings);
     if (given.precision && !command.options.precisions.empty())
-        throw std::invalid_argument("precision is given and swept, too: leave one of them out");
+        throw std::invalid_argument("precision is both given and swept: drop one of them");
     const LoadedScenes loaded = load_scenes(command.scenes, err);
     ExitCode code = loaded.all_fine ? ExitCode::fine : ExitCode::bad_input;
     std::set<std::string> names;
@@ -185,7 +185,7 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
             break;
         if (!has_world(scene)) {
             (any_moves ? out << "-     " : err)
-                << scene.name << ": only probes, and no motion to chart\n";
+                << scene.name << ": only probes, no motion to chart\n";
             continue;
         }
         try {
@@ -213,7 +213,7 @@ ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostre
         tables.push_back({path.string(), {std::istreambuf_iterator<char>(in), {}}});
         if (scene_of_chart(tables.back().text).empty())
             throw std::invalid_argument(path.string() +
-                                        " is not a table of `plumb chart` with rows");
+                                        " is not a table from `plumb chart`, or has no rows");
     }
     const std::filesystem::path scene =
         command.scene.empty() ? command.find_scene(scene_of_chart(tables[0].text)) : command.scene;

@@ -163,8 +163,8 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     ChartContent content;
     content.title = (chart.scene.title.empty() ? chart.scene.name : chart.scene.title) +
                     (chart.convergence  ? ": how the error falls with dt"
-                     : chart.steps_from ? ": what a true step costs"
-                                        : ": what truth costs");
+                     : chart.steps_from ? ": what an accurate step costs"
+                                        : ": what accuracy costs");
     content.subtitle = subtitle_of(chart.measure);
     if (chart.interrupted)
         content.subtitle = "INTERRUPTED: " + std::to_string(chart.finished()) + " of " +
@@ -272,7 +272,7 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
         const std::string on = chart.wall_clock ? "wall time" : "one thread";
         if (timed) {
             char text[160];
-            std::snprintf(text, sizeof text, "%s, %s of parts all over the run", on.c_str(),
+            std::snprintf(text, sizeof text, "%s, %s of parts throughout the run", on.c_str(),
                           timings_text(chart.repeats).c_str());
             std::string all = text;
             if (chart.repeats > 1) {

@@ -175,7 +175,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         pen.mark({left + 12, y}, 0, mark_radius + 2.5f, ink);
         pen.mark({left + 12, y}, 0, mark_radius + 0.6f, paper);
         pen.mark({left + 12, y}, 0, mark_radius - 2, faint_ink);
-        entry("nothing cheaper is truer");
+        entry("Pareto front");
     }
     if (layout.failed_line) {
         draw_failed(pen, {left + 12, y}, 0, soft_ink);
@@ -189,7 +189,7 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     if (layout.corner) {
         pen.fill({{left, y - 7}, {left + 24, y + 7}}, fine_tint);
         pen.dashed({left, y - 7}, {left + 24, y - 7}, limit_ink, 1.5f, 6, 3);
-        entry(content.budget ? "true enough, within the budget" : "true enough");
+        entry(content.budget ? "accurate enough, in budget" : "accurate enough");
     }
     if (!content.label_meaning.empty()) {
         // A sample label, from a run that has an error, if it is not too long.

@@ -197,11 +197,11 @@ SceneChart merged_chart(const SceneDesc &scene, const std::vector<NamedTable> &t
         std::istringstream in(each.text);
         CsvReader table(in);
         if (!knows_all_columns(table, scene))
-            throw std::invalid_argument(each.name + " does not fit the scene " + scene.name +
+            throw std::invalid_argument(each.name + " does not match the scene " + scene.name +
                                         " as it is now: its expectations differ");
         while (table.next()) {
             if (table.cell("scene") != scene.name)
-                throw std::invalid_argument(each.name + " is of the scene " +
+                throw std::invalid_argument(each.name + " is from the scene " +
                                             std::string(table.cell("scene")) + ", not of " +
                                             scene.name);
             if (!chart) {

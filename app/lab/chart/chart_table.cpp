@@ -152,7 +152,7 @@ void print(std::ostream &out, const SceneChart &chart) {
     if (chart.steps_from)
         out << "  states of " << chart.steps_from->accurate << ", whose own error is "
             << with_unit(chart.steps_from->own_error.rms, "m")
-            << "; ~: below ten times that, and not resolved\n";
+            << "; ~: below ten times that, not resolved\n";
     char line[256];
     std::snprintf(line, sizeof line, "  %-22s %9s %10s %10s %12s %8s %14s %14s\n", "method",
                   "substeps", "iterations", "dt", chart.wall_clock ? "wall ms/s" : "CPU ms/s",
@@ -186,7 +186,7 @@ void print(std::ostream &out, const SceneChart &chart) {
         out << "  " << order.name << ": " << order_text(order) << (order.fitted ? "" : ": ")
             << order.why_none << '\n';
     if (!chart.runs.empty())
-        out << "  worst: the step that took longest, of the first run of each\n";
+        out << "  worst: the slowest step in each one's first run\n";
     for (const std::string &why : grouped_reasons(chart.left_out))
         out << "  left out: " << why << '\n';
     if (chart.interrupted)

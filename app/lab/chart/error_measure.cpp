@@ -15,7 +15,7 @@ namespace {
 
 std::string explain(const ExpectDesc &expect, const std::string &unit) {
     if (expect.quantity.empty()) // from a probe
-        return "truly " + with_unit(expect.value, unit) + " (" + expect.source + ")";
+        return "true value " + with_unit(expect.value, unit) + " (" + expect.source + ")";
     std::string text = expect.quantity + (expect.body.empty() ? "" : " of " + expect.body);
     if (expect.reduce == "last")
         text += " at " + with_unit(expect.to, "s");
@@ -24,8 +24,8 @@ std::string explain(const ExpectDesc &expect, const std::string &unit) {
                with_unit(expect.to, "s");
     switch (expect.relation) {
     case ExpectDesc::Relation::equals:
-        text += expect.curve.empty() ? "; truly " + with_unit(expect.value, unit)
-                                     : std::string("; held to a curve");
+        text += expect.curve.empty() ? "; true value " + with_unit(expect.value, unit)
+                                     : std::string("; compared with a curve");
         break;
     case ExpectDesc::Relation::at_most:
         text += "; should be at most " + with_unit(expect.value, unit);
@@ -131,11 +131,11 @@ ErrorMeasure one_step_measure(double frame, std::size_t instants) {
     measure.kind = ErrorMeasure::Kind::one_step;
     measure.name = "one_step";
     measure.unit = "m";
-    measure.title = "Error of one step, root mean square";
+    measure.title = "RMS error of one step";
     measure.explanation =
-        "how far bodies are off after " + format_dt(frame) + " from each of " +
+        "how far off bodies are " + format_dt(frame) + " after each of " +
         std::to_string(instants) +
-        " states of one accurate run, with turning as length at the radius of gyration";
+        " states of one accurate run, with rotation taken as length at the radius of gyration";
     return measure;
 }
 

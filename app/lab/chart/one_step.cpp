@@ -137,7 +137,7 @@ void OneStepStates::follow(const SceneDesc &scene, const RunOptions &run,
         mass_centres_.push_back(glm::conjugate(body.orientation) * (centre - body.position));
     }
     if (!any_moves)
-        throw std::invalid_argument("nothing in it is moved by forces, so no step can be wrong");
+        throw std::invalid_argument("nothing in it is moved by forces, so no step has an error");
     const std::size_t end = stretches_.back().first + stretches_.back().steps;
     for (std::size_t k = 0; k <= end; ++k) {
         for (int step = 0; step < steps_a_frame && k > 0; ++step) {
@@ -150,7 +150,7 @@ void OneStepStates::follow(const SceneDesc &scene, const RunOptions &run,
             if (!why.empty() || !simulation->report().finite) {
                 Divergence divergence = find_divergence(*simulation, simulation->step_count());
                 divergence.message = why;
-                throw std::invalid_argument("the accurate run, " + run_text(accurate_) + ", is " +
+                throw std::invalid_argument("the accurate run, " + run_text(accurate_) + ": " +
                                             describe(divergence));
             }
         }

@@ -75,7 +75,7 @@ class Engine {
     // Sets the state of each dynamic body, in the scene's order; keeps the engine's memory of the
     // last step. Only single-step charts call it; throws std::invalid_argument if unsupported.
     virtual void put(const std::vector<BodyState> &) {
-        throw std::invalid_argument("an engine that cannot be put anywhere");
+        throw std::invalid_argument("the engine cannot be set to a given state");
     }
 };
 

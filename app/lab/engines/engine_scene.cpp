@@ -31,7 +31,7 @@ std::string beyond_engines(const BodyDesc &body, const ColliderDesc &collider) {
     if (collider.filter.layer != 0 || collider.filter.ignores != 0)
         return "collision layers";
     if (!collider.material.empty() && collider.material != body.material)
-        return "bodies of several materials";
+        return "bodies with several materials";
     return "";
 }
 
@@ -66,11 +66,11 @@ std::string beyond_engines(const SceneDesc &scene) {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         const BodyDesc &body = scene.bodies[i];
         if (body.gravity_scale != 1 || body.linear_damping > 0 || body.angular_damping > 0)
-            return "bodies with damping or gravity of their own";
+            return "bodies with damping or a gravity scale";
         if (std::ranges::find(body.locked, true) != body.locked.end())
             return "bodies with locked axes";
         if (body.kind == BodyKind::dynamic && !lies_in_its_mass_frame(body, described.bodies[i]))
-            return "bodies whose frame is not that of their mass";
+            return "bodies whose frame is not their principal-axis frame";
         for (const ColliderDesc &collider : body.colliders)
             if (std::string what = beyond_engines(body, collider); !what.empty())
                 return what;

@@ -43,7 +43,7 @@ std::string no_such_engine(const std::string &name) {
     std::string known;
     for (const OtherEngine &other : other_engines())
         known.append(known.empty() ? "" : ", ").append(other.info.name);
-    return "there is no engine \"" + name + "\"; there are " + known;
+    return "there is no engine \"" + name + "\"; this build has " + known;
 }
 
 } // namespace

@@ -17,13 +17,13 @@ constexpr std::array all_failings{
     FailingInfo{Failing::passed_through, "passed through", 'T', 0xd55e00,
                 "passed through: a body's centre came out behind a static body"},
     FailingInfo{Failing::energy_grew, "energy grew", 'E', 0xe69f00,
-                "energy grew: by more than a tenth, or than the scene allows"},
+                "energy grew: by over a tenth, or more than the scene allows"},
     FailingInfo{Failing::penetration, "penetration", 'P', 0x0072b2,
-                "penetration: a quarter of a width at the end, or than the scene allows"},
+                "penetration: over 1/4 of a width at the end, or more than allowed"},
     FailingInfo{Failing::drift, "drift", 'D', 0x56b4e9,
-                "joint drift: a quarter of a width at the end, or than the scene allows"},
+                "joint drift: over 1/4 of a width at the end, or more than allowed"},
     FailingInfo{Failing::fell, "fell", 'F', 0xcc79a7, "fell"},
-    FailingInfo{Failing::never_rests, "never rests", 'R', 0xf0e442, "never rests"},
+    FailingInfo{Failing::never_rests, "never rests", 'R', 0xf0e442, "never comes to rest"},
     FailingInfo{Failing::missed, "missed", 'M', 0xa4abb2, "missed an expectation"},
 };
 
@@ -97,7 +97,7 @@ std::span<const FailingInfo> failings() {
 
 const FailingInfo &info_of(Failing failing) {
     const auto *const found = std::ranges::find(all_failings, failing, &FailingInfo::failing);
-    PLUMB_CHECK(found != all_failings.end(), "a failing has a row of its own");
+    PLUMB_CHECK(found != all_failings.end(), "every kind of failure has a row");
     return *found;
 }
 

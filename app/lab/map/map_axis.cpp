@@ -57,10 +57,10 @@ std::string why_unknown(std::string_view key) {
     } catch (const std::invalid_argument &error) {
         const std::string why = error.what();
         return why + (why.ends_with('?') ? " " : ". ") +
-               "A number of the scene file is given by its path: body.NAME.mass, "
+               "A number in the scene file is given by its path: body.NAME.mass, "
                "body.NAME.position.y (its height), body.NAME.velocity.x, "
                "material.NAME.friction, material.NAME.restitution, spring.NAME.stiffness; "
-               "or by its key alone, if the file has it once";
+               "or by its key alone, if the file has it only once";
     }
 }
 
@@ -81,7 +81,7 @@ int take_count(std::string_view whole, std::string_view &range, bool &logarithmi
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), count);
     if (error != std::errc() || end != rest.data() + rest.size() || count < 2 ||
         count > most_values)
-        refuse(whole, "after the colon comes the number of values, 2 to " +
+        refuse(whole, "after the colon, give the number of values, 2 to " +
                           std::to_string(most_values) +
                           ", and log for equal ratios: dt=1/240..1/15:9log");
     return count;
@@ -93,9 +93,9 @@ void set_range(std::string_view whole, std::string_view range, std::size_t dots,
     const int count = take_count(whole, to, axis.logarithmic);
     const double low = parse_value(whole, from, axis), high = parse_value(whole, to, axis);
     if (!(low < high))
-        refuse(whole, "the range must ascend");
+        refuse(whole, "the range must be ascending");
     if (axis.logarithmic && low <= 0)
-        refuse(whole, "a logarithmic range begins above 0");
+        refuse(whole, "a logarithmic range must start above 0");
     for (int i = 0; i < count; ++i) {
         const double part = static_cast<double>(i) / (count - 1);
         axis.values.push_back(i == 0             ? low

@@ -107,7 +107,7 @@ ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &e
         options.known = read_map_csv(known, fingerprint);
     }
     if (!options.known.cells.empty())
-        err << "going on from " << earlier->place().string() << '\n';
+        err << "resuming from " << earlier->place().string() << '\n';
     StabilityMap map = map_scene(*scene, command.x, command.y, options);
     map.fingerprint = fingerprint;
     line.clear();

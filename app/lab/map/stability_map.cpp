@@ -101,8 +101,8 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
             const SceneDesc variant = point.scene(value);
             if (variant.expects.empty() && !map.scene.expects.empty())
                 throw std::invalid_argument("with " + axis.name + "=" + value_label(axis, value) +
-                                            " no expectation is left to judge by: give one that is "
-                                            "not of a body which the axis removes");
+                                            " no expectation is left to judge by: add one that is "
+                                            "not of a body that the axis removes");
             for (const ExpectDesc &expect : map.scene.expects)
                 if (std::ranges::find(variant.expects, expect.name, &ExpectDesc::name) ==
                     variant.expects.end()) {
@@ -113,7 +113,7 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
         for (const auto &[name, values] : where)
             unjudged.push_back(std::string("\"")
                                    .append(name)
-                                   .append("\" is of a body that does not exist with ")
+                                   .append("\" is of a body that does not exist at ")
                                    .append(axis.name)
                                    .append(" = ")
                                    .append(values)
@@ -269,12 +269,12 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     SceneFileResult as_it_is =
         parse_scene(scene.text, scene.path.string(), known_methods(), scene.changed);
     if (!as_it_is.ok())
-        throw std::invalid_argument(scene.path.string() + " is not a scene");
+        throw std::invalid_argument(scene.path.string() + " is not a valid scene");
     map.scene = std::move(as_it_is.scene);
     if (!has_world(map.scene))
-        throw std::invalid_argument("the scene has only probes, and so no motion to map");
+        throw std::invalid_argument("the scene has only probes, no motion to map");
     if (options.duration && !map.scene.expects.empty())
-        throw std::invalid_argument("the scene sets the duration itself: it runs until the last "
+        throw std::invalid_argument("the scene sets its own duration: it runs until the last "
                                     "window of its expectations ends");
     map.x = settled(scene, x, options.base);
     map.y = settled(scene, y, options.base);

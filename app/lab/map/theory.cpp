@@ -295,7 +295,7 @@ void add_thrown(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
     if (!way)
         return;
     TheoryCurve curve;
-    curve.name = "theory: v dt = (thickness + size) / 2, to beyond the wall's middle unseen";
+    curve.name = "theory: v dt = (thickness + size) / 2, past the wall's middle unseen";
     for (const MethodMap &of_method : map.methods)
         if (waits_for_overlap(*of_method.method))
             curve.methods.push_back(of_method.method);
@@ -337,7 +337,7 @@ void add_damped_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map
                       : method == "stormer_verlet"      ? "2 m / c"
                       : method == "velocity_verlet"     ? "(ω h)² (1 + p²) = 4 (1 + p q)"
                       : method == "semi_implicit_euler" ? "4 / (√(c² / m² + 4 ω²) + c / m)"
-                                                        : "2 / λ, or c / k where it swings";
+                                                        : "2 / λ, or c / k if underdamped";
         curve.name.append(" (").append(method).append(")");
         curve.methods = {of_method.method};
         curves.push_back(std::move(curve));
@@ -377,7 +377,7 @@ void add_struck(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
     if (!struck)
         return;
     TheoryCurve curve;
-    curve.name = "theory: struck to the wall's middle in one step";
+    curve.name = "theory: knocked to the wall's middle in one step";
     for (const MethodMap &of_method : map.methods)
         if (of_method.method->contacts && !of_method.method->looks_ahead &&
             !waits_for_overlap(*of_method.method))
@@ -395,7 +395,8 @@ void add_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
         return;
     for (const MethodMap &of_method : map.methods)
         if (of_method.method->name == "explicit_euler")
-            curves.push_back({"theory: stable at no dt (explicit_euler)", {of_method.method}, {}});
+            curves.push_back(
+                {"theory: unstable at any dt (explicit_euler)", {of_method.method}, {}});
     // Methods with the same limit and number of substeps share a curve.
     for (const SpringLimit &limit : spring_limits) {
         std::map<int, std::vector<const MethodInfo *>> by_substeps;

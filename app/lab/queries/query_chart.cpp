@@ -34,7 +34,7 @@ QueryChart chart_queries(const QueryChartOptions &options) {
         if (options.progress)
             options.progress(fraction, what);
     };
-    progress(0, "drawing inputs");
+    progress(0, "generating inputs");
     const std::vector<QueryCase> cases = query_cases(options.seed, options.adversarial);
     std::size_t methods = 0;
     for (const QueryCase &one : cases)
@@ -127,13 +127,13 @@ void print(std::ostream &out, const QueryChart &chart) {
 
 PanelChart panel_chart(const QueryChart &chart, const std::string &command) {
     PanelChart result;
-    result.title = "Geometric queries: what truth costs";
-    result.subtitle = "Wrong answers on inputs made to be hard, against the time of a query on "
-                      "random ones (lower and further left is better)";
+    result.title = "Geometric queries: what accuracy costs";
+    result.subtitle = "Wrong answers on inputs made to be hard, against time per query on random "
+                      "ones (lower and further left is better)";
     result.x_title = "CPU time per query";
     result.y_title = "wrong answers";
     result.zero_label = "none";
-    result.series = {"the book's", "the usual", "Plumb's"};
+    result.series = {"the book's", "most engines'", "Plumb's"};
     for (const QueryRun &run : chart.runs) {
         if (run.timings.empty())
             continue;
@@ -145,8 +145,8 @@ PanelChart panel_chart(const QueryChart &chart, const std::string &command) {
     if (!chart.runs.empty()) {
         char text[200];
         std::snprintf(text, sizeof text,
-                      "%zu hard inputs a query, seed %llu  ·  one thread, float, %s of batches of "
-                      "1024 hot in the cache  ·  ",
+                      "%zu hard inputs per query, seed %llu  ·  one thread, float, %s of batches "
+                      "of 1024, cache-hot  ·  ",
                       chart.options.adversarial,
                       static_cast<unsigned long long>(chart.options.seed),
                       timings_text(chart.options.repeats).c_str());

@@ -120,12 +120,12 @@ void print(std::ostream &out, const CheckOutcome &outcome) {
         out << sign(expect.verdict) << outcome.scene << "/" << expect.desc.name << ": ";
         if (expect.judged())
             out << (std::isfinite(expect.measured) ? with_unit(expect.measured, expect.unit)
-                                                   : "there was none")
-                << ", " << demand(expect);
+                                                   : "none")
+                << ", expected " << demand(expect);
         else if (expect.verdict == Verdict::unseen)
-            out << "not judged, since this run goes on from a later state; " << demand(expect);
+            out << "not judged, as the run starts from a later state; expected " << demand(expect);
         else
-            out << "not measured, should be: " << demand(expect);
+            out << "not measured, expected " << demand(expect);
         if (expect.judged() && std::isfinite(expect.error) &&
             expect.desc.relation == ExpectDesc::Relation::equals && expect.desc.curve.empty())
             out << ", off by " << with_unit(expect.error, expect.unit);

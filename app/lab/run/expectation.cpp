@@ -81,7 +81,7 @@ std::string demand(const ExpectOutcome &outcome) {
         if (!desc.curve.empty())
             return "at most " + with_unit(desc.tolerance, outcome.unit) + " off its curve (" +
                    desc.reduce + ")";
-        return "is " + with_unit(desc.value, outcome.unit) + " within " +
+        return with_unit(desc.value, outcome.unit) + " ± " +
                with_unit(desc.tolerance, outcome.unit);
     case ExpectDesc::Relation::at_most:
         return "at most " + with_unit(desc.value, outcome.unit);

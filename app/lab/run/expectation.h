@@ -50,8 +50,7 @@ struct ExpectOutcome {
 // Met or missed, as if the window had ended.
 [[nodiscard]] ExpectOutcome judge(const ExpectDesc &desc, double measured);
 
-// "is 1.4 m within 0.01 m", "at most 0.01 m off its curve (max)", "at most 0.05 m", "at least 1
-// rad"
+// "1.4 m ± 0.01 m", "at most 0.01 m off its curve (max)", "at most 0.05 m", "at least 1 rad"
 [[nodiscard]] std::string demand(const ExpectOutcome &outcome);
 
 } // namespace plumb

@@ -209,7 +209,7 @@ void print(std::ostream &out, const MeasureSummary &s) {
     const double total = s.find_pairs + s.collide + s.advance + s.finish;
     if (total > 0 && s.steps > 0) {
         std::snprintf(line, sizeof line,
-                      "wall time a step  %.4g ms: find pairs %.0f %%, collide %.0f %%, advance "
+                      "wall time/step    %.4g ms: find pairs %.0f %%, collide %.0f %%, advance "
                       "%.0f %%, finish %.0f %%; %.4g times real time\n",
                       1e3 * total / static_cast<double>(s.steps), 100 * s.find_pairs / total,
                       100 * s.collide / total, 100 * s.advance / total, 100 * s.finish / total,
@@ -239,7 +239,7 @@ ExitCode measure_scene(const MeasureCommand &command, std::ostream &out, std::os
             if (file)
                 file->finish();
             (file ? out : err) << scene.name
-                               << ": only probes, and no world to step; wrote their values\n";
+                               << ": only probes, no world to step; wrote their values\n";
             return ExitCode::fine;
         }
         const InterruptGuard interrupt;

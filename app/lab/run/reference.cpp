@@ -151,7 +151,7 @@ void print(std::ostream &out, const std::string &scene, const std::vector<Refine
         if (!std::isfinite(truth.value))
             out << "nothing was measured";
         else if (is_curve && truth.curve.empty())
-            out << "a curve of more values than there are steps";
+            out << "a curve with more values than there are steps";
         else if (is_curve)
             out << "a curve of " << truth.curve.size() << " values";
         else
@@ -162,9 +162,9 @@ void print(std::ostream &out, const std::string &scene, const std::vector<Refine
                 << with_unit(truth.estimate, truth.unit);
         if (is_curve)
             out << "; the file's is off by " << with_unit(truth.value, truth.unit) << " ("
-                << truth.desc.reduce << "), held to ";
+                << truth.desc.reduce << "), tolerance ";
         else
-            out << "; the file says " << with_unit(truth.desc.value, truth.unit) << " within ";
+            out << "; the file says " << with_unit(truth.desc.value, truth.unit) << " ± ";
         out << with_unit(truth.desc.tolerance, truth.unit);
         if (truth.desc.estimate)
             out << ", by refinement";
@@ -190,10 +190,10 @@ ExitCode write(const SceneText &scene, const std::vector<RefinedTruth> &truths, 
         text = with_truths(scene.text, scene.path.string(), written);
     } catch (const std::invalid_argument &error) {
         throw std::invalid_argument(scene.path.string() +
-                                    ": the truths cannot be written into it; " + error.what());
+                                    ": the true values cannot be written to it; " + error.what());
     }
     if (text == scene.text)
-        out << "Nothing to write: the file has these truths.\n";
+        out << "Nothing to write: the file already has these values.\n";
     else
         write_back(scene, text, err);
     return ExitCode::fine;
@@ -210,8 +210,8 @@ ExitCode refine_scene(const ReferenceCommand &command, std::ostream &out, std::o
     if (command.write && std::ranges::none_of(scene.expects, estimated))
         throw std::invalid_argument(
             text->path.string() +
-            ": no expectation has an `estimate`, and only those that have one are written; mark "
-            "one with estimate = 0");
+            ": no expectation has an `estimate`, and only those with one are written; mark one "
+            "with estimate = 0");
     const InterruptGuard interrupt;
     ProgressLine line(err);
     RefineOptions options;
@@ -223,7 +223,7 @@ ExitCode refine_scene(const ReferenceCommand &command, std::ostream &out, std::o
     const std::vector<RefinedTruth> truths = refine(scene, options);
     line.clear();
     if (InterruptGuard::requested()) {
-        err << "interrupted; nothing is written\n";
+        err << "interrupted; nothing was written\n";
         return ExitCode::fine; // main reports the interruption
     }
     if (truths.empty())

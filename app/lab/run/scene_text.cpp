@@ -35,7 +35,7 @@ void write_back(const SceneText &scene, const std::string &text, std::ostream &e
         throw std::invalid_argument(path.string() + " is not a file that can be written to");
     if (read_scene_text(path, messages) != scene.text)
         throw std::invalid_argument(path.string() +
-                                    " was changed in the meantime, and is left as it is");
+                                    " was changed in the meantime, and is left alone");
     OutputFile file(path);
     file.stream() << text;
     file.finish();

@@ -91,7 +91,7 @@ SweepAxis parse_sweep(std::string_view text) {
         const double low = parse_value(text, axis.setting, range.substr(0, dots));
         const double high = parse_value(text, axis.setting, range.substr(dots + 2));
         if (low > high)
-            refuse_values(text, "the range must ascend");
+            refuse_values(text, "the range must be ascending");
         axis.values = values_between(axis.setting, low, high);
     } else {
         std::string_view rest = range;
@@ -145,7 +145,7 @@ void refuse_given(SettingNumber swept, const GivenSettings &given) {
     if (const std::optional<double> value = given.find(swept))
         throw std::invalid_argument(setting_name(swept) + " is given as " +
                                     number_or_fraction(*value) +
-                                    " and swept, too: leave one of them out");
+                                    " and also swept: drop one of them");
 }
 
 bool same_work(const MethodInfo &method, const StepSettings &a, const StepSettings &b) {

@@ -199,14 +199,14 @@ const TunedRun &Tuning::plainest() const {
 
 Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
     if (!(options.tolerance > 0 && options.tolerance <= 1))
-        throw std::invalid_argument("the share of the tolerances must be above 0 and at most 1");
+        throw std::invalid_argument("the fraction of the tolerances must be above 0 and at most 1");
     const std::vector<SceneDesc> starts = starts_of(text, options.starts);
     const SceneDesc &scene = starts.front();
     if (!has_world(scene) || scene.expects.empty())
         throw std::invalid_argument(scene.name + (has_world(scene)
                                                       ? " has no expectations; add an [[expect]] "
                                                         "for the settings to meet"
-                                                      : " has only probes, and no motion to tune"));
+                                                      : " has only probes, no motion to tune"));
     Tuning tuning;
     tuning.scene = scene.name;
     tuning.expectations = scene.expects.size();

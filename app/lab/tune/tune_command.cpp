@@ -21,18 +21,18 @@ ExitCode write(const SceneText &scene, const Tuning &tuning, std::ostream &out, 
     try {
         text = with_run(scene.text, path.string(), chosen.resolved);
     } catch (const std::invalid_argument &error) {
-        throw std::invalid_argument(path.string() + ": the settings cannot be written into it; " +
+        throw std::invalid_argument(path.string() + ": the settings cannot be written to it; " +
                                     error.what());
     }
     if (text == scene.text) {
-        out << "  Nothing to write: the file has these settings.\n";
+        out << "  Nothing to write: the file already has these settings.\n";
         return ExitCode::fine;
     }
     write_back(scene, text, err);
     const ResolvedRun before = resolve_run(parse_scene(scene.text, path.string()).scene, {});
     if (chosen.resolved.settings.dt != before.settings.dt)
-        err << "dt holds for every method: whether the others still meet the scene, `plumb check "
-               "--all-methods` says\n";
+        err << "dt holds for every method: `plumb check --all-methods` tells whether the others "
+               "still meet the scene\n";
     return ExitCode::fine;
 }
 
@@ -61,8 +61,8 @@ ExitCode tune_scene(const TuneCommand &command, std::ostream &out, std::ostream 
     if (command.write && !std::filesystem::is_regular_file(scene->path))
         throw std::invalid_argument(scene->path.string() + " is not a file that can be written to");
     if (command.write && command.options.base.settings.has(*find_setting("gravity")))
-        throw std::invalid_argument("--write keeps the scene's gravity: what is tuned for another "
-                                    "cannot be written into it");
+        throw std::invalid_argument("--write keeps the scene's gravity: settings tuned for another "
+                                    "cannot be written to it");
     const InterruptGuard interrupt;
     ProgressLine line(err);
     TuneOptions options = command.options;
@@ -73,7 +73,7 @@ ExitCode tune_scene(const TuneCommand &command, std::ostream &out, std::ostream 
     print(out, tuning, command.explain);
     out << std::flush;
     if (tuning.interrupted) {
-        err << "interrupted after " << tuning.runs.size() << " settings; nothing is written\n";
+        err << "interrupted after " << tuning.runs.size() << " settings; nothing was written\n";
         return ExitCode::fine; // main reports the interruption
     }
     if (!tuning.found())

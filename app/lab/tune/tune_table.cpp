@@ -34,7 +34,7 @@ std::string error_text(const TunedRun &run) {
 }
 
 std::string cost_text(const TunedRun &run) {
-    return three_digits(1e3 * run.cost) + " ms of CPU time for a simulated second";
+    return three_digits(1e3 * run.cost) + " ms of CPU time per simulated second";
 }
 
 std::string_view verdict_name(TuneVerdict verdict) {
@@ -74,14 +74,14 @@ void print_table(std::ostream &out, const Tuning &tuning) {
         if (!run.worst.empty())
             out << "; worst: " << run.worst;
         if (i == 0)
-            out << (tuning.own_is_given ? "; the scene's own, with what is given"
+            out << (tuning.own_is_given ? "; the scene's own, with the given options"
                                         : "; the scene's own");
         if (i == tuning.chosen)
             out << "; CHOSEN";
         out << '\n';
     }
-    out << "  passes/s: over bodies and constraints, as counted; ~: not timed, but one run's; "
-           "error: the worst in units\n  of its tolerance, at least so large where it was missed\n";
+    out << "  passes/s: counted, over bodies and constraints; ~: from one run, not timed; error: "
+           "the worst, in units\n  of its tolerance (a lower bound if missed)\n";
 }
 
 std::string ratio_text(double ratio) {
@@ -100,14 +100,14 @@ void print_choice(std::ostream &out, const Tuning &tuning) {
     out << in_words(chosen.resolved) << ": " << cost_text(chosen) << ", worst error "
         << error_text(chosen);
     const std::string owns = std::string("the scene's own settings") +
-                             (tuning.own_is_given ? ", with what is given," : "");
+                             (tuning.own_is_given ? ", with the given options," : "");
     if (*tuning.chosen == 0)
         out << "; these are the scene's own settings"
-            << (tuning.own_is_given ? ", with what is given" : "");
+            << (tuning.own_is_given ? ", with the given options" : "");
     else if (own.verdict == TuneVerdict::met)
         out << "; " << owns << " cost " << times_as_much(own, chosen);
     else
-        out << "; " << owns << " do not meet it: " << error_text(own);
+        out << "; " << owns << " miss: worst error " << error_text(own);
     out << ".\n";
 }
 
@@ -117,11 +117,11 @@ void print_dearer(std::ostream &out, const Tuning &tuning) {
     if (dearer.verdict == TuneVerdict::diverged)
         out << "diverge";
     else if (dearer.verdict == TuneVerdict::missed)
-        out << "not meet it: the worst error is then " << error_text(dearer);
+        out << "miss: the worst error would be " << error_text(dearer);
     else if (dearer.error < chosen.error)
         out << "bring the worst error to " << error_text(dearer);
     else
-        out << "buy nothing: the worst error is then " << error_text(dearer);
+        out << "buy nothing: the worst error would be " << error_text(dearer);
     out << ".\n";
 }
 
@@ -146,7 +146,7 @@ void print_plainer(std::ostream &out, const Tuning &tuning) {
         }
     if (less.empty()) {
         if (!tuning.interrupted)
-            out << "  Nothing of its model can be left out.\n";
+            out << "  No part of its model can be left out.\n";
         return;
     }
     out << "  It can do without ";
@@ -154,7 +154,7 @@ void print_plainer(std::ostream &out, const Tuning &tuning) {
         out << (i == 0 ? "" : i + 1 < less.size() ? ", " : " and ") << less[i];
     const TunedRun &full = tuning.runs[*tuning.chosen], &plain = tuning.plainest();
     out << (ratio < 1 / same_cost ? ": that costs " + ratio_text(ratio) : " at the same cost")
-        << ". What is left out would ";
+        << (less.size() == 1 ? ". Keeping it would " : ". Keeping them would ");
     if (full.error < plain.error && error_text(full) != error_text(plain))
         out << "bring the worst error from " << error_text(plain) << " to " << error_text(full);
     else
@@ -189,16 +189,16 @@ void print(std::ostream &out, const Tuning &tuning, bool explain) {
                              (tuning.starts == 1 ? " start" : " starts");
     out << tuning.scene << ": ";
     if (!tuning.chosen) {
-        out << "nothing that was tried meets " << held;
+        out << "nothing tried meets " << held;
         const TunedRun *run = nearest(tuning);
         if (run != nullptr)
-            out << "; nearest is " << in_words(run->resolved) << ": "
+            out << "; the nearest is " << in_words(run->resolved) << ": "
                 << (std::isfinite(run->error) ? "worst error at least " + error_text(*run)
                                               : "there was nothing to judge " + run->worst + " by");
         out << ".\n";
         if (run != nullptr && run->error <= 1)
-            out << "  --tolerance 1 asks for no margin: a bound may be one that the truth itself "
-                   "is close to.\n";
+            out << "  --tolerance 1 leaves no margin: the true value may itself be close to a "
+                   "bound.\n";
         return;
     }
     out << (tuning.interrupted ? "the cheapest so far" : "the cheapest") << " that meets " << held
@@ -209,8 +209,8 @@ void print(std::ostream &out, const Tuning &tuning, bool explain) {
     if (!tuning.plainer.empty())
         print_plainer(out, tuning);
     if (!tuning.found())
-        out << "  That is beyond the budget, " << three_digits(1e3 * *tuning.budget)
-            << " ms for a simulated second.\n";
+        out << "  That is over the budget of " << three_digits(1e3 * *tuning.budget)
+            << " ms per simulated second.\n";
 }
 
 } // namespace plumb

@@ -165,7 +165,7 @@ void expectations_panel(PanelContext &context) {
     else if (context.session.disturbed()) {
         ImGui::PushFont(context.fonts.small);
         ImGui::PushStyleColor(ImGuiCol_Text, theme::warning);
-        wrapped("Changed during the run: `plumb check` may find otherwise.");
+        wrapped("Changed during the run: `plumb check` may disagree.");
         ImGui::PopStyleColor();
         ImGui::PopFont();
     }

@@ -26,7 +26,7 @@ void method_box(PanelContext &context, const Ghost *ghost) {
         context.session.set_ghost(reference_ghost))
         context.view.ghost_method = reference_ghost;
     tooltip("The most accurate run of the scene: in double precision, with a quarter of the step "
-            "and 16 substeps. Where it is too slow, it lags behind and catches up later.");
+            "and 16 substeps. If it is too slow, it lags behind and catches up later.");
     for (const MethodInfo &method : method_infos()) {
         const std::string why = why_not(method, context.session.scene());
         ImGui::BeginDisabled(!why.empty());
@@ -48,7 +48,7 @@ void ghost_tab(PanelContext &context) {
     const Ghost *ghost = context.session.ghost(); // read after the choice
     if (!ghost) {
         ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("Runs the scene by another method as well, from now on, and draws it "
+        ImGui::TextDisabled("Also runs the scene with another method, from now on, and draws it "
                             "translucent over the first. What you do to one happens to both. "
                             "Every step takes longer.");
         ImGui::PopTextWrapPos();

@@ -31,7 +31,7 @@ void subject_box(PanelContext &context, float width) {
         view.plot_of.clear();
     ImGui::SetNextItemWidth(width);
     if (!ImGui::BeginCombo("##of", view.plot_of.empty() ? "whole scene" : view.plot_of.c_str())) {
-        tooltip("Whose quantities to plot. Clicking something in the scene chooses it here, too.");
+        tooltip("Whose quantities to plot. Clicking something in the scene selects it here too.");
         return;
     }
     if (ImGui::Selectable("whole scene", view.plot_of.empty()))
@@ -86,7 +86,7 @@ void span_box(ViewState &view, float width) {
         }
         ImGui::EndCombo();
     }
-    tooltip("How much time is shown, up to now.");
+    tooltip("How far back the plots reach.");
 }
 
 // Per curve its name, current value and a cross to remove it; as many to a line as fit.
@@ -149,7 +149,7 @@ void plots_tab(PanelContext &context) {
     if (ImGui::Button("Save CSV", {-1, 0}))
         context.save_plots = true;
     ImGui::EndDisabled();
-    tooltip("Writes all curves, from the first step to this one.");
+    tooltip("Writes all curves, from the first step to the current one.");
     if (context.session.plots().curves().empty()) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("Choose the scene, a body, a particle or a spring, then the quantities "

@@ -176,7 +176,7 @@ void settings_panel(PanelContext &context) {
     const float half = 0.5f * (ImGui::GetContentRegionAvail().x - spacing);
     if (ImGui::Button("As in scene", {half, 0}))
         context.restart_as_written = true;
-    tooltip("Restarts with the method and settings of the file and the command line.");
+    tooltip("Restarts with the method and settings from the file and the command line.");
     ImGui::SameLine();
     ImGui::BeginDisabled(!has_more);
     if (ImGui::Button("More", {half, 0}))

@@ -40,7 +40,7 @@ fs::path data_dir_from_environment(const fs::path &dir) {
     std::error_code error;
     if (!fs::is_directory(dir / "shaders", error) || !fs::is_directory(dir / "scenes", error))
         throw std::runtime_error("PLUMB_DATA is " + dir.string() +
-                                 ", which has no folders shaders and scenes");
+                                 ", which has no shaders and scenes folders");
     return dir;
 }
 
@@ -61,7 +61,7 @@ fs::path find_data_dir() {
     std::string text = "no folder with shaders and scenes; looked in";
     for (const fs::path &place : places)
         text += " " + place.string();
-    throw std::runtime_error(text + "; PLUMB_DATA in the environment can name another");
+    throw std::runtime_error(text + "; set PLUMB_DATA to use another");
 }
 
 std::vector<SceneEntry> find_scenes(const fs::path &scene_dir) {
@@ -97,7 +97,7 @@ fs::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &s
     names.reserve(scenes.size());
     for (const SceneEntry &entry : scenes)
         names.emplace_back(entry.name);
-    throw std::invalid_argument("there is no file and no scene '" + name + "'; " +
+    throw std::invalid_argument("there is no file or scene '" + name + "'; " +
                                 did_you_mean(name, names));
 }
 

@@ -183,7 +183,7 @@ bool Session::obey_replay() {
         settle_poses();
     if (!replay_->is_at_end(*simulation_))
         return true;
-    messages_.note("The recording ends here, with the recorded state " +
+    messages_.note("The recording ends here, in the recorded state " +
                    hash_text(simulation_->hash()) + '.');
     return false;
 }
@@ -439,7 +439,7 @@ std::string Session::reason(const std::exception &failure) {
     if (dynamic_cast<const std::bad_alloc *>(&failure) == nullptr)
         return failure.what();
     memory_ran_out_ = true;
-    return "memory ran out";
+    return "out of memory";
 }
 
 void Session::see_impacts() {

@@ -101,7 +101,7 @@ void Session::save_mesh_files(const std::filesystem::path &folder) const {
         if (!std::filesystem::exists(to))
             write_whole(to, text_of(from));
         else if (text_of(from) != text_of(to))
-            throw std::runtime_error(to.string() + " is another mesh already");
+            throw std::runtime_error(to.string() + " already exists and is a different mesh");
     }
 }
 
@@ -109,7 +109,7 @@ void Session::write_recording(OutputFile &file) const {
     if (!recorder_)
         throw std::runtime_error(simulation_ ? scene_.name + " has only probes: there is nothing "
                                                              "to record"
-                                             : "no scene runs: there is nothing to record");
+                                             : "no scene is running: there is nothing to record");
     save_mesh_files(file.path().parent_path());
     file.stream() << plumb::write_recording(recorder_->recording(*simulation_));
     file.finish();
@@ -142,7 +142,7 @@ bool Session::save_scene(const std::filesystem::path &path) {
         present.probes = probes_;
         const std::string text = write_scene(present);
         if (text.size() > max_scene_file_bytes)
-            throw std::runtime_error("it would be larger than a scene file may be, " +
+            throw std::runtime_error("it would exceed the size limit of a scene file, " +
                                      std::to_string(max_scene_file_bytes >> 20U) + " MiB");
         if (path.has_parent_path())
             create_folder(path.parent_path());

@@ -105,7 +105,7 @@ void Ghost::apply(const Simulation &beside, const Command &command) {
             settings->settings.give(&StepSettings::dt, reference_dt(beside));
     }
     if (is_reference_ && lag(beside) > 0)
-        return fail("the scene was changed while it lagged behind");
+        return fail("the scene was changed while the ghost lagged behind");
     try {
         simulation_->apply(mine);
         simulation_->read(present_, {});

@@ -31,7 +31,7 @@ Sum sum_of(const std::vector<ColliderDef> &colliders) {
     Sum sum;
     std::vector<MassProperties> parts;
     for (const ColliderDef &collider : colliders) {
-        PLUMB_CHECK(!collider.surface, "a surface of triangles cannot be dynamic");
+        PLUMB_CHECK(!collider.surface, "a mesh or height field cannot be dynamic");
         parts.push_back(collider.sensor ? MassProperties{} : mass_properties(collider.shape));
         const double mass = density_of(collider) * static_cast<double>(parts.back().volume);
         sum.mass += mass;
@@ -80,7 +80,7 @@ MassFrame mass_frame(const BodyDef &def) {
         PLUMB_CHECK(std::isfinite(*def.mass) && *def.mass > Real(0),
                     "mass must be positive, got " << *def.mass);
     for (const ColliderDef &collider : def.colliders) {
-        PLUMB_CHECK(!collider.surface, "a surface of triangles cannot be dynamic");
+        PLUMB_CHECK(!collider.surface, "a mesh or height field cannot be dynamic");
         PLUMB_CHECK(!std::holds_alternative<HalfSpace>(collider.shape),
                     "a half-space cannot be dynamic");
     }
@@ -124,7 +124,7 @@ MassFrame mass_frame(const BodyDef &def) {
     PLUMB_CHECK(is_finite(Real(1) / result.inertia) && is_finite(result.inertia) &&
                     result.inertia.x > Real(0) && result.inertia.y > Real(0) &&
                     result.inertia.z > Real(0),
-                "a dynamic body needs an extent: its moments of inertia are "
+                "a dynamic body needs positive, finite moments of inertia, got "
                     << result.inertia.x << ", " << result.inertia.y << ", " << result.inertia.z);
     return result;
 }

@@ -22,7 +22,8 @@ constexpr double followed_swing = 1.25;
 constexpr double followed_damping = 16;
 
 void check_motion(const Vec3 &position, const Vec3 &velocity) {
-    PLUMB_CHECK(is_finite(position) && is_finite(velocity), "a particle's motion must be finite");
+    PLUMB_CHECK(is_finite(position) && is_finite(velocity),
+                "a particle's position and velocity must be finite");
 }
 
 bool is(const SpringEnd &end, SpringEnd::Kind kind) {
@@ -50,10 +51,10 @@ std::uint32_t World::add_spring(const SpringDef &def) {
     for (const SpringEnd &end : {def.a, def.b}) {
         PLUMB_CHECK(is_finite(end.anchor), "a spring's anchors must be finite");
         PLUMB_CHECK(!is(end, SpringEnd::Kind::particle) || end.index < model_->particles.size(),
-                    "a spring names particle " << end.index << ", which there is not");
+                    "a spring refers to particle " << end.index << ", which does not exist");
         PLUMB_CHECK(!is(end, SpringEnd::Kind::body) ||
                         (end.index < bodies().size() && bodies()[end.index].alive),
-                    "a spring names body " << end.index << ", which is not alive");
+                    "a spring refers to body " << end.index << ", which is not alive");
     }
     PLUMB_CHECK(def.a.kind != def.b.kind ||
                     (!is(def.a, SpringEnd::Kind::world) && def.a.index != def.b.index),

@@ -50,8 +50,8 @@ void read_inertia(const Table &table, BodyDesc &body) {
     const glm::dvec3 &i = *body.inertia;
     const double most = std::max({i.x, i.y, i.z});
     if (most > (i.x + i.y + i.z - most) * (1 + 1e-9))
-        table.error("inertia", "no body has these moments of inertia",
-                    "none can be more than the other two together");
+        table.error("inertia", "impossible moments of inertia",
+                    "none may exceed the sum of the other two");
 }
 
 void read_pace(Reading &reading, const Table &table, BodyDesc &body) {
@@ -66,8 +66,8 @@ void read_pace(Reading &reading, const Table &table, BodyDesc &body) {
         constexpr std::uint64_t most = std::numeric_limits<std::uint16_t>::max();
         const std::uint64_t given = sub.natural(key).value_or(0);
         if (given > most)
-            sub.error(key, "that many cannot have been taken",
-                      std::string(key) + " is 0 to " + std::to_string(most));
+            sub.error(key, std::string(key) + " is " + std::to_string(given),
+                      "it must be a whole number from 0 to " + std::to_string(most));
         *number = static_cast<int>(std::min(given, most));
     }
 }
@@ -78,7 +78,7 @@ void read_mass(Reading &reading, const Table &table, BodyDesc &body, bool has_sh
         table.refuse({"mass", "density", "center_of_mass", "inertia", "mass_pose"},
                      std::string(info.with_article),
                      info.moves == Moves::never ? "it never moves"
-                                                : "it is infinite and never moves by itself");
+                                                : "it is infinite and never moves under forces");
         return;
     }
     const std::string_view key = table.one_of({"mass", "density"}, false, "");
@@ -101,7 +101,7 @@ void read_mass(Reading &reading, const Table &table, BodyDesc &body, bool has_sh
         table.error(!key.empty()          ? key
                     : table.has("shapes") ? "shapes"
                                           : "shape",
-                    "density times volume makes a mass of " + shortest(mass) + " kg",
+                    "density times volume gives a mass of " + shortest(mass) + " kg",
                     "it must be " + std::string(positive.text) + "; give a mass");
 }
 
@@ -142,7 +142,8 @@ void read_velocity(Reading &reading, const Table &table, BodyDesc &body) {
     body.angular_velocity = angular.value_or(body.angular_velocity);
     if (body.kind != BodyKind::static_body)
         return;
-    const std::string suggestion = R"(kind = "kinematic" moves as told, "dynamic" by forces)";
+    const std::string suggestion =
+        R"(kind = "kinematic" moves at its velocity, "dynamic" under forces)";
     if (body.velocity != glm::dvec3(0))
         reading.report.error(table.key_position("velocity"), "a static body has no velocity",
                              suggestion);
@@ -162,7 +163,7 @@ bool has_room_for(Reading &reading, const BodyDesc &body, std::size_t count,
     if (!has_room_for(reading, count, max_scene_bodies, reading.scene.bodies.size(), "bodies",
                       at) ||
         !has_room_for(reading, triangles, max_scene_triangles, reading.triangles,
-                      "triangles of surfaces", at))
+                      "surface triangles", at))
         return false;
     reading.triangles += triangles;
     return true;

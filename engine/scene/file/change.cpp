@@ -90,7 +90,7 @@ toml::node *element(toml::array &array, Path &path) {
     if (index >= array.size())
         path.refuse(
             in + " has " + std::to_string(array.size()) + " elements; " +
-            (array.size() == axes.size() ? "write x, y or z" : "write a whole number below that"));
+            (array.size() == axes.size() ? "write x, y or z" : "write an index below that"));
     return array.get(index);
 }
 
@@ -181,8 +181,8 @@ void change(toml::table &root, const ChangedNumber &number) {
             if (table == &root)
                 path.refuse(key, in, scene_keys);
             if (!path.at_end())
-                path.refuse("the file gives no " + std::string(path.taken()) +
-                            ", so it has no number to change there; write it into the file");
+                path.refuse("the file has no " + std::string(path.taken()) +
+                            ", so there is no number to change; add it to the file");
             put(*table, key, number.value); // the table's reader checks the key
             return;
         }
@@ -201,9 +201,9 @@ void change(toml::table &root, const ChangedNumber &number) {
         if (path.at_end() || !node->is_table())
             path.refuse(std::string(path.taken()) + " is " + std::string(type_name(*node)) +
                         ", not a number" +
-                        (node->is_table() ? "; go on with one of its keys: " +
+                        (node->is_table() ? "; continue with one of its keys; " +
                                                 did_you_mean("", keys_of(*node->as_table()))
-                         : node->is_array() ? "; go on with x, y, z, a name or an index"
+                         : node->is_array() ? "; continue with x, y, z, a name or an index"
                                             : ""));
         table = node->as_table();
     }

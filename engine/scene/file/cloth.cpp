@@ -24,7 +24,7 @@ std::optional<std::string> flaw_of(const MeshData &mesh) {
     const auto unused = std::ranges::find(is_used, false);
     if (unused != is_used.end())
         return "its vertex " + std::to_string(unused - is_used.begin()) +
-               " is no corner of a triangle";
+               " is not a corner of any triangle";
     return std::nullopt;
 }
 
@@ -37,7 +37,7 @@ bool read_mesh(Reading &reading, const Table &table, ClothDesc &cloth) {
         return false;
     const std::filesystem::path path(*name);
     if (name->empty() || path.filename() != path || path == "." || path == "..") {
-        table.error("file", in_quotes(*name) + " is no name of a file beside the scene",
+        table.error("file", in_quotes(*name) + " is not the name of a file beside the scene",
                     R"(file = "name.obj", without folders)");
         return false;
     }
@@ -47,13 +47,13 @@ bool read_mesh(Reading &reading, const Table &table, ClothDesc &cloth) {
         return false;
     const std::optional<std::string> flaw = flaw_of(*cloth.mesh);
     if (flaw)
-        table.error("file", in_quotes(*name) + " makes no cloth: " + *flaw,
-                    "each vertex must be a corner, and each edge have a length");
+        table.error("file", in_quotes(*name) + " cannot be a cloth: " + *flaw,
+                    "each vertex must be a corner of a triangle, and each edge must have a length");
     return !flaw;
 }
 
 bool read_grid(const Table &table, ClothDesc &cloth) {
-    table.refuse({"scale"}, "a grid", "it is as large as its size");
+    table.refuse({"scale"}, "a grid", "its size sets its dimensions");
     bool is_read = true;
     if (const toml::node *node = table.node("cells")) {
         const toml::array *counts = node->as_array();
@@ -170,7 +170,7 @@ void read_state_of(const Table &table, ClothDesc &cloth, std::size_t springs) {
     if (table.has("positions") != table.has("velocities"))
         table.error(table.has("positions") ? "positions" : "velocities",
                     table.title() + " has only one of positions and velocities",
-                    "give both, of all its particles");
+                    "give both, for all its particles");
     if (!table.has("positions") || !table.has("velocities"))
         return;
     const std::size_t count = particle_count(cloth);

@@ -94,7 +94,7 @@ std::optional<SceneMessage> too_crowded(const SceneDesc &scene, const ScenePosit
                    "with \"" + scene.bodies[*too_many_at].name + "\" more than " +
                        std::to_string(max_scene_pairs) +
                        " pairs of bodies touch or overlap at the start",
-                   "each pair takes memory: put the bodies apart (fast ones reach as far as they "
+                   "each pair takes memory: move the bodies apart (fast ones reach as far as they "
                    "move in a step)");
 }
 

@@ -20,7 +20,7 @@ std::optional<std::string> read_spring_name(Reading &reading, const Table &table
 }
 
 void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
-    if (!table.require("quantity", "which quantity of the motion?"))
+    if (!table.require("quantity", "which quantity is measured?"))
         return;
     std::vector<std::string_view> names;
     for (const QuantityInfo &quantity : quantities())
@@ -31,15 +31,16 @@ void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
     expect.quantity = names[*chosen];
     const QuantityInfo &quantity = quantities()[*chosen];
     if (quantity.needs_spring()) {
-        table.refuse({"body"}, expect.quantity, "it is of a spring: spring = \"...\"");
-        if (table.require("spring", expect.quantity + " is of one spring: which?"))
+        table.refuse({"body"}, expect.quantity, "it is measured on a spring: spring = \"...\"");
+        if (table.require("spring", expect.quantity + " is measured on one spring: which?"))
             expect.body = read_spring_name(reading, table).value_or("");
         return;
     }
     table.refuse({"spring"}, expect.quantity,
-                 quantity.needs_body() ? "it is of a body" : "it is of the whole scene");
+                 quantity.needs_body() ? "it is measured on a body"
+                                       : "it is measured on the whole scene");
     if (!quantity.needs_body()) {
-        table.refuse({"body"}, expect.quantity, "it is of the whole scene");
+        table.refuse({"body"}, expect.quantity, "it is measured on the whole scene");
         return;
     }
     const toml::node *name = table.node("body");
@@ -50,7 +51,7 @@ void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
                         "a particle has no " + expect.quantity);
         return;
     }
-    if (table.require("body", expect.quantity + " is of one body: which?"))
+    if (table.require("body", expect.quantity + " is measured on one body: which?"))
         if (const std::optional<std::size_t> body = find_body(reading, table, "body"))
             expect.body = reading.scene.bodies[*body].name;
 }
@@ -67,7 +68,7 @@ void refuse_curve(const Table &table, const ExpectDesc &expect) {
             names += (names.empty() ? "" : " or ") + in_quotes(reduction.name);
     table.error(table.has("reduce") ? "reduce" : "equals",
                 "equals is a curve, and reduce = " + in_quotes(expect.reduce),
-                "how far the quantity is from a curve is reduced by " + names);
+                "the distance from a curve can be reduced by " + names);
 }
 
 void read_reduction(const Table &table, ExpectDesc &expect) {
@@ -92,12 +93,12 @@ void read_curve(const Table &table, ExpectDesc &expect) {
         expect.curve.push_back(table.number(value, name, finite).value_or(0));
     }
     if (const std::size_t count = expect.curve.size(); count < least_curve)
-        table.error("equals",
-                    "equals is a curve of " + std::to_string(count) +
-                        (count == 1 ? " value" : " values"),
-                    "write at least " + std::to_string(least_curve) +
-                        ", evenly from the start of the window to its end; `plumb reference SCENE "
-                        "--write` finds them where there is an estimate");
+        table.error(
+            "equals",
+            "equals is a curve of " + std::to_string(count) + (count == 1 ? " value" : " values"),
+            "write at least " + std::to_string(least_curve) +
+                ", evenly spaced from the start of the window to its end; `plumb reference SCENE "
+                "--write` computes them if there is an estimate");
 }
 
 void read_estimate(const Table &table, ExpectDesc &expect) {
@@ -107,8 +108,8 @@ void read_estimate(const Table &table, ExpectDesc &expect) {
                     "the estimate of " + shortest(*expect.estimate) +
                         " is not less than a tenth of the tolerance of " +
                         shortest(expect.tolerance),
-                    "a truth is known ten times as well as it is held to; `plumb reference SCENE "
-                    "--write` refines it");
+                    "a truth must be known ten times more accurately than its tolerance; `plumb "
+                    "reference SCENE --write` refines it");
 }
 
 // Whether the expectation is of a repeated body's copy that does not exist with a smaller count.
@@ -152,7 +153,7 @@ void read_expect(Reading &reading, const toml::table &source) {
                             " s is empty",
                         "from must not be after to");
         else if (to && expect.from == *to && is_curve(table))
-            table.error("from", "the window of a curve is the instant " + shortest(*to) + " s",
+            table.error("from", "the curve's window is the single instant " + shortest(*to) + " s",
                         "from must be before to");
     }
 
@@ -166,13 +167,12 @@ void read_expect(Reading &reading, const toml::table &source) {
         else
             expect.value = table.number(relation, finite).value_or(0);
         if (relation == "equals") {
-            if (table.require("tolerance", "how far the truth may be missed, in the "
-                                           "quantity's unit"))
+            if (table.require("tolerance", "the allowed error, in the quantity's unit"))
                 expect.tolerance = table.number("tolerance", above_zero).value_or(1);
             read_estimate(table, expect);
         } else {
-            table.refuse({"tolerance"}, "a bound", "put it into the bound itself");
-            table.refuse({"estimate"}, "a bound", "truths have one that refinement found");
+            table.refuse({"tolerance"}, "a bound", "include it in the bound");
+            table.refuse({"estimate"}, "a bound", "only a truth found by refinement has one");
         }
     }
     if (table.require("source", "where does the number come from?")) {

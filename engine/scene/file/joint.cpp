@@ -64,9 +64,8 @@ void read_anchor(Reading &reading, const JointTable &source, const std::string &
             return;
         if (source.type.anchors != JointTypeInfo::Anchors::apart || is_world)
             reading.report.error(table.position(), table.title() + " has no " + key,
-                                 "anchor = [x, y, z] is one point of the world for both bodies, " +
-                                     key + " one for this body, " + local_key +
-                                     " one in its frame");
+                                 "anchor = [x, y, z] is one world point for both bodies, " + key +
+                                     " one for this body, " + local_key + " one in its frame");
         else
             end.anchor_local = glm::dvec3(0);
         return;
@@ -94,7 +93,7 @@ void read_frames(JointTable &source, JointEnd &a, JointEnd &b) {
     if (source.type.frames == Frames::axis) {
         const std::string_view chosen =
             table.one_of({"axis", "frame_a_local"}, true,
-                         "axis = [x, y, z] is a unit direction of the world at the start");
+                         "axis = [x, y, z] is a unit vector in world coordinates at the start");
         table.one_of({"axis", "frame_b_local"}, false, "");
         if (chosen == "axis")
             if (const std::optional<glm::dvec3> axis = table.unit_vector("axis"))
@@ -130,7 +129,7 @@ bool add_joint(Reading &reading, const JointTable &source, const std::string &na
             reading.report.error(source.table.position(),
                                  "the anchors of " + source.table.title() + " are " +
                                      shortest(length) + " m apart, which cannot be its length",
-                                 "give a length of its own: " + std::string(positive.text));
+                                 "give it a length: " + std::string(positive.text));
             return false;
         }
         joint.min_length = joint.max_length = length;
@@ -144,11 +143,11 @@ bool add_joint(Reading &reading, const JointTable &source, const std::string &na
 void read_chain(Reading &reading, JointTable &source, std::size_t errors) {
     const Table &table = source.table;
     table.refuse({"body_a", "body_b", "anchor", "anchor_a", "anchor_b"}, "a chain",
-                 "its bodies are the copies of a repeated one, its anchors in their frames: "
+                 "its bodies are the copies of a repeated body, its anchors are in their frames: "
                  "anchor_a_local, anchor_b_local");
     need_both(table, "anchor_a_local", "anchor_b_local",
-              "give both, or neither: then a distance joint holds the centres, and any other "
-              "sits halfway between them");
+              "give both, or neither: a distance joint then connects the centres, any other sits "
+              "halfway between them");
     JointEnd a;
     JointEnd b;
     a.anchor_local = table.vector("anchor_a_local", moderate);
@@ -164,7 +163,7 @@ void read_chain(Reading &reading, JointTable &source, std::size_t errors) {
         table.error("chain",
                     is_single ? "the body " + in_quotes(*chain) + " is not repeated"
                               : "there is no body " + in_quotes(*chain),
-                    is_single ? "a chain runs through the copies of a body with repeat"
+                    is_single ? "a chain connects the copies of a body with repeat"
                               : reading.bodies.suggestion(*chain));
         return;
     }
@@ -174,7 +173,7 @@ void read_chain(Reading &reading, JointTable &source, std::size_t errors) {
         return; // its errors are already reported
     if (count < 2) {
         table.error("chain", "there is only one " + in_quotes(*chain),
-                    "a chain needs two bodies at least");
+                    "a chain needs at least two bodies");
         return;
     }
     if (reading.report.error_count() != errors ||

@@ -81,7 +81,7 @@ std::optional<std::array<double, 2>> read_pair(const Table &table, const JointKe
     for (double &value : *pair)
         value *= unit;
     if ((*pair)[0] > (*pair)[1]) {
-        table.error(chosen, "the lower of " + std::string(chosen) + " is above the upper",
+        table.error(chosen, "the lower value of " + std::string(chosen) + " is above the upper",
                     "write [lower, upper]");
         return std::nullopt;
     }
@@ -189,7 +189,7 @@ void read_rows(JointTable &source, const std::string &key,
             key,
             key + (elements == nullptr ? " is " + std::string(type_name(*node))
                                        : " has " + std::to_string(elements->size()) + " elements"),
-            "of a " + std::string(source.type.name) + " joint it must be an array of " +
+            "for a " + std::string(source.type.name) + " joint it must be an array of " +
                 std::to_string(count) + " numbers");
         return;
     }

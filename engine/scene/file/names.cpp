@@ -9,7 +9,7 @@ bool Names::add(Report &report, const FilePosition &at, const std::string &kind,
     const auto [entry, is_new] = lines_.try_emplace(name, at.line);
     if (!is_new)
         report.error(at,
-                     "another " + kind + " is named " + in_quotes(name) + " already, at line " +
+                     "another " + kind + " is already named " + in_quotes(name) + ", at line " +
                          std::to_string(entry->second),
                      "each " + kind + " needs a name of its own");
     return is_new;

@@ -69,7 +69,7 @@ std::optional<SpringEnd> find_end(Reading &reading, const Table &table, std::str
     if (!is_body && find_cloth_particle(reading, table, key, *name, end))
         return end;
     if (!is_body && (!scene.particles.empty() || !scene.cloths.empty())) {
-        table.error(key, "there is no particle and no body " + in_quotes(*name),
+        table.error(key, "there is no particle or body " + in_quotes(*name),
                     ++reading.missing_bodies > 100 ? ""
                     : scene.particles.empty()      ? reading.cloths.suggestion(*name)
                                                    : reading.particles.suggestion(*name));
@@ -95,8 +95,8 @@ void read_anchor(const Reading &reading, const Table &table, const std::string &
                 table.error(each, "a particle has no " + each, "it is pulled at its centre");
         return;
     }
-    const std::string_view chosen = table.one_of({key, local_key}, end.name.empty(),
-                                                 key + " = [x, y, z] is a point of the world");
+    const std::string_view chosen = table.one_of(
+        {key, local_key}, end.name.empty(), key + " = [x, y, z] is a point in world coordinates");
     const std::optional<glm::dvec3> point =
         chosen.empty() ? std::nullopt : table.vector(chosen, moderate);
     if (!point)
@@ -131,12 +131,12 @@ void read_rest_length(const Table &table, const SpringEnd &a, const SpringEnd &b
         table.error("rest_length",
                     "the ends of " + table.title() + " are " + shortest(length) +
                         " m apart, which cannot be its rest length",
-                    "give a rest_length of its own: " + std::string(positive.text));
+                    "give it a rest_length: " + std::string(positive.text));
 }
 
 void read_pull(const Table &table, double mass, SpringDesc &spring) {
     const std::string_view how =
-        table.one_of({"stiffness", "frequency"}, true, "how stiff is it, in N/m, or Hz?");
+        table.one_of({"stiffness", "frequency"}, true, "how stiff is it, in N/m or Hz?");
     if (how == "stiffness") {
         spring.stiffness = table.number(how, positive).value_or(spring.stiffness);
     } else if (how == "frequency") {
@@ -156,7 +156,7 @@ void read_pull(const Table &table, double mass, SpringDesc &spring) {
         if ((key == "frequency" || key == "damping_ratio") &&
             !(value >= bounds.min && value <= bounds.max))
             table.error(key,
-                        std::string(key) + " makes a " +
+                        std::string(key) + " gives a " +
                             (key == "frequency" ? "stiffness" : "damping") + " of " +
                             shortest(value),
                         "it must be " + std::string(bounds.text));
@@ -169,10 +169,9 @@ std::string read_end_name(Reading &reading, const Table &table, const std::strin
     const std::string name = read_name(reading.report, table, kind, names).value_or("");
     const auto refuse_if = [&](bool is_taken, const char *by) {
         if (is_taken)
-            table.error("name",
-                        std::string("a ") + by + " is named " + in_quotes(name) + " already",
-                        "springs and expectations call bodies, particles and cloths by their "
-                        "names alone");
+            table.error(
+                "name", std::string("a ") + by + " is already named " + in_quotes(name),
+                "springs and expectations refer to bodies, particles and cloths by name alone");
     };
     refuse_if(reading.bodies_by_name.contains(name), "body");
     refuse_if(kind != "particle" && reading.particles_by_name.contains(name), "particle");

@@ -90,7 +90,7 @@ class ProbeReader {
         add(total_.triangles, size.triangles, max_scene_probe_triangles, "triangles");
         add(total_.scattered, size.scattered, max_scene_probe_items, "scattered items");
         add(total_.questions, size.questions, max_scene_probe_questions,
-            "pairs to ask about (a shape and a point, or two shapes)");
+            "pairs to query (a shape and a point, or two shapes)");
         return fits;
     }
 
@@ -196,7 +196,7 @@ class ProbeReader {
         if (probe.points.size() < info.points.min || probe.points.size() > info.points.max)
             table.error(key.empty() ? "points" : key,
                         table.title() + " has " + std::to_string(probe.points.size()) +
-                            (probe.points.size() == 1 ? " good point" : " good points"),
+                            (probe.points.size() == 1 ? " valid point" : " valid points"),
                         asked + " takes " + range_text(info.points.min, info.points.max, "points"));
     }
 
@@ -213,7 +213,7 @@ class ProbeReader {
         if (key == "segment") {
             const std::vector<glm::dvec3> ends = places(table, key, flat);
             if (ends.size() != 2) {
-                table.error(key, "segment has " + std::to_string(ends.size()) + " good ends",
+                table.error(key, "segment has " + std::to_string(ends.size()) + " valid ends",
                             "it has two: segment = [[x, y, z], [x, y, z]]");
                 return;
             }

@@ -83,7 +83,7 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string &
         return std::move(parsed).table();
     const FilePosition at = inside(text, position_of(parsed.error().source()));
     messages.push_back(error(at.line, at.column, std::string(parsed.error().description()),
-                             "see https://toml.io for how TOML is written"));
+                             "see https://toml.io for the syntax"));
     return std::nullopt;
 }
 
@@ -98,15 +98,15 @@ std::optional<std::string> read_file(const std::filesystem::path &path,
     }
     // A directory opens, but cannot be read.
     if (!file.is_open() || file.bad() || std::filesystem::is_directory(path)) {
-        messages.push_back(error(0, 0, "the file cannot be read",
-                                 "check that it exists and that you may read it"));
+        messages.push_back(
+            error(0, 0, "the file cannot be read", "check that it exists and is readable"));
         return std::nullopt;
     }
     if (text.size() > max_scene_file_bytes) {
         messages.push_back(error(0, 0, "the file is too large",
                                  "a scene file has at most " +
                                      std::to_string(max_scene_file_bytes >> 20U) +
-                                     " MiB; `repeat` makes many bodies of a few lines"));
+                                     " MiB; `repeat` makes many bodies from a few lines"));
         return std::nullopt;
     }
     return text;

@@ -34,7 +34,7 @@ struct Fields {
     template <typename Field> void operator()(std::string_view key, Field &field) {
         used.push_back(key);
         const std::size_t errors = reading.report.error_count();
-        if (table.require(key, "every \"" + table.string("do").value_or("") + "\" has one"))
+        if (table.require(key, "every \"" + table.string("do").value_or("") + "\" needs one"))
             read(key, field);
         complete = complete && reading.report.error_count() == errors;
     }
@@ -75,7 +75,7 @@ struct Fields {
         if (own.scene.bodies.size() == 1)
             field = own.scene.bodies.front();
         else if (reading.report.error_count() == 0)
-            table.error(key, "a command adds one body", "one [[command]] for each");
+            table.error(key, "a command adds one body", "write one [[command]] for each");
     }
 };
 
@@ -120,9 +120,10 @@ void read_command(Reading &reading, const toml::table &source, Recording &record
     if (reading.report.error_count() == errors &&
         (command.step < earliest || command.step > recording.last_step()))
         table.error("step", "there is no step " + std::to_string(command.step) + " here",
-                    "commands are in order, here from " + std::to_string(earliest) + " to " +
+                    "commands must be in order, here from " + std::to_string(earliest) + " to " +
                         std::to_string(recording.last_step()));
-    if (!table.require("do", "what is done: \"" + std::string(command_names.front()) + "\", say"))
+    if (!table.require("do",
+                       "what is done, such as \"" + std::string(command_names.front()) + "\""))
         return;
     const std::optional<std::size_t> which = table.choice("do", command_names);
     if (!which)
@@ -133,7 +134,7 @@ void read_command(Reading &reading, const toml::table &source, Recording &record
         if (std::ranges::find(fields.used, key.str()) == fields.used.end() &&
             std::ranges::find(keys, key.str()) != keys.end())
             table.refuse({key.str()}, "\"" + std::string(command_names[*which]) + "\"",
-                         "it has nothing to say here");
+                         "it has no meaning here");
     if (reading.report.error_count() != errors)
         return;
     command.command = std::move(*read);
@@ -148,7 +149,7 @@ void read_hashes(Reading &reading, const toml::table &source, Recording &recordi
         return;
     const toml::array *hashes = table.node("hashes")->as_array();
     if (!hashes || hashes->empty()) {
-        table.error("hashes", hashes ? "hashes is empty" : "hashes is no array", wanted);
+        table.error("hashes", hashes ? "hashes is empty" : "hashes is not an array", wanted);
         return;
     }
     for (const toml::node &node : *hashes) {
@@ -212,7 +213,7 @@ RecordingResult parse_recording(std::string_view text, const std::string &path) 
     if (const toml::table *table = table_at(reading.report, top, "recording"))
         read_hashes(reading, *table, recording);
     else if (!top.has("recording"))
-        reading.report.error({1, 1}, "this is no recording: it has no [recording]",
+        reading.report.error({1, 1}, "this is not a recording: it has no [recording]",
                              "`plumb run --record FILE` makes one");
     if (!recording.hashes.empty())
         for_each(reading.report, top, "command",
@@ -229,9 +230,8 @@ RecordingResult load_recording(const std::filesystem::path &path) {
 }
 
 std::string write_recording(const Recording &recording) {
-    std::string text =
-        "# A recording. To see whether it still comes out the same: plumb replay FILE\n" +
-        write_scene(recording.scene) + "\n[recording]\nhashes = [\n";
+    std::string text = "# A recording. To check that it replays identically: plumb replay FILE\n" +
+                       write_scene(recording.scene) + "\n[recording]\nhashes = [\n";
     for (const std::uint64_t hash : recording.hashes)
         text += "    \"" + hash_text(hash) + "\",\n";
     text += "]\n";

@@ -18,7 +18,7 @@ namespace {
 using namespace scene_file;
 
 constexpr std::string_view own_lines = "write [world] and [methods.NAME] as tables, with each key "
-                                       "and its value on one line of its own";
+                                       "and its value on a line of its own";
 
 // The value as written in a file.
 std::string value_text(const SettingRow &row, const StepSettings &settings) {

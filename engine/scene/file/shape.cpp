@@ -96,7 +96,8 @@ class FieldReader {
         const std::filesystem::path name(value.name);
         if (table_.node("file")->is_string() &&
             (name.empty() || name.filename() != name || name == "." || name == "..")) {
-            table_.error("file", in_quotes(value.name) + " is no name of a file beside the scene",
+            table_.error("file",
+                         in_quotes(value.name) + " is not the name of a file beside the scene",
                          R"(file = "name.obj", without folders)");
             value.name.clear();
         }
@@ -153,7 +154,7 @@ class FieldReader {
         std::vector<glm::dvec3> all = places(table_, key, is_flat_);
         if (all.size() < min || all.size() > max)
             table_.error(key,
-                         table_.title() + " has " + std::to_string(all.size()) + " good " +
+                         table_.title() + " has " + std::to_string(all.size()) + " valid " +
                              std::string(key),
                          "it takes " + range_text(min, max, std::string(key)));
         return all;
@@ -205,9 +206,9 @@ void FieldReader::heights(std::string_view key, HeightFieldDesc &field) {
     std::vector<double> all;
     std::size_t columns = 0;
     const toml::array *rows = table_.node(key)->as_array();
-    const std::string wanted = "it takes two or more rows of two or more heights, all of one "
-                               "length, at most " +
-                               std::to_string(max_height_samples) + " heights";
+    const std::string wanted =
+        "it takes two or more rows of two or more heights, all of the same length, at most " +
+        std::to_string(max_height_samples) + " heights";
     if (!rows || rows->size() < 2) {
         table_.error(key, table_.title() + " has no rows of heights", wanted);
         return;
@@ -297,7 +298,7 @@ class Completion {
             table_.error(hull.file ? "file" : "points",
                          "these " + std::to_string(hull.points->size()) +
                              " points have no solid hull",
-                         "it takes four that are not in one plane");
+                         "it takes four that are not coplanar");
     }
     void operator()(MeshDesc &mesh) const {
         if (const auto *file = std::get_if<ShapeFile>(&mesh.source); file && !file->name.empty())
@@ -401,7 +402,7 @@ std::optional<std::size_t> read_shape_kind(Report &report, const toml::node &nod
 glm::dquat read_shape_rotation(Report &report, const Table &table, bool is_plane) {
     const glm::dquat turned = read_rotation(report, table);
     if (!is_plane)
-        table.refuse({"normal"}, "what is no plane", "it has a rotation");
+        table.refuse({"normal"}, "a shape other than a plane", "it has a rotation");
     else if (table.one_of({"normal", "rotation_deg", "axis", "orientation"}, false, "") == "normal")
         if (const std::optional<glm::dvec3> normal = table.unit_vector("normal"))
             return glm::rotation(glm::dvec3(0, 1, 0), *normal);

@@ -70,7 +70,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
     if (candidates.empty())
         return {};
     constexpr std::size_t listed = 20;
-    std::string text = candidates.size() == 1 ? "the only one is " : "there are ";
+    std::string text = candidates.size() == 1 ? "the only one is " : "choose from ";
     for (std::size_t i = 0; i < std::min(listed, candidates.size()); ++i)
         text += (i > 0 ? ", " : "") + std::string(candidates[i]);
     if (candidates.size() > listed)

@@ -36,7 +36,7 @@ void read_contact(Reading &reading, const toml::table &source) {
         const std::uint64_t given = table.natural(key).value_or(0);
         if (given > most_children)
             table.error(key, "no body has a shape " + std::to_string(given),
-                        "a shape is counted from 0 to " + std::to_string(most_children));
+                        "shapes are numbered from 0 to " + std::to_string(most_children));
         *child = static_cast<std::uint32_t>(given);
     }
     if (const std::optional<std::uint64_t> triangle = table.natural("triangle"))
@@ -65,7 +65,7 @@ void read_contact(Reading &reading, const toml::table &source) {
         table.error(key,
                     "there are " + std::to_string(features->size()) + " features and " +
                         std::to_string(array->size()) + " " + std::string(key),
-                    "there must be as many of one as of the other");
+                    "the numbers must match");
         return false;
     };
     for (std::size_t i = 0; i < vectors.size(); ++i)
@@ -107,7 +107,7 @@ void read_contact(Reading &reading, const toml::table &source) {
 }
 
 // The same bounds as in the grab command.
-constexpr Bounds no_less_than_0{0, std::numeric_limits<double>::max(), "a number from 0 on"};
+constexpr Bounds no_less_than_0{0, std::numeric_limits<double>::max(), "a number of at least 0"};
 
 // As with the grab commands, static bodies and pinned particles are not held.
 void read_grab(Reading &reading, const toml::table &source) {
@@ -121,15 +121,14 @@ void read_grab(Reading &reading, const toml::table &source) {
     if (held == "body") {
         if (const std::optional<std::size_t> body = find_body(reading, table, "body"))
             grab.body = reading.scene.bodies[*body].name;
-        table.refuse({"held_mass"}, "a body is held by its own mass", "leave it out");
+        table.refuse({"held_mass"}, "a grab of a body", "it has the mass of its body");
         grab.point_local = table.vector("point", finite).value_or(grab.point_local);
         grab.impulse = table.vector("impulse", finite).value_or(grab.impulse);
     } else if (held == "particle") {
         grab.particle = table.string("particle").value_or("");
         if (!is_particle(reading, grab.particle))
             table.error("particle", "there is no particle " + in_quotes(grab.particle));
-        table.refuse({"point", "impulse"}, "a particle is held as a point, by a spring",
-                     "leave it out");
+        table.refuse({"point", "impulse"}, "a grab of a particle", "a spring holds it as a point");
         grab.held_mass = table.number("held_mass", no_less_than_0).value_or(grab.held_mass);
     }
     if (table.require("target", "[x, y, z] in m"))

@@ -16,7 +16,7 @@ namespace {
 using namespace scene_file;
 
 constexpr std::string_view expect_layout =
-    "write [[expect]] as a table, with each key and its value on one line of its own";
+    "write [[expect]] as a table, with each key and its value on a line of its own";
 
 const toml::table &expect_of(const toml::table &root, const std::string &name) {
     if (const toml::array *all = root["expect"].as_array())

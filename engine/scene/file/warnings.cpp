@@ -141,8 +141,8 @@ class Checker {
                          in_quotes(scene_.bodies[a].name) + " and " +
                              in_quotes(scene_.bodies[b].name) + " " + how +
                              ", and their masses differ by a factor of " + rounded(ratio),
-                         "iterative solvers converge slowly above 100: bring them nearer, or "
-                         "expect many iterations");
+                         "iterative solvers converge slowly above 100: make the masses more "
+                         "similar, or expect many iterations");
     }
 
     void check_joints() {
@@ -171,7 +171,7 @@ class Checker {
                               " joint " + in_quotes(joint.name) + " start " + rounded(gap) +
                               " m apart" +
                               (joint.type == JointType::slider ? " across its axis" : ""),
-                          "they should be one point, or the first step will jerk them together");
+                          "they should coincide, or the first step will jerk them together");
         }
         std::sort(exempt_.begin(), exempt_.end());
     }
@@ -362,9 +362,9 @@ class Checker {
             count == 1 ? "" : " (and " + std::to_string(count - 1) + " more such bodies)";
         far_away_.add(positions_.bodies[worst],
                       in_quotes(scene_.bodies[worst].name) + " is " + rounded(distance) +
-                          " m from the origin, where places in float are " + rounded(apart) +
-                          " m apart: too coarse to follow how it moves" + others,
-                      "world.precision = \"double\", or all of it nearer to the origin");
+                          " m from the origin, where float positions are " + rounded(apart) +
+                          " m apart: too coarse to simulate its motion" + others,
+                      "world.precision = \"double\", or move the scene closer to the origin");
     }
 
     const SceneDesc &scene_;

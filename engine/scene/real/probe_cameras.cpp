@@ -66,7 +66,7 @@ void answer_frustum(Asking &ask) {
                 if constexpr (requires { classify(frustum, shape); })
                     return classify(frustum, shape);
                 else
-                    PLUMB_CHECK(false, "a frustum does not classify this kind of shape");
+                    PLUMB_CHECK(false, "this kind of shape cannot be classified by a frustum");
             },
             ask.shapes[s].shape);
         ++sides[static_cast<std::size_t>(side)];

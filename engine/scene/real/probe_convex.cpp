@@ -53,7 +53,7 @@ void answer_distance(Asking &ask) {
             if constexpr (requires { distance(a, b).on_a; })
                 return distance(a, b);
             else
-                PLUMB_CHECK(false, "both shapes must be convex, and of space");
+                PLUMB_CHECK(false, "both shapes must be convex and 3D");
         },
         ask.shapes[0].shape, ask.shapes[1].shape);
     const bool overlap = found.distance == Real(0);
@@ -76,7 +76,7 @@ void answer_penetration(Asking &ask) {
             if constexpr (requires { penetration(a, b); })
                 return penetration(a, b);
             else
-                PLUMB_CHECK(false, "both shapes must be convex, and of space");
+                PLUMB_CHECK(false, "both shapes must be convex and 3D");
         },
         ask.shapes[0].shape, ask.shapes[1].shape);
     ask.flag("overlap", found.has_value());
@@ -106,7 +106,7 @@ void answer_collide(Asking &ask) {
             if constexpr (requires { collide(solid_a, solid_b, margin); })
                 return collide(solid_a, solid_b, margin);
             else
-                PLUMB_CHECK(false, "there are no contact points of these two kinds of shapes");
+                PLUMB_CHECK(false, "these two kinds of shapes have no contact points");
         },
         ask.shapes[0].shape, ask.shapes[1].shape);
     Real deepest = std::numeric_limits<Real>::infinity();
@@ -135,7 +135,7 @@ void answer_cast(Asking &ask) {
             if constexpr (requires { cast(a, motion, b).has_value(); })
                 return cast(a, motion, b);
             else
-                PLUMB_CHECK(false, "both shapes must be convex, and of space");
+                PLUMB_CHECK(false, "both shapes must be convex and 3D");
         },
         ask.shapes[0].shape, ask.shapes[1].shape);
     // Its start and where it ends up.

@@ -14,7 +14,7 @@ void answer_models(Asking &ask) {
     std::vector<MeshTree> meshes;
     for (const ProbeShapeDesc &shape : ask.probe.shapes) {
         PLUMB_CHECK(std::holds_alternative<MeshDesc>(shape.shape),
-                    "a model has a mesh, and no " << shape_name(shape.shape));
+                    "a model must be a mesh, got " << shape_name(shape.shape));
         ProbeShapeDesc local = shape;
         local.position = glm::dvec3(0);
         local.orientation = glm::dquat(1, 0, 0, 0);

@@ -46,7 +46,7 @@ void answer_overlap(Asking &ask) {
             const std::optional<bool> found =
                 std::visit([](const auto &a, const auto &b) { return common(a, b); },
                            ask.shapes[i].shape, ask.shapes[j].shape);
-            PLUMB_CHECK(found.has_value(), "there is no test of "
+            PLUMB_CHECK(found.has_value(), "there is no overlap test of "
                                                << shape_name(ask.probe.shapes[i].shape) << " with "
                                                << shape_name(ask.probe.shapes[j].shape));
             if (*found) {

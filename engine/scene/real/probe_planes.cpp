@@ -13,8 +13,7 @@ namespace {
 
 const Plane &plane_of(const Asking &ask, std::size_t index) {
     const auto *plane = std::get_if<Plane>(&ask.shapes[index].shape);
-    PLUMB_CHECK(plane, "a " << shape_name(ask.probe.shapes[index].shape)
-                            << " stands where a plane is due");
+    PLUMB_CHECK(plane, "expected a plane, got " << shape_name(ask.probe.shapes[index].shape));
     return *plane;
 }
 
@@ -31,7 +30,7 @@ void answer_classify(Asking &ask) {
                 if constexpr (requires { classify(plane, shape); })
                     return classify(plane, shape);
                 else
-                    PLUMB_CHECK(false, "there is no classifying of this kind of shape");
+                    PLUMB_CHECK(false, "this kind of shape cannot be classified");
             },
             ask.shapes[s].shape);
         constexpr std::array tones{ProbeTone::no, ProbeTone::partly, ProbeTone::yes};

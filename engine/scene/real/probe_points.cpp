@@ -24,7 +24,7 @@ template <typename Asked> bool holds(const Asked &shape, const glm::dvec3 &point
     else if constexpr (requires { contains(shape, Vec3{point}); })
         return contains(shape, Vec3{point});
     else
-        PLUMB_CHECK(false, "this kind of shape is not asked what it contains");
+        PLUMB_CHECK(false, "this kind of shape has no containment test");
 }
 
 template <typename Asked> glm::dvec3 nearest(const Asked &shape, const glm::dvec3 &point) {
@@ -33,7 +33,7 @@ template <typename Asked> glm::dvec3 nearest(const Asked &shape, const glm::dvec
     else if constexpr (requires { closest_point(shape, Vec3{point}); })
         return wide(closest_point(shape, Vec3{point}));
     else
-        PLUMB_CHECK(false, "this kind of shape is not asked for its closest point");
+        PLUMB_CHECK(false, "this kind of shape has no closest point");
 }
 
 } // namespace

@@ -50,7 +50,7 @@ class RayInto {
         } else if constexpr (requires { ray_interval(shape, flat_ray()); }) {
             return from_interval(ray_interval(shape, flat_ray()));
         } else {
-            PLUMB_CHECK(false, "there is no ray against this kind of shape");
+            PLUMB_CHECK(false, "this kind of shape has no raycast");
         }
     }
 
@@ -64,7 +64,7 @@ class RayInto {
         else if constexpr (requires { linetest(shape, flattened(origin_), flattened(origin_)); })
             is_in = linetest(shape, flattened(origin_), flattened(origin_));
         else
-            PLUMB_CHECK(false, "there is no segment test of this kind of shape");
+            PLUMB_CHECK(false, "this kind of shape has no segment test");
         return is_in ? std::optional(RayFound{0, {}, origin_, {}, true}) : std::nullopt;
     }
 

@@ -98,7 +98,7 @@ template <int Dim> void ask_orthtree(Asking &ask, const std::vector<Aabb> &items
                 if constexpr (requires { tree.query(region, visit); })
                     tree.query(region, visit);
                 else
-                    PLUMB_CHECK(false, "this tree is not asked with such a shape");
+                    PLUMB_CHECK(false, "this tree cannot be queried with this kind of shape");
             },
             ask.shapes.front().shape);
     if (!ask.probe.points.empty()) {
@@ -148,7 +148,7 @@ void ask_bvh(Asking &ask, const std::vector<Aabb> &items, Found &found) {
     draw_bvh(ask, tree);
     if (!ask.shapes.empty()) {
         const Aabb *region = std::get_if<Aabb>(&ask.shapes.front().shape);
-        PLUMB_CHECK(region, "a bvh is asked with an aabb");
+        PLUMB_CHECK(region, "a bvh can only be queried with an aabb");
         tree.query(*region, [&](std::uint32_t item) {
             ++found.tested;
             return !overlaps(*region, items[item]) || found.visit(item);
@@ -185,7 +185,8 @@ void answer_tree(Asking &ask) {
     if (!ask.probe.scatter) {
         const auto *mesh =
             ask.shapes.empty() ? nullptr : std::get_if<MeshTree>(&ask.shapes.front().shape);
-        PLUMB_CHECK(mesh && kind == ProbeTree::bvh, "without a scatter it is the bvh of a mesh");
+        PLUMB_CHECK(mesh && kind == ProbeTree::bvh,
+                    "without a scatter, tree must be \"bvh\" and the shape a mesh");
         answer_mesh_tree(ask, *mesh);
         return;
     }

@@ -205,10 +205,10 @@ void WorldSimulation::obey(const AddBody &command) {
         throw std::invalid_argument(std::string(world_.method().info.name) +
                                     " does not support contacts, so no body can be added");
     if (book_->index_of.contains(command.body.name))
-        throw std::invalid_argument("there is a body \"" + command.body.name + "\" already");
+        throw std::invalid_argument("there is already a body \"" + command.body.name + '"');
     if (soft_.has_name(command.body.name))
-        throw std::invalid_argument("a particle or cloth is called \"" + command.body.name +
-                                    "\" already");
+        throw std::invalid_argument("a particle or cloth is already called \"" + command.body.name +
+                                    '"');
     insert(command.body);
 }
 
@@ -246,7 +246,7 @@ void WorldSimulation::obey(const GrabParticle &command) {
 void WorldSimulation::obey(const SetMethod &command) {
     const MethodInfo *info = find_method_info(command.method);
     if (info == nullptr)
-        throw std::invalid_argument("no method is called '" + command.method + "'");
+        throw std::invalid_argument("there is no method '" + command.method + "'");
     if (const std::string reason = why_not(*info, describe()); !reason.empty())
         throw std::invalid_argument(reason);
     world_.set_method(command.method);

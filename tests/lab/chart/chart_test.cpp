@@ -271,7 +271,7 @@ TEST(Chart, TheErrorIsTheWorstOfAllInUnitsOfItsTolerance) {
     EXPECT_EQ(content.marks.at(0).label, "1 a");
     EXPECT_EQ(content.marks.at(1).label, "2 b");
     EXPECT_EQ(content.worst,
-              (std::vector<std::string>{"a  x: is 1 m within 0.6 m", "b  y: at most 1.3 m"}));
+              (std::vector<std::string>{"a  x: 1 m ± 0.6 m", "b  y: at most 1.3 m"}));
     EXPECT_TRUE(content.marks[1].outside);
     EXPECT_FALSE(content.marks[2].outside);
 }

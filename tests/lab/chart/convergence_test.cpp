@@ -152,7 +152,7 @@ TEST(ChartSvg, SaysWhatThePictureSays) {
     const std::string svg = out.str();
     EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0U);
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
-    for (const char *text : {">Fall &lt; rise &amp; so on: what truth costs<", ">the command<",
+    for (const char *text : {">Fall &lt; rise &amp; so on: what accuracy costs<", ">the command<",
                              ">2 not finite<", ">8<", ">Soft step<", "#0072b2"})
         EXPECT_NE(svg.find(text), std::string::npos) << text;
     EXPECT_EQ(svg.find('&'), svg.find("&lt;")); // no bare ampersand before it

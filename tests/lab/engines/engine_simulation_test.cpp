@@ -170,7 +170,7 @@ TEST(EngineSimulation, WhatTheAdapterDoesNotSupportIsLeftOutWithAReason) {
     scene.bodies[1].linear_damping = 0.1;
     EXPECT_EQ(why_not(engine, scene),
               "pretended cannot run this scene: the adapter does not support bodies with damping "
-              "or gravity of their own");
+              "or a gravity scale");
     scene = ball_above_floor();
     scene.bodies[1].center_of_mass = glm::dvec3(0.1, 0, 0);
     EXPECT_NE(why_not(engine, scene).find("frame"), std::string::npos);

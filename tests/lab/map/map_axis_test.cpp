@@ -118,7 +118,7 @@ TEST(MapAxis, TakesAKeyForTheOneNumberThatHasIt) {
               std::string::npos)
         << complaint_of("mass");
     EXPECT_NE(complaint_of("substep").find("did you mean \"substeps\"?"), std::string::npos);
-    EXPECT_NE(complaint_of("friction").find(". A number of the scene file"), std::string::npos);
+    EXPECT_NE(complaint_of("friction").find(". A number in the scene file"), std::string::npos);
     EXPECT_NE(
         complaint_of("velocity")
             .find("3; give one of body.a.b.velocity.x, body.a.b.velocity.y, body.a.b.velocity.z"),

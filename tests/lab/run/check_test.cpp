@@ -53,7 +53,7 @@ TEST_F(LabCommands, CheckFineScene) {
     command.scenes = {file("fall.toml", fall + "0.1\n")};
     EXPECT_EQ(check_scenes(command, out_, err_), ExitCode::fine) << out_.str() << err_.str();
     EXPECT_NE(out_.str().find("ok    fall/height: 5.0"), std::string::npos) << out_.str();
-    EXPECT_NE(out_.str().find("is 5.095 m within 0.1 m"), std::string::npos) << out_.str();
+    EXPECT_NE(out_.str().find("expected 5.095 m ± 0.1 m"), std::string::npos) << out_.str();
     EXPECT_NE(out_.str().find("soft_step substeps="), std::string::npos) << out_.str();
     EXPECT_NE(out_.str().find("dt=1/60 s double]"), std::string::npos) << out_.str();
     EXPECT_EQ(err_.str(), "");

@@ -5,7 +5,7 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 Grab grab_of(const Vec3 &target, Real max_force, const GrabSpring &spring) {
-    PLUMB_CHECK(is_finite(target), "a grab must be finite");
+    PLUMB_CHECK(is_finite(target), "a grab's target must be finite");
     check_not_negative("a grab's force", max_force);
     Grab grab;
     grab.target = target;
