@@ -218,8 +218,8 @@ TEST(SpinOnFace, OfTwoBodiesKeepsAngularMomentum) {
         }
 }
 
-// Contacts are solved side by side: a body that spins elsewhere, too slowly for separations to need
-// more than the second order of its turn, changes no bit of the others.
+// Contacts are solved side by side: a body that spins elsewhere, too slowly to need more passes,
+// changes no bit of the others.
 TEST(SpinOnFace, ChangesNothingElsewhere) {
     std::vector<std::vector<Motion>> ends;
     for (const double spin : {0.0, 2.0}) {

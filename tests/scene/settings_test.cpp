@@ -208,6 +208,19 @@ type = "ball"
 body_b = "torn"
 anchor_a_local = [4, 2.6, 0]
 anchor_b_local = [0, 0.5, 0]
+[[body]]
+name = "leaving"
+kind = "kinematic"
+shape = "sphere"
+radius = 0.1
+position = [5, 2, 0]
+velocity = [0.1, 0, 0]
+[[joint]]
+name = "out of reach"
+type = "ball"
+body_a = "torn"
+body_b = "leaving"
+anchor = [4.5, 2, 0]
 )";
 
 constexpr const char *free_scene = R"([world]

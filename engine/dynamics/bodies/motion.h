@@ -24,9 +24,9 @@ Vec3 rotation_vector(const Quat &rotation);
 
 // Whether a turn (a rotation vector, rad) is too far for second-order tracking: the error is
 // third-order, here a millionth of the arm.
+inline constexpr Real far_turn = Real(0.02);
 inline bool has_turned_far(const Vec3 &turn) {
-    constexpr Real far = Real(0.02);
-    return turn.x * turn.x + turn.y * turn.y + turn.z * turn.z > far * far;
+    return turn.x * turn.x + turn.y * turn.y + turn.z * turn.z > far_turn * far_turn;
 }
 
 // The body-frame angular velocity after `h` seconds of torque-free spin, from `spin` in principal

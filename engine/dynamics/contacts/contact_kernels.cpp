@@ -1,6 +1,7 @@
 // What soft_step does with a block of contacts. Compiled once per instruction set, by including
 // itself. Nothing here is fused or reordered by width: each lane sees the same operations whatever
 // the processor.
+#include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/contacts/contact_columns.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -269,12 +270,12 @@ struct Turned {
     Lanes first, second; // sin(x) / x and (1 - cos(x)) / x^2 of its length
 };
 
-// Series, accurate to rounding for turns of up to two radians; without `far`, to what separations
-// need for turns within the limit of has_turned_far.
-HWY_INLINE Turned turned_by(const Vector &turn, const Vector &n, bool far) {
+// Beyond the limit of has_turned_far series accurate to rounding for turns of up to two radians;
+// within it what separations need, whether or not another body turns far (`any_far`).
+HWY_INLINE Turned turned_by(const Vector &turn, const Vector &n, bool any_far) {
     const Lanes x = dot(turn, turn);
     Turned out{turn, dot(turn, n), x, all(Real(1)), all(Real(0.5))};
-    if (!far)
+    if (!any_far)
         return out;
     const auto series = [&](Real a, Real b, Real c, Real d, Real e) HWY_ATTR {
         Lanes sum = hn::Sub(all(d), hn::Mul(x, all(e)));
@@ -282,9 +283,13 @@ HWY_INLINE Turned turned_by(const Vector &turn, const Vector &n, bool far) {
         sum = hn::Sub(all(b), hn::Mul(x, sum));
         return hn::Sub(all(a), hn::Mul(x, sum));
     };
-    out.first = series(Real(1), Real(1) / 6, Real(1) / 120, Real(1) / 5040, Real(1) / 362880);
-    out.second =
-        series(Real(1) / 2, Real(1) / 24, Real(1) / 720, Real(1) / 40320, Real(1) / 3628800);
+    const auto far = hn::Gt(x, all(far_turn * far_turn));
+    out.first = hn::IfThenElse(
+        far, series(Real(1), Real(1) / 6, Real(1) / 120, Real(1) / 5040, Real(1) / 362880),
+        out.first);
+    out.second = hn::IfThenElse(
+        far, series(Real(1) / 2, Real(1) / 24, Real(1) / 720, Real(1) / 40320, Real(1) / 3628800),
+        out.second);
     return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -17,7 +18,7 @@ namespace {
 constexpr Real followed = Real(1.2);
 
 // Joints with an error of more than this share of their arms, or this many radians, have been torn
-// apart: they are pulled together softly.
+// apart.
 constexpr Real torn_share = Real(0.001);
 
 bool is_torn(const JointConstraint &joint) {
@@ -26,6 +27,28 @@ bool is_torn(const JointConstraint &joint) {
     if (joint.bearing != BearingLimit::none) // has been reached at any speed
         error.z = Real(0);
     return !(glm::dot(error, error) <= most * most);
+}
+
+// Whether a group hangs between places that may move apart. Only then can it be out of reach of
+// one: no impulse would bring its torn joints together, so they are pulled softly. All others are
+// held at any error, because Gauss-Seidel may feed energy into joints with long arms.
+bool is_between_moving_ends(const StepContext &context, const JointGroup &group) {
+    std::optional<std::uint32_t> first;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const JointConstraint &joint =
+            context.scratch.joints[context.scratch.joint_system->block(place)];
+        for (const std::uint32_t body : {joint.a, joint.b}) {
+            const BodyKind kind =
+                body == Joint::world ? BodyKind::static_body : context.model.bodies[body].kind;
+            if (kind == BodyKind::dynamic)
+                continue;
+            const std::uint32_t end = kind == BodyKind::kinematic ? body : Joint::world;
+            if (first.value_or(end) != end)
+                return true;
+            first = end;
+        }
+    }
+    return false;
 }
 
 // Calls use(body, force, arm) for the last substep's impulses on the bodies at their ends.
@@ -112,9 +135,10 @@ void follow_loads(StepContext &context, Real h) {
     std::vector<std::uint8_t> &changed = context.scratch.changed;
     JointSystem &system = *context.scratch.joint_system;
     for (JointGroup &group : system.groups()) {
-        group.is_held = true;
-        for (std::uint32_t place = group.first; group.is_held && place < group.last; ++place)
-            group.is_held = !is_torn(context.scratch.joints[system.block(place)]);
+        bool torn = false;
+        for (std::uint32_t place = group.first; !torn && place < group.last; ++place)
+            torn = is_torn(context.scratch.joints[system.block(place)]);
+        group.is_held = !torn || !is_between_moving_ends(context, group);
         // Torn in the middle of a step: the cause may need more substeps.
         group.was_let_go =
             group.was_let_go || (!group.is_held && group.is_factored && !group.was_torn);

@@ -15,9 +15,9 @@ struct StepContext;
 
 // Blocks first..last - 1 in the system's elimination order. `is_held`: solved together in this
 // substep, not left to Gauss-Seidel. `is_touched`: contacts act on its bodies. In this step:
-// `is_factored`: it was factored when its joints were last refreshed; `was_torn`: it was torn
-// before a substep began; `was_let_go`: it was let go before it was ever torn, or torn between two
-// substeps. `has_changed`: it was let go, or its active limits changed, since the masses of motors
+// `is_factored`: it was factored when its joints were last refreshed; `was_torn`: torn joints
+// kept it from being held; `was_let_go`: it was let go before that, or torn between two substeps.
+// `has_changed`: it was let go, or its active limits changed, since the masses of motors
 // and limits were computed with it.
 struct JointGroup {
     std::uint32_t first = 0;
