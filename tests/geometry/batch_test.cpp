@@ -598,7 +598,7 @@ TEST(Batch, MisuseNamesTheValue) {
              ray_interval(spheres_of(columns), Ray{},
                           {bits.span(), std::span(room.enter).first(3), room.exit});
          }),
-         "got 3");
+         "5 intervals need as many elements, got 3");
     Ray ray;
     ray.direction = Vec3{Real(0)};
     says(failure([&] { ray_interval(spheres_of(columns), ray, room.batch()); }), "zero");

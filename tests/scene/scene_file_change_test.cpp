@@ -88,7 +88,8 @@ TEST(SceneFileChange, SaysWhatAPathShouldBe) {
     EXPECT_NE(complaint("body.ball.shape").find("is a string, not a number"), std::string::npos);
     EXPECT_NE(complaint("body.box.repeat").find("the only one is count"), std::string::npos)
         << complaint("body.box.repeat");
-    EXPECT_NE(complaint("body.ball.small.velocity.x").find("has no"), std::string::npos);
+    EXPECT_NE(complaint("body.ball.small.velocity.x").find("the file has no "), std::string::npos)
+        << complaint("body.ball.small.velocity.x");
     EXPECT_NE(complaint("body").find("is an array, not a number"), std::string::npos);
     EXPECT_FALSE(complaint("body.ball.radius.x").empty());
     EXPECT_FALSE(complaint("").empty());

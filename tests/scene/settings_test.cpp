@@ -214,7 +214,7 @@ kind = "kinematic"
 shape = "sphere"
 radius = 0.1
 position = [5, 2, 0]
-velocity = [0.1, 0, 0]
+velocity = [0.5, 0, 0]
 [[joint]]
 name = "out of reach"
 type = "ball"

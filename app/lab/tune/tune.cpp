@@ -91,6 +91,20 @@ bool same_kind(const ResolvedRun &a, const ResolvedRun &b) {
     return a.method == b.method && a.precision == b.precision && a.settings.dt == b.settings.dt;
 }
 
+bool is_less_work(const TunedRun &run, const TunedRun &other) {
+    return same_kind(run.resolved, other.resolved) && run.work < other.work;
+}
+
+// Counted work decides between runs that differ in nothing else: it has no noise.
+void erase_needless(const Tuning &tuning, std::vector<std::size_t> &choices) {
+    const std::vector<std::size_t> all = choices;
+    std::erase_if(choices, [&](std::size_t i) {
+        return std::ranges::any_of(all, [&](std::size_t other) {
+            return is_less_work(tuning.runs[other], tuning.runs[i]);
+        });
+    });
+}
+
 // Times the runs that may be the cheapest, and the scene's own to compare with.
 void time_best(const Trial &trial, const TuneOptions &options, Tuning &tuning,
                const std::vector<std::size_t> &choices, const Progress &progress) {
@@ -99,13 +113,7 @@ void time_best(const Trial &trial, const TuneOptions &options, Tuning &tuning,
     for (const std::size_t i : choices)
         least = std::min(least, run(i).cost);
     std::vector<std::size_t> timed = choices;
-    std::erase_if(timed, [&](std::size_t i) {
-        return run(i).cost > out_of_question * least ||
-               std::ranges::any_of(choices, [&](std::size_t other) {
-                   return same_kind(run(i).resolved, run(other).resolved) &&
-                          run(other).work < run(i).work;
-               });
-    });
+    std::erase_if(timed, [&](std::size_t i) { return run(i).cost > out_of_question * least; });
     if (tuning.own().verdict != TuneVerdict::diverged &&
         std::ranges::find(timed, std::size_t{0}) == timed.end())
         timed.push_back(0);
@@ -182,9 +190,11 @@ void add_dearer(const Trial &trial, const TuneOptions &options, SubstepSearch &s
     time_in_turns(runs, options, progress);
 }
 
-// Whether that run met the scene, and was cheaper than the chosen one in every round.
+// Whether that run met the scene, with less work, and was cheaper than the chosen one in every
+// round.
 bool is_cheaper(const Tuning &tuning, std::optional<std::size_t> other) {
     return other && tuning.runs[*other].verdict == TuneVerdict::met &&
+           is_less_work(tuning.runs[*other], tuning.runs[*tuning.chosen]) &&
            both_timed(tuning.runs[*other], tuning.runs[*tuning.chosen]) &&
            is_always_dearer(tuning.runs[*tuning.chosen], tuning.runs[*other]);
 }
@@ -251,6 +261,7 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
         if (tuning.runs[i].verdict == TuneVerdict::met &&
             std::ranges::find(methods, tuning.runs[i].resolved.method) != methods.end())
             choices.push_back(i);
+    erase_needless(tuning, choices);
     if (!choices.empty()) {
         from = searching;
         to = timing;

@@ -270,8 +270,8 @@ struct Turned {
     Lanes first, second; // sin(x) / x and (1 - cos(x)) / x^2 of its length
 };
 
-// Beyond the limit of has_turned_far series accurate to rounding for turns of up to two radians;
-// within it what separations need, whether or not another body turns far (`any_far`).
+// Beyond the limit of has_turned_far, series that are accurate to rounding for turns of up to two
+// radians; within it, what separations need, whether or not another body turns far (`any_far`).
 HWY_INLINE Turned turned_by(const Vector &turn, const Vector &n, bool any_far) {
     const Lanes x = dot(turn, turn);
     Turned out{turn, dot(turn, n), x, all(Real(1)), all(Real(0.5))};

@@ -81,8 +81,8 @@ Real size_of(const RowBlock &rows);
 // Begins a substep, before refresh_joints. Where h is too long for how joint forces stiffen a
 // body's rotation, gives the body an inertia that h can follow (Andrews, Teichmann, Koevecses 2017,
 // "Geometric Stiffness for Real-time Constrained Multibody Dynamics"). Then decides which groups
-// are held: all but those torn apart by ends that moved. Marks bodies changed by either
-// (scratch.changed).
+// are held: all but those torn apart between the places they hang from. Marks bodies changed by
+// either (scratch.changed).
 void follow_loads(StepContext &context, Real h);
 
 // Blocks of all joints that are alive and not broken, in order, then of the grab, at the present

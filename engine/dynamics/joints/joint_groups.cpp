@@ -240,9 +240,6 @@ bool choose_limits(StepContext &context, const JointGroup &group) {
             joint.impulse.z = load;
         any = true;
     }
-    // An impact at those limits may have torn it apart, and must not be repeated.
-    for (std::uint32_t place = group.first; any && !group.is_held && place < group.last; ++place)
-        context.scratch.joints[context.scratch.joint_system->block(place)].impulse = Vec3{Real(0)};
     return any;
 }
 

@@ -76,7 +76,10 @@ Real limit_change(const JointConstraint &joint, Real speed, const Softness &soft
     if (is_off && pass.loaded_only && impulse == Real(0))
         return Real(0);
     const Softness used = is_off ? Softness{} : softness;
-    const Real target = is_off ? gap / pass.h : used.bias_rate * gap;
+    // A soft hinge that bends by half a turn may find its angle far beyond a limit at once.
+    const Real most =
+        joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
+    const Real target = is_off ? gap / pass.h : std::max(used.bias_rate * gap, -most);
     const Real change = -used.mass_scale * joint.mass[0][0] * (side * speed + target) -
                         used.impulse_scale * impulse;
     return side * (std::max(impulse + change, Real(0)) - impulse);

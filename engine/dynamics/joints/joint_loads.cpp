@@ -19,7 +19,7 @@ constexpr Real followed = Real(1.2);
 
 // Joints with an error of more than this share of their arms, or this many radians, have been torn
 // apart.
-constexpr Real torn_share = Real(0.001);
+constexpr Real torn_share = Real(0.05);
 
 bool is_torn(const JointConstraint &joint) {
     const Real most = torn_share * size_of(joint.rows);
@@ -29,24 +29,22 @@ bool is_torn(const JointConstraint &joint) {
     return !(glm::dot(error, error) <= most * most);
 }
 
-// Whether a group hangs between places that may move apart. Only then can it be out of reach of
-// one: no impulse would bring its torn joints together, so they are pulled softly. All others are
-// held at any error, because Gauss-Seidel may feed energy into joints with long arms.
-bool is_between_moving_ends(const StepContext &context, const JointGroup &group) {
+// Whether a group hangs from more than one place. Only then can it be out of reach of one: no
+// impulse would bring its torn joints together, so they are pulled softly. All others are held at
+// any error, because Gauss-Seidel may feed energy into joints with long arms.
+bool hangs_from_several(const StepContext &context, const JointGroup &group) {
+    const auto is_place = [&](std::uint32_t body) {
+        return body == Joint::world || context.model.bodies[body].kind != BodyKind::dynamic;
+    };
     std::optional<std::uint32_t> first;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         const JointConstraint &joint =
             context.scratch.joints[context.scratch.joint_system->block(place)];
-        for (const std::uint32_t body : {joint.a, joint.b}) {
-            const BodyKind kind =
-                body == Joint::world ? BodyKind::static_body : context.model.bodies[body].kind;
-            if (kind == BodyKind::dynamic)
-                continue;
-            const std::uint32_t end = kind == BodyKind::kinematic ? body : Joint::world;
-            if (first.value_or(end) != end)
-                return true;
-            first = end;
-        }
+        if (!is_place(joint.a) && !is_place(joint.b))
+            continue;
+        if (first.value_or(joint.joint) != joint.joint)
+            return true;
+        first = joint.joint;
     }
     return false;
 }
@@ -138,7 +136,11 @@ void follow_loads(StepContext &context, Real h) {
         bool torn = false;
         for (std::uint32_t place = group.first; !torn && place < group.last; ++place)
             torn = is_torn(context.scratch.joints[system.block(place)]);
-        group.is_held = !torn || !is_between_moving_ends(context, group);
+        group.is_held = !torn || !hangs_from_several(context, group);
+        // What held it no longer does, and would fling its bodies about.
+        if (!group.is_held && !group.was_torn)
+            for (std::uint32_t place = group.first; place < group.last; ++place)
+                context.scratch.joints[system.block(place)].impulse = Vec3{Real(0)};
         // Torn in the middle of a step: the cause may need more substeps.
         group.was_let_go =
             group.was_let_go || (!group.is_held && group.is_factored && !group.was_torn);

@@ -22,9 +22,10 @@ constexpr std::size_t work_a_block = 12;
 // Marks a target on the diagonal rather than among the entries; no target is both.
 constexpr std::uint32_t on_diagonal = UINT32_C(1) << 31;
 
+// Rigid rows that move something.
 bool is_rigid(const JointConstraint &joint) {
     return joint.joint != JointConstraint::grab && joint.rows.bounds == RowBounds::equal &&
-           !joint.is_spring();
+           !joint.is_spring() && (joint.moves_a || joint.moves_b);
 }
 
 } // namespace
