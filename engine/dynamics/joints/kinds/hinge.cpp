@@ -32,7 +32,12 @@ void emit_hinge(const Joint &joint, const Motion &a, const Motion &b, RowWriter 
     RowBlock about;
     about.kind = RowKind::angular;
     about.axes[0] = axes[0];
-    emit_limits_and_motor(joint, about, hinge_angle(joint, a, b), 5, rows);
+    // A soft hinge that is bent by more than a quarter turn has hardly an angle any more, and none
+    // at half a turn: its limits are open.
+    const bool is_folded = joint.limits && glm::dot(axes[0], axis_b) < Real(0);
+    const Real angle = is_folded ? Real(0.5) * (joint.limits->lower + joint.limits->upper)
+                                 : hinge_angle(joint, a, b);
+    emit_limits_and_motor(joint, about, angle, 5, rows);
 }
 
 JointPlace place_of_hinge(const Joint &joint, const Motion &a, const Motion &b) {
