@@ -2,6 +2,10 @@
 // without a gain of energy.
 #include "tests/dynamics/worlds.h"
 
+#include "engine/dynamics/joints/joint_rows.h"
+
+#include <cmath>
+
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
@@ -132,6 +136,26 @@ TEST(TornJoints, OfASoftHingeThatBendsByHalfATurnGainNothing) {
         world.add_joint(hinge);
         const double first = world.energy();
         EXPECT_LT(gain_of(world, 10, settings.dt).in_all, 0.1 * first) << seed;
+    }
+}
+
+TEST(TornJoints, LimitsOfAHingeAreOpenWhereItIsFolded) {
+    for (const double lean : {0.3, 1.5, 1.6, 2.5, 3.1}) {
+        World world("soft_step", settings_for("soft_step"));
+        BodyDef flap = dynamic_body(ball(0.5), 1, V{0});
+        flap.pose.rotation =
+            narrow(glm::angleAxis(lean, V{0, 1, 0}) * glm::angleAxis(0.7, V{1, 0, 0}));
+        JointDef hinge;
+        hinge.type = JointType::hinge;
+        hinge.b = world.add_body(flap);
+        hinge.limits = {Real(-0.1), Real(0.1)};
+        hinge.frequency = Real(1);
+        world.add_joint(hinge);
+        const Joint &joint = world.joints()[0];
+        const JointError error =
+            joint_error(joint, world.joint_motion(joint.a), world.joint_motion(joint.b));
+        const double beyond = lean < pi / 2 ? 0.7 - 0.1 : 0;
+        EXPECT_NEAR(error.angular, std::hypot(std::sin(lean), beyond), 1e-5) << lean;
     }
 }
 

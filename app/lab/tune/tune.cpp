@@ -95,7 +95,7 @@ bool is_less_work(const TunedRun &run, const TunedRun &other) {
     return same_kind(run.resolved, other.resolved) && run.work < other.work;
 }
 
-// Counted work decides between runs that differ in nothing else: it has no noise.
+// Counted work decides between runs of one method, precision and dt: it has no noise.
 void erase_needless(const Tuning &tuning, std::vector<std::size_t> &choices) {
     const std::vector<std::size_t> all = choices;
     std::erase_if(choices, [&](std::size_t i) {

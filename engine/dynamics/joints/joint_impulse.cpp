@@ -64,6 +64,11 @@ Softness spring_softness(const RowBlock &rows, const JointPass &pass) {
     return make_soft(rows.frequency, rows.damping_ratio, time);
 }
 
+// m/s or rad/s. The angle of a soft hinge may jump far beyond a limit.
+Real fastest_push(const JointConstraint &joint, const JointPass &pass) {
+    return joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
+}
+
 // The change of a limit's impulse; `side` is 1 for a lower limit, whose impulse is never negative,
 // and -1 for an upper limit.
 Real limit_change(const JointConstraint &joint, Real speed, const Softness &softness,
@@ -76,10 +81,8 @@ Real limit_change(const JointConstraint &joint, Real speed, const Softness &soft
     if (is_off && pass.loaded_only && impulse == Real(0))
         return Real(0);
     const Softness used = is_off ? Softness{} : softness;
-    // A soft hinge that bends by half a turn may find its angle far beyond a limit at once.
-    const Real most =
-        joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
-    const Real target = is_off ? gap / pass.h : std::max(used.bias_rate * gap, -most);
+    const Real target =
+        is_off ? gap / pass.h : std::max(used.bias_rate * gap, -fastest_push(joint, pass));
     const Real change = -used.mass_scale * joint.mass[0][0] * (side * speed + target) -
                         used.impulse_scale * impulse;
     return side * (std::max(impulse + change, Real(0)) - impulse);
@@ -305,8 +308,7 @@ Vec3 impulse_change(StepContext &context, const JointConstraint &joint, const Jo
                               : rows.count == 1  ? spring_softness(context, joint, pass)
                                                  : spring_softness(rows, pass);
     const Vec3 v = row_velocity(rows, a, b, pass) + joint.turning;
-    const Real most =
-        joint.is_spring() ? std::numeric_limits<Real>::infinity() : pass.push_velocity;
+    const Real most = fastest_push(joint, pass);
     const auto towards = [&](const Vec3 &error) {
         if (rows.count == 1)
             return Vec3{-softness.mass_scale * joint.mass[0][0] *
