@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""A page of what the lab finds: a section a problem, with its charts, its map, its scene file and the
-commands, and which method, dt, substeps and iterations are enough.
+"""Generates a page of benchmark results: for each problem its charts, stability map, scene file and
+commands, and the method, dt, substeps and iterations to use.
 
 usage: scenes/report.py [--program build/release/bin/plumb] [--out out/report] [--only NAME,…]
                         [--quick] [--with bullet,ode] [--publish]
 
-Writes OUT/README.md, and the tables and pictures beside it. All of it takes less than half an hour
-on two cores; --quick makes tiny charts, to see that it works. Interrupted (Ctrl-C), it writes the page
-of what is done, and the same command goes on from there: OUT/done.txt says which commands this
-program has finished, until all are. With --publish the whole page and its pictures go into
-scenes/report/, in place of those there. Exit code 1 when a command failed.
+Writes OUT/README.md, with tables and pictures beside it. A full run takes less than half an hour on
+two cores; --quick makes only tiny charts, as a smoke test. On Ctrl-C it writes the page as far as it
+got, and the same command resumes: OUT/done.txt lists what this program has finished, until all is.
+--publish also replaces scenes/report/ with the whole page and its pictures. Exit code 1 if a command
+failed.
 """
 
 import argparse
@@ -23,7 +23,7 @@ import subprocess
 import sys
 import time
 
-sys.dont_write_bytecode = True  # nothing beside the scenes
+sys.dont_write_bytecode = True  # no __pycache__ among the scenes
 
 from report_problems import PROBLEMS, chart_stem, commands_of, in_words
 
@@ -37,7 +37,7 @@ CHOSEN = re.compile(r"is (?P<method>\w+) with (?P<substeps>\S+) substeps?"
 
 
 def shown_path(path):
-    """From the repository, where it is in there."""
+    """Relative to the repository if inside it."""
     path = path.resolve()
     return str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
 
@@ -53,7 +53,7 @@ def substeps_of(row):
 
 
 def share_of_tolerance(row):
-    """The worst error of a run in units of its tolerance, and whose it is."""
+    """A run's worst error in units of its tolerance, and the expectation's name."""
     scaled = [(float(value), name.removesuffix(".scaled_error")) for name, value in row.items()
               if name.endswith(".scaled_error") and value]
     return max(scaled, default=(math.inf, ""))
@@ -64,7 +64,7 @@ class Interrupted(Exception):
 
 
 class Done:
-    """The commands that an interrupted report has finished, in a file: this program's alone."""
+    """Commands that an interrupted report has finished, kept in a file; only for the same program."""
 
     def __init__(self, path, program):
         stat = pathlib.Path(program).stat()
@@ -93,7 +93,7 @@ class Report:
         self.done = Done(self.out / "done.txt", self.program)
 
     def run(self, command, said_to=None):
-        """Runs a command of the program's; what it says goes into a file beside the page."""
+        """Runs one of the program's commands; its output goes into a file beside the page, if named."""
         shown = in_words(command)
         if shown in self.done.commands:
             return
@@ -102,12 +102,12 @@ class Report:
             with subprocess.Popen([self.program, *command], cwd=ROOT, stdout=said) as process:
                 try:
                     code = process.wait()
-                except KeyboardInterrupt:  # which it got, too, and keeps what it has
+                except KeyboardInterrupt:  # the program got it too, and saves its rows
                     process.wait()
                     raise Interrupted from None
         if code in (130, 143):
             raise Interrupted
-        if code in (0, 3):  # 3: all runs diverged, which is a result
+        if code in (0, 3):  # 3: all runs diverged, a valid result
             self.done.add(shown)
         else:
             self.failed.append(f"{shown}: exit code {code}")
@@ -128,23 +128,22 @@ class Report:
             self.say(f"![{what}]({name})", "")
 
     def cheapest_of_each_method(self, rows):
-        """Of what meets all that is expected; of single steps of what is hardly less true than the
-        truest. Returns their rows."""
+        """Among runs that meet all expectations and, in one-step charts, have an error at most 10 %
+        above the smallest. Returns their rows."""
         found = []
         single = "one_step_rms_m" in rows[0]
         fine = [row for row in rows if row["status"] == "fine"]
         least = min((float(row["error"]) for row in fine), default=0)
         if single:
-            self.say("The cheapest run of each method whose single steps are at most a tenth less true "
-                     f"than the truest, which are off by {1e3 * least:.3g} mm (root mean square), and "
-                     "which meets all that the scene expects:", "",
-                     "| method | dt | substeps | iterations | CPU time a simulated second "
-                     "| times real time | error of a step |", "|---|---|---|---|---|---|---|")
+            self.say("The cheapest run of each method that meets all expectations and has a "
+                     "single-step error (root mean square) at most 10 % above the smallest, "
+                     f"{1e3 * least:.3g} mm:", "",
+                     "| method | dt | substeps | iterations | CPU time per simulated second "
+                     "| real-time factor | single-step error |", "|---|---|---|---|---|---|---|")
         else:
-            self.say("The cheapest run of each method on the chart that meets all that the scene "
-                     "expects:", "",
-                     "| method | dt | substeps | iterations | CPU time a simulated second "
-                     "| times real time | worst error, of its tolerance |",
+            self.say("The cheapest run of each method on the chart that is accurate enough:", "",
+                     "| method | dt | substeps | iterations | CPU time per simulated second "
+                     "| real-time factor | worst error / tolerance |",
                      "|---|---|---|---|---|---|---|")
         for method in dict.fromkeys(row["method"] for row in rows):
             own = [row for row in rows if row["method"] == method]
@@ -167,14 +166,15 @@ class Report:
             elif all(row["status"] == "diverged" for row in own):
                 why = "diverges"
             else:
-                why = f"at best {error:.3g} ({worst})" if error < math.inf else "no result"
-                why = f"misses what is expected, {why} of its tolerance" if single else why
+                times = " times its tolerance" if single else ""
+                why = f"at best {error:.3g}{times} ({worst})" if error < math.inf else "no result"
+                why = f"misses an expectation, {why}" if single else why
             self.say(f"| {method} | – | – | – | – | – | none: {why} |")
         self.say("")
         return found
 
     def answer_of_chart(self, problem, enough):
-        """The cheapest dot, of a problem that is not tuned."""
+        """For a problem that is not tuned: the cheapest run on the chart."""
         if problem.notes:
             self.say(problem.notes, "")
         if not enough:
@@ -183,16 +183,16 @@ class Report:
         cost, dt = f"{1e3 * float(best['cpu_s_per_s']):.3g} ms", hertz(float(best["dt_s"]))
         error, worst = share_of_tolerance(best)
         error = f"{error:.2g}" + (f" ({worst})" if error else "")
-        self.say(f"**Enough, of these: {best['method']}, dt {dt}, substeps {substeps_of(best)}, "
-                 f"iterations {best['iterations']}**: {cost} of CPU time for a simulated second.", "")
+        self.say(f"**Answer, from the chart: {best['method']}, dt {dt}, substeps {substeps_of(best)}, "
+                 f"iterations {best['iterations']}**: {cost} of CPU time per simulated second.", "")
         self.summary.append([f"[{problem.kind}](#{anchor(problem.title)})", best["method"], dt,
                              substeps_of(best), best["iterations"], cost, error])
 
     def map_table(self, problem, rows):
-        """How many cells each method holds: a method's number, of how many."""
-        head = "| method | cells held | where not |"
+        """Returns the number of cells held by each method, and the number of cells."""
+        head = "| method | cells held | failures |"
         if problem.product:
-            head = f"| method | cells held | where not | {problem.product_name} of the limits found |"
+            head = f"| method | cells held | failures | {problem.product_name} at the limits found |"
         self.say(head, "|---" * (head.count("|") - 1) + "|")
         held = {}
         for method in dict.fromkeys(row["method"] for row in rows):
@@ -219,18 +219,18 @@ class Report:
         best = [method for method in held if held[method] == most]
         steps = [float(row["dt"]) for row in rows if row["kind"] == "cell"]
         span = f"{hertz(min(steps))} to {hertz(max(steps))}"
-        # Charted at the scene's own dt, with the substeps that the map has.
+        # From the chart, at the scene's own dt: the run with the map's substeps.
         cost = [float(row["cpu_s_per_s"]) for row in charted
                 if row["method"] == best[0] and substeps_of(row) == problem.mapped_substeps]
         cost = f"{1e3 * cost[0]:.3g} ms" if cost else "–"
-        self.say(f"**Enough: {' or '.join(best)}, any dt from {span}, substeps "
-                 f"{problem.mapped_substeps}, iterations 1**: {most} of {cells} cells held, and no other "
-                 "method of the map holds as many.", "")
+        self.say(f"**Answer: {' or '.join(best)}, any dt from {span}, substeps "
+                 f"{problem.mapped_substeps}, iterations 1**: {most} of {cells} cells held, more than "
+                 "any other method on the map.", "")
         self.summary.append([f"[{problem.kind}](#{anchor(problem.title)})", " or ".join(best), span,
                              problem.mapped_substeps, "1", cost, f"{most} of {cells} cells held"])
 
     def answer_of_tuning(self, problem, steps):
-        """Or of a chart of single steps: the rows of those that are hardly less true."""
+        """What was tuned or, given the rows of accurate enough single steps, the cheapest of these."""
         path = self.out / f"{problem.scene}.tune.txt"
         found = CHOSEN.search(path.read_text(encoding="utf-8")) if path.exists() else None
         if problem.notes:
@@ -242,25 +242,26 @@ class Report:
             cost = f"{1e3 * float(best['cpu_s_per_s']):.3g} ms"
             error = f"{1e3 * float(best['error']):.3g} mm"
             dt = hertz(float(best["dt_s"]))
-            self.say(f"**Enough: {best['method']}, dt {dt}, substeps {substeps_of(best)}, iterations "
-                     f"{best['iterations']}**: {cost} of CPU time for a simulated second, each step "
-                     f"off by {error}. Where it is enough that nothing sinks in or gains energy, "
-                     f"which is all that the scene expects, `plumb tune` finds {found['method']}, dt "
+            self.say(f"**Answer: {best['method']}, dt {dt}, substeps {substeps_of(best)}, iterations "
+                     f"{best['iterations']}**: {cost} of CPU time per simulated second, single-step "
+                     f"error {error}. For the scene's own expectations alone, little penetration at "
+                     f"the end and no energy gain, `plumb tune` finds {found['method']}, dt "
                      f"{found['dt']}, substeps {found['substeps'].replace('..', ' to ')}, iterations "
-                     f"{found['iterations']}, for {found['cost']} ms.", "")
+                     f"{found['iterations']}, at {found['cost']} ms.", "")
             self.summary.append([f"[{problem.kind}](#{anchor(problem.title)})", best["method"], dt,
-                                 substeps_of(best), best["iterations"], cost, error + " a step"])
+                                 substeps_of(best), best["iterations"], cost, error + " per step"])
             return
         iterations = found["iterations"] or "–"
-        error = found["error"] + (f" ({found['worst']})" if found["worst"] else "")
-        self.say(f"**Enough: {found['method']}, dt {found['dt']}, substeps "
+        worst = f" ({found['worst']})" if found["worst"] else ""
+        self.say(f"**Answer: {found['method']}, dt {found['dt']}, substeps "
                  f"{found['substeps'].replace('..', ' to ')}" +
                  (f", iterations {iterations}" if found["iterations"] else "") +
-                 f", in {found['precision']}**: {found['cost']} ms of CPU time for a simulated second, "
-                 f"worst error {error} of its tolerance. `plumb tune` found nothing cheaper.", "")
+                 f", in {found['precision']}**: {found['cost']} ms of CPU time per simulated second, "
+                 f"worst error {found['error']} of its tolerance{worst}. `plumb tune` found nothing "
+                 "cheaper.", "")
         self.summary.append([f"[{problem.kind}](#{anchor(problem.title)})", found["method"],
                              found["dt"], found["substeps"].replace("..", " to "), iterations,
-                             f"{found['cost']} ms", error])
+                             f"{found['cost']} ms", found["error"] + worst])
 
     def problem(self, problem):
         self.say(f"## {problem.title}", "", problem.asked, "")
@@ -272,8 +273,9 @@ class Report:
             if command[0] != "chart":
                 continue
             stem = chart_stem(problem.scene, command)
-            kind = ("error against dt" if "--convergence" in command else "error of a step against cost"
-                    if "--one-step" in command else "error against cost")
+            kind = ("error against dt" if "--convergence" in command else
+                    "single-step error against cost" if "--one-step" in command else
+                    "error against cost")
             self.picture(stem + ".png", f"{problem.title}: {kind}")
             if "--convergence" not in command:
                 charted = self.rows(stem + ".csv")
@@ -282,14 +284,14 @@ class Report:
                      shown_path(self.out / "engines")]
             self.run(other)
             commands.append(other)
-            self.picture(f"engines/{problem.scene}.png", f"{problem.title}: beside other engines")
+            self.picture(f"engines/{problem.scene}.png", f"{problem.title}: compared with other engines")
         enough = []
         if charted:
             enough = self.cheapest_of_each_method(charted)
             self.provenance = f"{charted[0]['machine']}; commit {charted[0]['commit']}"
         area = self.rows(f"{problem.scene}.map.csv") if problem.area and not self.quick else []
         if area:
-            self.picture(f"{problem.scene}.map.png", f"{problem.title}: where methods break")
+            self.picture(f"{problem.scene}.map.png", f"{problem.title}: stability map")
         if area and problem.tune is None:
             self.answer_of_map(problem, area, charted)
         elif not self.quick:
@@ -307,32 +309,32 @@ class Report:
 
     def page(self, seconds, cpu_seconds):
         head = ["# Which dt, which method, how many iterations?", "",
-                "Each problem runs by each method that can run it, at the scene's own dt, with 1 to "
-                "16 substeps where its command says nothing else; on the charts the numbers count "
-                "them. True enough is what meets all that the scene expects of itself, each within "
-                "its own tolerance: errors are in units of it, and the worst counts; on the charts, "
-                "where a scene expects but one thing, in that one's own unit. Costs are CPU time of "
-                "one thread for one simulated second, in float: ratios hold, milliseconds do not.",
+                "Each problem is run with every method that supports it, at the scene's own dt and 1 "
+                "to 16 substeps unless its command says otherwise; numbers on the charts are "
+                "substeps. A run is accurate enough if it meets all of the scene's expectations, "
+                "each within its own tolerance. Errors are in units of that tolerance, and the worst "
+                "counts; charts of a single expectation use its own unit. Costs are CPU time per "
+                "simulated second on one thread, in float: ratios hold, milliseconds do not.",
                 "",
-                "Enough is the cheapest that `plumb tune` finds among all methods, dt (double to a "
-                "quarter of the scene's), substeps, iterations (1, 2, 4, 8) and precisions, with a "
-                "fifth of each tolerance as a margin and from four starts, where its command says "
-                "nothing else; where there is a map and no tuning what holds the most cells, and of published "
-                "scenes the cheapest dot of the chart; for the heap the cheapest "
-                "whose steps are hardly less true than the truest. Dots that are close in cost may "
-                "change places from run to run.",
+                "The answer is the cheapest setting that `plumb tune` finds among all methods, dt "
+                "(twice to a quarter of the scene's), substeps, iterations (1, 2, 4, 8) and "
+                "precisions, with a margin of a fifth of each tolerance and from four starts, unless "
+                "the command says otherwise. With a map and no tuning, it is the method that holds "
+                "the most cells; for published scenes, the cheapest dot that is accurate enough; for "
+                "the heap, the cheapest with nearly the smallest single-step error. Dots close in "
+                "cost may swap places between runs.",
                 ""]
         if self.summary:
-            head += ["| kind of scene | method | dt | substeps | iterations | cost | worst error, "
-                     "of its tolerance |", "|---|---|---|---|---|---|---|"]
+            head += ["| kind of scene | method | dt | substeps | iterations | cost | worst error / "
+                     "tolerance |", "|---|---|---|---|---|---|---|"]
             head += ["| " + " | ".join(row) + " |" for row in self.summary]
             head += [""]
-        made = f"Made by `scenes/report.py --publish` on {time.strftime('%Y-%m-%d')}"
+        made = f"Generated by `scenes/report.py --publish` on {time.strftime('%Y-%m-%d')}"
         if seconds is not None:
             made += f" in {seconds / 60:.0f} min, {cpu_seconds / 60:.0f} min of CPU time"
         if self.provenance:
             made += f"; {self.provenance}"
-        head += [made + ". The commands of a section make it again, into `out/report`.", ""]
+        head += [made + ". Each section's commands reproduce it in `out/report`.", ""]
         return "\n".join(head + self.lines)
 
     def publish(self, text):
@@ -352,21 +354,22 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "build/release/bin/plumb"))
     parser.add_argument("--out", default=str(ROOT / "out/report"))
-    parser.add_argument("--only", default="", help="scenes, by name (all)")
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--with", dest="engines", default="", help="other engines, as of plumb chart")
+    parser.add_argument("--only", default="", help="only these scenes (default: all)")
+    parser.add_argument("--quick", action="store_true", help="tiny charts only")
+    parser.add_argument("--with", dest="engines", default="",
+                        help="also chart other engines, as plumb chart --with does")
     parser.add_argument("--publish", action="store_true",
-                        help="the whole page into scenes/report/, too")
+                        help="also replace scenes/report/")
     options = parser.parse_args()
     options.program = str(pathlib.Path(options.program).resolve())
     only = [name for name in options.only.split(",") if name]
     unknown = [name for name in only if name not in [p.scene for p in PROBLEMS]]
     if unknown:
-        parser.error(f"no problem {unknown[0]}; there are {', '.join(p.scene for p in PROBLEMS)}")
+        parser.error(f"unknown scene {unknown[0]}; there are {', '.join(p.scene for p in PROBLEMS)}")
     if options.publish and (only or options.quick or options.engines):
-        parser.error("what is published is the whole page: no --only, --quick or --with")
+        parser.error("--publish needs the whole page: drop --only, --quick and --with")
     if not pathlib.Path(options.program).is_file():
-        parser.error(f"there is no program {options.program}; ./plumb builds it")
+        parser.error(f"{options.program} does not exist; ./plumb builds it")
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
     report = Report(options)
     begin, problems = time.monotonic(), [p for p in PROBLEMS if not only or p.scene in only]
@@ -379,7 +382,7 @@ def main():
             del report.lines[first:]
             page.write_text(report.page(None, None), encoding="utf-8")
             print(f"interrupted: {number} of {len(problems)} problems are done and in {page}; the "
-                  "same command goes on", file=sys.stderr)
+                  "same command resumes", file=sys.stderr)
             return 130
     used = os.times()
     text = report.page(None if report.done.any_earlier else time.monotonic() - begin,

@@ -30,7 +30,7 @@ def main():
     assert titles == [problem.title for problem in report.PROBLEMS], titles
     for kind, anchor in re.findall(r"\| \[([^]]+)\]\(#([^)]+)\)", page):
         assert anchor in map(report.anchor, titles), kind
-    assert len(re.findall(r"^\*\*Enough(, of these)?: ", page, re.MULTILINE)) == len(titles)
+    assert len(re.findall(r"^\*\*Answer(, from the chart)?: ", page, re.MULTILINE)) == len(titles)
 
     commands = [command for problem in report.PROBLEMS for command in report.commands_of(problem)]
     shown = re.findall(r"^    (\./plumb .+)$", page, re.MULTILINE)

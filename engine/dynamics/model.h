@@ -3,6 +3,7 @@
 
 #include "engine/dynamics/attractor.h"
 #include "engine/dynamics/bodies/body.h"
+#include "engine/dynamics/joints/joined_bodies.h"
 #include "engine/dynamics/joints/joint.h"
 #include "engine/dynamics/particles/particles.h"
 
@@ -20,9 +21,7 @@ struct Model {
     std::vector<Attractor> attractors; // never removed
     std::vector<std::uint32_t> free_bodies; // descending
     std::vector<std::uint32_t> free_joints;
-    // Pairs of bodies that a joint keeps from colliding, (lesser << 32 | greater), ascending; one
-    // entry per such joint.
-    std::vector<std::uint64_t> joined;
+    JoinedBodies joined;
     std::vector<std::uint32_t> half_spaces; // colliders, ascending
     // Bit n: layer n. `layers`: some collider is on it; `heeded_layers`: some collider does not
     // ignore it.
@@ -41,9 +40,5 @@ struct Model {
     // Whether it ignores every layer in use, and so collides with no body.
     bool ignores_all(const Filter &filter) const { return (~filter.ignores & layers) == 0; }
 };
-
-inline std::uint64_t body_pair(std::uint32_t a, std::uint32_t b) {
-    return a < b ? (std::uint64_t{a} << 32 | b) : (std::uint64_t{b} << 32 | a);
-}
 
 } // namespace plumb::inline PLUMB_PRECISION

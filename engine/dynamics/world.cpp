@@ -398,10 +398,7 @@ JointId World::add_joint(const JointDef &def) {
         if (body != Joint::world)
             wake(body);
     ++model.alive_joints;
-    if (!def.collide_connected && a != Joint::world && b != Joint::world) {
-        const std::uint64_t key = body_pair(a, b);
-        model.joined.insert(std::ranges::upper_bound(model.joined, key), key);
-    }
+    model.joined.add(joint, slot, model.bodies.size());
     return {slot, joint.generation};
 }
 
@@ -412,8 +409,7 @@ void World::remove_joint(JointId id) {
     for (const std::uint32_t body : {joint.a, joint.b})
         if (body != Joint::world)
             wake(body);
-    if (!joint.collide_connected && joint.a != Joint::world && joint.b != Joint::world)
-        model.joined.erase(std::ranges::lower_bound(model.joined, body_pair(joint.a, joint.b)));
+    model.joined.remove(model.joints, id.index);
     const std::uint32_t next_generation = joint.generation + 1;
     joint = Joint{};
     joint.generation = next_generation;

@@ -97,7 +97,8 @@ const JointTypeInfo *find(JointType type) {
         static const JointTypeInfo info{
             type,
             "fixed",
-            "holds two bodies together as if they were one",
+            "holds two bodies together as if they were one; what rigid joints of this type without "
+            "`break_force` connect, through however many, does not collide with itself",
             "a small cross",
             Anchors::together,
             Frames::whole,
@@ -139,7 +140,7 @@ const std::vector<JointKey> &common_joint_keys() {
         {"break_force", &JointDesc::break_force, "N", not_negative, "",
          "it breaks when holding its anchors would take more", "0: never"},
         {"collide_connected", &JointDesc::collide_connected, "", yes_or_no, "",
-         "whether the two bodies also collide with each other", "false"},
+         "whether the two bodies also collide with each other while it holds", "false"},
         {"broken", &JointDesc::broken, "", yes_or_no, "", "whether it has broken; for saved scenes",
          "false"}};
     return keys;

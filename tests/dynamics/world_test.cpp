@@ -4,6 +4,8 @@
 
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
@@ -222,6 +224,68 @@ TEST(World, JoinedBodiesCollideOnlyWhenAsked) {
         world.step(nullptr);
         EXPECT_EQ(world.report().pairs, 1U);
     }
+}
+
+// A row of five balls, each of which overlaps the next two.
+TEST(World, WeldedBodiesCollideNoMoreThanTheChildrenOfOneBody) {
+    World world("soft_step", weightless(settings_for("soft_step")));
+    std::vector<BodyId> balls;
+    for (int i = 0; i < 5; ++i)
+        balls.push_back(world.add_body(dynamic_body(ball(0.5), 1, V{0.4 * i, 0, 0})));
+    const auto weld = [&](std::size_t a, std::size_t b, double frequency, double break_force) {
+        JointDef joint;
+        joint.type = JointType::fixed;
+        joint.a = balls[a];
+        joint.b = balls[b];
+        joint.anchor_a_local = narrow(V{0.4 * (double(b) - double(a)), 0, 0});
+        joint.frequency = Real(frequency);
+        joint.break_force = Real(break_force);
+        return world.add_joint(joint);
+    };
+    const auto pairs = [&] {
+        world.step(nullptr);
+        return world.report().pairs;
+    };
+    EXPECT_EQ(pairs(), 7U); // four neighbours, three next but one
+    // In no order, so that sets are joined to sets.
+    weld(3, 4, 0, 0);
+    weld(0, 1, 0, 0);
+    const JointId middle = weld(2, 1, 0, 0);
+    EXPECT_EQ(pairs(), 3U); // 2-3, 1-3, 2-4
+    const JointId last = weld(3, 2, 0, 0);
+    EXPECT_EQ(pairs(), 0U);
+    world.remove_joint(middle);
+    EXPECT_EQ(pairs(), 3U); // 1-2, 0-2, 1-3
+    // What bends or may break holds its own two bodies apart, and no others.
+    for (const auto &[frequency, break_force] : {std::pair{5.0, 0.0}, std::pair{0.0, 1e6}}) {
+        const JointId loose = weld(2, 1, frequency, break_force);
+        EXPECT_EQ(pairs(), 2U);
+        world.remove_joint(loose);
+    }
+    world.remove_body(balls[3]); // and its joints
+    EXPECT_EQ(pairs(), 3U);      // 1-2, 0-2, 2-4
+    EXPECT_FALSE(world.is_alive(last));
+    // The next body takes the free place, not its welds.
+    world.add_body(dynamic_body(ball(0.5), 1, V{2.0, 0, 0}));
+    EXPECT_EQ(pairs(), 4U);
+}
+
+TEST(World, WhatABrokenJointHeldCollides) {
+    World world("soft_step", settings_for("soft_step"));
+    world.add_body(ground(0.5, 0));
+    const BodyId below = world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 0.5, 0}));
+    const BodyId above = world.add_body(dynamic_body(block(V{0.5}), 1, V{0, 1.6, 0}));
+    JointDef joint;
+    joint.type = JointType::fixed;
+    joint.a = below;
+    joint.b = above;
+    joint.anchor_a_local = narrow(V{0, 1.1, 0});
+    joint.break_force = Real(1); // below the weight of what it carries
+    world.add_joint(joint);
+    for (int i = 0; i < 120; ++i)
+        world.step(nullptr);
+    EXPECT_TRUE(world.state().joints[0].broken);
+    EXPECT_NEAR(position_of(world, above).y, 1.5, 1e-3); // on the other, not in it
 }
 
 TEST(World, MaterialsMix) {

@@ -118,6 +118,19 @@ TEST(SceneWarnings, BodiesThatDoNotCollideMayOverlap) {
                               "body_b = \"b\"\nanchor = [0.25, 0, 0]\n";
     EXPECT_EQ(warnings(a + b + joint), None{});
     EXPECT_EQ(warnings(a + b + joint + "collide_connected = true\n").size(), 1U);
+    EXPECT_EQ(warnings(a + b + joint + "broken = true\n").size(), 1U);
+    // The ends of a row of rigid welds are one body, too.
+    const auto row = [&](const std::string &key) {
+        const auto weld = [](const std::string &from) {
+            return "[[joint]]\nname = \"" + from + " to c\"\ntype = \"fixed\"\nbody_a = \"" + from +
+                   "\"\nbody_b = \"c\"\nanchor = [0.25, 0, 0]\n";
+        };
+        const std::string c = body("c", sphere + "position = [0.25, 0, 0]");
+        return warnings(a + b + c + weld("a") + weld("b") + key).size();
+    };
+    EXPECT_EQ(row(""), 0U);
+    EXPECT_EQ(row("frequency = 5\n"), 1U);
+    EXPECT_EQ(row("break_force = 10\n"), 1U);
     EXPECT_EQ(
         warnings(body("a", sphere + "kind = \"static\"") + body("b", sphere + "kind = \"static\"")),
         None{});

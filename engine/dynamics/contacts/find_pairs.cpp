@@ -204,8 +204,7 @@ void World::add_candidate(std::uint32_t i, std::uint32_t j, std::vector<Candidat
     const Collider &b = model_->colliders[j];
     if (!is_asked(a.body) && !is_asked(b.body))
         return;
-    if (!model_->joined.empty() &&
-        std::ranges::binary_search(model_->joined, body_pair(a.body, b.body)))
+    if (!model_->joined.may_collide(a.body, b.body, state_.joints))
         return;
     Candidate candidate{{a.body, b.body, a.child, b.child}, i, j};
     candidate.margin = contact_margin(candidate);

@@ -2,10 +2,10 @@
 // many substeps as its own loads ask for.
 #pragma once
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/core/precision.h"
 
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -54,13 +54,12 @@ struct IslandGroup {
     }
 };
 
-// The islands of a step, as trees of bodies (union-find). Kinematic bodies join what they touch,
-// static ones do not.
-struct Islands {
-    std::vector<std::uint32_t> parent; // per body; a root's is itself
-    struct Needs {                     // per root's island
-        int work = 0;                  // contacts and joints
-        double mass = 0;               // kg
+// The islands of a step, as sets of bodies. Kinematic bodies join what they touch, static ones do
+// not.
+struct Islands : DisjointSets {
+    struct Needs {       // per root's island
+        int work = 0;    // contacts and joints
+        double mass = 0; // kg
         int wanted = 0;
         int before = 0; // the most substeps that any of its bodies took in the last step
         bool rests = true;
@@ -72,26 +71,6 @@ struct Islands {
     };
     std::vector<Needs> needs;
     std::vector<std::uint32_t> roots; // of islands that have contacts or joints
-
-    // Every body on its own.
-    void start(std::size_t bodies) {
-        parent.resize(bodies);
-        std::iota(parent.begin(), parent.end(), std::uint32_t{0});
-    }
-    std::uint32_t root_of(std::uint32_t body) {
-        while (parent[body] != body)
-            body = parent[body] = parent[parent[body]];
-        return body;
-    }
-    // The lesser root wins, so that the roots depend only on which bodies are joined.
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = root_of(a);
-        b = root_of(b);
-        if (a < b)
-            parent[b] = a;
-        else
-            parent[a] = b;
-    }
 };
 
 // The least of 1 to 8, 10, 12, 14, 16, 20, ... (three binary digits) that is at least n: few

@@ -1,5 +1,6 @@
 #include "engine/scene/file/warnings.h"
 
+#include "engine/core/disjoint_sets.h"
 #include "engine/dynamics/method_info.h"
 #include "engine/scene/file/number.h"
 #include "engine/scene/joint_type.h"
@@ -146,13 +147,18 @@ class Checker {
     }
 
     void check_joints() {
+        welds_.start(scene_.bodies.size());
         for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
             const JointDesc &joint = scene_.joints[i];
             const FilePosition &at = positions_.joints[i];
             const std::optional<std::size_t> a = index(joint.body_a);
             const std::optional<std::size_t> b = index(joint.body_b);
-            if (a && b && !joint.collide_connected)
+            if (a && b && !joint.collide_connected && !joint.broken) {
                 exempt_.emplace_back(std::minmax(*a, *b));
+                if (joint.type == JointType::fixed && joint.frequency == 0 &&
+                    joint.break_force == 0)
+                    welds_.join(static_cast<std::uint32_t>(*a), static_cast<std::uint32_t>(*b));
+            }
             if (!(a && is_dynamic(*a)) && !(b && is_dynamic(*b)))
                 idle_joints_.add(at,
                                  "joint " + in_quotes(joint.name) +
@@ -223,7 +229,9 @@ class Checker {
             std::swap(a, b);
         const BodyDesc &body_a = scene_.bodies[a];
         const BodyDesc &body_b = scene_.bodies[b];
-        if (std::binary_search(exempt_.begin(), exempt_.end(), std::pair(a, b)))
+        if (std::binary_search(exempt_.begin(), exempt_.end(), std::pair(a, b)) ||
+            welds_.root_of(static_cast<std::uint32_t>(a)) ==
+                welds_.root_of(static_cast<std::uint32_t>(b)))
             return;
         const double limit = overlap_limit * std::min(widths_[a], widths_[b]);
         const std::optional<double> depth = start_overlaps_.deepest(body_a, body_b, limit);
@@ -375,6 +383,7 @@ class Checker {
     std::vector<BoundsDesc> bounds_;
     StartOverlaps start_overlaps_;
     std::vector<std::pair<std::size_t, std::size_t>> exempt_; // sorted
+    DisjointSets welds_; // bodies that unbreakable fixed joints make one
 
     Group far_away_{"such bodies"};
     Group overlaps_{"overlaps"};
