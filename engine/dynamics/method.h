@@ -34,6 +34,7 @@ struct SolverScratch {
     std::vector<std::uint32_t> partners; // per body: see find_partners
     ContactSchedule schedule;
     std::vector<JointConstraint> joints;
+    std::vector<std::uint8_t> braced;        // per body; empty: none is (bracing.h)
     std::vector<std::uint32_t> first_blocks; // per active joint and the grab: index into `joints`
     JointSchedule joint_schedule;
     JointSystem *joint_system = nullptr;         // of the group being advanced

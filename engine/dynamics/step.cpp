@@ -345,8 +345,8 @@ void World::gather_memory() {
         for (std::size_t i = begin; i < end; ++i) {
             Contact &contact = s.contacts[i];
             if (contact.turns() && !contact.sensor)
-                express_anew(contact, contact.turn(s.bodies[contact.key.a].rotation,
-                                                   s.bodies[contact.key.b].rotation));
+                express_anew(contact,
+                             contact.turn(s.bodies[contact.key.a], s.bodies[contact.key.b]));
             s.remembered[i] = remembered_points(contact);
         }
     });

@@ -187,6 +187,7 @@ class World {
     bool moves(std::uint32_t body) const;
     bool holds(std::uint32_t joint) const;
     void find_islands();
+    void find_braced();
     void gather_needs();
     void guess_needs();
     int chosen_substeps(const Islands::Needs &needs, int budget) const;

@@ -207,6 +207,23 @@ bool World::is_crowded(std::uint32_t body) const {
     return pace.substeps == settings_.substeps && pace.wanted > pace.substeps;
 }
 
+Quat Contact::turn(const Motion &a, const Motion &b) const {
+    if (!(rounding_a > Real(0)) || !(rounding_b > Real(0)))
+        return turns_with_b ? b.rotation * glm::conjugate(origin.rotation_b)
+                            : a.rotation * glm::conjugate(origin.rotation_a);
+    Vec3 line{Real(0)};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(manifold.count); ++k)
+        line += (b.position - a.position) +
+                (b.rotation * anchors[k].core_b - a.rotation * anchors[k].core_a);
+    const Real length = glm::length(line);
+    const Real along = glm::dot(line, manifold.normal);
+    if (!(along >
+          Real(0.5) * length)) // deep inside each other, the cores have no line between them
+        return identity_rotation;
+    const Vec3 across = glm::cross(manifold.normal, line);
+    return glm::normalize(Quat(length + along, across.x, across.y, across.z));
+}
+
 Real Contact::way_round(bool of_a, const Vec3 &turn) const {
     Real most = Real(0);
     for (int k = 0; k < manifold.count; ++k) {

@@ -76,6 +76,7 @@ struct Contact {
     bool is_new = false;           // nothing is remembered of it
     Moment moment = Moment::start; // at whose poses its normal and anchors were found
     bool is_turning = false;       // turns through the substeps with a kinematic body
+    bool is_braced = false;        // acts at one place on both bodies and turns (bracing.h)
     Rolling rolling = Rolling::straight;
     bool turns_with_b = false; // if it turns; else with a
     Manifold manifold;
@@ -88,12 +89,10 @@ struct Contact {
     // the normal and along the two vectors of tangent_basis(normal).
     std::array<Vec3, 4> impulses{};
 
-    bool turns() const { return is_turning || rolling == Rolling::on_face; }
-    // How far its normal has turned since it was found, with the bodies at these rotations.
-    Quat turn(const Quat &rotation_a, const Quat &rotation_b) const {
-        return turns_with_b ? rotation_b * glm::conjugate(origin.rotation_b)
-                            : rotation_a * glm::conjugate(origin.rotation_a);
-    }
+    bool turns() const { return is_turning || is_braced || rolling == Rolling::on_face; }
+    // How far its normal has turned since it was found, with the bodies at these poses: with one of
+    // them, or, between two round surfaces, with the line between their cores.
+    Quat turn(const Motion &a, const Motion &b) const;
 
     // How far a turn of one body (in its frame) moves a point's core around the body's middle at
     // most, as a share of its arm.

@@ -3,6 +3,7 @@
 #include "engine/dynamics/colours.h"
 #include "engine/dynamics/contacts/approach.h"
 #include "engine/dynamics/contacts/friction_patch.h"
+#include "engine/dynamics/islands/bracing.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
@@ -173,11 +174,13 @@ void set_start_separation(const StepContext &context, ContactBlock &block, std::
 // that normal at the start of the step; the bodies' motion since then is added to it.
 void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
     const Contact &contact = context.contacts[block.contacts[lane]];
+    if (contact.is_braced) // a load is no rider: halfway it would be a couple
+        t = Real(0);
     const Motion a = ahead(context.bodies[contact.key.a], t);
     const Motion b = ahead(context.bodies[contact.key.b], t);
     const bool a_moves = is_dynamic(context, contact.key.a);
     const bool b_moves = is_dynamic(context, contact.key.b);
-    const Quat turn = contact.turn(a.rotation, b.rotation);
+    const Quat turn = contact.turn(a, b);
     const Vec3 n = turn * contact.manifold.normal;
     set(block.normal, lane, n);
     set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
@@ -189,11 +192,17 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
         const Vec3 half = Real(0.5) * glm::dot((b.position - a.position) + (on_b - on_a), n) * n;
         Vec3 arm_a = on_a + (Real(1) + side) * half;
         Vec3 arm_b = on_b - (Real(1) - side) * half;
-        if (contact.rolling == Rolling::on_face &&
-            contact.turns_with_b) // the rolling body takes the point along
+        if (contact.is_braced) {
+            const Vec3 shift = half_way((b.position - a.position) + (arm_b - arm_a), arm_a, arm_b,
+                                        contacts_meet_within);
+            arm_a += shift;
+            arm_b -= shift;
+        } else if (contact.rolling == Rolling::on_face &&
+                   contact.turns_with_b) { // the rolling body takes the point along
             arm_b = arm_a + (a.position - b.position);
-        else if (contact.rolling == Rolling::on_face)
+        } else if (contact.rolling == Rolling::on_face) {
             arm_a = arm_b + (b.position - a.position);
+        }
         set(block.points[k].r_a, lane, arm_a);
         set(block.points[k].r_b, lane, arm_b);
         set_start_separation(context, block, lane, k);

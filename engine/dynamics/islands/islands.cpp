@@ -1,5 +1,6 @@
 #include "engine/dynamics/islands/islands.h"
 
+#include "engine/core/renew.h"
 #include "engine/dynamics/world.h"
 
 #include <algorithm>
@@ -77,6 +78,50 @@ void World::find_islands() {
     }
     if (model_->has_particles())
         join_particles();
+}
+
+// Finds the braced islands and their contacts.
+void World::find_braced() {
+    Scratch &s = scratch_;
+    std::vector<std::uint8_t> &braced = s.solver.braced;
+    braced.clear();
+    if (model_->alive_joints == 0 || !method_->info.looks_ahead)
+        return;
+    const auto is_dynamic = [&](std::uint32_t body) {
+        return body != Joint::world && model_->bodies[body].kind == BodyKind::dynamic;
+    };
+    renew(s.islands.bracing, s.islands.parent.size());
+    const auto bracing_of = [&](std::uint32_t body) -> Islands::Bracing & {
+        return s.islands.bracing[s.islands.root_of(body)];
+    };
+    for (const ContactEnds &contact : s.ends)
+        if (!contact.is_sensor && is_dynamic(contact.a) && is_dynamic(contact.b))
+            ++bracing_of(contact.a).loops;
+    for (std::uint32_t i = 0; i < model_->joints.size(); ++i) {
+        const Joint &joint = model_->joints[i];
+        if (!holds(i))
+            continue;
+        if (is_dynamic(joint.a) && is_dynamic(joint.b)) {
+            ++bracing_of(joint.a).loops;
+            bracing_of(joint.a).has_joints = true;
+        } else if (is_dynamic(joint.a) || is_dynamic(joint.b)) {
+            ++bracing_of(is_dynamic(joint.a) ? joint.a : joint.b).hangs_from;
+        }
+    }
+    for (const std::uint32_t i : s.moving)
+        if (is_dynamic(i))
+            --bracing_of(i).loops;
+    renew(braced, model_->bodies.size());
+    for (const std::uint32_t i : s.moving)
+        braced[i] = is_dynamic(i) && bracing_of(i).is_braced() ? 1 : 0;
+    for (std::size_t i = 0; i < s.contacts.size(); ++i) {
+        Contact &contact = s.contacts[i];
+        contact.is_braced =
+            braced[contact.key.a] != 0 && braced[contact.key.b] != 0 && !contact.sensor;
+        if (contact.is_braced)
+            contact.turns_with_b = contact.rounding_b == Real(0);
+        s.ends[i].turns = contact.turns();
+    }
 }
 
 std::uint32_t World::island_body(std::uint32_t a, std::uint32_t b) const {
@@ -206,8 +251,10 @@ void World::choose_substeps() {
     }
     const bool chooses = chooses_substeps();
     s.solver.has_spring_rates = chooses && model_->has_particles(); // by gather_needs
-    if (chooses) {
+    if (chooses || model_->alive_joints > 0)
         find_islands();
+    find_braced();
+    if (chooses) {
         gather_needs();
         guess_needs();
         share_budget();

@@ -71,6 +71,15 @@ struct Islands : DisjointSets {
     };
     std::vector<Needs> needs;
     std::vector<std::uint32_t> roots; // of islands that have contacts or joints
+
+    // See bracing.h.
+    struct Bracing {        // per root's island
+        int loops = 0;      // contacts and joints, less the bodies; below 0: none
+        int hangs_from = 0; // places: a bridge is under load from outside
+        bool has_joints = false;
+        bool is_braced() const { return has_joints && loops >= 0 && hangs_from < 2; }
+    };
+    std::vector<Bracing> bracing;
 };
 
 // The least of 1 to 8, 10, 12, 14, 16, 20, ... (three binary digits) that is at least n: few

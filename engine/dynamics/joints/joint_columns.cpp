@@ -93,6 +93,7 @@ void fill_lane(StepContext &context, JointBlock &block, std::uint32_t index) {
     fill_end(context, block.a, lane, joint.a, joint.moves_a, of.anchor_a_local, joint.rows.r_a);
     fill_end(context, block.b, lane, joint.b, joint.moves_b, of.anchor_b_local, joint.rows.r_b);
     set(block.error, lane, joint.rows.error);
+    block.meeting.lanes[lane] = is_braced(context, joint) ? Real(0.5) : Real(0);
     set(block.impulse, lane, joint.impulse);
 }
 

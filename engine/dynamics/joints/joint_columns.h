@@ -35,6 +35,7 @@ struct JointBlock {
     std::uint32_t joints[column_lanes]; // NOLINT(modernize-avoid-c-arrays): among those prepared
     End a, b;
     Columns3 error;
+    Column meeting;      // share of the error by which each end moves: 1/2 if braced, else 0
     ColumnsMatrix mass;  // inverse of K
     Columns3 impulse;    // accumulated in this substep, on b (N s)
     Columns3 remembered; // from the previous substep

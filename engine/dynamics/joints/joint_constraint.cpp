@@ -1,5 +1,6 @@
 #include "engine/dynamics/joints/joint_constraint.h"
 
+#include "engine/dynamics/islands/bracing.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/joints/joint_impulse.h"
 #include "engine/dynamics/method.h"
@@ -71,6 +72,16 @@ void emit(StepContext &context, std::size_t k, RowWriter &rows) {
     }
 }
 
+// Makes a joint of a braced island act on both its bodies at one place. Springs do so anyway.
+void act_at_one_place(const StepContext &context, JointConstraint &joint) {
+    RowBlock &rows = joint.rows;
+    if (rows.kind != RowKind::point || joint.is_spring() || !is_braced(context, joint))
+        return;
+    const Vec3 half = half_way(rows.error, rows.r_a, rows.r_b, joints_meet_within);
+    rows.r_a += half;
+    rows.r_b -= half;
+}
+
 void weigh_alone(StepContext &context, JointConstraint &joint) {
     if (!joint.is_held && !joint.in_columns && !joint.is_stiff_as_joined())
         joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
@@ -110,6 +121,11 @@ Real spring_warm_start(const RowBlock &rows, Real h) {
 
 } // namespace
 
+bool is_braced(const StepContext &context, const JointConstraint &joint) {
+    const std::vector<std::uint8_t> &braced = context.scratch.braced;
+    return !braced.empty() && joint.moves_a && joint.moves_b && braced[joint.a] != 0;
+}
+
 std::size_t joint_count(const StepContext &context) {
     return context.active.joints.size() + (context.active.holds_grab ? 1 : 0);
 }
@@ -144,6 +160,7 @@ void prepare_joints(StepContext &context) {
             block.moves_a = is_dynamic(block.a);
             block.moves_b = is_dynamic(block.b);
             block.impulse = memory_of(context, block);
+            act_at_one_place(context, block);
         }
         find_limits(blocks_of(context, k));
     }
@@ -152,9 +169,11 @@ void prepare_joints(StepContext &context) {
 void refresh_joint(StepContext &context, std::size_t k) {
     SameBlocks rows(context.scratch.joints.data() + context.scratch.first_blocks[k]);
     emit(context, k, rows);
-    for (JointConstraint &joint : blocks_of(context, k))
+    for (JointConstraint &joint : blocks_of(context, k)) {
+        act_at_one_place(context, joint);
         if (joint.bearing != BearingLimit::none)
             add_limit_row(joint);
+    }
 }
 
 void refresh_joints(StepContext &context) {

@@ -88,6 +88,9 @@ void follow_loads(StepContext &context, Real h);
 // Blocks of all joints that are alive and not broken, in order, then of the grab, at the present
 // poses.
 void prepare_joints(StepContext &context);
+// Whether both ends of a joint act at one place: whether it is in a braced island
+// (bracing.h).
+bool is_braced(const StepContext &context, const JointConstraint &joint);
 // Active joints and the grab.
 std::size_t joint_count(const StepContext &context);
 // The blocks of the k-th of these; may be empty.

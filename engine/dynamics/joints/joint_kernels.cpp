@@ -1,6 +1,7 @@
 // soft_step's work on a block of ball joints. Compiled once for each instruction set, by including
 // itself. Each lane performs the operations of the functions for single joints in the same order,
 // with bit-identical results.
+#include "engine/dynamics/islands/bracing.h"
 #include "engine/dynamics/joints/joint_columns.h"
 
 #include "engine/dynamics/joints/joint_constraint.h"
@@ -227,24 +228,35 @@ void weigh_impl(JointBlock &block, const BodyReals &bodies) {
         weigh_lanes(block, bodies, lane);
 }
 
-// emit_point (joint_rows.h) at the present poses.
-HWY_INLINE Vector refresh_end(JointBlock::End &end, const BodyReals &bodies, std::size_t lane) {
+HWY_INLINE Vector present_arm(const JointBlock::End &end, const BodyReals &bodies,
+                              std::size_t lane) {
     const auto body = is_body(end, lane);
     const Lanes w = hn::GatherIndex(tag, bodies.bodies + bodies.rotation_w, load(end.body, lane));
-    const Vector arm = rotated(gather_end(end, bodies, bodies.rotation, lane),
-                               hn::IfThenElse(body, w, all(Real(1))), load(end.anchor, lane));
-    store(arm, end.arm, lane);
-    return arm;
+    return rotated(gather_end(end, bodies, bodies.rotation, lane),
+                   hn::IfThenElse(body, w, all(Real(1))), load(end.anchor, lane));
 }
 
+// emit_point (joint_rows.h) at the present poses, and act_at_one_place (joint_constraint.cpp).
 void refresh_impl(JointBlock &block, const BodyReals &bodies) {
     block.left = 0;
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
-        const Vector arm_a = refresh_end(block.a, bodies, lane);
-        const Vector arm_b = refresh_end(block.b, bodies, lane);
+        const Vector arm_a = present_arm(block.a, bodies, lane);
+        const Vector arm_b = present_arm(block.b, bodies, lane);
         const Vector between = minus(gather_end(block.b, bodies, bodies.position, lane),
                                      gather_end(block.a, bodies, bodies.position, lane));
-        store(plus(between, minus(arm_b, arm_a)), block.error, lane);
+        const Vector error = plus(between, minus(arm_b, arm_a));
+        // half_way (bracing.h)
+        const Lanes squared = dot(error, error);
+        const Lanes most =
+            hn::Mul(all(joints_meet_within), hn::Add(dot(arm_a, arm_a), dot(arm_b, arm_b)));
+        const auto is_far = hn::Gt(squared, most);
+        const Lanes one = all(Real(1));
+        const Lanes share =
+            hn::IfThenElse(is_far, hn::Div(most, hn::IfThenElse(is_far, squared, one)), one);
+        const Vector half = times(hn::Mul(load(block.meeting, lane), share), error);
+        store(plus(arm_a, half), block.a.arm, lane);
+        store(minus(arm_b, half), block.b.arm, lane);
+        store(error, block.error, lane);
         weigh_lanes(block, bodies, lane);
     }
 }
