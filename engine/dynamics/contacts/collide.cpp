@@ -217,8 +217,8 @@ Quat Contact::turn(const Motion &a, const Motion &b) const {
                 (b.rotation * anchors[k].core_b - a.rotation * anchors[k].core_a);
     const Real length = glm::length(line);
     const Real along = glm::dot(line, manifold.normal);
-    if (!(along >
-          Real(0.5) * length)) // deep inside each other, the cores have no line between them
+    // Deep inside each other, the cores have no line between them.
+    if (!(along > Real(0.5) * length))
         return identity_rotation;
     const Vec3 across = glm::cross(manifold.normal, line);
     return glm::normalize(Quat(length + along, across.x, across.y, across.z));

@@ -84,9 +84,6 @@ void World::find_islands() {
 void World::find_braced() {
     Scratch &s = scratch_;
     std::vector<std::uint8_t> &braced = s.solver.braced;
-    braced.clear();
-    if (model_->alive_joints == 0 || !method_->info.looks_ahead)
-        return;
     const auto is_dynamic = [&](std::uint32_t body) {
         return body != Joint::world && model_->bodies[body].kind == BodyKind::dynamic;
     };
@@ -105,7 +102,11 @@ void World::find_braced() {
             ++bracing_of(joint.a).loops;
             bracing_of(joint.a).has_joints = true;
         } else if (is_dynamic(joint.a) || is_dynamic(joint.b)) {
-            ++bracing_of(is_dynamic(joint.a) ? joint.a : joint.b).hangs_from;
+            const std::uint32_t body = is_dynamic(joint.a) ? joint.a : joint.b;
+            Islands::Bracing &bracing = bracing_of(body);
+            bracing.is_bridge =
+                bracing.is_bridge || (bracing.hung != UINT32_MAX && bracing.hung != body);
+            bracing.hung = body;
         }
     }
     for (const std::uint32_t i : s.moving)
@@ -251,9 +252,12 @@ void World::choose_substeps() {
     }
     const bool chooses = chooses_substeps();
     s.solver.has_spring_rates = chooses && model_->has_particles(); // by gather_needs
-    if (chooses || model_->alive_joints > 0)
+    const bool may_be_braced = method_->info.looks_ahead && model_->alive_joints > 0;
+    if (chooses || may_be_braced)
         find_islands();
-    find_braced();
+    s.solver.braced.clear();
+    if (may_be_braced)
+        find_braced();
     if (chooses) {
         gather_needs();
         guess_needs();

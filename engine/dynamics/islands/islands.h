@@ -73,11 +73,12 @@ struct Islands : DisjointSets {
     std::vector<std::uint32_t> roots; // of islands that have contacts or joints
 
     // See bracing.h.
-    struct Bracing {        // per root's island
-        int loops = 0;      // contacts and joints, less the bodies; below 0: none
-        int hangs_from = 0; // places: a bridge is under load from outside
+    struct Bracing {   // per root's island
+        int loops = 0; // contacts and joints, less the bodies; below 0: none
         bool has_joints = false;
-        bool is_braced() const { return has_joints && loops >= 0 && hangs_from < 2; }
+        std::uint32_t hung = UINT32_MAX; // the body by which it hangs, if any
+        bool is_bridge = false;          // hangs by several: under load from outside
+        bool is_braced() const { return has_joints && loops >= 0 && !is_bridge; }
     };
     std::vector<Bracing> bracing;
 };
