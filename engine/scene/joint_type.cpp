@@ -138,7 +138,9 @@ const std::vector<JointKey> &common_joint_keys() {
         {"damping_ratio", &JointDesc::damping_ratio, "", not_negative, "frequency",
          "of that spring: at 1 or more it settles without oscillating", "1"},
         {"break_force", &JointDesc::break_force, "N", not_negative, "",
-         "it breaks when holding its anchors would take more", "0: never"},
+         "it breaks when holding its anchors takes more in any substep; a blow counts as "
+         "spread over its substep",
+         "0: never"},
         {"collide_connected", &JointDesc::collide_connected, "", yes_or_no, "",
          "whether the two bodies also collide with each other while it holds", "false"},
         {"broken", &JointDesc::broken, "", yes_or_no, "", "whether it has broken; for saved scenes",

@@ -288,6 +288,32 @@ TEST(World, WhatABrokenJointHeldCollides) {
     EXPECT_NEAR(position_of(world, above).y, 1.5, 1e-3); // on the other, not in it
 }
 
+// Two bricks of 1 kg, one joined above the other, fall 2 m: the joint must turn the upper one's m v
+// round, to restitution times that, which takes at least 376 N averaged over a step.
+TEST(World, BlowsBreakJoints) {
+    for (const JointType type : {JointType::fixed, JointType::ball})
+        for (const double restitution : {0.0, 0.1, 0.5, 1.0})
+            for (const double force : {1.0, 100.0, 300.0, 1e6}) {
+                World world("soft_step", settings_for("soft_step"));
+                world.add_body(ground(0.5, restitution));
+                const auto brick = [&](double y) {
+                    return world.add_body(with_material(dynamic_body(block(V{0.1}), 1, V{0, y, 0}),
+                                                        0.5, restitution));
+                };
+                JointDef joint;
+                joint.type = type;
+                joint.a = brick(2.1);
+                joint.b = brick(2.5);
+                joint.anchor_a_local = narrow(V{0, 0.2, 0});
+                joint.anchor_b_local = narrow(V{0, -0.2, 0});
+                joint.break_force = Real(force);
+                world.add_joint(joint);
+                run(world, 45);
+                EXPECT_EQ(world.state().joints[0].broken, force < 1e6)
+                    << restitution << ", " << force;
+            }
+}
+
 TEST(World, MaterialsMix) {
     World world = plain_world();
     world.add_body(ground(0.9, 0.25));

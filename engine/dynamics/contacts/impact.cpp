@@ -162,6 +162,7 @@ class Answers {
             for (std::uint32_t i = system.groups()[group].first; i < system.groups()[group].last;
                  ++i) {
                 const JointConstraint &joint = context.scratch.joints[system.block(i)];
+                struck_.emplace_back(system.block(i), joint.struck);
                 for (const std::uint32_t body : {joint.a, joint.b})
                     if (body != Joint::world)
                         before_.push_back({body, context.bodies[body].velocity,
@@ -177,8 +178,11 @@ class Answers {
         if (group_of(contact.b) != group_of(contact.a))
             answer_impact(context_, group_of(contact.b));
     }
-    // Restores the joined bodies' velocities from when this was made.
+    // Restores the joined bodies' velocities, and what their joints passed on, from when this was
+    // made.
     void take_back() {
+        for (const auto &[joint, struck] : struck_)
+            context_.scratch.joints[joint].struck = struck;
         for (const Before &one : before_) {
             context_.bodies[one.body].velocity = one.velocity;
             context_.bodies[one.body].angular_velocity = one.angular_velocity;
@@ -196,6 +200,7 @@ class Answers {
     };
     StepContext &context_;
     std::vector<Before> before_;
+    std::vector<std::pair<std::uint32_t, Vec3>> struck_; // by joint constraint
 };
 
 // Finds the effective masses by applying a unit impulse.

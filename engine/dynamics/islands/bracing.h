@@ -14,7 +14,7 @@ namespace plumb::inline PLUMB_PRECISION {
 // How far apart ends may be to meet, as a share of their arms, squared; less the further they are:
 // long arms would throw the bodies about.
 inline constexpr Real contacts_meet_within = Real(0.25);
-inline constexpr Real joints_meet_within = Real(0.0025); // beyond that a joint is torn
+inline constexpr Real joints_meet_within = Real(0.0025); // beyond that it may be torn
 
 // What must be added to arm a and taken from arm b (m) for both to end midway between their ends,
 // which are `apart` (m).

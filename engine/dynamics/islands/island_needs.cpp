@@ -218,7 +218,7 @@ void World::note_joint_needs(const IslandGroup &group) {
         }
         if (is_together)
             continue;
-        const double drift = settings_.substep_tolerance * static_cast<double>(size_of(joint.rows));
+        const double drift = settings_.substep_tolerance * static_cast<double>(joint.size);
         const double squared =
             0.5 * impulse * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * drift);
         ask(joint, squared);

@@ -63,6 +63,27 @@ class SameBlocks final : public RowWriter {
     JointConstraint *next_;
 };
 
+Real size_of(const StepContext &context, const JointConstraint &joint) {
+    const RowBlock &rows = joint.rows;
+    if (rows.kind == RowKind::angular)
+        return Real(1);
+    Real arms = rows.swing_length;
+    Real gyration = Real(0);
+    const auto add = [&](bool moves, std::uint32_t index, const Vec3 &arm) {
+        if (!moves)
+            return;
+        const Body &body = context.model.bodies[index];
+        const Real most = std::max({body.inertia.x, body.inertia.y, body.inertia.z});
+        gyration = std::max(gyration, std::sqrt(most / body.mass));
+        arms += glm::length(arm);
+    };
+    add(joint.moves_a, joint.a, rows.r_a);
+    add(joint.moves_b, joint.b, rows.r_b);
+    if (joint.moves_a != joint.moves_b)
+        arms *= Real(2);
+    return std::max(arms, gyration);
+}
+
 void emit(StepContext &context, std::size_t k, RowWriter &rows) {
     if (k < context.active.joints.size()) {
         const Joint &joint = context.model.joints[context.active.joints[k]];
@@ -159,6 +180,7 @@ void prepare_joints(StepContext &context) {
             block.b = is_grab ? context.grab.body : context.model.joints[index].b;
             block.moves_a = is_dynamic(block.a);
             block.moves_b = is_dynamic(block.b);
+            block.size = size_of(context, block);
             block.impulse = memory_of(context, block);
             act_at_one_place(context, block);
         }
@@ -331,6 +353,13 @@ void solve_joints(StepContext &context, const JointPass &pass) {
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
+void note_joint_loads(StepContext &context) {
+    for (JointConstraint &joint : context.scratch.joints) {
+        joint.greatest = std::max(joint.greatest, glm::length(joint.impulse + joint.struck));
+        joint.struck = Vec3{Real(0)};
+    }
+}
+
 void store_joints(StepContext &context) {
     const Real rate =
         static_cast<Real>(context.settings.substeps) / static_cast<Real>(context.settings.dt);
@@ -340,7 +369,8 @@ void store_joints(StepContext &context) {
             memory.impulses[joint.rows.first_memory + static_cast<std::size_t>(i)] = total[i];
         const Real break_force = context.model.joints[joint.joint].break_force;
         if (break_force > Real(0) && joint.rows.kind != RowKind::angular &&
-            joint.rows.bounds != RowBounds::motor && glm::length(total) * rate > break_force)
+            joint.rows.bounds != RowBounds::motor &&
+            std::max(joint.greatest, glm::length(total)) * rate > break_force)
             memory.broken = true;
     };
     for (JointConstraint &joint : context.scratch.joints) {

@@ -25,6 +25,10 @@ struct JointConstraint {
     std::uint32_t b = 0;
     bool moves_a = false; // by forces
     bool moves_b = false;
+    // The length against which drift is measured (m): that of the arms, at least a body's radius of
+    // gyration; 1 for angles. An arm on what forces do not move counts as long as the other: its
+    // own length depends on where that body's frame happens to be.
+    Real size = Real(1);
     RowBlock rows;
     Mat3 mass{Real(0)};       // inverse of K; one row: only [0][0]
     Vec3 impulse{Real(0)};    // accumulated in this substep, on b (N s, N m s)
@@ -33,6 +37,9 @@ struct JointConstraint {
     // rows should close (m/s, rad/s).
     Vec3 push{Real(0)};
     Vec3 closing{Real(0)};
+    // What impacts added in this substep, and the greatest impulse of any substep of this step.
+    Vec3 struck{Real(0)};
+    Real greatest = Real(0);
     // How much faster the errors grow on average over the substep than at its start, because the
     // bodies turn (m/s, rad/s). Only set by foresee_turns.
     Vec3 turning{Real(0)};
@@ -75,9 +82,6 @@ struct JointPass {
 // midpoint rule would double the residual.
 Real spring_share(const RowBlock &rows, Real h);
 
-// The length against which a block's drift is measured (m): that of its arms; 1 for angles.
-Real size_of(const RowBlock &rows);
-
 // Begins a substep, before refresh_joints. Where h is too long for how joint forces stiffen a
 // body's rotation, gives the body an inertia that h can follow (Andrews, Teichmann, Koevecses 2017,
 // "Geometric Stiffness for Real-time Constrained Multibody Dynamics"). Then decides which groups
@@ -117,7 +121,10 @@ void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);
 // A single joint.
 void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &pass);
-// Stores the accumulated impulses for the next step, and breaks overloaded joints.
+// Ends a substep: notes the joints' impulses, which may be too much for them.
+void note_joint_loads(StepContext &context);
+// Stores the accumulated impulses for the next step, and breaks joints that were overloaded in any
+// substep.
 void store_joints(StepContext &context);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -111,7 +111,7 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
                 side += joint.closing + system.softening(place) * joint.impulse;
             sides[place - group.first] = -side;
             if (holds) {
-                const Real most = solved_to * size_of(joint.rows) / pass.h;
+                const Real most = solved_to * joint.size / pass.h;
                 holds = glm::dot(side, side) <= most * most;
             }
         }
@@ -286,7 +286,7 @@ void push(StepContext &context, const JointGroup &group, const JointPass &pass) 
             side.z = Real(0);
         }
         sides[place - group.first] = -side;
-        const Real most = solved_to * size_of(joint.rows) / pass.h;
+        const Real most = solved_to * joint.size / pass.h;
         any = any || glm::dot(side, side) > most * most;
     }
     if (!any)
@@ -427,8 +427,9 @@ void answer_impact(StepContext &context, std::uint32_t group) {
         system.solve(all, sides);
     } while (open_limits(context, all));
     for (std::uint32_t place = all.first; place < all.last; ++place) {
-        const JointConstraint &joint = context.scratch.joints[system.block(place)];
+        JointConstraint &joint = context.scratch.joints[system.block(place)];
         apply(context, joint, sides[place - all.first]);
+        joint.struck += sides[place - all.first];
     }
 }
 

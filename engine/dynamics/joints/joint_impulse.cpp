@@ -147,12 +147,6 @@ Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
     return mass;
 }
 
-Real size_of(const RowBlock &rows) {
-    return rows.kind == RowKind::angular
-               ? Real(1)
-               : glm::length(rows.r_a) + glm::length(rows.r_b) + rows.swing_length;
-}
-
 // The chord of its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
 Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
     const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);

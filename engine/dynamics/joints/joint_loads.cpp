@@ -19,10 +19,10 @@ constexpr Real followed = Real(1.2);
 
 // Joints with an error of more than this share of their arms, or this many radians, have been torn
 // apart.
-constexpr Real torn_share = Real(0.05);
+constexpr Real torn_share = Real(0.07);
 
 bool is_torn(const JointConstraint &joint) {
-    const Real most = torn_share * size_of(joint.rows);
+    const Real most = torn_share * joint.size;
     Vec3 error = joint.rows.error;
     if (joint.bearing != BearingLimit::none) // has been reached at any speed
         error.z = Real(0);

@@ -34,7 +34,7 @@ struct JointGroup {
 // (JointConstraint::bearing), factored as L D L^T in 3 x 3 blocks, in minimum degree order. Without
 // loops (chains, trees, a door's pin and its axis) there is no fill-in, and the cost is linear in
 // the number of blocks (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers"). Groups
-// with too much fill-in, such as nets, are left to Gauss-Seidel.
+// with too much fill-in, such as large nets, are left to Gauss-Seidel.
 //
 // Gauss-Seidel needs compliance, or heavy ends tear a chain; and compliance is damping that drains
 // a pendulum's energy. Solved together, joints need next to none.
@@ -84,7 +84,7 @@ class JointSystem {
                             Effect &out);
     static void add_coupling(const Effect &u, const Effect &v, Mat3 &sum);
     void find_order(StepContext &context);
-    bool eliminate(const std::vector<std::uint32_t> &members);
+    bool eliminate(const std::vector<std::uint32_t> &members, std::size_t work_a_block);
     void note_touched(const StepContext &context);
 
     bool is_arranged_ = false;

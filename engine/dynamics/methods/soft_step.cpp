@@ -165,6 +165,7 @@ void advance_soft_step(StepContext &context) {
         hold_touched_groups(context, relaxing);
         recall_borne(context);
         store_joint_columns(context); // the next substep's follow_loads reads them
+        note_joint_loads(context);
         if (has_particles)
             restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
     }

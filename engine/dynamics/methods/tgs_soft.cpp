@@ -62,6 +62,7 @@ void advance_tgs_soft(StepContext &context) {
         }
         restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
         note_loads(context);
+        note_joint_loads(context);
     }
     restitute(context, static_cast<Real>(settings.restitution_threshold));
     store_joints(context);
