@@ -344,9 +344,12 @@ void World::gather_memory() {
     for_parts(s.tasks, count, contacts_a_part, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Contact &contact = s.contacts[i];
-            if (contact.turns() && !contact.sensor)
-                express_anew(contact,
-                             contact.turn(s.bodies[contact.key.a], s.bodies[contact.key.b]));
+            if (contact.turns() && !contact.sensor) {
+                const Motion &a = s.bodies[contact.key.a];
+                const Motion &b = s.bodies[contact.key.b];
+                express_anew(contact, contact.turn(a.rotation, b.rotation,
+                                                   contact.line_between_cores(a, b)));
+            }
             s.remembered[i] = remembered_points(contact);
         }
     });

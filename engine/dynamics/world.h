@@ -301,8 +301,8 @@ class World {
     Real way_of(const Candidate &candidate) const;
     void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                       Manifold &manifold) const;
-    // `normal`: the manifold's at the start.
-    FoundManifold predicted_manifold(const Candidate &candidate, const Vec3 &normal) const;
+    // `now`, `normal`: the manifold and its normal at the start.
+    FoundManifold predicted_manifold(const Candidate &candidate, const Manifold &now) const;
     FoundManifold predicted_manifold(const Candidate &candidate, const Vec3 &normal,
                                      std::uint32_t triangle) const;
 

@@ -17,13 +17,6 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// The distance between two solids and the unit normal from A to B; there is none at a distance of
-// 0.
-struct Gap {
-    Real distance = Real(0);
-    Vec3 normal{Real(0)};
-};
-
 // `guess`: a direction from A to B to look along first, of any length; zero: from middle to middle.
 template <typename A, typename B> ClosestPoints closest(const A &a, const B &b, const Vec3 &guess) {
     if constexpr (requires {
@@ -160,12 +153,12 @@ Real time_apart(const Vec3 &normal, const Shape &a, const Motion &motion_a, Real
     return time;
 }
 
-// The pair on its way. `gap_after(t, guess)` gives the gap after t seconds, looking along the guess
-// first; `apart_for(n, t, left, least, enough, stays)` is time_apart.
+// The pair on its way, from their first gap. `gap_after(t, guess)` gives the gap after t seconds,
+// looking along the guess first; `apart_for(n, t, left, least, enough, stays)` is time_apart.
 template <typename GapAfter, typename ApartFor>
 Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Motion &a,
                  Real extent_a, const Motion &b, Real extent_b, Real duration, Real margin,
-                 Vec3 guess) {
+                 const Gap &first) {
     const Vec3 velocity = b.velocity - a.velocity;
     const auto straight = [&](const Gap &gap) { return -glm::dot(velocity, gap.normal); };
     // A point of a turning body at distance r moves along n with at most |n x w| r.
@@ -178,11 +171,12 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
     constexpr Real close = Real(0.05);
     Real gap_before = Real(0);
     Approach best{Real(0), std::numeric_limits<Real>::infinity()};
+    Vec3 guess = first.normal;
     Real t = Real(0);
     Real before = Real(0);        // time of the previous iteration,
     bool was_approaching = false; // and whether they were approaching then
     for (int step = 0; step < step_limit; ++step) {
-        const Gap gap = gap_after(t, guess);
+        const Gap gap = step == 0 ? first : gap_after(t, guess);
         guess = gap.normal;
         if (gap.distance <= near * margin)
             return {t, Real(0)};
@@ -234,13 +228,15 @@ Approach advance(const GapAfter &gap_after, const ApartFor &apart_for, const Mot
 } // namespace
 
 Motion ahead(const Motion &motion, Real t) {
+    if (t == Real(0))
+        return motion;
     return {motion.position + t * motion.velocity,
             turned(motion.rotation, motion.angular_velocity, t), motion.velocity,
             motion.angular_velocity};
 }
 
 Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
-                  const Vec3 &guess) {
+                  const std::optional<Gap> &first) {
     const auto gap_after = [&](Real t, const Vec3 &along) {
         return gap_between(placed(*a.shape, mass_pose(ahead(a.motion, t))),
                            placed(*b.shape, mass_pose(ahead(b.motion, t))), along);
@@ -251,7 +247,7 @@ Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Rea
                           left, least, enough, stays);
     };
     return advance(gap_after, apart_for, a.motion, a.extent, b.motion, b.extent, duration, margin,
-                   guess);
+                   first ? *first : gap_after(Real(0), Vec3{Real(0)}));
 }
 
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
@@ -267,7 +263,7 @@ Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_
                           least, enough, stays);
     };
     return advance(gap_after, apart_for, a.motion, a.extent, motion_b, extent_b, duration, margin,
-                   guess);
+                   gap_after(Real(0), guess));
 }
 
 Real core_extent(const Shape &local) {

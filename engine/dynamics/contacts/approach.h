@@ -3,6 +3,8 @@
 
 #include "engine/dynamics/bodies/body.h"
 
+#include <optional>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 // Where a body is after `t` seconds at its present velocities.
@@ -13,6 +15,13 @@ struct MovingSolid {
     const Shape *shape = nullptr;
     Motion motion;         // at the start; the velocity is the mean over the interval
     Real extent = Real(0); // from the centre of mass to the farthest point of its core (m)
+};
+
+// The distance between two solids (m) and the unit normal from a to b; there is none at a distance
+// of 0.
+struct Gap {
+    Real distance = Real(0);
+    Vec3 normal{Real(0)};
 };
 
 struct Approach {
@@ -28,11 +37,12 @@ struct Approach {
 //
 // By conservative advancement (shape_cast.h), with a bound on what the spins add to the approach
 // speed (Mirtich 1996, 2.3), so nothing is passed through. Two half-spaces are never near each
-// other. `guess`: the direction from a to b at the start, as far as it is known; it only saves
-// time.
+// other. `first`: the gap at the start, if it is known; it only saves time.
 Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
-                  const Vec3 &guess = Vec3{Real(0)});
-// The same with a triangle (in the mass frame of its body) in place of the second solid.
+                  const std::optional<Gap> &first = {});
+// The same with a triangle (in the mass frame of its body) in place of the second solid. `guess`:
+// the direction from the solid to the triangle at the start, as far as it is known; it only saves
+// time.
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
                   Real duration, Real margin, const Vec3 &guess = Vec3{Real(0)});
 

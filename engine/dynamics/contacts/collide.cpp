@@ -207,14 +207,18 @@ bool World::is_crowded(std::uint32_t body) const {
     return pace.substeps == settings_.substeps && pace.wanted > pace.substeps;
 }
 
-Quat Contact::turn(const Motion &a, const Motion &b) const {
-    if (!(rounding_a > Real(0)) || !(rounding_b > Real(0)))
-        return turns_with_b ? b.rotation * glm::conjugate(origin.rotation_b)
-                            : a.rotation * glm::conjugate(origin.rotation_a);
+Vec3 Contact::line_between_cores(const Motion &a, const Motion &b) const {
     Vec3 line{Real(0)};
     for (std::size_t k = 0; k < static_cast<std::size_t>(manifold.count); ++k)
         line += (b.position - a.position) +
                 (b.rotation * anchors[k].core_b - a.rotation * anchors[k].core_a);
+    return line;
+}
+
+Quat Contact::turn(const Quat &rotation_a, const Quat &rotation_b, const Vec3 &line) const {
+    if (!(rounding_a > Real(0)) || !(rounding_b > Real(0)))
+        return turns_with_b ? rotation_b * glm::conjugate(origin.rotation_b)
+                            : rotation_a * glm::conjugate(origin.rotation_a);
     const Real length = glm::length(line);
     const Real along = glm::dot(line, manifold.normal);
     // Deep inside each other, the cores have no line between them.
@@ -480,7 +484,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
             if (is_predicted)
                 guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
         } else if (found.manifold.count > 0 && is_predicted) {
-            found = predicted_manifold(candidate, found.manifold.normal);
+            found = predicted_manifold(candidate, found.manifold);
         }
         found.is_turning = is_turning;
         drop_inner_edges(candidate, ContactKey::no_triangle, found);

@@ -90,9 +90,11 @@ struct Contact {
     std::array<Vec3, 4> impulses{};
 
     bool turns() const { return is_turning || is_braced || rolling == Rolling::on_face; }
-    // How far its normal has turned since it was found, with the bodies at these poses: with one of
-    // them, or, between two round surfaces, with the line between their cores.
-    Quat turn(const Motion &a, const Motion &b) const;
+    // How far its normal has turned since it was found, with the bodies at these rotations: with
+    // one of them, or, between two round surfaces, with the line between their cores. `line`: from
+    // a's cores to b's, the sum over all points.
+    Quat turn(const Quat &rotation_a, const Quat &rotation_b, const Vec3 &line) const;
+    Vec3 line_between_cores(const Motion &a, const Motion &b) const;
 
     // How far a turn of one body (in its frame) moves a point's core around the body's middle at
     // most, as a share of its arm.

@@ -103,6 +103,8 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
         block.turning = static_cast<std::uint16_t>(block.turning | bit);
     else if (contact.rolling == Rolling::round)
         block.round = static_cast<std::uint16_t>(block.round | bit);
+    if (contact.is_braced)
+        block.braced = static_cast<std::uint16_t>(block.braced | bit);
     set(block.normal, lane, contact.manifold.normal);
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
@@ -174,34 +176,41 @@ void set_start_separation(const StepContext &context, ContactBlock &block, std::
 // that normal at the start of the step; the bodies' motion since then is added to it.
 void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
     const Contact &contact = context.contacts[block.contacts[lane]];
-    if (contact.is_braced) // a load is no rider: halfway it would be a couple
-        t = Real(0);
     const Motion a = ahead(context.bodies[contact.key.a], t);
     const Motion b = ahead(context.bodies[contact.key.b], t);
-    const bool a_moves = is_dynamic(context, contact.key.a);
-    const bool b_moves = is_dynamic(context, contact.key.b);
-    const Quat turn = contact.turn(a, b);
+    const Vec3 between = b.position - a.position;
+    const auto points = static_cast<std::size_t>(contact.manifold.count);
+    std::array<Vec3, 4> cores_a{};
+    std::array<Vec3, 4> cores_b{};
+    Vec3 line{Real(0)};
+    for (std::size_t k = 0; k < points; ++k) {
+        cores_a[k] = a.rotation * contact.anchors[k].core_a;
+        cores_b[k] = b.rotation * contact.anchors[k].core_b;
+        line += between + (cores_b[k] - cores_a[k]);
+    }
+    const Quat turn = contact.turn(a.rotation, b.rotation, line);
     const Vec3 n = turn * contact.manifold.normal;
     set(block.normal, lane, n);
     set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
+    const bool a_moves = is_dynamic(context, contact.key.a);
+    const bool b_moves = is_dynamic(context, contact.key.b);
     const Real side = static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
-    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
-        const ContactAnchor &anchor = contact.anchors[k];
-        const Vec3 on_a = a.rotation * anchor.core_a + block.rounding_a.lanes[lane] * n;
-        const Vec3 on_b = b.rotation * anchor.core_b - block.rounding_b.lanes[lane] * n;
-        const Vec3 half = Real(0.5) * glm::dot((b.position - a.position) + (on_b - on_a), n) * n;
+    for (std::size_t k = 0; k < points; ++k) {
+        const Vec3 on_a = cores_a[k] + block.rounding_a.lanes[lane] * n;
+        const Vec3 on_b = cores_b[k] - block.rounding_b.lanes[lane] * n;
+        const Vec3 half = Real(0.5) * glm::dot(between + (on_b - on_a), n) * n;
         Vec3 arm_a = on_a + (Real(1) + side) * half;
         Vec3 arm_b = on_b - (Real(1) - side) * half;
         if (contact.is_braced) {
-            const Vec3 shift = half_way((b.position - a.position) + (arm_b - arm_a), arm_a, arm_b,
-                                        contacts_meet_within);
+            const Vec3 shift =
+                half_way(between + (arm_b - arm_a), arm_a, arm_b, contacts_meet_within);
             arm_a += shift;
             arm_b -= shift;
         } else if (contact.rolling == Rolling::on_face &&
                    contact.turns_with_b) { // the rolling body takes the point along
-            arm_b = arm_a + (a.position - b.position);
+            arm_b = arm_a - between;
         } else if (contact.rolling == Rolling::on_face) {
-            arm_a = arm_b + (b.position - a.position);
+            arm_a = arm_b + between;
         }
         set(block.points[k].r_a, lane, arm_a);
         set(block.points[k].r_b, lane, arm_b);
@@ -384,6 +393,27 @@ void set_inertias(const StepContext &context, ContactBlock &block, std::size_t l
     set(block.inv_inertia_b, lane, context.bodies[contact.key.b].inv_inertia);
 }
 
+// Turns the lanes of each block whose bits lanes_of(block) has.
+template <class LanesOf> void turn_lanes(StepContext &context, Real t, LanesOf &&lanes_of) {
+    if (!context.scratch.schedule.any_turning)
+        return;
+    for_blocks(context, [&](std::span<ContactBlock> blocks) {
+        for (ContactBlock &block : blocks) {
+            bool any_apart = false;
+            for (unsigned left = lanes_of(block); left != 0; left &= left - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+                turn_lane(context, block, lane, t);
+                if (have_turned_apart(context, context.contacts[block.contacts[lane]])) {
+                    set_inertias(context, block, lane);
+                    any_apart = true;
+                }
+            }
+            if (any_apart)
+                kernels::finish(std::span(&block, 1));
+        }
+    });
+}
+
 // Sets a lane's arms and inertias to those of the present poses.
 void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
     const Contact &contact = context.contacts[block.contacts[lane]];
@@ -402,25 +432,11 @@ void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
 } // namespace
 
 // Friction turns a rider on a turntable all the time. With the arms from the start of the step it
-// would be turned all at once, in the first substep, and friction cannot hold that.
+// would be turned all at once, in the first substep, and friction cannot hold that. The load of a
+// braced contact is no rider: ahead of its bodies it would be a couple.
 void turn_contact_columns(StepContext &context, Real t) {
-    if (!context.scratch.schedule.any_turning)
-        return;
-    for_blocks(context, [&](std::span<ContactBlock> blocks) {
-        for (ContactBlock &block : blocks) {
-            bool any_apart = false;
-            for (std::size_t lane = 0; block.turning != 0 && lane < block.used; ++lane) {
-                if ((block.turning >> lane & 1U) == 0)
-                    continue;
-                turn_lane(context, block, lane, t);
-                if (have_turned_apart(context, context.contacts[block.contacts[lane]])) {
-                    set_inertias(context, block, lane);
-                    any_apart = true;
-                }
-            }
-            if (any_apart)
-                kernels::finish(std::span(&block, 1));
-        }
+    turn_lanes(context, t, [&](const ContactBlock &block) -> unsigned {
+        return t == Real(0) ? block.turning : block.turning & ~unsigned{block.braced};
     });
 }
 
@@ -499,6 +515,8 @@ void meet_contact_columns(StepContext &context) {
         const std::uint32_t place = schedule.place_of[met.contact];
         ContactBlock &block = schedule.blocks[place / column_lanes];
         const std::size_t lane = place % column_lanes;
+        if ((block.braced >> lane & 1U) != 0)
+            continue; // stays where it is on both bodies
         if (block.ahead == ContactBlock::none) {
             block.ahead = static_cast<std::uint32_t>(schedule.start_arms.size());
             fill_start_arms(context, block, schedule.start_arms.emplace_back());
@@ -570,6 +588,7 @@ void prepare_contact_columns(StepContext &context) {
                 if (block.ahead != ContactBlock::none)
                     fill_start_arms(context, block, schedule.start_arms[block.ahead]);
         });
+    turn_lanes(context, Real(0), [](const ContactBlock &block) { return block.braced; });
 }
 
 void warm_start_contact_columns(StepContext &context, Real share, bool remember_first) {

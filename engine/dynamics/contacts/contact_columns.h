@@ -44,6 +44,7 @@ struct ContactBlock {
     std::uint16_t writes_a = 0; // bit k: lane k
     std::uint16_t writes_b = 0;
     std::uint16_t turning = 0;            // bit k: Contact::turns
+    std::uint16_t braced = 0;             // Contact::is_braced
     std::uint16_t round = 0;              // Rolling::round
     std::uint16_t found_again = 0;        // bit k: found again in each substep
     std::uint16_t rearmed = 0;            // lanes whose arms have changed since the step began
@@ -112,7 +113,7 @@ struct ContactSchedule {
 
 void prepare_contact_columns(StepContext &context);
 // Moves the normals and arms of contacts that turn with their bodies to where they are t seconds
-// from now.
+// from now; those of braced contacts only for t = 0.
 void turn_contact_columns(StepContext &context, Real t);
 // Updates the arms and masses of contacts whose bodies have turned far since the step began: with
 // those of another pose impulses do work, and thin bodies are flung off. Where a lone pair slides

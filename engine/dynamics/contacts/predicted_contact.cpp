@@ -120,15 +120,28 @@ void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const
         add_guard(manifold, solid_b, width_b, solid_a, Real(-1));
 }
 
-FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &normal) const {
+namespace {
+
+// Of solids that do not touch.
+Gap gap_of(const Manifold &manifold) {
+    Gap gap{std::numeric_limits<Real>::infinity(), manifold.normal};
+    for (int k = 0; k < manifold.count; ++k)
+        gap.distance =
+            std::min(gap.distance, manifold.points[static_cast<std::size_t>(k)].separation);
+    return gap;
+}
+
+} // namespace
+
+FoundManifold World::predicted_manifold(const Candidate &candidate, const Manifold &now) const {
     const Collider &a = model_->colliders[candidate.collider_a];
     const Collider &b = model_->colliders[candidate.collider_b];
     const Motion &motion_a = going(candidate.key.a);
     const Motion &motion_b = going(candidate.key.b);
     const auto dt = static_cast<Real>(settings_.dt);
     const Real near = contact_reach(candidate);
-    const Approach met =
-        approach({&a.shape, motion_a, a.extent}, {&b.shape, motion_b, b.extent}, dt, near, normal);
+    const Approach met = approach({&a.shape, motion_a, a.extent}, {&b.shape, motion_b, b.extent},
+                                  dt, near, gap_of(now));
     if (met.distance >= near)
         return {};
     const Motion at_a = ahead(motion_a, met.time);
@@ -137,8 +150,9 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
     const Real left = met.distance > Real(0) ? Real(0) : Real(1) - met.time / dt;
     const Shape solid_a = placed(a.shape, mass_pose(at_a));
     const Shape solid_b = placed(b.shape, mass_pose(at_b));
-    FoundManifold found{plumb::collide(solid_a, solid_b, near + left * way_of(candidate), normal),
-                        at_a, at_b, Moment::touch};
+    FoundManifold found{
+        plumb::collide(solid_a, solid_b, near + left * way_of(candidate), now.normal), at_a, at_b,
+        Moment::touch};
     guard_middle(candidate, solid_a, solid_b, found.manifold);
     return found;
 }
