@@ -45,9 +45,8 @@ std::string command_text(int argc, char **argv) {
 // Reports an option the command does not have (its value may have been parsed as a scene). Empty if
 // there is none.
 std::string why_unknown(const CLI::App &app, std::span<char *> arguments) {
-    if (app.get_subcommands().empty())
-        return {};
-    const CLI::App &command = *app.get_subcommands().front();
+    const CLI::App &command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
+    const std::string called = (&command == &app ? "" : "plumb ") + command.get_name();
     std::vector<std::string> names;
     for (const CLI::Option *option : command.get_options())
         for (const std::string &name : option->get_lnames())
@@ -59,7 +58,6 @@ std::string why_unknown(const CLI::App &app, std::span<char *> arguments) {
             std::ranges::find(candidates, name) != candidates.end())
             continue;
         const std::string_view near = nearest_word(name, candidates);
-        const std::string called = "plumb " + command.get_name();
         return called + " has no option " + std::string(name) + "; " +
                (near.empty() ? "see " + called + " --help"
                              : "did you mean " + std::string(near) + "?");
@@ -118,7 +116,11 @@ int main_with_errors(int argc, char **argv) {
         if (const std::string why = why_unknown(app, arguments.subspan(1)); !why.empty())
             std::cerr << "plumb: " << why << '\n';
         else
-            app.exit(error);
+            std::cerr << "plumb: " << error.what() << "; see plumb"
+                      << (app.get_subcommands().empty()
+                              ? ""
+                              : " " + app.get_subcommands().front()->get_name())
+                      << " --help\n";
         return code_of(ExitCode::bad_input);
     }
     if (app.get_subcommands().empty())

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <optional>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -21,6 +22,8 @@ namespace fs = std::filesystem;
 constexpr mode_t everybody = 0666; // minus the umask
 
 [[noreturn]] void fail(int error, const std::string &name) {
+    if (name.empty())
+        throw std::invalid_argument("the output has an empty name");
     throw std::system_error(error, std::generic_category(), name + ": cannot be written");
 }
 

@@ -247,18 +247,26 @@ void Sandbox::handle(const PointerEvent &event, glm::vec2 viewport) {
     }
     if (event.kind != PointerEvent::Kind::move)
         return;
+    pointer_ = {event.position, viewport, event.over_panel};
+    look_under_pointer();
+}
+
+void Sandbox::look_under_pointer() {
     view_.hovered.reset();
     view_.hovered_particle.reset();
-    if (tools_.drag() != Tools::Drag::probe)
-        view_.hovered_handle =
-            event.over_panel || tools_.drag() != Tools::Drag::none
-                ? std::nullopt
-                : handle_at(session_.probes(), view_.camera, event.position, viewport);
     view_.pointed_at.reset();
-    if (!event.over_panel)
-        view_.pointed_at = point_at(session_, view_.camera.pick_ray(event.position, viewport));
-    if (!event.over_panel && !view_.hovered_handle && tools_.drag() == Tools::Drag::none)
-        if (const auto hit = pick(session_, view_.camera, event.position, viewport)) {
+    if (!pointer_)
+        return;
+    const auto &[position, viewport, over_panel] = *pointer_;
+    if (tools_.drag() != Tools::Drag::probe)
+        view_.hovered_handle = over_panel || tools_.drag() != Tools::Drag::none
+                                   ? std::nullopt
+                                   : handle_at(session_.probes(), view_.camera, position, viewport);
+    if (over_panel)
+        return;
+    view_.pointed_at = point_at(session_, view_.camera.pick_ray(position, viewport));
+    if (!view_.hovered_handle && tools_.drag() == Tools::Drag::none)
+        if (const auto hit = pick(session_, view_.camera, position, viewport)) {
             view_.hovered = hit->body;
             view_.hovered_particle = hit->particle;
         }
@@ -278,6 +286,7 @@ void Sandbox::advance(std::int64_t nanoseconds) {
         pace_.add(static_cast<double>(nanoseconds) * 1e-9, taken * dt);
     }
     keep_in_picture();
+    look_under_pointer();
 }
 
 void Sandbox::keep_in_picture() {

@@ -94,8 +94,9 @@ class Sandbox {
     void frame_selection();
     void dismiss();
     void started(bool another_scene);
-    void forget_studies();    // of a scene that is gone
-    void follow_simulation(); // updates the clock's dt, and drops a selection that is gone
+    void forget_studies();     // of a scene that is gone
+    void look_under_pointer(); // what it is over now: bodies move beneath it
+    void follow_simulation();  // updates the clock's dt, and drops a selection that is gone
 
     Session session_;
     std::vector<SceneEntry> scenes_;
@@ -104,6 +105,12 @@ class Sandbox {
     Tools tools_;
     StepClock clock_{1.0 / 60};
     Pace pace_; // while running
+    struct Pointer {
+        glm::vec2 position;
+        glm::vec2 viewport;
+        bool over_panel = false;
+    };
+    std::optional<Pointer> pointer_; // as it last moved
     ChartStudy chart_;
     MapStudy map_;
     bool quit_ = false;

@@ -20,6 +20,16 @@ title = @"b"
 )",
          {"Error while parsing key-value pair: cannot redefine existing string 'title'; see "
           "https://toml.io for the syntax"}},
+        {"SyntaxFraction",
+         R"([world]
+dt = 1@/60
+)",
+         {"Error while parsing decimal integer: expected digit, saw '/'; put a fraction in quotes: "
+          "\"1/60\""}},
+        {"SyntaxOpenQuotes",
+         "[world]\nmethod = \"soft_step@\n",
+         {"Error while parsing string: unescaped control characters other than TAB (U+0009) are "
+          "explicitly prohibited; close the quotes at the end of the string"}},
         {"SyntaxInvalidUtf8",
          "title = @\"\xff\"\n",
          {"Encountered invalid utf-8 sequence; see https://toml.io for the syntax"}},
@@ -224,6 +234,24 @@ iterations = @1.5
 baumgarte = @1.5
 )",
          {R"(baumgarte is 1.5; it must be a number from 0 to 1, or a fraction in quotes such as "1/60")"}},
+        {"WholeNumberWithAPoint",
+         R"([world]
+substeps = @8.0
+)",
+         {"substeps is 8.0; it must be a whole number from 1 to 10000"}},
+        {"OwnSettingsInMethods",
+         R"([methods.@soft_step]
+substeps = 3
+)",
+         {"soft_step is the scene's own method, whose settings are in [world]; move them there"}},
+        {"TitleInABody",
+         R"([[body]]
+name = "a"
+shape = "sphere"
+radius = 1
+@title = "x"
+)",
+         {R"(unknown key "title" in [[body]] "a"; title belongs at the top of the file, before the first [table])"}},
         {"WorldSettingInMethods",
          R"([methods.pgs]
 @dt = 0.01

@@ -175,7 +175,7 @@ class Scenes {
         world.method = text();
         world.settings = settings(true);
         for (std::uint32_t i = random_.next_index(3); i > 0; --i)
-            world.other_methods[text()] = settings(false);
+            world.other_methods["another " + text()] = settings(false);
         world.precision = one_in(2) ? Precision::f32 : Precision::f64;
         world.seed = one_in(2) ? random_.next_u64() : random_.next_index(10);
         scene.camera.target = vector();

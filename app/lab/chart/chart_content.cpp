@@ -73,13 +73,20 @@ bool has_both_modes(const SceneChart &chart) {
     });
 }
 
-// Colour and shape: further curves of a method keep its colour and take another shape.
+// Colour and shape: further curves of a method keep its colour and take another shape, until all
+// shapes are taken.
 std::size_t style_of(const MethodInfo &method, const std::vector<ChartSeries> &earlier) {
     const auto own = std::ranges::find_if(method_infos(),
                                           [&](const MethodInfo &each) { return &each == &method; });
+    const bool is_ours = own != method_infos().end(); // not another engine
     std::size_t style = static_cast<std::size_t>(own - method_infos().begin());
-    while (std::ranges::find(earlier, style, &ChartSeries::style) != earlier.end())
-        style += own != method_infos().end() ? series_colour_count : 1; // 1: another engine
+    const auto is_taken = [&] {
+        return std::ranges::any_of(earlier, [&](const ChartSeries &series) {
+            return series.style % style_count == style % style_count;
+        });
+    };
+    for (std::size_t tried = 1; is_taken() && tried <= style_count; ++tried)
+        style += is_ours && tried % shape_count != 0 ? series_colour_count : 1;
     return style;
 }
 

@@ -40,7 +40,6 @@ inline constexpr ImU32 front = colour(0xdcdfe3);
 // yellow, which is too light on white. Mark shapes repeat the distinction.
 inline constexpr std::array<unsigned, series_colour_count> series_colours{
     0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x4d4d4d};
-inline constexpr std::size_t shape_count = 5; // coprime to the number of colours: 35 combinations
 
 } // namespace chart_colour
 
@@ -71,7 +70,7 @@ class ChartPen {
     }
     // A filled mark; all shapes have the same visual weight.
     void mark(glm::vec2 p, std::size_t shape, float r, ImU32 c) {
-        switch (shape % chart_colour::shape_count) {
+        switch (shape % shape_count) {
         case 0:
             polygon(p, r, 40, 0, c);
             break;

@@ -24,7 +24,8 @@ bool is_open(const ChartOptions &options, const std::vector<SweepAxis> &sweep, c
 }
 
 // With adaptive substeps `substeps` is only the islands' minimum, which says little about how many
-// they take. If substeps are swept and max_substeps is open, fixed substeps are charted as well.
+// they take. If substeps are swept and max_substeps is open, fixed substeps are charted as well,
+// and adaptive ones up to the scene's own most, or the method's if the scene's are fixed.
 std::vector<RunOptions> substep_modes(const SceneDesc &scene, const MethodInfo &method,
                                       const ChartOptions &options,
                                       const std::vector<SweepAxis> &sweep) {
@@ -40,7 +41,7 @@ std::vector<RunOptions> substep_modes(const SceneDesc &scene, const MethodInfo &
         modes.push_back(modes.front());
         modes[0].settings.give(&StepSettings::max_substeps, 1);
         modes[1].settings.give(&StepSettings::max_substeps,
-                               std::max(most, method.defaults.max_substeps));
+                               most > 1 ? most : method.defaults.max_substeps);
     }
     return modes;
 }

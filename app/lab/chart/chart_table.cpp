@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 namespace plumb {
 
@@ -18,6 +19,34 @@ namespace {
 
 std::string error_unit(const ErrorMeasure &measure) {
     return measure.kind == ErrorMeasure::Kind::worst ? "tolerance" : measure.unit;
+}
+
+// Of what is swept, or differs, besides the table's usual columns.
+struct SweptColumn {
+    std::string title;
+    std::function<std::string(const ChartRun &)> value;
+};
+
+std::vector<SweptColumn> swept_columns(const SceneChart &chart) {
+    std::vector<SweptColumn> columns;
+    const auto add = [&](const std::string &title, auto value) {
+        std::vector<std::string> values;
+        for (const ChartRun &run : chart.runs)
+            values.push_back(value(run));
+        if (std::ranges::adjacent_find(values, std::ranges::not_equal_to{}) != values.end())
+            columns.push_back({title, value});
+    };
+    for (const SweepAxis &axis : chart.sweep) {
+        const std::string_view name = axis.setting.setting().name;
+        if (name != "substeps" && name != "max_substeps" && name != "iterations" && name != "dt")
+            add(setting_name(axis.setting), [number = axis.setting](const ChartRun &run) {
+                return number_or_fraction(setting_value(run.resolved.settings, number));
+            });
+    }
+    add("precision",
+        [](const ChartRun &run) { return std::string(precision_name(run.resolved.precision)); });
+    add("threads", [](const ChartRun &run) { return std::to_string(run.threads); });
+    return columns;
 }
 
 } // namespace
@@ -154,9 +183,19 @@ void print(std::ostream &out, const SceneChart &chart) {
             << with_unit(chart.steps_from->own_error.rms, "m")
             << "; ~: below ten times that, not resolved\n";
     char line[256];
-    std::snprintf(line, sizeof line, "  %-22s %9s %10s %10s %12s %8s %14s %14s\n", "method",
-                  "substeps", "iterations", "dt", chart.wall_clock ? "wall ms/s" : "CPU ms/s",
-                  "spread", chart.wall_clock ? "worst wall ms" : "worst CPU ms", "error");
+    const std::vector<SweptColumn> swept = swept_columns(chart);
+    const auto aligned = [](const std::string &text, const std::string &title) {
+        const std::size_t width = std::max<std::size_t>(title.size(), 8) + 1;
+        return std::string(width - std::min(width, text.size()), ' ') + text;
+    };
+    std::snprintf(line, sizeof line, "  %-22s %9s %10s %10s", "method", "substeps", "iterations",
+                  "dt");
+    out << line;
+    for (const SweptColumn &column : swept)
+        out << aligned(column.title, column.title);
+    std::snprintf(line, sizeof line, " %12s %8s %14s %14s\n",
+                  chart.wall_clock ? "wall ms/s" : "CPU ms/s", "spread",
+                  chart.wall_clock ? "worst wall ms" : "worst CPU ms", "error");
     out << line;
     for (const ChartRun &run : chart.runs) {
         char spread[24] = "-";
@@ -167,12 +206,17 @@ void print(std::ostream &out, const SceneChart &chart) {
             std::isfinite(run.error)
                 ? (chart.told_apart(run) ? "" : "~") + with_unit(run.error, chart.measure.unit)
                 : "-";
-        std::snprintf(
-            line, sizeof line, "  %-22.22s %9s %10d %10s %12.5g %8s %14.4g %14s  %s%s",
-            std::string(run.resolved.method->name).c_str(), substeps_text(run.resolved).c_str(),
-            run.resolved.settings.iterations, format_dt(run.resolved.settings.dt).c_str(),
-            1e3 * run.cost, spread, 1e3 * run.run.worst_step_time, error.c_str(),
-            std::string(status_name(run.status)).c_str(), run.pareto ? ", Pareto front" : "");
+        std::snprintf(line, sizeof line, "  %-22.22s %9s %10d %10s",
+                      std::string(run.resolved.method->name).c_str(),
+                      substeps_text(run.resolved).c_str(), run.resolved.settings.iterations,
+                      format_dt(run.resolved.settings.dt).c_str());
+        out << line;
+        for (const SweptColumn &column : swept)
+            out << aligned(column.value(run), column.title);
+        std::snprintf(line, sizeof line, " %12.5g %8s %14.4g %14s  %s%s", 1e3 * run.cost, spread,
+                      1e3 * run.run.worst_step_time, error.c_str(),
+                      std::string(status_name(run.status)).c_str(),
+                      run.pareto ? ", Pareto front" : "");
         out << line;
         if (chart.steps_from && std::isfinite(run.error))
             out << "; farthest " << with_unit(run.one_step.worst, "m");

@@ -33,7 +33,7 @@ LoadedScenes load_scenes(const std::vector<std::filesystem::path> &paths, std::o
 
     LoadedScenes loaded;
     if (files.empty()) {
-        err << "no scene files in";
+        err << "plumb: no scene files (*.toml) in";
         for (const fs::path &path : paths)
             err << ' ' << path.string();
         err << '\n';

@@ -86,7 +86,8 @@ fs::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &s
     std::error_code error;
     // A bare name means a scene, even if the working directory has a file of that name.
     fs::path path(name);
-    if ((path.has_parent_path() || path.has_extension()) && fs::exists(path, error))
+    const bool is_path = path.has_parent_path() || path.has_extension();
+    if (is_path && fs::exists(path, error))
         return path;
     for (const SceneEntry &entry : scenes)
         if (name == entry.name || name == entry.subject + "/" + entry.name)
@@ -97,6 +98,14 @@ fs::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &s
     names.reserve(scenes.size());
     for (const SceneEntry &entry : scenes)
         names.emplace_back(entry.name);
+    if (is_path) {
+        const std::string stem = path.stem().string();
+        const std::string_view near = nearest_word(stem, names);
+        throw std::invalid_argument("there is no file '" + name + "'" +
+                                    (near.empty()
+                                         ? "; `plumb list` names the scenes"
+                                         : "; did you mean the scene " + std::string(near) + "?"));
+    }
     throw std::invalid_argument("there is no file or scene '" + name + "'; " +
                                 did_you_mean(name, names));
 }

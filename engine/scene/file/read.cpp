@@ -7,6 +7,7 @@
 #include <array>
 #include <fstream>
 #include <optional>
+#include <regex>
 #include <string>
 #include <utility>
 
@@ -36,6 +37,24 @@ FilePosition inside(std::string_view text, FilePosition at) {
             return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
         }));
     return {line, line < at.line ? characters + 1 : std::min(at.column, characters + 1)};
+}
+
+std::string_view line_at(std::string_view text, std::size_t line) {
+    for (; line > 1 && text.find('\n') != std::string_view::npos; --line)
+        text.remove_prefix(text.find('\n') + 1);
+    return text.substr(0, text.find('\n'));
+}
+
+// What to do about a mistake in a line's TOML, for the likeliest of them.
+std::string what_is_right(std::string_view line, std::string_view mistake) {
+    static const std::regex fraction(R"(=\s*(-?[0-9.]+\s*/\s*[0-9.]+))");
+    const std::string_view code = line.substr(0, line.find('#'));
+    std::match_results<std::string_view::const_iterator> found;
+    if (std::regex_search(code.begin(), code.end(), found, fraction))
+        return "put a fraction in quotes: \"" + found.str(1) + '"';
+    if (std::ranges::count(code, '"') % 2 == 1 && mistake.find("string") != std::string_view::npos)
+        return "close the quotes at the end of the string";
+    return "see https://toml.io for the syntax";
 }
 
 SceneMessage error(std::size_t line, std::size_t column, std::string what, std::string suggestion) {
@@ -82,8 +101,9 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string &
     if (parsed)
         return std::move(parsed).table();
     const FilePosition at = inside(text, position_of(parsed.error().source()));
-    messages.push_back(error(at.line, at.column, std::string(parsed.error().description()),
-                             "see https://toml.io for the syntax"));
+    std::string what(parsed.error().description());
+    std::string right = what_is_right(line_at(text, at.line), what);
+    messages.push_back(error(at.line, at.column, std::move(what), std::move(right)));
     return std::nullopt;
 }
 

@@ -23,6 +23,8 @@ std::optional<std::string> misplaced(std::string_view key, std::string_view titl
     const bool is_body = title.starts_with("[[body]]");
     if (is_body && (key == "friction" || key == "restitution"))
         return std::string(key) + " belongs to a [[material]], which the body then names";
+    if (key == "title" || key == "description")
+        return std::string(key) + " belongs at the top of the file, before the first [table]";
     if (title.starts_with("[methods.") && find_setting(key) != nullptr)
         return std::string(key) + " belongs to [world]: it is the same for all methods";
     return std::nullopt;
@@ -299,8 +301,11 @@ std::optional<std::int64_t> Table::integer(const toml::node &value, const std::s
 void Table::wrong_type(const toml::node &value, const std::string &name,
                        std::string_view wanted) const {
     std::string what = name + " is " + std::string(type_name(value));
-    if (const auto *number = value.as_floating_point())
-        what = name + " is " + shortest(number->get());
+    if (const auto *number = value.as_floating_point()) {
+        const std::string digits = shortest(number->get());
+        const bool has_point = digits.find_first_not_of("-0123456789") != std::string::npos;
+        what = name + " is " + digits + (has_point ? "" : ".0");
+    }
     report_.error(position_of(value), std::move(what), "it must be " + std::string(wanted));
 }
 

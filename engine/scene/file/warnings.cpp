@@ -239,7 +239,7 @@ class Checker {
             return;
         // Report the body further down in the file: that is the one to move.
         const FilePosition &at = positions_.bodies[b];
-        if (*depth > limit)
+        if (*depth > limit && scene_.step_count == 0) // not where a run was saved
             overlaps_.add(at,
                           in_quotes(body_a.name) + " and " + in_quotes(body_b.name) +
                               " overlap by " + rounded(*depth) + " m at the start",

@@ -99,8 +99,13 @@ void read_methods(Reading &reading, const toml::table &source) {
                                  "it must be a table: [methods." + name + "]");
             continue;
         }
-        reading.scene.world.other_methods[name] = read_settings(
-            Table(reading.report, *settings, "[methods." + name + "]", keys_with(false, {})));
+        const Table table(reading.report, *settings, "[methods." + name + "]",
+                          keys_with(false, {}));
+        if (name == reading.scene.world.method)
+            reading.report.error(position_of(key.source()),
+                                 name + " is the scene's own method, whose settings are in [world]",
+                                 "move them there");
+        reading.scene.world.other_methods[name] = read_settings(table);
     }
 }
 
