@@ -328,8 +328,8 @@ TEST(JointGroup, AFoldedBeamFallsOntoItsLimits) {
                 ASSERT_LE(world.energy(), before + 0.002 * beam.fall)
                     << count << " blocks, " << fold << ", " << step;
             }
-            if (fold * count > 1.5)
-                continue; // falls over, and hangs
+            if (fold * count > 1.2)
+                continue; // its end whips over and hangs, or lies on its upper limits
             EXPECT_NEAR(beam.end_at(world).y, 0, 1.5e-3 * beam.length) << count << " " << fold;
             EXPECT_LT(world.measure().kinetic_energy, 1e-6 * beam.fall) << count << " " << fold;
         }

@@ -169,14 +169,22 @@ Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody 
             v[i] = glm::dot(rows.axes[static_cast<std::size_t>(i)], way);
     };
     if (rows.kind == RowKind::angular) {
-        along(b.angular_velocity - a.angular_velocity);
+        const Vec3 relative = b.angular_velocity - a.angular_velocity;
+        along(relative);
+        // On average over the substep a's axes are where half of its turn takes them; what spins
+        // about one of them would lean towards the others.
+        if (pass.at_the_end && rows.count > 1) {
+            const Vec3 bend = glm::cross(relative, a.angular_velocity);
+            const Vec3 again = glm::cross(bend, a.angular_velocity);
+            const Vec3 turned = (Real(0.5) * pass.h) * bend + (pass.h * pass.h / Real(6)) * again;
+            for (int i = 0; i < rows.count; ++i)
+                v[i] += glm::dot(rows.axes[static_cast<std::size_t>(i)], turned);
+        }
         return v;
     }
     Vec3 relative = point_velocity(rows, a, b, pass);
-    if (pass.at_the_end && rows.turns_with_a) {
-        const Vec3 now = b.velocity_at(rows.r_b) - a.velocity_at(rows.r_a);
-        relative += chord_velocity(-a.angular_velocity, pass.h * now, pass.h);
-    }
+    if (pass.at_the_end && rows.turns_with_a)
+        relative += chord_velocity(-a.angular_velocity, pass.h * relative, pass.h);
     along(relative);
     if (pass.at_the_end && rows.swing_length > Real(0)) {
         // How much longer the line between the anchors gets as they swing sideways.
