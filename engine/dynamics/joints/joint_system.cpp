@@ -19,7 +19,7 @@ namespace {
 // a shelf of five boards on welded posts 48, nets of 10 and 20 balls a side 52 and 169, a welded
 // frame of 4 x 4 x 4 cells 418. Gauss-Seidel is no cheaper where loads are large, as it needs up to
 // 32 times the substeps; and its passes feed energy into loops of joints that hold angles.
-constexpr std::size_t work_a_ball = 128;
+constexpr std::size_t work_a_ball = 160;
 constexpr std::size_t work_an_angle = 512;
 
 // Neighbours that a block may have on average.

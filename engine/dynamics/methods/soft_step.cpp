@@ -8,10 +8,10 @@
 // RATTLE (Andersen 1983), a second-order scheme, at the cost of one more pass over the bodies: a
 // pendulum keeps its energy, which the plain scheme loses at the rate omega^2 h.
 //
-// Also, connected joints with few loops are solved together with their loaded limits, as long as
-// the substep can follow them, and once more after their bodies' contacts. Resting bodies keep
-// their contacts as found (kept_travel); bodies that move fast for their size are collided where
-// they will be (looks_ahead). All contacts are solved in columns.
+// Also, connected joints are solved together with their loaded limits, unless they close too many
+// loops, as long as the substep can follow them, and once more after their bodies' contacts.
+// Resting bodies keep their contacts as found (kept_travel); bodies that move fast for their size
+// are collided where they will be (looks_ahead). All contacts are solved in columns.
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/method.h"
