@@ -210,7 +210,7 @@ TEST(AChainOutOfReach, StaysFinite) {
                         most = std::max(most, glm::length(wide(motion.velocity)));
                     return most;
                 });
-                EXPECT_LT(fastest, 150) << links << " links, " << speed << " m/s, " << substeps;
+                EXPECT_LT(fastest, 100) << links << " links, " << speed << " m/s, " << substeps;
             }
 }
 

@@ -236,7 +236,7 @@ Motion ahead(const Motion &motion, Real t) {
 }
 
 Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
-                  const std::optional<Gap> &first) {
+                  const Vec3 &guess, const std::optional<Gap> &first) {
     const auto gap_after = [&](Real t, const Vec3 &along) {
         return gap_between(placed(*a.shape, mass_pose(ahead(a.motion, t))),
                            placed(*b.shape, mass_pose(ahead(b.motion, t))), along);
@@ -247,7 +247,7 @@ Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Rea
                           left, least, enough, stays);
     };
     return advance(gap_after, apart_for, a.motion, a.extent, b.motion, b.extent, duration, margin,
-                   first ? *first : gap_after(Real(0), Vec3{Real(0)}));
+                   first ? *first : gap_after(Real(0), guess));
 }
 
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,

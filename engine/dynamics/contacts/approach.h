@@ -37,12 +37,11 @@ struct Approach {
 //
 // By conservative advancement (shape_cast.h), with a bound on what the spins add to the approach
 // speed (Mirtich 1996, 2.3), so nothing is passed through. Two half-spaces are never near each
-// other. `first`: the gap at the start, if it is known; it only saves time.
+// other. `guess`: the direction from a to b at the start, as far as it is known; `first`: the gap
+// there, if it is known. They only save time.
 Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Real margin,
-                  const std::optional<Gap> &first = {});
-// The same with a triangle (in the mass frame of its body) in place of the second solid. `guess`:
-// the direction from the solid to the triangle at the start, as far as it is known; it only saves
-// time.
+                  const Vec3 &guess = Vec3{Real(0)}, const std::optional<Gap> &first = {});
+// The same with a triangle (in the mass frame of its body) in place of the second solid.
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
                   Real duration, Real margin, const Vec3 &guess = Vec3{Real(0)});
 

@@ -140,8 +140,12 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Manifo
     const Motion &motion_b = going(candidate.key.b);
     const auto dt = static_cast<Real>(settings_.dt);
     const Real near = contact_reach(candidate);
-    const Approach met = approach({&a.shape, motion_a, a.extent}, {&b.shape, motion_b, b.extent},
-                                  dt, near, gap_of(now));
+    // Other shapes' gaps are found at next to no cost.
+    const bool are_hulls =
+        std::holds_alternative<ConvexHull>(a.shape) && std::holds_alternative<ConvexHull>(b.shape);
+    const Approach met =
+        approach({&a.shape, motion_a, a.extent}, {&b.shape, motion_b, b.extent}, dt, near,
+                 now.normal, are_hulls ? std::optional(gap_of(now)) : std::nullopt);
     if (met.distance >= near)
         return {};
     const Motion at_a = ahead(motion_a, met.time);

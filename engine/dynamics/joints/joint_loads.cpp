@@ -19,7 +19,7 @@ constexpr Real followed = Real(1.2);
 
 // Joints with an error of more than this share of their arms, or this many radians, have been torn
 // apart.
-constexpr Real torn_share = Real(0.07);
+constexpr Real torn_share = Real(0.05);
 
 bool is_torn(const JointConstraint &joint) {
     const Real most = torn_share * joint.size;
