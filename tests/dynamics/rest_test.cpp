@@ -49,12 +49,6 @@ Strayed strayed(const World &now, const World &before) {
     }
     return most;
 }
-bool all_sleep(const World &world) {
-    for (std::uint32_t i = 0; i < world.bodies().size(); ++i)
-        if (world.bodies()[i].kind == BodyKind::dynamic && !world.state().paces[i].is_asleep())
-            return false;
-    return true;
-}
 
 // With one solver pass all of these sway, and a cylinder of h / d = 10 falls within two minutes.
 TEST(Rest, WhatIsTallAndThinStands) {

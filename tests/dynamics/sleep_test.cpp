@@ -33,14 +33,6 @@ bool sleeps(const World &world, BodyId id) {
     return world.state().paces[id.index].is_asleep();
 }
 
-bool all_sleep(const World &world) {
-    for (std::size_t i = 0; i < world.bodies().size(); ++i)
-        if (world.bodies()[i].alive && world.bodies()[i].kind == BodyKind::dynamic &&
-            !world.state().paces[i].is_asleep())
-            return false;
-    return true;
-}
-
 bool run_until_all_sleep(World &world, double seconds) {
     for (int i = 0; i < int(seconds / world.settings().dt) && !all_sleep(world); ++i)
         world.step(nullptr);

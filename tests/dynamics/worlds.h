@@ -208,6 +208,14 @@ inline double regained_energy(World &world, int steps) {
     }
     return most;
 }
+inline bool all_sleep(const World &world) {
+    for (std::size_t i = 0; i < world.bodies().size(); ++i)
+        if (world.bodies()[i].alive && world.bodies()[i].kind == BodyKind::dynamic &&
+            !world.state().paces[i].is_asleep())
+            return false;
+    return true;
+}
+
 inline const Motion &motion_of(const World &world, BodyId id) {
     return world.motions()[id.index];
 }

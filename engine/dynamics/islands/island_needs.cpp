@@ -75,8 +75,10 @@ void note_moment_needs(Scratch &s, const StepSettings &settings, int substeps) {
             const JointConstraint &joint = s.solver.joints[system.block(place)];
             if (joint.rows.kind != RowKind::angular)
                 continue;
-            const auto turn =
-                h * static_cast<double>(glm::length(system.softening(place) * joint.impulse));
+            Vec3 turned = system.softening(place) * joint.impulse;
+            if (joint.bearing == Bearing::motor) // does not give way
+                turned.z = Real(0);
+            const double turn = h * static_cast<double>(glm::length(turned));
             const double squared = square(substeps) * turn / settings.substep_tolerance;
             for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
                 s.loads[body] = std::max(s.loads[body], squared);

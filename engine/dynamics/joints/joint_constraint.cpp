@@ -184,7 +184,7 @@ void prepare_joints(StepContext &context) {
             block.impulse = memory_of(context, block);
             act_at_one_place(context, block);
         }
-        find_limits(blocks_of(context, k));
+        find_bearings(blocks_of(context, k));
     }
 }
 
@@ -193,8 +193,8 @@ void refresh_joint(StepContext &context, std::size_t k) {
     emit(context, k, rows);
     for (JointConstraint &joint : blocks_of(context, k)) {
         act_at_one_place(context, joint);
-        if (joint.bearing != BearingLimit::none)
-            add_limit_row(joint);
+        if (joint.bearing != Bearing::none)
+            add_bearing_row(joint);
     }
 }
 
@@ -335,7 +335,7 @@ void solve_joints(StepContext &context, const JointPass &pass) {
                       for (JointGroup &group : groups.subspan(begin, end - begin)) {
                           if (!is_due(group) || !group.is_held)
                               continue;
-                          if (choose_limits(context, group))
+                          if (choose_bearings(context, group, pass.force_share))
                               factor_again(context, group);
                           solve_group(context, group, pass);
                       }
@@ -355,7 +355,10 @@ void solve_joints(StepContext &context, const JointPass &pass) {
 
 void note_joint_loads(StepContext &context) {
     for (JointConstraint &joint : context.scratch.joints) {
-        joint.greatest = std::max(joint.greatest, glm::length(joint.impulse + joint.struck));
+        Vec3 load = joint.impulse + joint.struck;
+        if (joint.bearing == Bearing::motor) // breaks nothing
+            load.z = Real(0);
+        joint.greatest = std::max(joint.greatest, glm::length(load));
         joint.struck = Vec3{Real(0)};
     }
 }
@@ -377,12 +380,15 @@ void store_joints(StepContext &context) {
         const Vec3 &total = joint.impulse;
         if (joint.joint == JointConstraint::grab) {
             context.grab.impulse = total;
-        } else if (joint.bearing != BearingLimit::none) {
+        } else if (joint.bearing == Bearing::motor) {
+            store(joint, {total.x, total.y, Real(0)}, 2);
+            store(motor_of(joint), Vec3{total.z, Real(0), Real(0)}, 1);
+        } else if (joint.bearing != Bearing::none) {
             store(joint, {total.x, total.y, Real(0)}, 2);
             const std::span<JointConstraint, 2> limits = limits_of(joint);
             store(limits[0], Vec3{std::max(total.z, Real(0))}, 1);
             store(limits[1], Vec3{std::min(total.z, Real(0))}, 1);
-        } else if (joint.rows.bounds == RowBounds::equal || !joint.is_held) { // not such a limit
+        } else if (joint.rows.bounds == RowBounds::equal || !joint.is_held) { // not such a row
             store(joint, total, joint.rows.count);
         }
     }

@@ -13,9 +13,9 @@ namespace plumb::inline PLUMB_PRECISION {
 struct StepContext;
 struct JointGroup;
 
-// Which of a joint's limits is active and solved with its group: as the third row of the two-row
-// block that leaves the limited direction free. shut: both limits, at the same place.
-enum class BearingLimit : std::uint8_t { none, lower, upper, shut };
+// Which of a joint's limits, or whether its motor, is solved with its group: as the third row of
+// the two-row block that leaves that direction free. shut: both limits, at the same place.
+enum class Bearing : std::uint8_t { none, lower, upper, shut, motor };
 
 // One block of rows between two bodies at the present poses.
 struct JointConstraint {
@@ -44,7 +44,8 @@ struct JointConstraint {
     // bodies turn (m/s, rad/s). Only set by foresee_turns.
     Vec3 turning{Real(0)};
     std::uint8_t limits = 0; // offset to its lower limit's block; 0: it has none
-    BearingLimit bearing = BearingLimit::none;
+    std::uint8_t motor = 0;  // the same, to its motor's
+    Bearing bearing = Bearing::none;
     bool is_held = false;    // solved with its group in this substep (JointSystem)
     bool in_columns = false; // in this step (JointSchedule)
     bool is_weighed =

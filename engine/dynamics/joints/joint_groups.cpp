@@ -4,6 +4,8 @@
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -19,42 +21,96 @@ std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
     return std::span(context.scratch.sides).subspan(group.first, group.last - group.first);
 }
 
-// With no impulse yet.
-void set_bearing(JointConstraint &joint, BearingLimit bearing) {
+void set_held(JointConstraint &joint, bool is_held) {
+    joint.is_held = is_held;
+    joint.is_weighed = !is_held; // again: weigh_again
+}
+
+bool is_limit(Bearing bearing) {
+    return bearing != Bearing::none && bearing != Bearing::motor;
+}
+
+// A limit begins, and ends, with no impulse; a motor takes its own along.
+void set_bearing(JointConstraint &joint, Bearing bearing) {
+    const bool was_motor = joint.bearing == Bearing::motor;
+    const Real impulse = joint.impulse.z;
+    const Real remembered = joint.remembered.z;
     joint.bearing = bearing;
     joint.rows.count = 2;
     joint.rows.axes[2] = Vec3{Real(0)};
+    joint.rows.speed = Real(0);
     joint.rows.error.z = joint.impulse.z = joint.remembered.z = Real(0);
     joint.push.z = joint.closing.z = Real(0);
-    if (bearing != BearingLimit::none)
-        add_limit_row(joint);
-    for (JointConstraint &limit : limits_of(joint)) {
-        limit.impulse = limit.remembered = Vec3{Real(0)};
-        limit.is_held = bearing != BearingLimit::none;
-        limit.is_weighed = !limit.is_held; // again: weigh_again
+    if (joint.limits != 0)
+        for (JointConstraint &limit : limits_of(joint)) {
+            limit.impulse = limit.remembered = Vec3{Real(0)};
+            set_held(limit, is_limit(bearing));
+        }
+    if (joint.motor != 0) {
+        JointConstraint &motor = motor_of(joint);
+        set_held(motor, bearing == Bearing::motor);
+        if (was_motor) {
+            motor.impulse.x = impulse;
+            motor.remembered.x = remembered;
+        } else if (motor.is_held) {
+            joint.impulse.z = std::exchange(motor.impulse.x, Real(0));
+            joint.remembered.z = std::exchange(motor.remembered.x, Real(0));
+        }
     }
+    if (bearing != Bearing::none)
+        add_bearing_row(joint);
 }
 
-// Limits push and never pull.
-bool pulls(BearingLimit bearing, Real impulse) {
-    return (bearing == BearingLimit::lower && impulse < Real(0)) ||
-           (bearing == BearingLimit::upper && impulse > Real(0));
+// N s or N m s, in a pass that stands for `share` of the substep.
+Real greatest_motor_impulse(const StepContext &context, const JointConstraint &motor, Real share) {
+    return motor.rows.max_force * context.substep() * share;
 }
 
-// Removes a limit's impulse and leaves it to Gauss-Seidel.
-void release_limit(StepContext &context, JointConstraint &joint) {
-    apply(context, joint, {Real(0), Real(0), -joint.impulse.z});
-    set_bearing(joint, BearingLimit::none);
+// Whether a motor has its speed, but for what moves its joint by little within a substep.
+bool is_at_speed(StepContext &context, const JointConstraint &motor) {
+    constexpr Real little = Real(1e-3); // of its size
+    const Real speed =
+        row_velocity(motor.rows, context.body(motor.a), context.body(motor.b), JointPass{}).x;
+    return std::abs(speed - motor.rows.speed) * context.substep() <= little * motor.size;
 }
 
-// Releases limits that pull. Returns whether there were any.
-bool release_limits(StepContext &context, JointGroup &group) {
+// Limits push and never pull; motors have a greatest force.
+bool is_beyond(const StepContext &context, JointConstraint &joint, Real impulse, Real share) {
+    switch (joint.bearing) {
+    case Bearing::lower:
+        return impulse < Real(0);
+    case Bearing::upper:
+        return impulse > Real(0);
+    case Bearing::motor:
+        return std::abs(impulse) > greatest_motor_impulse(context, motor_of(joint), share);
+    case Bearing::none:
+    case Bearing::shut:
+        break;
+    }
+    return false;
+}
+
+// Removes a limit's impulse, or what is too much of a motor's, and leaves it to Gauss-Seidel.
+void release_bearing(StepContext &context, JointConstraint &joint, Real share) {
+    Real left = Real(0);
+    if (joint.bearing == Bearing::motor) {
+        const Real most = greatest_motor_impulse(context, motor_of(joint), share);
+        left = std::clamp(joint.impulse.z - joint.push.z, -most, most);
+        joint.remembered.z = left / share;
+    }
+    apply(context, joint, {Real(0), Real(0), left - joint.impulse.z});
+    joint.impulse.z = left;
+    set_bearing(joint, Bearing::none);
+}
+
+// Releases limits that pull and motors that are too weak. Returns whether there were any.
+bool release_bearings(StepContext &context, JointGroup &group, const JointPass &pass) {
     bool any = false;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[context.scratch.joint_system->block(place)];
-        if (!pulls(joint.bearing, joint.impulse.z))
+        if (!is_beyond(context, joint, joint.impulse.z - joint.push.z, pass.force_share))
             continue;
-        release_limit(context, joint);
+        release_bearing(context, joint, pass.force_share);
         any = true;
     }
     if (any)
@@ -66,27 +122,29 @@ bool release_limits(StepContext &context, JointGroup &group) {
 // and the other rows' drift should not wait for it.
 Vec3 held_bias(const JointConstraint &joint, const JointPass &pass) {
     const Real rate = pass.held_share / pass.h;
-    if (joint.bearing == BearingLimit::none)
+    if (!is_limit(joint.bearing))
         return pushed(rate * joint.rows.error, pass.push_velocity);
     const Vec3 &error = joint.rows.error;
     Vec3 bias = pushed(rate * Vec3{error.x, error.y, Real(0)}, pass.push_velocity);
-    const bool is_off = pulls(joint.bearing, -error.z); // reaches its limit in this substep
+    const bool is_off = (joint.bearing == Bearing::lower && error.z > Real(0)) ||
+                        (joint.bearing == Bearing::upper && error.z < Real(0)); // reaches it now
     bias.z = is_off ? error.z / pass.h
                     : std::clamp(rate * error.z, -pass.push_velocity, pass.push_velocity);
     return bias;
 }
 
 // Opens limits that an impact, whose response is in the right-hand sides, would make pull by more
-// than they carried in the last substep. Returns whether there were any.
-bool open_limits(StepContext &context, JointGroup &group) {
+// than they carried in the last substep, and motors that would need too much force. Returns whether
+// there were any.
+bool open_bearings(StepContext &context, JointGroup &group) {
     JointSystem &system = *context.scratch.joint_system;
     const std::span<const Vec3> sides = sides_of(context, group);
     bool any = false;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
-        if (!pulls(joint.bearing, joint.impulse.z + sides[place - group.first].z))
+        if (!is_beyond(context, joint, joint.impulse.z + sides[place - group.first].z, Real(1)))
             continue;
-        set_bearing(joint, BearingLimit::none);
+        set_bearing(joint, Bearing::none);
         any = true;
     }
     if (any)
@@ -107,11 +165,16 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
             const JointConstraint &joint = context.scratch.joints[system.block(place)];
             Vec3 side =
                 row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), pass);
+            side.z -= joint.rows.speed;
             if (pass.held_share > Real(0))
                 side += joint.closing + system.softening(place) * joint.impulse;
             sides[place - group.first] = -side;
             if (holds) {
-                const Real most = solved_to * joint.size / pass.h;
+                // Nothing takes back what a motor's row is off; but rounding may leave more than
+                // this.
+                const bool is_exact = joint.bearing == Bearing::motor && step == 1;
+                const Real most =
+                    (is_exact ? Real(0.01) : Real(1)) * solved_to * joint.size / pass.h;
                 holds = glm::dot(side, side) <= most * most;
             }
         }
@@ -191,52 +254,86 @@ bool hangs_on_changed_group(StepContext &context, const JointConstraint &joint) 
 
 } // namespace
 
-void find_limits(std::span<JointConstraint> blocks) {
-    const auto lower =
-        std::ranges::find(blocks, RowBounds::at_least,
-                          [](const JointConstraint &joint) { return joint.rows.bounds; });
-    if (lower == blocks.end())
-        return;
-    for (JointConstraint &joint : blocks)
-        if (joint.rows.bounds == RowBounds::equal && joint.rows.count == 2 &&
-            joint.rows.kind == lower->rows.kind)
-            joint.limits = static_cast<std::uint8_t>(&*lower - &joint);
+void find_bearings(std::span<JointConstraint> blocks) {
+    for (JointConstraint &joint : blocks) {
+        if (joint.rows.bounds != RowBounds::equal || joint.rows.count != 2)
+            continue;
+        const auto offset_to = [&](RowBounds bounds) {
+            const auto found = std::ranges::find_if(blocks, [&](const JointConstraint &other) {
+                return other.rows.bounds == bounds && other.rows.kind == joint.rows.kind;
+            });
+            return static_cast<std::uint8_t>(found == blocks.end() ? 0 : &*found - &joint);
+        };
+        joint.limits = offset_to(RowBounds::at_least);
+        joint.motor = offset_to(RowBounds::motor);
+    }
 }
 
 std::span<JointConstraint, 2> limits_of(JointConstraint &joint) {
     return std::span<JointConstraint, 2>(&joint + joint.limits, 2);
 }
 
-void add_limit_row(JointConstraint &joint) {
-    const RowBlock &limit = limits_of(joint)[joint.bearing == BearingLimit::upper ? 1 : 0].rows;
-    joint.rows.count = 3;
-    joint.rows.axes[2] = limit.axes[0];
-    joint.rows.error.z = limit.error.x;
+JointConstraint &motor_of(JointConstraint &joint) {
+    return *(&joint + joint.motor);
 }
 
-bool choose_limits(StepContext &context, const JointGroup &group) {
+void add_bearing_row(JointConstraint &joint) {
+    const RowBlock &row = joint.bearing == Bearing::motor
+                              ? motor_of(joint).rows
+                              : limits_of(joint)[joint.bearing == Bearing::upper ? 1 : 0].rows;
+    joint.rows.count = 3;
+    joint.rows.axes[2] = row.axes[0];
+    joint.rows.error.z = row.error.x;
+    joint.rows.speed = row.speed;
+}
+
+namespace {
+
+// The limit that a joint rests on, or is shut between, and its load.
+std::pair<Bearing, Real> bearing_limit(JointConstraint &joint) {
+    if (joint.limits == 0)
+        return {Bearing::none, Real(0)};
+    const std::span<JointConstraint, 2> limits = limits_of(joint);
+    const Real load =
+        is_limit(joint.bearing) ? joint.impulse.z : limits[0].impulse.x + limits[1].impulse.x;
+    if (limits[0].rows.error.x == limits[1].rows.error.x)
+        return {Bearing::shut, load};
+    if (load == Real(0))
+        return {Bearing::none, load};
+    if (is_limit(joint.bearing))
+        return {joint.bearing, load};
+    return {load > Real(0) ? Bearing::lower : Bearing::upper, load};
+}
+
+// A motor is solved with its group while it has force to spare and its speed. Until then contacts
+// come after it: what it starts or drives against would else be run into.
+bool is_motor_held(StepContext &context, JointConstraint &joint, Real share) {
+    if (joint.motor == 0)
+        return false;
+    constexpr Real spare = Real(0.999); // a motor at its greatest force stays there
+    const JointConstraint &motor = motor_of(joint);
+    const Real impulse = joint.bearing == Bearing::motor ? joint.impulse.z : motor.impulse.x;
+    return std::abs(impulse) < spare * greatest_motor_impulse(context, motor, share) &&
+           is_at_speed(context, motor);
+}
+
+} // namespace
+
+bool choose_bearings(StepContext &context, const JointGroup &group, Real share) {
     bool any = false;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[context.scratch.joint_system->block(place)];
-        if (joint.limits == 0)
+        if (joint.limits == 0 && joint.motor == 0)
             continue;
-        const std::span<JointConstraint, 2> limits = limits_of(joint);
-        BearingLimit bearing = joint.bearing;
-        Real load = joint.impulse.z;
-        if (bearing == BearingLimit::none) {
-            load = limits[0].impulse.x + limits[1].impulse.x;
-            bearing = load > Real(0) ? BearingLimit::lower : BearingLimit::upper;
-        }
-        if (limits[0].rows.error.x == limits[1].rows.error.x)
-            bearing = BearingLimit::shut;
-        else if (load == Real(0))
-            bearing = BearingLimit::none;
+        auto [bearing, load] = bearing_limit(joint);
+        if (bearing == Bearing::none && is_motor_held(context, joint, share))
+            bearing = Bearing::motor;
         if (!group.is_held)
-            bearing = BearingLimit::none;
+            bearing = Bearing::none;
         if (bearing == joint.bearing)
             continue;
         set_bearing(joint, bearing);
-        if (bearing != BearingLimit::none)
+        if (is_limit(bearing))
             joint.impulse.z = load;
         any = true;
     }
@@ -252,7 +349,7 @@ bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass)
     do
         if (!solve_rows(context, group, pass))
             return false;
-    while (release_limits(context, group));
+    while (release_bearings(context, group, pass));
     return true;
 }
 
@@ -281,8 +378,11 @@ void push(StepContext &context, const JointGroup &group, const JointPass &pass) 
         const Real share = unturned_share(context, joint, pass.h);
         Vec3 side = share * pass.push_share * (bias + given_way);
         joint.closing = side - share * given_way + (Real(1) - share) * bias;
-        if (joint.bearing != BearingLimit::none) { // may still be approaching it
+        if (is_limit(joint.bearing)) { // may still be approaching it
             joint.closing.z = bias.z;
+            side.z = Real(0);
+        } else if (joint.bearing == Bearing::motor) { // would creep by what its row gives way
+            joint.closing.z = -given_way.z;
             side.z = Real(0);
         }
         sides[place - group.first] = -side;
@@ -295,7 +395,7 @@ void push(StepContext &context, const JointGroup &group, const JointPass &pass) 
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
         joint.push = sides[place - group.first];
-        if (joint.bearing != BearingLimit::none)
+        if (is_limit(joint.bearing))
             joint.push.z = Real(0);
         joint.impulse += joint.push;
         apply(context, joint, joint.push);
@@ -329,12 +429,32 @@ void take_back_pushes(StepContext &context) {
     });
 }
 
+namespace {
+
+// Contacts have thrown them off their speed.
+void release_thrown_motors(StepContext &context, JointGroup &group) {
+    bool any = false;
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        JointConstraint &joint = context.scratch.joints[context.scratch.joint_system->block(place)];
+        if (joint.bearing != Bearing::motor || is_at_speed(context, motor_of(joint)))
+            continue;
+        set_bearing(joint, Bearing::none);
+        any = true;
+    }
+    if (any)
+        factor_again(context, group);
+}
+
+} // namespace
+
 void hold_touched_groups(StepContext &context, const JointPass &pass) {
     const std::span<JointGroup> groups = context.scratch.joint_system->groups();
     for_parts(context.tasks, groups.size(), groups_a_part, [&](std::size_t begin, std::size_t end) {
         for (JointGroup &group : groups.subspan(begin, end - begin))
-            if (group.is_held && group.is_touched)
+            if (group.is_held && group.is_touched) {
+                release_thrown_motors(context, group);
                 solve_group(context, group, pass);
+            }
     });
     weigh_again(context);
 }
@@ -357,8 +477,8 @@ void let_go(StepContext &context, JointGroup &group) {
         apply(context, joint, -joint.impulse);
         joint.impulse = joint.remembered = joint.push = Vec3{Real(0)};
         joint.is_held = false;
-        if (joint.bearing != BearingLimit::none)
-            release_limit(context, joint);
+        if (joint.bearing != Bearing::none)
+            set_bearing(joint, Bearing::none);
         joint.mass = mass_of(joint.rows, context.body(joint.a), context.body(joint.b));
     }
 }
@@ -421,11 +541,13 @@ void answer_impact(StepContext &context, std::uint32_t group) {
     do {
         for (std::uint32_t place = all.first; place < all.last; ++place) {
             const JointConstraint &joint = context.scratch.joints[system.block(place)];
-            sides[place - all.first] = -row_velocity(joint.rows, context.body(joint.a),
-                                                     context.body(joint.b), JointPass{});
+            Vec3 &side = sides[place - all.first];
+            side = -row_velocity(joint.rows, context.body(joint.a), context.body(joint.b),
+                                 JointPass{});
+            side.z += joint.rows.speed;
         }
         system.solve(all, sides);
-    } while (open_limits(context, all));
+    } while (open_bearings(context, all));
     for (std::uint32_t place = all.first; place < all.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
         apply(context, joint, sides[place - all.first]);

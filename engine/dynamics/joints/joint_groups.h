@@ -1,5 +1,5 @@
-// Joints that are solved together in groups (JointSystem), with their limits, and the other joints
-// whose effective mass depends on a group.
+// Joints that are solved together in groups (JointSystem), with their limits and motors, and the
+// other joints whose effective mass depends on a group.
 #pragma once
 
 #include "engine/dynamics/joints/joint_constraint.h"
@@ -16,20 +16,22 @@ inline constexpr std::size_t groups_a_part = 1; // per thread
 // redundant joints, too little to see.
 inline constexpr Real held_compliance = Real(1e-3);
 
-// Links a joint's limits to the two-row block that leaves the limited direction free.
-void find_limits(std::span<JointConstraint> blocks);
+// Links a joint's limits and motor to the two-row block that leaves their direction free.
+void find_bearings(std::span<JointConstraint> blocks);
 // The lower and upper limit of a block that has limits.
 std::span<JointConstraint, 2> limits_of(JointConstraint &joint);
-// Adds the active limit's row as the block's third.
-void add_limit_row(JointConstraint &joint);
-// Moves loaded limits into their group as rows, while the group is held. Returns whether anything
+JointConstraint &motor_of(JointConstraint &joint);
+// Adds the row of the active limit or motor as the block's third.
+void add_bearing_row(JointConstraint &joint);
+// Moves loaded limits, and else motors that have force to spare, into their group as rows, while
+// the group is held. `share`: of the substep, that impulses stand for. Returns whether anything
 // changed.
-bool choose_limits(StepContext &context, const JointGroup &group);
-// Factors a group again after its active limits changed.
+bool choose_bearings(StepContext &context, const JointGroup &group, Real share);
+// Factors a group again after its active limits or motors changed.
 void factor_again(StepContext &context, JointGroup &group);
 
-// Solves all rows of a group together, releasing limits that would pull. Returns whether the ends
-// of its joints meet.
+// Solves all rows of a group together, releasing limits that would pull and motors that would need
+// more than their greatest force. Returns whether the ends of its joints meet.
 bool solve_group(StepContext &context, JointGroup &group, const JointPass &pass);
 // Joints in a group give a little (held_compliance), like springs that stiffen as the substep gets
 // finer. Taken back as drift, that stretch would turn into speed, amplified where an island takes

@@ -24,7 +24,7 @@ constexpr Real torn_share = Real(0.05);
 bool is_torn(const JointConstraint &joint) {
     const Real most = torn_share * joint.size;
     Vec3 error = joint.rows.error;
-    if (joint.bearing != BearingLimit::none) // has been reached at any speed
+    if (joint.bearing != Bearing::none) // has been reached at any speed
         error.z = Real(0);
     return !(glm::dot(error, error) <= most * most);
 }
@@ -153,7 +153,8 @@ void follow_loads(StepContext &context, Real h) {
                         use(changed[body]);
             }
         };
-        bool is_changed = choose_limits(context, group) || group.is_held != group.is_factored;
+        bool is_changed =
+            choose_bearings(context, group, Real(1)) || group.is_held != group.is_factored;
         for_all_bodies([&](std::uint8_t one) { is_changed = is_changed || one != 0; });
         if (is_changed)
             for_all_bodies([](std::uint8_t &one) { one = 1; });
