@@ -273,6 +273,37 @@ double sag_of_chain(const std::string &method, int substeps) {
     return -particle_position(world, links / 2).y / cable.sag(0.8);
 }
 
+// Boxes that tumble on a spring between their corners, for half a minute.
+TEST(SoftStepSprings, BetweenTumblingBodiesTurnNothing) {
+    for (const double stiffness : {10.0, 1e2, 1e3, 1e4, 1e5, 1e6})
+        for (const double damping_ratio : {0.0, 0.05, 1.0})
+            for (int trial = 0; trial < 8; ++trial) {
+                Random random(static_cast<std::uint64_t>(trial) + 1);
+                World world("soft_step", weightless(settings_for("soft_step")));
+                const V velocity = any_vector(random, 1);
+                const V at_a = any_vector(random, 0.15), at_b = any_vector(random, 0.15);
+                const auto add = [&](const V &half, const V &at, const V &going) {
+                    BodyDef def = dynamic_body(block(half), 1, at, going);
+                    def.angular_velocity = narrow(any_vector(random, 1));
+                    def.colliders[0].filter = {0, 1};
+                    return world.add_body(def);
+                };
+                const BodyId a = add({0.2, 0.1, 0.3}, V{0}, velocity);
+                const BodyId b = add({0.1, 0.2, 0.1}, V{1, 0, 0}, -velocity);
+                world.add_spring(spring(of_body(a, at_a), of_body(b, at_b),
+                                        glm::length(V{1, 0, 0} + at_b - at_a), stiffness,
+                                        damping_ratio * std::sqrt(2 * stiffness)));
+                const Measures before = world.measure();
+                run(world, 1800);
+                const Measures after = world.measure();
+                SCOPED_TRACE(testing::Message()
+                             << stiffness << " N/m, " << damping_ratio << ", " << trial);
+                EXPECT_LT(glm::distance(after.angular_momentum, before.angular_momentum),
+                          5e-4 * glm::length(before.angular_momentum));
+                EXPECT_LT(after.energy(), (damping_ratio > 0 ? 1.001 : 1.02) * before.energy());
+            }
+}
+
 TEST_P(Springs, AHangingChainIsACatenary) {
     if (GetParam() == "explicit_euler")
         GTEST_SKIP() << "gains energy";

@@ -315,7 +315,7 @@ inline void move_along(SolverBody &motion, RoundedOff &rounded_off, const Body &
     const Vec3 way = h * (flight.free ? flight.mean_velocity : motion.velocity);
     go(motion, rounded_off, way);
     motion.turned += h * motion.angular_velocity;
-    if (is_gyroscopic && flight.free)
+    if (is_gyroscopic && flight.turns_by_mean)
         motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
     else
         turn(motion, rounded_off, h);
@@ -333,20 +333,27 @@ bool turns_far(const Vec3 &spin, Real h) {
 // Between the two half kicks the gyroscopic torque is that of the spin that the solver left
 // (`kick`): the first half of its impulses comes before the torque-free turn, as in RATTLE, and the
 // turn keeps their energy. If added to the mean spin of a turn without them, they would do work: a
-// top whose foot is held by a joint (`is_held`) sinks, and a capsule spinning on a floor gains
-// energy without end. Impacts are excluded: they act in an instant, and half of one there would be
-// just as wrong.
+// top whose foot is held by a joint sinks, bodies on springs gain angular momentum, and a capsule
+// spinning on a floor gains energy without end. Impacts are excluded: they act in an instant, and
+// half of one there would be just as wrong.
+struct HeldBy {
+    bool joints = false;
+    bool springs = false;
+};
 void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
-               Real h, Kick kick, int gyroscopic_iterations, bool is_held) {
+               Real h, Kick kick, int gyroscopic_iterations, HeldBy held_by) {
     flight.free =
         motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
+    flight.turns_by_mean = flight.free;
     const bool is_gyroscopic = body.kind == BodyKind::dynamic && has_gyroscopic_spin(body);
     if (is_gyroscopic && !flight.free && kick == Kick::around &&
-        (is_held || (flight.loaded && turns_far(flight.start_spin, h)))) {
+        (held_by.joints || held_by.springs || (flight.loaded && turns_far(flight.start_spin, h)))) {
         flight.start_spin += rotated(glm::conjugate(motion.rotation),
                                      motion.angular_velocity - flight.angular_velocity);
         turn_freely(flight, body, damped(body.angular_damping, h), h, gyroscopic_iterations);
         motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
+        // Joints and contacts hold where the velocity leads.
+        flight.turns_by_mean = held_by.springs && !held_by.joints && !flight.loaded;
     }
     move_along(motion, rounded_off, body, flight, h, is_gyroscopic);
 }
@@ -355,7 +362,7 @@ void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, Fr
 
 void move(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
           Real h) {
-    move_held(motion, rounded_off, body, flight, h, Kick::before, 0, false);
+    move_held(motion, rounded_off, body, flight, h, Kick::before, 0, {});
 }
 
 namespace {
@@ -416,7 +423,9 @@ void end_flights(StepContext &context, Real h, Kick kick) {
             SolverBody &motion = context.bodies[body];
             move_held(motion, context.scratch.rounded_off[body], context.model.bodies[body],
                       flights[i], h, kick, context.settings.gyroscopic_iterations,
-                      !stiffness.empty() && stiffness[body].most > Real(0));
+                      {.joints = !stiffness.empty() && stiffness[body].most > Real(0),
+                       .springs = context.active.has_particles &&
+                                  context.scratch.spring_rates[body].x > Real(0)});
             if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts
                 motion.turned = rotation_vector(motion.rotation *
                                                 glm::conjugate(context.starts[body].rotation));

@@ -103,7 +103,10 @@ struct FreeFlight {
     Vec3 end_spin{Real(0)};
     Vec3 late_spin{Real(0)}; // the part of damping applied after the move, world
     bool free = false;       // set by move
-    bool loaded = false;     // turned by impulses that it also had before (note_lasting_loads)
+    // Set by move: the pose turns by the Cayley map of mean_spin, which keeps the world angular
+    // momentum together with end_spin.
+    bool turns_by_mean = false;
+    bool loaded = false; // turned by impulses that it also had before (note_lasting_loads)
 };
 
 FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,

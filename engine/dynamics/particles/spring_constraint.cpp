@@ -205,6 +205,20 @@ void refresh(StepContext &context, SpringConstraint &row) {
         row.impulse = -row.time.guessed * (row.bias + speed_of(context, row)) / row.softness;
 }
 
+// A pull acts at the lines before and after the move, and together its two parts turn nothing:
+// where the bodies' ends swung off the straight move that it was found for, the second part makes
+// up for it across the line. Light particles would be flung aside.
+Vec3 rest_of_pull(const Spring &spring, const SpringConstraint &row, const Vec3 &line) {
+    const Vec3 rest = (Real(1) / row.time.share - Real(1)) * row.pull;
+    const Real squared = glm::dot(line, line);
+    const bool is_between_bodies =
+        spring.a.kind == SpringEnd::Kind::body && spring.b.kind == SpringEnd::Kind::body;
+    if (!is_between_bodies || !(Real(4) * squared > glm::dot(row.line, row.line)))
+        return rest;
+    const Vec3 turn = glm::cross(row.line, row.pull) + glm::cross(line, rest);
+    return rest + glm::cross(line, turn) / squared;
+}
+
 // The rest of the impulse, and a correction of the energy error of both impulses that the passes
 // left, or that contacts or turning bodies caused.
 void repeat(StepContext &context, SpringConstraint &row, Real h) {
@@ -214,8 +228,8 @@ void repeat(StepContext &context, SpringConstraint &row, Real h) {
         apply(context, row, pull_of(spring, line, Vec3{Real(0)}, Real(0.5) * h).impulse);
         return;
     }
-    const Vec3 both = row.pull / row.time.share;
     const Vec3 move = line - row.line;
+    const Vec3 both = row.pull + rest_of_pull(spring, row, line);
     const Vec3 held = pull_of(spring, row.line, Real(0.5) * move, h).impulse;
     apply(context, row, both - row.pull);
     const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
