@@ -17,6 +17,17 @@ namespace plumb {
 
 namespace {
 
+// Any name without an extension may be a pipe or a device.
+CLI::Validator png_or_svg() {
+    return {[](const std::string &text) {
+                const std::string kind = std::filesystem::path(text).extension().string();
+                return kind.empty() || kind == ".png" || kind == ".svg"
+                           ? std::string()
+                           : "must end in .png or .svg, got " + text;
+            },
+            ""};
+}
+
 struct MeasureArguments {
     std::uint64_t steps = 600;
     std::filesystem::path csv;
@@ -103,8 +114,10 @@ void add_map(CommandLine &line) {
         ->type_name("NAME=FROM..TO[:N][log]");
     map_command->add_option("--methods", arguments->methods, "Methods (all): " + method_names())
         ->type_name("METHOD,...");
-    map_command->add_option("--image", arguments->command.image,
-                            "Picture of the map to write: a PNG, or an SVG if named *.svg");
+    map_command
+        ->add_option("--image", arguments->command.image,
+                     "Picture of the map to write: a PNG, or an SVG if named *.svg")
+        ->check(png_or_svg());
     map_command->add_option("--csv", arguments->command.csv,
                             "CSV file to write, with every cell and limit");
     map_command

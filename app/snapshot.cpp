@@ -69,7 +69,7 @@ ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer 
         if (InterruptGuard::requested())
             return ExitCode::fine;
         const bool arrived = !steps || done() == step;
-        const std::filesystem::path path = picture_path(command, scene.name, done());
+        const std::filesystem::path path = picture_path(command, scene.name, steps ? done() : step);
         // Probe labels are drawn by the panel code.
         sandbox.view().panels = command.panels;
         if (command.panels || !scene.probes.empty())
@@ -80,8 +80,6 @@ ExitCode shoot(const SnapshotCommand &command, const SceneDesc &scene, Renderer 
         line.clear();
         out << path.string() << std::endl;
         line.show(static_cast<double>(done()) / last, scene.name);
-        if (!steps)
-            break; // every step looks the same
         if (!arrived || !simulation.report().finite) {
             line.clear();
             err << scene.name << ": diverged at step " << done() << '\n';

@@ -129,6 +129,7 @@ TEST(CommandLine, WrongArgumentsAreExitCode2) {
                                   "check pendulum --precision half",
                                   "snapshot pendulum --gl vulkan",
                                   "snapshot pendulum --size 10",
+                                  "map pendulum --x dt=1/60..1/30 --y substeps=1,2 --image m.jpg",
                                   "snapshot pendulum --size 640x400x2",
                                   "snapshot pendulum --size 15x400",
                                   "snapshot pendulum --at -1",

@@ -136,20 +136,20 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
     write_chart_csv(rows, chart, fingerprint);
     const std::string others = earlier.rows_not_in(rows.str(), chart_key_columns(), "fingerprint");
     csv.stream() << rows.str();
-    print(out, chart);
-    out << std::flush;
     if (chart.interrupted) {
         csv.stream() << others;
         err << "interrupted; rows so far: " << csv.keep_partial().string() << '\n';
     } else {
         csv.finish();
         err << "wrote " << csv.path().string() << '\n';
-        if (goes_on)
+        if (others.empty())
             std::filesystem::remove(stem.string() + ".partial.png");
         charted.push_back({std::move(earlier), rows.str(), others});
     }
     if (!chart.runs.empty() && shard.of == 1)
         code = worse(code, write_pictures(chart, stem, command.command, painter, err));
+    print(out, chart); // last, as its reader may close the pipe
+    out << std::flush;
     return code;
 }
 

@@ -111,8 +111,6 @@ ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &e
     StabilityMap map = map_scene(*scene, command.x, command.y, options);
     map.fingerprint = fingerprint;
     line.clear();
-    print(out, map);
-    out << std::flush;
     if (csv) {
         std::ostringstream rows;
         write_map_csv(rows, map);
@@ -129,6 +127,8 @@ ExitCode map_scene(const MapCommand &command, std::ostream &out, std::ostream &e
     }
     if (!command.image.empty())
         write_picture(command, map, err);
+    print(out, map); // last, as its reader may close the pipe
+    out << std::flush;
     return ExitCode::fine;
 }
 

@@ -262,9 +262,11 @@ MapLayout lay_out(const StabilityMap &map, const std::vector<TheoryCurve> &theor
     layout.title = write.place(
         write.cut(map.scene.title.empty() ? map.scene.name : map.scene.title, title_text, width),
         title_text, {left_edge, 22});
-    layout.subtitle = write.place(
-        write.cut("Where each method holds the scene, and why it fails", subtitle_text, width),
-        subtitle_text, {left_edge, 56});
+    layout.subtitle =
+        write.place(write.cut(std::string(map.interrupted ? "INTERRUPTED. " : "") +
+                                  "Where each method holds the scene, and why it fails",
+                              subtitle_text, width),
+                    subtitle_text, {left_edge, 56});
     layout.y_title = write.place(write.cut("y: " + axis_title(map.y), axis_text, width), axis_text,
                                  {left_edge, 84});
 
