@@ -3,6 +3,7 @@
 #include "tests/dynamics/worlds.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -287,6 +288,22 @@ TEST(Structures, AJointIsAsStiffWhereverItsWorldBegins) {
     }
     EXPECT_NEAR(heights[1], heights[0], is_double ? 1e-9 : 1e-3);
     EXPECT_NEAR(heights[2], heights[0], is_double ? 1e-9 : 1e-3);
+}
+
+// Left to Gauss-Seidel they come apart by half a metre where they whip.
+TEST(Structures, NetsHoldWhereTheyWhip) {
+    for (const auto [balls, steps] : {std::pair{20, 600}, {25, 300}}) {
+        StepSettings settings = settings_for("soft_step");
+        settings.sleep_after = 0;
+        World world("soft_step", settings);
+        add_joined_net(world, balls, V{0, 10, 0});
+        double drift = 0;
+        for (int step = 0; step < steps; ++step) {
+            world.step(nullptr);
+            drift = std::max(drift, world.measure().max_joint_drift);
+        }
+        EXPECT_LT(drift, 0.005) << balls;
+    }
 }
 
 } // namespace

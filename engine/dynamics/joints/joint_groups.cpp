@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -15,6 +16,8 @@ namespace {
 
 // As a share of the arms' lengths: how far ends may be apart.
 constexpr Real solved_to = Real(1e-6);
+constexpr Real motors_solved_to = Real(1e-8);
+constexpr Real mesh_solved_to = Real(5e-2);
 
 // A group's own right-hand sides among those of all groups.
 std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
@@ -153,14 +156,18 @@ bool open_bearings(StepContext &context, JointGroup &group) {
 }
 
 // Solves all rows of a group together. Where bodies turn far within the substep the ends of their
-// arms move along circles, and take a few Newton steps to meet. Returns whether they do.
+// arms move along circles, and take a few Newton steps to meet. Returns whether they do. In a mesh
+// nearly is enough, as long as the steps bring them closer: Gauss-Seidel would let it fall apart,
+// and the next substep takes the rest back.
 bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = *context.scratch.joint_system;
     const std::span<Vec3> sides = sides_of(context, group);
     // Far more than needed when a body turns a radian within the substep.
     constexpr int most_steps = 8;
-    for (int step = 0; step < (pass.at_the_end ? most_steps : 1); ++step) {
-        bool holds = step > 0;
+    Real before = std::numeric_limits<Real>::infinity();
+    for (int step = 0; step == 0 || pass.at_the_end; ++step) {
+        Real worst = Real(0); // squared, as a share of the size
+        bool is_exact = true;
         for (std::uint32_t place = group.first; place < group.last; ++place) {
             const JointConstraint &joint = context.scratch.joints[system.block(place)];
             Vec3 side =
@@ -169,17 +176,20 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
             if (pass.held_share > Real(0))
                 side += joint.closing + system.softening(place) * joint.impulse;
             sides[place - group.first] = -side;
-            if (holds) {
-                // Nothing takes back what a motor's row is off; but rounding may leave more than
-                // this.
-                const bool is_exact = joint.bearing == Bearing::motor && step == 1;
-                const Real most =
-                    (is_exact ? Real(0.01) : Real(1)) * solved_to * joint.size / pass.h;
-                holds = glm::dot(side, side) <= most * most;
-            }
+            const Vec3 share = (pass.h / joint.size) * side;
+            const Real squared = glm::dot(share, share);
+            worst = squared <= worst ? worst : squared; // of NaN, NaN
+            if (joint.bearing == Bearing::motor)
+                is_exact = is_exact && squared <= motors_solved_to * motors_solved_to;
         }
-        if (holds)
+        // Nothing takes back what a motor's row is off; but rounding may leave more than this.
+        if (step > (is_exact ? 0 : 1) && worst <= solved_to * solved_to)
             return true;
+        if (group.is_mesh && (step == most_steps || (step > 0 && !(worst < before))))
+            return worst <= mesh_solved_to * mesh_solved_to;
+        if (step == most_steps)
+            return false;
+        before = worst;
         system.solve(group, sides);
         for (std::uint32_t place = group.first; place < group.last; ++place) {
             JointConstraint &joint = context.scratch.joints[system.block(place)];
@@ -188,7 +198,7 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
             apply(context, joint, change);
         }
     }
-    return !pass.at_the_end;
+    return true;
 }
 
 // A group's response to an impulse along the rows of a joint outside it, such as a limit: the

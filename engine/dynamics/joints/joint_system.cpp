@@ -19,8 +19,11 @@ namespace {
 // a shelf of five boards on welded posts 48, nets of 10 and 20 balls a side 52 and 169, a welded
 // frame of 4 x 4 x 4 cells 418. Gauss-Seidel is no cheaper where loads are large, as it needs up to
 // 32 times the substeps; and its passes feed energy into loops of joints that hold angles.
-constexpr std::size_t work_a_ball = 160;
+constexpr std::size_t work_a_ball = 224;
 constexpr std::size_t work_an_angle = 512;
+
+// Elimination products a block from which on Gauss-Seidel could not hold a group that carries load.
+constexpr std::size_t work_in_a_mesh = 16;
 
 // Neighbours that a block may have on average.
 constexpr std::size_t most_neighbours = 512;
@@ -214,7 +217,8 @@ bool JointSystem::eliminate(const std::vector<std::uint32_t> &members, std::size
         }
         target_start_.push_back(static_cast<std::uint32_t>(targets_.size()));
     }
-    groups_.push_back({.first = first, .last = last});
+    groups_.push_back(
+        {.first = first, .last = last, .is_mesh = work > work_in_a_mesh * members.size()});
     return true;
 }
 

@@ -14,7 +14,8 @@ namespace plumb::inline PLUMB_PRECISION {
 struct StepContext;
 
 // Blocks first..last - 1 in the system's elimination order. `is_held`: solved together in this
-// substep, not left to Gauss-Seidel. `is_touched`: contacts act on its bodies. In this step:
+// substep, not left to Gauss-Seidel. `is_mesh`: has many loops, as nets and frames do.
+// `is_touched`: contacts act on its bodies. In this step:
 // `is_factored`: it was factored when its joints were last refreshed; `was_torn`: torn joints
 // kept it from being held; `was_let_go`: it was let go before that, or torn between two substeps.
 // `has_changed`: it was let go, or its active limits changed, since the masses of motors
@@ -23,6 +24,7 @@ struct JointGroup {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
     bool is_held = false;
+    bool is_mesh = false;
     bool is_factored = false;
     bool is_touched = false;
     bool was_torn = false;
