@@ -16,7 +16,7 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 // Elimination products that a block may cost on average: a chain costs 1, a loop of a few joints 3,
-// a shelf of five boards on welded posts 48, nets of 10 and 20 balls a side 52 and 169, a welded
+// a shelf of five boards on welded posts 48, nets of 20 and 30 balls a side 105 and 219, a welded
 // frame of 4 x 4 x 4 cells 418. Gauss-Seidel is no cheaper where loads are large, as it needs up to
 // 32 times the substeps; and its passes feed energy into loops of joints that hold angles.
 constexpr std::size_t work_a_ball = 224;
@@ -300,31 +300,29 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Real com
         for (int i = 0; i < 3; ++i) // rows that are not there
             if (i >= count || !(size > Real(0)))
                 own[i][i] += Real(1);
-        diagonal_[place] = own;
+        diagonal_[place] = WideMat3(own);
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
-            lower_[i] = Mat3{Real(0)};
+            Mat3 coupling{Real(0)};
             for (const Effect &u : effects_[rows_[i]])
                 for (const Effect &v : effects_[place])
                     if (u.body == v.body && u.body != Joint::world)
-                        add_coupling(u, v, lower_[i]);
+                        add_coupling(u, v, coupling);
+            lower_[i] = WideMat3(coupling);
         }
     }
     for (std::uint32_t place = group.first; place < group.last; ++place) {
-        const Mat3 inverse = glm::inverse(diagonal_[place]);
+        const WideMat3 inverse(glm::inverse(diagonal_[place].narrow()));
         diagonal_[place] = inverse;
         const std::uint32_t end = column_start_[place + 1];
         const std::uint32_t *target = targets_.data() + target_start_[place];
         for (std::uint32_t i = column_start_[place]; i < end; ++i) {
             // Row i of L; the rows after it are still K's.
-            const Mat3 row = lower_[i] * inverse;
-            const Mat3 across = glm::transpose(row);
-            for (std::uint32_t j = i; j < end; ++j, ++target) {
-                const Mat3 product = lower_[j] * across;
-                if ((*target & on_diagonal) != 0)
-                    diagonal_[*target & ~on_diagonal] -= product;
-                else
-                    lower_[*target] -= product;
-            }
+            WideMat3 row;
+            row.add_product(lower_[i], inverse.narrow());
+            const Mat3 across = -glm::transpose(row.narrow());
+            for (std::uint32_t j = i; j < end; ++j, ++target)
+                ((*target & on_diagonal) != 0 ? diagonal_[*target & ~on_diagonal] : lower_[*target])
+                    .add_product(lower_[j], across);
             lower_[i] = row;
         }
     }
@@ -339,7 +337,7 @@ void JointSystem::solve(const JointGroup &group, std::span<Vec3> sides) const {
     }
     for (std::uint32_t place = group.last; place-- > group.first;)
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
-            sides[place - group.first] -= glm::transpose(lower_[i]) * sides[rows_[i] - group.first];
+            sides[place - group.first] -= sides[rows_[i] - group.first] * lower_[i];
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

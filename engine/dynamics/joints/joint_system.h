@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/joints/joint_constraint.h"
+#include "engine/dynamics/joints/wide_matrix.h"
 
 #include <array>
 #include <cstdint>
@@ -106,8 +107,8 @@ class JointSystem {
     std::vector<std::pair<std::size_t, std::uint32_t>> queue_;
     std::vector<std::array<Effect, 2>> effects_; // per position
     std::vector<Mat3> softening_;
-    std::vector<Mat3> diagonal_; // of K, then D^-1
-    std::vector<Mat3> lower_;    // of K, then L
+    std::vector<WideMat3> diagonal_; // of K, then D^-1
+    std::vector<WideMat3> lower_;    // of K, then L
 };
 
 } // namespace plumb::inline PLUMB_PRECISION
