@@ -43,9 +43,9 @@ struct ViewState {
     bool diagnostics = true;
     bool lab = false;
     bool help = false;
-    PerPanel<std::optional<bool>> opened; // open, or folded to the title; unset: as is_roomy
-    bool is_roomy = true;                 // the window has room for open panels
-    [[nodiscard]] bool is_open(PanelId panel) const { return opened[panel].value_or(is_roomy); }
+    // Open, or folded to the title; unset: folded until the window has had room for all.
+    PerPanel<std::optional<bool>> opened;
+    [[nodiscard]] bool is_open(PanelId panel) const { return opened[panel].value_or(false); }
     float ui_scale = 1;                       // times the monitor's scale
     std::optional<std::size_t> detailed_body; // that the details last showed, or
     std::optional<std::size_t> detailed_particle;

@@ -381,6 +381,19 @@ TEST_F(UiTest, LargerPanelsAreLarger) {
     EXPECT_NEAR(height({2560, 1600}, 2), 2 * height({1280, 800}, 1), 8);
 }
 
+TEST_F(UiTest, PanelsThatAreOpenStayOpenAsTheTextGrows) {
+    Sandbox sandbox(Session(), scenes);
+    ASSERT_TRUE(sandbox.open(scenes[2].path));
+    const auto is_open = [&](float scale) {
+        static_cast<void>(
+            ui_snapshot(sandbox, *renderer, source / "shaders", {{1280, 800}, 1, scale}));
+        return sandbox.view().is_open(PanelId::settings);
+    };
+    EXPECT_FALSE(is_open(2)); // nobody has opened any
+    EXPECT_TRUE(is_open(1));
+    EXPECT_TRUE(is_open(2));
+}
+
 // In all windows, or only in the named one.
 double area_of(const ImDrawData &data, const Colour &colour, const char *window = nullptr) {
     const ImU32 wanted = ImGui::ColorConvertFloat4ToU32(colour) & ~IM_COL32_A_MASK;

@@ -17,12 +17,12 @@ bool has_world(const PanelContext &context) {
     return simulation != nullptr && simulation->has_world();
 }
 
-bool is_shown(const PanelRow &row, const PanelContext &context) {
+bool is_shown(const PanelRow &row, const PanelContext &context, bool roomy) {
     const ViewState &view = context.view;
     // In a small window help is shown alone, and the lab with only the transport bar.
-    const bool beside_help = view.panels && (view.is_roomy || !view.help);
+    const bool beside_help = view.panels && (roomy || !view.help);
     const bool is_lab = view.lab && !view.help && has_world(context);
-    const bool beside_lab = view.is_roomy || !is_lab || row.id == PanelId::transport;
+    const bool beside_lab = roomy || !is_lab || row.id == PanelId::transport;
     switch (row.needs) {
     case PanelNeeds::nothing:
         return beside_help && beside_lab;
@@ -84,10 +84,14 @@ const ImDrawData &Ui::draw(PanelContext &context) {
     panels_.clear();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const glm::vec2 window(size.x, size.y);
-    context.view.is_roomy = is_roomy(window, scale_);
+    const bool roomy = is_roomy(window, scale_);
+    // Once open they stay so, whether the window shrinks or the text grows.
+    if (roomy)
+        for (std::optional<bool> &open : context.view.opened)
+            open = open.value_or(true);
     PerPanel<float> wished{};
     for (const PanelRow &row : panel_rows)
-        if (is_shown(row, context))
+        if (is_shown(row, context, roomy))
             wished[row.id] = heights_[row.id] > 0 ? heights_[row.id] : unknown_height;
     const PerPanel<Rect> rects = lay_out(window, scale_, wished);
     for (const PanelRow &row : panel_rows)
