@@ -42,7 +42,7 @@ TEST(Layout, NothingOverlapsAndAllIsInside) {
                          : random.next_in(0, 4) < 1 ? 0
                                                     : static_cast<float>(random.next_in(20, 900));
             if (!is_roomy(window, 1))
-                wished[PanelId::help] = wished[PanelId::lab] = 0; // these open alone there
+                wished[PanelId::help] = 0; // it opens alone there
             expect_apart_and_inside(lay_out(window, 1, wished), window);
             if (HasFailure())
                 return;
@@ -64,7 +64,7 @@ TEST(Layout, NoScaleThatIsAskedForPutsPanelsOutOfReach) {
         for (float &height : wished)
             height = scale * static_cast<float>(random.next_in(40, 900));
         if (!is_roomy(window, scale))
-            wished[PanelId::help] = wished[PanelId::lab] = 0;
+            wished[PanelId::help] = 0;
         expect_apart_and_inside(lay_out(window, scale, wished), window);
         ASSERT_FALSE(HasFailure()) << "at a scale of " << scale;
     }
@@ -94,15 +94,16 @@ TEST(Layout, InASmallWindowTheHelpStandsAlone) {
     EXPECT_LE(help.max().y, smallest_window.y);
 }
 
-TEST(Layout, InASmallWindowTheLabStandsAboveTheBar) {
+TEST(Layout, InANarrowWindowTheColumnsEndAboveTheLab) {
     PerPanel<float> wished{};
-    wished[PanelId::lab] = 500;
+    wished[PanelId::scenes] = wished[PanelId::details] = wished[PanelId::lab] = 500;
     wished[PanelId::transport] = 90;
-    wished[PanelId::messages] = 60;
     const PerPanel<Rect> rects = lay_out(smallest_window, 1, wished);
     expect_apart_and_inside(rects, smallest_window);
     EXPECT_GT(rects[PanelId::lab].size.x, 600);
-    EXPECT_GT(rects[PanelId::lab].size.y, 180);
+    EXPECT_GT(rects[PanelId::lab].size.y, 130);
+    EXPECT_GT(rects[PanelId::scenes].size.y, 130);
+    EXPECT_LT(rects[PanelId::scenes].max().y, rects[PanelId::lab].min.y);
 }
 
 TEST(Layout, TheLabLeavesTheSceneHalfOfTheMiddle) {

@@ -14,7 +14,7 @@ constexpr float margin = 8;
 constexpr float transport_width = 520;
 constexpr float least_transport_width = 380;
 constexpr glm::vec2 roomy{860, 600};
-constexpr float lab_share = 0.5f; // of the middle column's height, at most
+constexpr float lab_share = 0.5f; // of the height above the bar, at most
 
 // Below this share of the window's height a picture is useless.
 constexpr float least_picture = 0.2f;
@@ -72,7 +72,8 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
     const float middle = std::max(right_x - gap - middle_x, 1.0f);
 
     PerPanel<Rect> rects{};
-    // If the bar does not fit between the columns, they end above it.
+    // If bar and lab do not fit between the columns, they span the window, and the columns end
+    // above them.
     const float bar_height = std::min(std::ceil(wished[PanelId::transport]), 0.4f * height);
     const float bar_y = window.y - gap - bar_height;
     const bool fits = middle >= least_transport_width * scale;
@@ -82,28 +83,25 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
     if (bar_height > 0)
         rects[PanelId::transport] = {{std::round(bar_x), bar_y}, {bar, bar_height}};
     const float above = bar_height > 0 ? std::max(bar_y - 2 * gap, 1.0f) : height;
-    const float column = fits ? height : above;
+    const float lab = std::min(std::ceil(wished[PanelId::lab]), std::floor(lab_share * above));
+    if (lab > 0)
+        rects[PanelId::lab] = {{fits ? middle_x : gap, gap + above - lab},
+                               {fits ? middle : std::max(window.x - 2 * gap, 1.0f), lab}};
+    const float above_lab = lab > 0 ? std::max(above - lab - gap, 1.0f) : above;
+    const float column = fits ? height : above_lab;
 
     stack(rects, wished, PanelSpot::left, {{gap, gap}, {left, column}}, gap);
     stack(rects, wished, PanelSpot::right, {{right_x, gap}, {right, column}}, gap);
 
-    const bool is_small = !is_roomy(window, scale);
-    const bool alone = is_small && wished[PanelId::help] > 0;
+    const bool alone = !is_roomy(window, scale) && wished[PanelId::help] > 0;
     const float over_x = alone ? gap : middle_x;
     const float over = alone ? std::max(window.x - 2 * gap, 1.0f) : middle;
     const float said = std::min(std::ceil(wished[PanelId::messages]), 0.35f * above);
     if (said > 0)
         rects[PanelId::messages] = {{over_x, gap}, {over, said}};
     const float below_said = said > 0 ? 2 * gap + said : gap;
-    // The lab takes the lower part of the middle; in a small window it is alone above the bar.
-    const float lab_room = is_small ? above - (below_said - gap) : lab_share * above;
-    const float lab = std::min(std::ceil(wished[PanelId::lab]), std::max(lab_room, 1.0f));
-    if (lab > 0)
-        rects[PanelId::lab] = {{is_small ? gap : middle_x, gap + above - lab},
-                               {is_small ? std::max(window.x - 2 * gap, 1.0f) : middle, lab}};
     if (wished[PanelId::help] > 0) {
-        const float taken = below_said - gap + (lab > 0 ? lab + gap : 0);
-        const float room = (alone ? height : above) - taken;
+        const float room = (alone ? height : above_lab) - (below_said - gap);
         rects[PanelId::help] = {
             {over_x, below_said},
             {over, std::min(std::ceil(wished[PanelId::help]), std::max(room, 1.0f))}};

@@ -19,21 +19,19 @@ bool has_world(const PanelContext &context) {
 
 bool is_shown(const PanelRow &row, const PanelContext &context, bool roomy) {
     const ViewState &view = context.view;
-    // In a small window help is shown alone, and the lab with only the transport bar.
+    // In a small window help is shown alone.
     const bool beside_help = view.panels && (roomy || !view.help);
-    const bool is_lab = view.lab && !view.help && has_world(context);
-    const bool beside_lab = roomy || !is_lab || row.id == PanelId::transport;
     switch (row.needs) {
     case PanelNeeds::nothing:
-        return beside_help && beside_lab;
+        return beside_help;
     case PanelNeeds::scene:
-        return beside_help && beside_lab && context.session.running();
+        return beside_help && context.session.running();
     case PanelNeeds::world:
-        return beside_help && beside_lab && has_world(context);
+        return beside_help && has_world(context);
     case PanelNeeds::diagnostics:
-        return beside_help && beside_lab && has_world(context) && view.diagnostics;
+        return beside_help && has_world(context) && view.diagnostics;
     case PanelNeeds::lab:
-        return view.panels && is_lab;
+        return view.panels && view.lab && !view.help && has_world(context);
     // Errors and help show even when the panels are hidden.
     case PanelNeeds::messages:
         return !context.session.messages().empty();
