@@ -114,6 +114,8 @@ TEST(Layout, TheLabLeavesTheSceneHalfOfTheMiddle) {
     EXPECT_GT(rects[PanelId::lab].min.y, 330);
     EXPECT_GT(rects[PanelId::lab].size.y, 330);
     EXPECT_LT(rects[PanelId::lab].max().y, rects[PanelId::transport].min.y);
+    wished[PanelId::lab] = 100;
+    EXPECT_EQ(lay_out({1280, 800}, 1, wished)[PanelId::lab].min, rects[PanelId::lab].min);
 }
 
 TEST(FreePart, IsTheLargestThatNothingCovers) {

@@ -394,13 +394,13 @@ TEST_F(UiTest, PanelsThatAreOpenStayOpenAsTheTextGrows) {
     EXPECT_TRUE(is_open(2));
 }
 
-// In all windows, or only in the named one.
+// In all windows, or only in the named one and the areas that scroll in it.
 double area_of(const ImDrawData &data, const Colour &colour, const char *window = nullptr) {
     const ImU32 wanted = ImGui::ColorConvertFloat4ToU32(colour) & ~IM_COL32_A_MASK;
     double area = 0;
     for (int i = 0; i < data.CmdListsCount; ++i) {
         const ImDrawList &list = *data.CmdLists[i];
-        if (window && std::string_view(list._OwnerName) != window)
+        if (window && !std::string_view(list._OwnerName).starts_with(window))
             continue;
         for (int k = 0; k + 2 < list.IdxBuffer.Size; k += 3) {
             const ImDrawVert &a = list.VtxBuffer[list.IdxBuffer[k]];

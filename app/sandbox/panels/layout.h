@@ -16,8 +16,9 @@ struct Rect {
 };
 
 // In pixels. `wished` is the height of each panel's contents, 0 for no panel; a panel that does not
-// fit is made lower, and scrolls. `scale` is 1 on an ordinary monitor. Nothing overlaps in windows
-// of at least smallest_window, except help in a window that is not roomy: there it is shown alone.
+// fit is made lower, and scrolls. The lab's height does not depend on its contents, so that its
+// tabs stay in place. `scale` is 1 on an ordinary monitor. Nothing overlaps in windows of at least
+// smallest_window, except help in a window that is not roomy: there it is shown alone.
 inline constexpr glm::vec2 smallest_window{640, 400};
 [[nodiscard]] PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wished);
 

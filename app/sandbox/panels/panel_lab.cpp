@@ -12,7 +12,9 @@ void lab_panel(PanelContext &context) {
     const auto tab = [&](const char *title, void (*contents)(PanelContext &)) {
         if (!ImGui::BeginTabItem(title))
             return;
+        ImGui::BeginChild("contents"); // scrolls under the tabs
         contents(context);
+        ImGui::EndChild();
         ImGui::EndTabItem();
     };
     tab("Plots", plots_tab);

@@ -16,8 +16,7 @@ namespace plumb {
 
 namespace {
 
-constexpr float usual_map_height = 14; // map height, in text heights
-constexpr float least_map_height = 7;
+constexpr float least_map_height = 7; // in text heights
 
 Colour colour_of(Failing failing) {
     return colour_of_code(info_of(failing).colour);
@@ -184,7 +183,6 @@ void draw_map(PanelContext &context, const MethodStudy &study) {
     legend(context, map);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float height = std::max(room.y, least_map_height * ImGui::GetFontSize());
-    context.scrolled_height = usual_map_height * ImGui::GetFontSize() - height;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton("##map", {room.x, height});
     float left = 0;

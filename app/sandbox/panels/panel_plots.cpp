@@ -13,7 +13,6 @@ namespace plumb {
 namespace {
 
 constexpr float least_plot = 5; // in text heights
-constexpr float usual_plot = 8;
 
 void subject_box(PanelContext &context, float width) {
     ViewState &view = context.view;
@@ -160,9 +159,7 @@ void plots_tab(PanelContext &context) {
     legend(context);
     const auto count = static_cast<float>(plot_count(context.session.plots()));
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const float height = std::max(room.y, count * least_plot * em);
-    draw_plots(context, {room.x, height});
-    context.scrolled_height = count * usual_plot * em + 2 * em - height;
+    draw_plots(context, {room.x, std::max(room.y, count * least_plot * em)});
 }
 
 } // namespace plumb

@@ -15,8 +15,7 @@ namespace plumb {
 
 namespace {
 
-constexpr float usual_height = 17; // chart height including titles, in text heights
-constexpr float least_height = 9;
+constexpr float least_height = 9;   // chart height including titles, in text heights
 constexpr float mark_radius = 4.5f; // pixels at a scale of 1
 constexpr float pointer_reach = 12; // picking distance, pixels at a scale of 1
 
@@ -208,7 +207,6 @@ void draw_chart(PanelContext &context, const SceneChart &chart) {
     legend(context, placed.content);
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float height = std::max(room.y, least_height * ImGui::GetFontSize());
-    context.scrolled_height = usual_height * ImGui::GetFontSize() - height;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton("##chart", {room.x, height});
     float left = small_width(context.fonts, "exactly 0");
