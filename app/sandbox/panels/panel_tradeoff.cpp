@@ -32,6 +32,11 @@ bool is_shown(const ChartRun &run) {
     return run.status != ChartStatus::unfinished && run.cost > 0;
 }
 
+bool is_of(const ChartRun &run, const Simulation &running) {
+    return run.resolved.method == &running.method() &&
+           same_work(running.method(), run.resolved.settings, running.settings());
+}
+
 // The lab's chart, mapped into this window.
 struct Placed {
     ChartContent content;
@@ -140,9 +145,7 @@ void draw_marks(const Placed &placed, const SceneChart &chart, const Simulation 
         }
         if (mark.pareto)
             list.AddCircle(at, radius + 3, packed(theme::text), 0, 1.2f);
-        const ChartRun &run = chart.runs[placed.runs[i]];
-        if (run.resolved.method == &running.method() &&
-            same_work(running.method(), run.resolved.settings, running.settings()))
+        if (is_of(chart.runs[placed.runs[i]], running))
             list.AddCircle(at, radius + 6, packed(theme::warning), 0, 2);
     }
 }
@@ -258,8 +261,13 @@ void tradeoff_tab(PanelContext &context) {
     ImGui::SameLine();
     const std::string failure = view.sweep_mistake.empty() ? study.failure() : view.sweep_mistake;
     const bool any = chart && std::ranges::any_of(chart->runs, is_shown);
+    const bool is_on_it = any && std::ranges::any_of(chart->runs, [&](const ChartRun &run) {
+                              return is_shown(run) && is_of(run, *context.session.simulation());
+                          });
     study_state(context, running, study.done(), failure,
-                any ? "" : "What each method costs, against its error.");
+                !any       ? "What each method costs, against its error."
+                : is_on_it ? ""
+                           : "The present settings are not on the chart.");
     if (any)
         draw_chart(context, *chart);
 }
