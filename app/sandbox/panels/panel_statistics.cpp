@@ -200,10 +200,16 @@ void diagnostics_panel(PanelContext &context) {
         const bool known = context.session.times().has_value();
         value_row(what, known ? counted : "-", warns ? theme::warning : theme::text);
     };
-    row("Moving bodies", std::to_string(report.moving_bodies));
-    row("Pairs", std::to_string(report.pairs));
-    row("Contacts, points",
-        std::to_string(report.contacts) + ", " + std::to_string(report.contact_points));
+    const std::ptrdiff_t asleep =
+        std::ranges::count(context.session.present_bodies(), true, &BodyState::asleep);
+    row("Moving bodies", std::to_string(report.moving_bodies) +
+                             (asleep > 0 ? ", " + std::to_string(asleep) + " asleep" : ""));
+    // What sleeps is not looked at, though it touches.
+    const bool all_asleep = report.moving_bodies == 0 && asleep > 0;
+    row("Pairs", all_asleep ? "asleep" : std::to_string(report.pairs));
+    row("Contacts, points", all_asleep ? "asleep"
+                                       : std::to_string(report.contacts) + ", " +
+                                             std::to_string(report.contact_points));
     row("Joints", std::to_string(report.joints));
     const SoftParts &soft = context.session.simulation()->soft_parts();
     if (!soft.particles.empty()) {
