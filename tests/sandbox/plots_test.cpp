@@ -175,6 +175,9 @@ TEST(PlotAxis, WhatRoundingDoesIsFlat) {
     EXPECT_NEAR(axis.fraction(1000.0001) - axis.fraction(1000), 0.01, 0.002);
     const PlotAxis none = plot_axis(0, 0, 5);
     EXPECT_EQ(none.fraction(0), 0.5);
+    EXPECT_EQ(none.ticks.back().label, "1");
+    EXPECT_LT(plot_axis(10, 10, 5).low, 9);
+    EXPECT_EQ(tight_axis(2, 2, 5).high, 3);
     EXPECT_EQ(tight_axis(0, 2, 5).ticks.back().label, "2.0");
 }
 

@@ -56,7 +56,7 @@ PlotAxis plot_axis(double low, double high, int most) {
     constexpr double air = 0.06; // margin on either side, of the span
     const double middle = low / 2 + high / 2;
     const double size = std::max(std::abs(low), std::abs(high));
-    const double least = std::max(rounding * size, 1e-12);
+    const double least = high > low ? std::max(rounding * size, 1e-12) : size > 0 ? 0.2 * size : 2;
     const double half = std::max((high - low) / 2, least / 2) * (1 + 2 * air);
     return tight_axis(middle - half, middle + half, most);
 }

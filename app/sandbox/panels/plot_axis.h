@@ -23,10 +23,11 @@ struct PlotAxis {
 [[nodiscard]] float label_begin(float at, float extent, float low, float high);
 
 // An axis over both values (finite, low <= high), with some margin and at most `most` (>= 2) ticks.
-// Values that differ by less than 1e-5 of their size are taken as rounding and drawn flat.
+// Values that differ by less than 1e-5 of their size are taken as rounding and drawn flat. A single
+// value, low == high, is in the middle, with a tenth of its size on either side.
 [[nodiscard]] PlotAxis plot_axis(double low, double high, int most);
 
-// The same without margin, for time.
+// The same without margin, for time; 1 s long if low == high.
 [[nodiscard]] PlotAxis tight_axis(double low, double high, int most);
 
 } // namespace plumb

@@ -238,8 +238,8 @@ void draw_plots(const PanelContext &context, ImVec2 size) {
         y += height + gap;
     }
     const float width = groups.front().max.x - groups.front().min.x;
-    const PlotAxis time = tight_axis(span.from, std::max(span.to, span.from + 1e-6),
-                                     std::clamp(static_cast<int>(width / (6 * em)), 2, 11));
+    const PlotAxis time =
+        tight_axis(span.from, span.to, std::clamp(static_cast<int>(width / (6 * em)), 2, 11));
     ImDrawList &list = *ImGui::GetWindowDrawList();
     for (const Group &group : groups) {
         draw_grid(context, group, time, &group == &groups.back());
