@@ -59,15 +59,15 @@ void quantity_box(PanelContext &context, float width) {
         while (curve < curves.size() && !(curves[curve].name == name))
             ++curve;
         const bool is_plotted = curve < curves.size();
-        if (ImGui::Selectable(name.quantity.c_str(), is_plotted,
-                              ImGuiSelectableFlags_DontClosePopups)) {
+        const std::string unit(shown_unit(*quantity));
+        const std::string label = name.quantity + (unit.empty() ? "" : " (" + unit + ")");
+        if (ImGui::Selectable(label.c_str(), is_plotted, ImGuiSelectableFlags_DontClosePopups)) {
             if (is_plotted)
                 context.session.unplot(curve);
             else
                 context.session.plot(name);
         }
-        tooltip(std::string(quantity->description) +
-                (shown_unit(*quantity).empty() ? "" : ", " + std::string(quantity->unit)));
+        tooltip(quantity->description);
     }
     ImGui::EndCombo();
 }

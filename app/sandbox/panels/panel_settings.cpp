@@ -120,8 +120,9 @@ bool setting_row(const SettingRow &row, StepSettings &settings, const Columns &c
     } else {
         double &value = settings.*std::get<double StepSettings::*>(row.member);
         const auto speed = static_cast<float>(std::clamp(0.01 * value, 1e-5, 1e3));
+        const std::string format = row.unit.empty() ? "%.4g" : "%.4g " + std::string(row.unit);
         changed = ImGui::DragScalar(id.c_str(), ImGuiDataType_Double, &value, speed, &row.min,
-                                    &row.max, "%.4g", flags);
+                                    &row.max, format.c_str(), flags);
     }
     tooltip(std::string(row.reason) + " " + title_of(row) + " is " + range_text(row) +
             ". Drag, or Ctrl+click to type.");
