@@ -36,13 +36,6 @@ void small_at(const Fonts &fonts, float x, float y, const std::string &text) {
                                         text.c_str());
 }
 
-void small_on_ground(const Fonts &fonts, float x, float y, const std::string &text) {
-    ImGui::GetWindowDrawList()->AddRectFilled(
-        {x - 3, y - 1}, {x + small_width(fonts, text) + 3, y + fonts.small->FontSize + 1},
-        packed(theme::panel, 0.8f), 2);
-    small_at(fonts, x, y, text);
-}
-
 Colour colour_of_code(unsigned code) {
     const auto part = [&](unsigned shift) {
         return static_cast<float>(code >> shift & 0xffU) / 255;

@@ -10,8 +10,6 @@ namespace plumb {
 [[nodiscard]] float small_width(const Fonts &fonts, const std::string &text);
 // Dim text in the small font, over the current window.
 void small_at(const Fonts &fonts, float x, float y, const std::string &text);
-// The same on a background, so that it is legible over anything.
-void small_on_ground(const Fonts &fonts, float x, float y, const std::string &text);
 
 // Colours of curves and methods, distinct among neighbours.
 [[nodiscard]] Colour curve_colour(std::size_t curve);

@@ -61,9 +61,9 @@ double round_up(double value) {
     return 10 * power;
 }
 
-void label(const Fonts &fonts, const Plot &plot, bool top, const std::string &text) {
+void label(const Fonts &fonts, const Plot &plot, const std::string &text) {
     const float size = fonts.small->FontSize;
-    const ImVec2 at(plot.min.x + 4, top ? plot.min.y + 1 : plot.max.y - size - 1);
+    const ImVec2 at(plot.min.x + 4, plot.min.y + 1);
     const float width = fonts.small->CalcTextSizeA(size, 1e9f, 0, text.c_str()).x;
     // A background keeps it legible over the graph.
     ImGui::GetWindowDrawList()->AddRectFilled({at.x - 2, at.y}, {at.x + width + 2, at.y + size},
@@ -111,12 +111,26 @@ void time_graph(const PanelContext &context, float height) {
     }
     list.Flags = flags;
     list.PopClipRect();
-    label(context.fonts, plot, true, usual > 0 ? duration(scale) : "-");
+    label(context.fonts, plot, usual > 0 ? duration(scale) : "-");
+}
+
+// "4.903 to 4.905 J"
+std::string range_text(double low, double high) {
+    if (low > high)
+        return "-";
+    // Enough digits to tell them apart.
+    const double span = high - low;
+    const double size = std::max(std::abs(low), std::abs(high));
+    const int digits =
+        size < 1e6 * span
+            ? std::max(2 + static_cast<int>(std::ceil(std::log10(size / span + 1))), 4)
+            : 9;
+    const std::string from = number(low, {}, digits), to = number(high, {}, digits);
+    return (from == to ? to : from + " to " + to) + " J";
 }
 
 void energy_graph(const PanelContext &context, float height) {
     const Graph &energy = context.session.graphs().energy;
-    const Plot plot = begin_plot(height);
     const std::size_t count = energy.size();
     double low = std::numeric_limits<double>::max();
     double high = std::numeric_limits<double>::lowest();
@@ -126,10 +140,10 @@ void energy_graph(const PanelContext &context, float height) {
             high = std::max(high, energy.at(i));
         }
     }
-    if (low > high) {
-        label(context.fonts, plot, true, "-");
+    const Plot plot = begin_plot(height);
+    small_text(context.fonts, range_text(low, high)); // below, clear of the curve
+    if (low > high)
         return;
-    }
     // Changes from rounding alone are drawn flat, in the middle.
     const double middle = (low + high) / 2;
     const double span = std::max((high - low) * 1.1, std::max(std::abs(middle) * 1e-5, 1e-9));
@@ -143,11 +157,6 @@ void energy_graph(const PanelContext &context, float height) {
                      packed(theme::accent), 1.5f);
     }
     list.PopClipRect();
-    // Enough digits to tell `low` and `high` apart.
-    const double ratio = std::abs(middle) / std::max(high - low, std::abs(middle) * 1e-9);
-    const int digits = std::clamp(2 + static_cast<int>(std::ceil(std::log10(ratio + 1))), 4, 9);
-    label(context.fonts, plot, true, number(high, "J", digits));
-    label(context.fonts, plot, false, number(low, "J", digits));
 }
 
 void legend(const PanelContext &context, const std::optional<StepTimes> &times) {

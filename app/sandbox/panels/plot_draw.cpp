@@ -159,14 +159,6 @@ void draw_grid(const PanelContext &context, const Group &group, const PlotAxis &
     }
 }
 
-// Drawn over the curves, but legible.
-void draw_unit(const PanelContext &context, const Group &group) {
-    if (group.unit == "1")
-        return;
-    const std::string text(group.unit);
-    small_on_ground(context.fonts, group.min.x + 6, group.min.y + 3, text);
-}
-
 // A line at the pointer, with each curve's value at that time.
 void tell_at_pointer(const PanelContext &context, const std::vector<Group> &groups,
                      const PlotAxis &time) {
@@ -228,8 +220,11 @@ void draw_plots(const PanelContext &context, ImVec2 size) {
     for (Group &group : groups) {
         group.axis =
             value_axis(group, curves, span, std::clamp(static_cast<int>(height / (2 * em)), 2, 7));
-        for (const PlotTick &tick : group.axis.ticks)
+        for (PlotTick &tick : group.axis.ticks) {
+            if (group.unit != "1")
+                tick.label.append(" ").append(group.unit);
             widest = std::max(widest, small_width(context.fonts, tick.label));
+        }
     }
     float y = at.y;
     for (Group &group : groups) {
@@ -247,7 +242,6 @@ void draw_plots(const PanelContext &context, ImVec2 size) {
         for (const std::size_t i : group.curves)
             draw_curve(group, curves[i], time, span, curve_colour(i));
         list.PopClipRect();
-        draw_unit(context, group);
     }
     tell_at_pointer(context, groups, time);
 }
