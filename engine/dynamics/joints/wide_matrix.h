@@ -1,10 +1,9 @@
 // A 3 x 3 matrix whose columns are padded to four numbers, which are computed at once.
 #pragma once
 
-#include "engine/core/precision.h"
+#include "engine/math/types.h"
 
-#include <glm/mat3x3.hpp>
-#include <glm/vec3.hpp>
+#include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
