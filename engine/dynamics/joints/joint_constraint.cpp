@@ -1,6 +1,7 @@
 #include "engine/dynamics/joints/joint_constraint.h"
 
 #include "engine/dynamics/islands/bracing.h"
+#include "engine/dynamics/joints/joint_bearings.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/joints/joint_impulse.h"
 #include "engine/dynamics/method.h"

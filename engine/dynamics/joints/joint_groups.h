@@ -16,17 +16,6 @@ inline constexpr std::size_t groups_a_part = 1; // per thread
 // redundant joints, too little to see.
 inline constexpr Real held_compliance = Real(1e-3);
 
-// Links a joint's limits and motor to the two-row block that leaves their direction free.
-void find_bearings(std::span<JointConstraint> blocks);
-// The lower and upper limit of a block that has limits.
-std::span<JointConstraint, 2> limits_of(JointConstraint &joint);
-JointConstraint &motor_of(JointConstraint &joint);
-// Adds the row of the active limit or motor as the block's third.
-void add_bearing_row(JointConstraint &joint);
-// Moves loaded limits, and else motors that have force to spare, into their group as rows, while
-// the group is held. `share`: of the substep, that impulses stand for. Returns whether anything
-// changed.
-bool choose_bearings(StepContext &context, const JointGroup &group, Real share);
 // Factors a group again after its active limits or motors changed.
 void factor_again(StepContext &context, JointGroup &group);
 

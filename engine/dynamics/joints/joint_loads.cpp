@@ -1,4 +1,5 @@
 // How joint forces stiffen the bodies they act on, and what is done about it.
+#include "engine/dynamics/joints/joint_bearings.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/joints/joint_impulse.h"
 #include "engine/dynamics/method.h"
