@@ -171,16 +171,18 @@ TEST(SoftStepGas, ElasticBodiesKeepTheirEnergy) {
     }
 }
 
-// A stick hit at one end comes down on the other, mostly within the same step, however slender. Of
-// 20 similar sticks, one may lose up to a tenth in an impact that is not foreseen.
+// A stick hit at one end comes down on the other, mostly within the same step, however slender. A
+// thin one that spins by several radians a step loses up to a tenth in an impact that is not
+// foreseen: of 100, up to twelve do, one of them more.
 TEST(SoftStepGas, ElasticSticksBounceOnAndOn) {
     const std::vector<Shape> shapes{
         block(V{0.25, 0.06, 0.06}), block(V{0.25, 0.02, 0.02}), block(V{0.25, 0.01, 0.01}),
         upright_capsule(0.25, 0.02),
         Cylinder{narrow(V{0, -0.25, 0}), narrow(V{0, 0.25, 0}), Real(0.02)}};
     for (const Shape &shape : shapes) {
-        int kept = 0;
-        for (std::uint32_t seed = 0; seed < 20; ++seed) {
+        const bool is_thin = &shape == &shapes[1] || &shape == &shapes[2];
+        int kept = 0, kept_of_20 = 0, worse = 0;
+        for (std::uint32_t seed = 0; seed < 100; ++seed) {
             Random random(seed);
             World world("soft_step", settings_for("soft_step"));
             world.add_body(ground(0, 1));
@@ -191,11 +193,17 @@ TEST(SoftStepGas, ElasticSticksBounceOnAndOn) {
             const double before = world.energy();
             run(world, 600);
             const double gain = world.energy() / before - 1;
-            EXPECT_GT(gain, -0.1) << shape.index() << ", " << seed;
+            if (seed < 20) {
+                EXPECT_GT(gain, -0.1) << shape.index() << ", " << seed;
+            }
             EXPECT_LT(gain, 1e-3) << shape.index() << ", " << seed;
             kept += gain > -1e-3 ? 1 : 0;
+            kept_of_20 += gain > -1e-3 && seed < 20 ? 1 : 0;
+            worse += gain > -0.15 ? 0 : 1;
         }
-        EXPECT_GE(kept, 19) << shape.index();
+        EXPECT_GE(kept_of_20, 19) << shape.index();
+        EXPECT_GE(kept, is_thin ? 88 : 96) << shape.index();
+        EXPECT_LE(worse, is_thin ? 1 : 0) << shape.index();
     }
 }
 

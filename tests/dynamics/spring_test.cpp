@@ -273,7 +273,7 @@ double sag_of_chain(const std::string &method, int substeps) {
     return -particle_position(world, links / 2).y / cable.sag(0.8);
 }
 
-// Boxes that tumble on a spring between their corners, for half a minute.
+// Boxes that tumble on a spring between points inside them, for half a minute.
 TEST(SoftStepSprings, BetweenTumblingBodiesTurnNothing) {
     for (const double stiffness : {10.0, 1e2, 1e3, 1e4, 1e5, 1e6})
         for (const double damping_ratio : {0.0, 0.05, 1.0})

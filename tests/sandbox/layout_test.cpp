@@ -94,15 +94,25 @@ TEST(Layout, InASmallWindowTheHelpStandsAlone) {
     EXPECT_LE(help.max().y, smallest_window.y);
 }
 
+TEST(Layout, InASmallWindowTheLabStandsAboveTheBar) {
+    PerPanel<float> wished{};
+    wished[PanelId::lab] = 500;
+    wished[PanelId::transport] = 90;
+    wished[PanelId::messages] = 60;
+    const PerPanel<Rect> rects = lay_out(smallest_window, 1, wished);
+    expect_apart_and_inside(rects, smallest_window);
+    EXPECT_GT(rects[PanelId::lab].size.x, 600);
+    EXPECT_GT(rects[PanelId::lab].size.y, 180);
+}
+
 TEST(Layout, InANarrowWindowTheColumnsEndAboveTheLab) {
     PerPanel<float> wished{};
     wished[PanelId::scenes] = wished[PanelId::details] = wished[PanelId::lab] = 500;
     wished[PanelId::transport] = 90;
     const PerPanel<Rect> rects = lay_out(smallest_window, 1, wished);
     expect_apart_and_inside(rects, smallest_window);
-    EXPECT_GT(rects[PanelId::lab].size.x, 600);
-    EXPECT_GT(rects[PanelId::lab].size.y, 130);
-    EXPECT_GT(rects[PanelId::scenes].size.y, 130);
+    EXPECT_GT(rects[PanelId::lab].size.y, 180);
+    EXPECT_GT(rects[PanelId::scenes].size.y, 80);
     EXPECT_LT(rects[PanelId::scenes].max().y, rects[PanelId::lab].min.y);
 }
 

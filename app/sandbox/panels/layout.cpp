@@ -14,7 +14,9 @@ constexpr float margin = 8;
 constexpr float transport_width = 520;
 constexpr float least_transport_width = 380;
 constexpr glm::vec2 roomy{860, 600};
-constexpr float lab_share = 0.5f; // of the height above the bar
+// Of the height above the bar; more where it ends the columns.
+constexpr float lab_share = 0.5f;
+constexpr float spanning_lab_share = 0.65f;
 
 // Below this share of the window's height a picture is useless.
 constexpr float least_picture = 0.2f;
@@ -83,7 +85,8 @@ PerPanel<Rect> lay_out(glm::vec2 window, float scale, const PerPanel<float> &wis
     if (bar_height > 0)
         rects[PanelId::transport] = {{std::round(bar_x), bar_y}, {bar, bar_height}};
     const float above = bar_height > 0 ? std::max(bar_y - 2 * gap, 1.0f) : height;
-    const float lab = wished[PanelId::lab] > 0 ? std::floor(lab_share * above) : 0;
+    const float lab =
+        wished[PanelId::lab] > 0 ? std::floor((fits ? lab_share : spanning_lab_share) * above) : 0;
     if (lab > 0)
         rects[PanelId::lab] = {{fits ? middle_x : gap, gap + above - lab},
                                {fits ? middle : std::max(window.x - 2 * gap, 1.0f), lab}};

@@ -330,16 +330,18 @@ bool turns_far(const Vec3 &spin, Real h) {
     return glm::dot(spin, spin) * (h * h) > far * far;
 }
 
+// What holds a body besides contacts.
+struct HeldBy {
+    bool joints = false;
+    bool springs = false;
+};
+
 // Between the two half kicks the gyroscopic torque is that of the spin that the solver left
 // (`kick`): the first half of its impulses comes before the torque-free turn, as in RATTLE, and the
 // turn keeps their energy. If added to the mean spin of a turn without them, they would do work: a
 // top whose foot is held by a joint sinks, bodies on springs gain angular momentum, and a capsule
 // spinning on a floor gains energy without end. Impacts are excluded: they act in an instant, and
 // half of one there would be just as wrong.
-struct HeldBy {
-    bool joints = false;
-    bool springs = false;
-};
 void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
                Real h, Kick kick, int gyroscopic_iterations, HeldBy held_by) {
     flight.free =
