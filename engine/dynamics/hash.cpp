@@ -138,9 +138,10 @@ std::uint64_t World::hash() const {
         for (std::uint32_t c = 0; c < body.collider_count; ++c)
             add(hash, model_->colliders[body.first_collider + c]);
         add(hash, state_.motions[i]);
-        if (const Pace &pace = state_.paces[i]; pace.substeps > 0 || pace.rested > 0)
-            hash.add(std::uint64_t{pace.rested} << 32 | std::uint64_t{pace.substeps} << 16 |
-                     pace.wanted);
+        if (const Pace &pace = state_.paces[i];
+            pace.substeps > 0 || pace.rested > 0 || pace.struck > 0)
+            hash.add(std::uint64_t{pace.struck} << 48 | std::uint64_t{pace.rested} << 32 |
+                     std::uint64_t{pace.substeps} << 16 | pace.wanted);
     }
     const auto rank_of = [&](std::uint32_t body) {
         return body == Joint::world ? std::uint64_t{Joint::world} : rank[body];

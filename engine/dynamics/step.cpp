@@ -1,10 +1,12 @@
 // The step, phase by phase.
+#include "engine/dynamics/contacts/contact_columns.h"
 #include "engine/dynamics/world.h"
 #include "engine/math/basis.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -108,6 +110,7 @@ void World::step_each_alone(StepTimes *times) {
     load_motions();
     group_freely();
     advance_groups();
+    note_struck();
     fall_asleep();
     finish_motions();
 }
@@ -148,6 +151,7 @@ void World::step_together(StepTimes *times) {
         scratch_.surprised.clear();
     }
     const PhaseTimer timer(times ? &times->finish : nullptr);
+    note_struck();
     gather_memory();
     gather_penalties();
     fall_asleep();
@@ -215,12 +219,28 @@ void World::load_bodies() {
     load_penalties();
 }
 
+// Whether both bodies, or the one that moves, have been struck for so long that they carry loads,
+// which ask for far more than the least substeps. What rolls on corners is struck all the time,
+// too.
+bool World::is_pressed(const ContactKey &key) const {
+    constexpr int far_more = 8;
+    const auto is_struck = [&](std::uint32_t body) {
+        const Pace &pace = state_.paces[body];
+        return model_->bodies[body].kind != BodyKind::dynamic ||
+               (pace.wanted >= far_more * settings_.substeps &&
+                pace.struck * settings_.dt >= pressed_after);
+    };
+    return is_struck(key.a) && is_struck(key.b);
+}
+
 void World::note_ends() {
     Scratch &s = scratch_;
     s.ends.resize(s.contacts.size());
     for_parts(s.tasks, s.ends.size(), contacts_a_part, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Contact &contact = s.contacts[i];
+            Contact &contact = s.contacts[i];
+            contact.is_struck = false;
+            contact.is_pressed = is_pressed(contact.key);
             s.ends[i] = {contact.key.a, contact.key.b,
                          static_cast<std::uint8_t>(contact.manifold.count), contact.sensor,
                          contact.turns()};
@@ -283,6 +303,21 @@ void World::advance_groups() {
         const Real sum = linear.x + linear.y + linear.z + angular.x + angular.y + angular.z;
         report_.finite = report_.finite && std::isfinite(sum) && !has_diverged(motion);
     }
+}
+
+// For how many steps bodies have been struck.
+void World::note_struck() {
+    Scratch &s = scratch_;
+    for (const std::uint32_t i : s.moving)
+        s.paces[i].struck = 0;
+    for (const Contact &contact : s.contacts)
+        for (const std::uint32_t body : {contact.key.a, contact.key.b})
+            if (contact.is_struck && moves(body)) {
+                constexpr std::uint16_t most = std::numeric_limits<std::uint16_t>::max();
+                const std::uint16_t before = state_.paces[body].struck;
+                s.paces[body].struck =
+                    before < most ? static_cast<std::uint16_t>(before + 1) : most;
+            }
 }
 
 // Contacts without load are not remembered.

@@ -168,7 +168,9 @@ class World {
     void load_body(std::size_t i);
     void load_motions();
     void load_bodies();
+    bool is_pressed(const ContactKey &key) const;
     void note_ends();
+    void note_struck();
     void advance();
     void advance_groups();
     std::uint32_t remembered_points(const Contact &contact) const;
@@ -192,7 +194,8 @@ class World {
     void guess_needs();
     int chosen_substeps(const Islands::Needs &needs, int budget) const;
     void share_budget();
-    void find_unsettled();
+    void settle_slow_islands();
+    void settle_joined_islands();
     void choose_substeps();
     void group_freely();
     void group_islands();

@@ -100,6 +100,7 @@ std::vector<std::string> words(const SceneDesc &scene) {
         w.number(static_cast<std::uint64_t>(b.pace.substeps));
         w.number(static_cast<std::uint64_t>(b.pace.wanted));
         w.number(static_cast<std::uint64_t>(b.pace.rested));
+        w.number(static_cast<std::uint64_t>(b.pace.struck));
         w.add(b.linear_damping), w.add(b.angular_damping);
         for (const bool is_locked : b.locked)
             w.number(is_locked);

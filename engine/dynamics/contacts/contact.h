@@ -74,6 +74,8 @@ struct Contact {
     Real restitution = Real(0);
     bool sensor = false;           // pushes nothing
     bool is_new = false;           // nothing is remembered of it
+    bool is_struck = false;        // in the last substep (ContactBlock)
+    bool is_pressed = false;       // struck for so long that it carries a load
     Moment moment = Moment::start; // at whose poses its normal and anchors were found
     bool is_turning = false;       // turns through the substeps with a kinematic body
     bool is_braced = false;        // acts at one place on both bodies and turns (bracing.h)

@@ -109,6 +109,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     set(block.t1, lane, tangent_basis(contact.manifold.normal).t1);
     block.friction.lanes[lane] = contact.friction;
     block.bounces.lanes[lane] = contact.restitution > Real(0) ? Real(1) : Real(0);
+    block.pressed.lanes[lane] = contact.is_pressed ? Real(1) : Real(0);
     const Real spread = patch_spread(context, contact);
     block.spread.lanes[lane] = spread;
     block.spins = block.spins || spread < Real(1);
@@ -218,9 +219,13 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
     }
 }
 
+bool is_blow(const ContactBlock &block, std::size_t lane) {
+    return block.struck.lanes[lane] > block.pressed.lanes[lane];
+}
+
 // The share of a contact's impulses that is remembered.
 Real remembered_share(const ContactBlock &block, std::size_t lane) {
-    if (block.struck.lanes[lane] == Real(0))
+    if (!is_blow(block, lane))
         return Real(1);
     Real sum = Real(0);
     for (int k = 0; k < block.points_used; ++k)
@@ -615,8 +620,10 @@ void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h
 
 bool anything_is_struck(const StepContext &context) {
     return std::ranges::any_of(context.scratch.schedule.blocks, [](const ContactBlock &block) {
-        return std::ranges::any_of(std::span(block.struck.lanes).first(block.used),
-                                   [](Real struck) { return struck > Real(0); });
+        for (std::size_t lane = 0; lane < block.used; ++lane)
+            if (is_blow(block, lane))
+                return true;
+        return false;
     });
 }
 
@@ -632,6 +639,7 @@ void store_contact_columns(StepContext &context) {
         for (const ContactBlock &block : blocks)
             for (std::size_t lane = 0; lane < block.used; ++lane) {
                 Contact &contact = context.contacts[block.contacts[lane]];
+                contact.is_struck = block.struck.lanes[lane] > Real(0);
                 const Real kept = remembered_share(block, lane);
                 for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
                     contact.impulses[k] = next_impulse(block.points[k], lane, kept);

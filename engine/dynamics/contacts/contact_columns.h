@@ -19,9 +19,13 @@ inline constexpr Real relaxed_share = Real(1) / Real(16);
 // An impact is not a load: warm starting the next substep with it would push just as hard although
 // nothing hits any more, and launch whatever rests on top. So where bodies close fast
 // (struck_speed), the remembered impulse starts from remembered_blow of it and grows by
-// growing_blow at most; a load that lasts is fully known after ten substeps.
+// growing_blow at most; a load that lasts is fully known after ten substeps. But a light body
+// between a load and what should bear it may be thrown about so much that it is struck all the
+// time, and nothing ever bears the load: what is struck without a pause for as long as
+// pressed_after is no blow any more.
 inline constexpr Real remembered_blow = Real(1) / Real(64);
 inline constexpr Real growing_blow = Real(1.5);
+inline constexpr double pressed_after = 0.4; // s
 
 struct ContactBlock {
     struct Point {
@@ -62,6 +66,7 @@ struct ContactBlock {
     Column friction;
     Column bounces;   // 1 where there is restitution
     Column struck;    // 1 where the bodies closed faster than struck_speed in this substep
+    Column pressed;   // 1 where that is no blow (Contact::is_pressed)
     Column corrected; // the most that the last pass changed a point's speed (m/s)
     Column began;     // sum of the normal impulses remembered as it began (N s)
     // Friction's lever arms about the centre of pressure, as a share of the points' (patch_spread).
@@ -128,7 +133,7 @@ void meet_contact_columns(StepContext &context);
 // Like remember_contacts, warm_start_contacts, solve_contacts and store_contacts.
 void warm_start_contact_columns(StepContext &context, Real share, bool remember_first);
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
-// Whether any bodies closed faster than struck_speed in this substep.
+// Whether any contact was struck in this substep that is not pressed.
 bool anything_is_struck(const StepContext &context);
 // Whether the last pass changed the speed of any contact point by more than this (m/s).
 bool any_is_corrected(const StepContext &context, Real speed);

@@ -214,8 +214,8 @@ void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
                 sum = hn::Add(sum, load(block.points[k].impulse.x, lane));
             const Lanes most = max(hn::Mul(all(remembered_blow), sum),
                                    hn::Mul(all(growing_blow), load(block.began, lane)));
-            const auto forgets =
-                hn::And(hn::Gt(load(block.struck, lane), hn::Zero(tag)), hn::Gt(sum, most));
+            const auto forgets = hn::And(
+                hn::Gt(load(block.struck, lane), load(block.pressed, lane)), hn::Gt(sum, most));
             kept = hn::IfThenElse(forgets, hn::Div(most, hn::IfThenElse(forgets, sum, kept)), kept);
             store(hn::Mul(kept, sum), block.began, lane);
         }

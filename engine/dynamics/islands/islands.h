@@ -20,6 +20,7 @@ struct Pace {
     std::uint16_t substeps = 0; // of its island in the last step; 0: the settings'
     std::uint16_t wanted = 0;   // what its own loads ask for
     std::uint16_t rested = 0;   // steps it has been at rest, or `asleep`
+    std::uint16_t struck = 0;   // steps in a row that it was struck (ContactBlock)
     static constexpr std::uint16_t asleep = 0xFFFF; // its island is not stepped any more
     bool is_asleep() const { return rested == asleep; }
 };
@@ -33,8 +34,9 @@ struct IslandPace {
     int substeps = 0;
     // Whether passes take a contact's points first to last and last to first in turns.
     bool alternates = true;
-    // Whether each substep takes one more pass over the constraints, and one more relaxation pass.
-    bool settles = false;
+    // How many passes over the constraints, and relaxation passes, each substep takes on top of the
+    // settings' own.
+    int more_passes = 0;
     bool operator==(const IslandPace &) const = default;
 };
 

@@ -130,7 +130,7 @@ void World::wake_all() {
 }
 
 // How many steps at rest are enough to sleep; where nothing sleeps, to be left alone by
-// find_unsettled.
+// settle_slow_islands.
 std::uint16_t World::steps_to_sleep() const {
     const double steps = std::ceil(rest_time(settings_) / settings_.dt);
     return static_cast<std::uint16_t>(std::clamp(steps, 1.0, Pace::asleep - 1.0));

@@ -23,34 +23,41 @@ namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 int holding_passes(const StepContext &context) {
-    return context.settings.iterations + (context.active.pace.settles ? 1 : 0);
+    return context.settings.iterations + context.active.pace.more_passes;
 }
+
+// How many relaxation passes a substep takes: the usual ones, and up to `most` as long as the last
+// one changed the speed of some contact point by more than `enough` (m/s).
+struct RelaxingPasses {
+    int usual = 1;
+    int most = 1;
+    Real enough = Real(0);
+};
 
 // One pass removes only part of the push from the velocities of stacked bodies: a stack would
 // bounce back up on landing, and a heavy slab would be launched by whatever it lands on. So a hit
-// gets up to two passes for each contact that it may travel through, as long as they still change
-// something (still_relaxes). A hit lasts only a few steps, so its passes may cost a multiple of the
-// budget; but if that affords only a few, they do nothing for a tall stack, and the usual number is
-// run.
-int relaxing_passes(const StepContext &context) {
+// gets up to two passes for each contact that it may travel through. A hit lasts only a few steps,
+// so its passes may cost a multiple of the budget. If that affords only a few, they do nothing for
+// a tall stack; but in a crowd that lands on others they keep those beneath from being pressed deep
+// into each other, as long as the blows are hard.
+RelaxingPasses relaxing_passes(const StepContext &context, Real struck_speed) {
     constexpr std::size_t for_each_contact = 2, most = 128, least = 24, budgets = 16;
+    constexpr int in_a_crowd = 8;
+    constexpr Real changed = Real(0.2), changed_much = Real(20); // of struck_speed
     const StepSettings &settings = context.settings;
+    const int usual = holding_passes(context);
+    if (!anything_is_struck(context))
+        return {usual, usual};
     const auto affordable =
         static_cast<std::size_t>(settings.substep_budget / settings.substeps) * budgets;
     // Each group gets a share of the budget in proportion to its contacts.
     const std::size_t passes =
         affordable / (context.contacts.size() + context.active.joints.size() + 1);
-    const int usual = holding_passes(context);
-    if (passes < least || !anything_is_struck(context))
-        return usual;
+    if (passes < least)
+        return {usual, std::max(in_a_crowd, usual), changed_much * struck_speed};
     const std::size_t wanted = for_each_contact * context.active.contacts.size();
-    return std::max(static_cast<int>(std::min({passes, wanted, most})), usual);
-}
-
-// Whether the last pass changed enough to be worth another.
-bool still_relaxes(const StepContext &context, const ContactBias &relax_bias) {
-    constexpr Real enough = Real(0.2); // of struck_speed
-    return any_is_corrected(context, enough * relax_bias.struck_speed);
+    return {usual, std::max(static_cast<int>(std::min({passes, wanted, most})), usual),
+            changed * struck_speed};
 }
 
 void advance_soft_step(StepContext &context) {
@@ -155,8 +162,10 @@ void advance_soft_step(StepContext &context) {
             kick_particles(context, gravity, Real(0.5) * h);
             repeat_particle_springs(context, h);
         }
-        const int usual = holding_passes(context), passes = relaxing_passes(context);
-        for (int i = 0; i < passes && (i < usual || still_relaxes(context, relax_bias)); ++i) {
+        const RelaxingPasses passes = relaxing_passes(context, relax_bias.struck_speed);
+        for (int i = 0;
+             i < passes.most && (i < passes.usual || any_is_corrected(context, passes.enough));
+             ++i) {
             solve_joints(context, relaxing);
             if (has_particles)
                 solve_particle_contacts(context, {.loaded_only = true}, h);

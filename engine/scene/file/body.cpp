@@ -58,11 +58,11 @@ void read_pace(Reading &reading, const Table &table, BodyDesc &body) {
     const toml::table *source = table_at(reading.report, table, "pace");
     if (source == nullptr)
         return;
-    static constexpr std::array<std::string_view, 3> keys{"substeps", "wanted", "rested"};
+    static constexpr std::array<std::string_view, 4> keys{"substeps", "wanted", "rested", "struck"};
     const Table sub(reading.report, *source, "pace of " + table.title(), keys);
     for (const auto &[key, number] :
          {std::pair("substeps", &body.pace.substeps), std::pair("wanted", &body.pace.wanted),
-          std::pair("rested", &body.pace.rested)}) {
+          std::pair("rested", &body.pace.rested), std::pair("struck", &body.pace.struck)}) {
         constexpr std::uint64_t most = std::numeric_limits<std::uint16_t>::max();
         const std::uint64_t given = sub.natural(key).value_or(0);
         if (given > most)

@@ -72,7 +72,8 @@ class WorldSimulation final : public Simulation {
             const BodyDesc::Pace &pace = scene.bodies[i].pace;
             world_.set_pace(world_.body_id(i), {static_cast<std::uint16_t>(pace.substeps),
                                                 static_cast<std::uint16_t>(pace.wanted),
-                                                static_cast<std::uint16_t>(pace.rested)});
+                                                static_cast<std::uint16_t>(pace.rested),
+                                                static_cast<std::uint16_t>(pace.struck)});
         }
         world_.set_clock(clock_of(scene, run));
         if (scene.grab)
@@ -472,7 +473,7 @@ SceneDesc WorldSimulation::describe() const {
             body.mass_pose = {glm::dvec3{motion.position}, glm::dquat{motion.rotation}};
         }
         const Pace &pace = world.state().paces[i];
-        body.pace = {pace.substeps, pace.wanted, pace.rested};
+        body.pace = {pace.substeps, pace.wanted, pace.rested, pace.struck};
         body.position = now.position;
         body.orientation = now.orientation;
         body.velocity = now.velocity;
