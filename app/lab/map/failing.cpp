@@ -58,7 +58,15 @@ bool is_too_much_energy(const ExpectOutcome &outcome, const JudgedRun &run) {
     return outcome.measured > outcome.desc.value;
 }
 
-Failing kind_of_miss(const ExpectOutcome &outcome, const JudgedRun &run) {
+// Whether a body that should have kept its place is lower now by more than it may be off it, and
+// not because it slid or rolled far away: then the drop is at least half of the way.
+bool fell_from_its_place(const ExpectOutcome &outcome, double drop) {
+    const ExpectDesc &desc = outcome.desc;
+    return desc.quantity == "displacement" && desc.relation == ExpectDesc::Relation::at_most &&
+           drop > desc.value && drop >= 0.5 * outcome.measured;
+}
+
+Failing kind_of_miss(const ExpectOutcome &outcome, const JudgedRun &run, double drop) {
     using Relation = ExpectDesc::Relation;
     const ExpectDesc &desc = outcome.desc;
     if (is_about(desc, "energy") && desc.quantity != "kinetic_energy" &&
@@ -69,7 +77,8 @@ Failing kind_of_miss(const ExpectOutcome &outcome, const JudgedRun &run) {
     if (is_about(desc, "joint_drift"))
         return Failing::drift;
     if ((desc.quantity == "position.y" && desc.relation == Relation::at_least) ||
-        (desc.quantity == "tilt" && desc.relation == Relation::at_most))
+        (desc.quantity == "tilt" && desc.relation == Relation::at_most) ||
+        fell_from_its_place(outcome, drop))
         return Failing::fell;
     if ((is_about(desc, "speed") || desc.quantity == "kinetic_energy") &&
         desc.relation == Relation::at_most)
@@ -133,10 +142,11 @@ RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::s
         found(Failing::drift, "");
     // Of several misses of one kind, the worst.
     double error = 0;
-    for (const ExpectOutcome &outcome : run.outcomes) {
+    for (std::size_t i = 0; i < run.outcomes.size(); ++i) {
+        const ExpectOutcome &outcome = run.outcomes[i];
         if (outcome.verdict != Verdict::missed)
             continue;
-        const Failing kind = kind_of_miss(outcome, run);
+        const Failing kind = kind_of_miss(outcome, run, i < run.drops.size() ? run.drops[i] : 0);
         if (kind == worst.failing && outcome.scaled_error <= error)
             continue;
         if (worst.failing == Failing::none || kind <= worst.failing) {

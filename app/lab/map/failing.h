@@ -62,7 +62,8 @@ struct RunFailing {
 // counts; the same goes for drift and energy. The general energy limit does not apply if
 // brings_energy_in. Missed expectations are classified by quantity: too much energy is energy_grew;
 // penetration and joint_drift map to their namesakes; a body that does not stay above a height or
-// upright fell; one that is faster than allowed never rests; all others are missed.
+// upright fell, as did one that left its place mostly downwards; one that is faster than allowed
+// never rests; all others are missed.
 [[nodiscard]] RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run,
                                     const std::string &passage);
 

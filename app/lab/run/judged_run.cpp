@@ -40,6 +40,18 @@ class LastPositions {
     Frame frame_;
 };
 
+// The bodies and particles that a scene's own expectations are about.
+std::vector<std::string> fallers_of(const SceneDesc &scene) {
+    std::vector<std::string> names;
+    for (const ExpectDesc &expect : scene.expects) {
+        const QuantityInfo *quantity = find_quantity(expect.quantity);
+        if (quantity != nullptr && quantity->needs_body() &&
+            std::ranges::find(names, expect.body) == names.end())
+            names.push_back(expect.body);
+    }
+    return names;
+}
+
 ExpectDesc expect_of(const ProbeDesc &probe, const ProbeExpectDesc &expect) {
     ExpectDesc desc;
     desc.name = probe.name + ", " + expect.value;
@@ -121,8 +133,14 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
     if (options.follow_errors)
         for (const char *quantity : {"penetration", "joint_drift", "energy", "energy_error"})
             followed.push_back({quantity, ""});
+    const std::vector<std::string> fallers =
+        options.follow_errors ? fallers_of(scene) : std::vector<std::string>();
+    const std::size_t first_height = followed.size();
+    for (const std::string &name : fallers)
+        followed.push_back({"position.y", name});
     ExpectationWatch watch(simulation, scene.expects, followed);
     double start_energy = 0;
+    std::vector<double> start_heights, heights; // of the fallers
     const auto follow = [&](bool first) {
         if (!options.follow_errors)
             return;
@@ -136,6 +154,9 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
         run.max_energy_gain = std::max(run.max_energy_gain, now[3]);
         run.end_penetration = now[0];
         run.end_joint_drift = now[1];
+        heights.assign(now.begin() + static_cast<std::ptrdiff_t>(first_height), now.end());
+        if (first)
+            start_heights = heights;
     };
 
     const double end = run_end(scene, options.duration);
@@ -197,6 +218,12 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
         }
     }
     run.time = simulation.time();
+    if (options.follow_errors)
+        for (const ExpectDesc &expect : scene.expects) {
+            const auto faller = std::ranges::find(fallers, expect.body);
+            const auto i = static_cast<std::size_t>(faller - fallers.begin());
+            run.drops.push_back(faller == fallers.end() ? 0 : start_heights[i] - heights[i]);
+        }
 
     for (std::size_t i = 0; i < watch.size(); ++i)
         run.outcomes.push_back(watch.outcome(i));

@@ -74,6 +74,9 @@ struct JudgedRun {
     // With follow_errors, at the end of the run:
     double end_penetration = 0; // m
     double end_joint_drift = 0; // m
+    // m, how much lower the body of each of the scene's own expectations ended than it started; 0
+    // for those without a body.
+    std::vector<double> drops;
     // With keep_courses, at the start and after each step: the time (s), and each outcome's
     // quantity.
     std::vector<double> times;

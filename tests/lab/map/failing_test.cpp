@@ -102,6 +102,47 @@ TEST(Failing, GoesByTheQuantityThatWasMissed) {
               Failing::never_rests);
 }
 
+// A body that should have stayed where it was, and went downwards instead.
+TEST(Failing, TellsAFallFromSlidingAway) {
+    const ExpectOutcome outcome = missed("stands", "displacement", Is::at_most, 0.05, 2);
+    SceneDesc scene = scene_of_a_ball();
+    scene.expects.push_back(outcome.desc);
+    JudgedRun run;
+    run.outcomes.push_back(outcome);
+    for (const double drop : {-1.0, 0.0, 0.04, 0.9}) {
+        run.drops = {drop};
+        EXPECT_EQ(why_failed(scene, run, ""), (RunFailing{Failing::missed, "stands"})) << drop;
+    }
+    run.drops = {1.5};
+    EXPECT_EQ(why_failed(scene, run, ""), (RunFailing{Failing::fell, "stands"}));
+}
+
+// A fall of g t^2 / 2, and one that only moves along x.
+TEST(Failing, KnowsFromTheRunHowFarABodyDropped) {
+    SceneDesc scene = scene_of_a_ball();
+    ExpectDesc &stays = scene.expects.emplace_back();
+    stays.name = "stays";
+    stays.quantity = "displacement";
+    stays.body = "ball";
+    stays.reduce = "max";
+    stays.relation = Is::at_most;
+    stays.value = 0.1;
+    stays.to = 1;
+    for (const bool falls : {true, false}) {
+        FakeSimulation simulation(1.0 / 64);
+        simulation.state_at = [&](double t) {
+            return BodyState{.position =
+                                 falls ? glm::dvec3(0, 3 - 4.905 * t * t, 0) : glm::dvec3(t, 3, 0)};
+        };
+        JudgeOptions options;
+        options.follow_errors = true;
+        const JudgedRun run = judge_run(simulation, scene, options);
+        ASSERT_EQ(run.drops.size(), 1U);
+        EXPECT_NEAR(run.drops[0], falls ? 4.905 : 0, 1e-12);
+        EXPECT_EQ(why_failed(scene, run, "").failing, falls ? Failing::fell : Failing::missed);
+    }
+}
+
 // "drift" and "max_abs" measure how far the energy went, not which way.
 TEST(Failing, TellsEnergyLostFromEnergyGained) {
     for (const char *reduce : {"drift", "max_abs"}) {
