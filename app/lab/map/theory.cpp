@@ -390,9 +390,14 @@ void add_struck(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
 
 void add_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map, const DtAxis &axes,
                 const RunOptions &base) {
-    const std::optional<std::string> name = spring_of(axes.other, ".frequency");
+    const std::optional<std::string> by_frequency = spring_of(axes.other, ".frequency");
+    const std::optional<std::string> name =
+        by_frequency ? by_frequency : spring_of(axes.other, ".stiffness");
     if (!name || !swings_by_itself(map.scene, *name))
         return;
+    const double mass = lone_oscillator(map.scene, *name)->mass;
+    if (!by_frequency && !(mass > 0))
+        return; // the spring holds a body, perhaps off its centre
     for (const MethodMap &of_method : map.methods)
         if (of_method.method->name == "explicit_euler")
             curves.push_back(
@@ -414,7 +419,9 @@ void add_spring(std::vector<TheoryCurve> &curves, const StabilityMap &map, const
                 label.append(method == methods.front() ? " (" : ", ").append(method->name);
             const double omega_dt = limit.omega_h * substeps;
             curves.push_back({label + ")", methods, axes.curve([&](double dt) {
-                                  return omega_dt / (2 * std::numbers::pi * dt);
+                                  const double omega = omega_dt / dt;
+                                  return by_frequency ? omega / (2 * std::numbers::pi)
+                                                      : mass * omega * omega;
                               })});
         }
     }

@@ -61,7 +61,7 @@ struct Oscillator {
 [[nodiscard]] std::optional<double> highest_column(const ResolvedRun &run, double side);
 
 // Whether this is the scene's only spring, undamped, between the world and an otherwise free mass:
-// for a map axis "spring.NAME.frequency", over dt or substeps.
+// for a map axis "spring.NAME.frequency" or, if that mass is a particle, "spring.NAME.stiffness".
 [[nodiscard]] bool swings_by_itself(const SceneDesc &scene, const std::string &spring);
 
 // The theoretical limits that apply to a map's scene and axes.
@@ -79,10 +79,10 @@ struct Oscillator {
 // 2. A body that overlaps the wall when a step begins is stopped and pushed out on the nearer side:
 // up to this limit every starting position is caught in time, above it some pass.
 //
-// Over dt and a lone spring's frequency, for explicit methods stable up to some omega h, h the
-// substep: 2 for the symplectic ones, 2 sqrt(2) for RK4 (Hairer, Lubich, Wanner 2006, sec. I.5.2
-// and Hairer, Wanner 1996, sec. IV.2). Explicit Euler is never stable: its curve has no points.
-// Over dt and a lone spring's damping: longest_damped_step.
+// Over dt and a lone spring's frequency or stiffness, for explicit methods stable up to some omega
+// h, h the substep: 2 for the symplectic ones, 2 sqrt(2) for RK4 (Hairer, Lubich, Wanner 2006, sec.
+// I.5.2 and Hairer, Wanner 1996, sec. IV.2). Explicit Euler is never stable: its curve has no
+// points. Over dt and a lone spring's damping: longest_damped_step.
 //
 // Over dt and the number of cubes in a column: highest_column.
 [[nodiscard]] std::vector<TheoryCurve> theory_of(const StabilityMap &map,

@@ -241,6 +241,56 @@ source = "linear stability"
     }
 }
 
+// The same limits over the stiffness k = m omega^2 of a spring that holds a particle; one that
+// holds a body might hold it off its centre.
+TEST(StabilityMap, AStiffSpringIsThrownWhereTheoryHasIt) {
+    const auto spring = [](const char *what) {
+        return std::string("[world]\ngravity = [0, 0, 0]\n[[") + what + R"(]]
+name = "bob"
+position = [0, -1.05, 0]
+mass = 3
+[[spring]]
+name = "coil"
+b = "bob"
+anchor_a = [0, 0, 0]
+rest_length = 1
+stiffness = 100
+[[expect]]
+name = "bounded"
+quantity = "energy_error"
+reduce = "max"
+to = 10
+at_most = 300
+source = "linear stability"
+)";
+    };
+    MapOptions options;
+    options.methods = {"semi_implicit_euler", "rk4"};
+    const StabilityMap map =
+        map_scene({"scene.toml", spring("particle")}, parse_map_axis("dt=1/60..1/4:9log"),
+                  parse_map_axis("spring.coil.stiffness=2000,6000"), options);
+    const std::vector<TheoryCurve> curves = theory_of(map, options.base);
+    ASSERT_EQ(curves.size(), 2U);
+    for (const TheoryCurve &curve : curves) {
+        const double limit = curve.methods.front()->name == "rk4" ? std::sqrt(8.0) : 2;
+        for (const glm::dvec2 &point : curve.points)
+            EXPECT_NEAR(std::sqrt(point.y / 3) * point.x, limit, 1e-12);
+        const auto found =
+            std::ranges::find(map.methods, curve.methods.front(), &MethodMap::method);
+        EXPECT_EQ(found->limits.size(), 2U);
+        for (const MapLimit &each : found->limits)
+            // A cell is a factor of 15^(1/8), cut into 32 parts.
+            EXPECT_NEAR(std::sqrt(each.y / 3) * between(map.x, each.low, each.high), limit,
+                        0.02 * limit);
+    }
+    std::string ball = spring("body");
+    ball.insert(ball.find("mass"), "shape = \"sphere\"\nradius = 0.1\n");
+    const StabilityMap of_body =
+        map_scene({"scene.toml", ball}, parse_map_axis("dt=1/60,1/30"),
+                  parse_map_axis("spring.coil.stiffness=2000,6000"), options);
+    EXPECT_TRUE(theory_of(of_body).empty());
+}
+
 TEST(StabilityMap, ASpringWithDampingOrANeighbourHasNoTheory) {
     SceneDesc scene;
     SpringDesc &spring = scene.springs.emplace_back();
