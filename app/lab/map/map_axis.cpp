@@ -6,6 +6,7 @@
 #include "engine/scene/given_settings.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -119,6 +120,33 @@ void set_list(std::string_view whole, std::string_view list, MapAxis &axis) {
         refuse(whole, "an axis has 2 to " + std::to_string(most_values) + " values");
 }
 
+// Of a number of a scene file: "spring.coil.stiffness" is in N/m. Empty if there is none, or it is
+// not known.
+std::string_view unit_of_path(std::string_view path) {
+    for (const std::string_view component : {".x", ".y", ".z"})
+        if (path.ends_with(component))
+            path.remove_suffix(component.size());
+    struct Row {
+        std::string_view head, key, unit;
+    };
+    constexpr std::array rows{
+        Row{"spring.", ".stiffness", "N/m"},
+        Row{"spring.", ".damping", "N s/m"},
+        Row{"spring.", ".rest_length", "m"},
+        Row{"", ".frequency", "Hz"},
+        Row{"", ".mass", "kg"},
+        Row{"", ".position", "m"},
+        Row{"", ".velocity", "m/s"},
+        Row{"", ".angular_velocity", "rad/s"},
+        Row{"body.", ".radius", "m"},
+        Row{"body.", ".half_extents", "m"},
+    };
+    const auto *const found = std::ranges::find_if(rows, [&](const Row &row) {
+        return path.starts_with(row.head) && path.ends_with(row.key);
+    });
+    return found == rows.end() ? std::string_view() : found->unit;
+}
+
 // 3 to 5 digits if that is exact; else the fewest, 3 to 9, that tell neighbours apart.
 int digits_of(const MapAxis &axis) {
     constexpr int least = 3, exact = 5, most = 9;
@@ -149,6 +177,11 @@ MapAxis parse_map_axis(std::string_view text) {
         refuse(text, "write NAME=FROM..TO, for example dt=1/240..1/15:9log");
     MapAxis axis;
     axis.name = text.substr(0, equals);
+    if (axis.name == "precision" || axis.name == "threads")
+        refuse(text, axis.name +
+                         " is no axis of a map; only a chart sweeps it: `plumb chart SCENE "
+                         "--sweep " +
+                         (axis.name == "threads" ? "threads=1,2`" : "precision=float,double`"));
     axis.setting = find_setting_number(text, axis.name);
     const std::string_view range = text.substr(equals + 1);
     const auto dots = range.find("..");
@@ -214,8 +247,10 @@ std::string value_label(const MapAxis &axis, double value) {
 
 std::string axis_title(const MapAxis &axis) {
     std::string title = axis.name;
-    if (axis.setting && !axis.setting->setting().unit.empty())
-        title += " (" + std::string(axis.setting->setting().unit) + ")";
+    const std::string_view unit =
+        axis.setting ? axis.setting->setting().unit : unit_of_path(axis.name);
+    if (!unit.empty())
+        title.append(" (").append(unit).append(")");
     return title + (axis.logarithmic ? ", logarithmic" : "");
 }
 

@@ -80,6 +80,26 @@ TEST(MapAxis, SaysWhatIsWrong) {
         EXPECT_FALSE(complaint(text).empty()) << text;
 }
 
+TEST(MapAxis, IsTitledWithItsUnit) {
+    for (const auto &[text, title] :
+         {std::pair{"dt=1/60..1/15:4log", "dt (s), logarithmic"},
+          std::pair{"spring.coil.stiffness=1..2", "spring.coil.stiffness (N/m)"},
+          std::pair{"spring.coil.frequency=1..2", "spring.coil.frequency (Hz)"},
+          std::pair{"body.a.b.velocity.x=1..2", "body.a.b.velocity.x (m/s)"},
+          std::pair{"particle.0.mass=1..2", "particle.0.mass (kg)"},
+          std::pair{"substeps=1..4", "substeps"},
+          std::pair{"material.ice.friction=0..1", "material.ice.friction"}})
+        EXPECT_EQ(axis_title(parse_map_axis(text)), title);
+}
+
+// Words, not numbers, or not the scene's: one message for both, whatever the values.
+TEST(MapAxis, LeavesPrecisionAndThreadsToCharts) {
+    for (const char *text : {"precision=float,double", "precision=1..2", "threads=1,2"})
+        EXPECT_NE(complaint(text).find("only a chart sweeps it: `plumb chart SCENE --sweep "),
+                  std::string::npos)
+            << complaint(text);
+}
+
 TEST(MapAxis, TakesAKeyForTheOneNumberThatHasIt) {
     const std::string scene = R"(
         [world]
