@@ -85,8 +85,10 @@ CLI::Range step_range() {
 
 void add_scenes(CLI::App &command, CommonOptions &common) {
     command
-        .add_option("SCENE", common.scenes,
-                    "Scene files, names from `plumb list`, or folders (all scenes in them)")
+        .add_option(
+            "SCENE", common.scenes,
+            "Scene files, names of scenes or groups from `plumb list`, or folders (all scenes "
+            "in them)")
         ->required();
 }
 

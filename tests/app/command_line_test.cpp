@@ -233,6 +233,8 @@ TEST(CommandLine, AWrongValueIsAnsweredWithWhatWouldBeRight) {
                     "precision is both given and swept"},
           std::pair{"map pendulum --x substeps=1,2 --y gravity.y=-9,-1 --set gravity=0,-3,0",
                     "gravity.y is given as -3 and also swept"},
+          std::pair{"map pendulum --x precision=float,double --y dt=1/60,1/30",
+                    "`plumb chart SCENE --sweep precision=float,double`"},
           std::pair{"chart bvh", "bvh: only probes, no motion to chart"}}) {
         const ProgramResult result = run_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << arguments;
@@ -247,6 +249,20 @@ TEST(CommandLine, AnUnknownSceneIsAnsweredWithTheNearest) {
     const ProgramResult result = run_program("check pendulm");
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_TRUE(has(result.err, "did you mean \"pendulum\"?")) << result.err;
+}
+
+// As `plumb list` shows them; a scene of that name would come first.
+TEST(CommandLine, AGroupStandsForItsScenes) {
+    const ProgramResult group = run_program("hash cloth --steps 0");
+    const ProgramResult folder = run_program("hash " PLUMB_SOURCE_DIR "/scenes/cloth --steps 0");
+    EXPECT_EQ(group.exit_code, 0) << group.err;
+    EXPECT_TRUE(has(group.out, "\n")) << group.out;
+    EXPECT_EQ(group.out, folder.out);
+    const ProgramResult typo = run_program("hash cloht --steps 0");
+    EXPECT_TRUE(has(typo.err, "\"cloth\"")) << typo.err;
+    const ProgramResult one = run_program("measure cloth");
+    EXPECT_EQ(one.exit_code, 2);
+    EXPECT_TRUE(has(one.err, "give one scene")) << one.err;
 }
 
 TEST(CommandLine, ListNamesScenesMethodsAndKeys) {

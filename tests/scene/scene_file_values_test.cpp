@@ -271,13 +271,14 @@ source = "g t^2 / 2"
 }
 
 TEST(SceneFileValues, LoadSaysWhenItCannotRead) {
-    for (const std::filesystem::path path : {"/nonexistent/x.toml", "/"}) {
+    for (const auto &[path, why] :
+         {std::pair{"/nonexistent/x.toml",
+                    "the file cannot be read; check that it exists and is readable"},
+          std::pair{"/", "this is a folder, not a scene file; give one of the files in it"}}) {
         const SceneFileResult result = load_scene(path);
         ASSERT_EQ(result.messages.size(), 1U);
         EXPECT_EQ(result.messages[0].line, 0U);
-        EXPECT_EQ(format_message(path.string(), result.messages[0]),
-                  path.string() +
-                      ": error: the file cannot be read; check that it exists and is readable");
+        EXPECT_EQ(format_message(path, result.messages[0]), std::string(path) + ": error: " + why);
     }
 }
 

@@ -94,10 +94,15 @@ fs::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &s
             return entry.path;
     if (fs::exists(path, error))
         return path;
-    std::vector<std::string_view> names;
-    names.reserve(scenes.size());
     for (const SceneEntry &entry : scenes)
+        if (name == entry.subject)
+            return entry.path.parent_path();
+    std::vector<std::string_view> names;
+    for (const SceneEntry &entry : scenes) {
         names.emplace_back(entry.name);
+        if (!is_path && std::ranges::find(names, entry.subject) == names.end())
+            names.emplace_back(entry.subject);
+    }
     if (is_path) {
         const std::string stem = path.stem().string();
         const std::string_view near = nearest_word(stem, names);

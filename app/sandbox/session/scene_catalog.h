@@ -23,7 +23,8 @@ std::filesystem::path find_data_dir();
 std::vector<SceneEntry> find_scenes(const std::filesystem::path &scene_dir);
 
 // Resolves a scene given as a path to a file, else as a name in the catalogue ("pendulum" or
-// "joints/pendulum"). If there is neither, throws std::invalid_argument with the nearest names.
+// "joints/pendulum"), else a subject ("joints": the folder). If there is none, throws
+// std::invalid_argument with the nearest names.
 std::filesystem::path resolve_scene(const std::string &name, const std::vector<SceneEntry> &scenes);
 
 } // namespace plumb

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <regex>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace plumb {
@@ -116,8 +118,13 @@ std::optional<std::string> read_file(const std::filesystem::path &path,
         file.read(block.data(), block.size());
         text.append(block.data(), static_cast<std::size_t>(file.gcount()));
     }
-    // A directory opens, but cannot be read.
-    if (!file.is_open() || file.bad() || std::filesystem::is_directory(path)) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) { // it opens, but cannot be read
+        messages.push_back(
+            error(0, 0, "this is a folder, not a scene file", "give one of the files in it"));
+        return std::nullopt;
+    }
+    if (!file.is_open() || file.bad()) {
         messages.push_back(
             error(0, 0, "the file cannot be read", "check that it exists and is readable"));
         return std::nullopt;
