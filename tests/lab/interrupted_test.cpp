@@ -69,7 +69,7 @@ class Interrupted : public testing::Test {
 class InterruptedChart : public Interrupted {
   protected:
     // Makes `until` simulations, and is interrupted while making the next. Returns how many it
-    // finished. One of two shards, as shards have no pictures.
+    // finished. By default one of two shards, as shards have no pictures.
     int chart(const std::vector<std::string> &scenes, const std::vector<std::string> &methods,
               int until = 1000) {
         int made = 0;
@@ -85,11 +85,13 @@ class InterruptedChart : public Interrupted {
         command.options.convergence = true; // nothing is timed
         command.options.base.precision = Precision::f64;
         command.options.sweep = {parse_sweep("dt=1/60,1/50,1/40,1/30")};
-        command.options.shard = {1, 2};
+        command.options.shard = shard_;
         command.out_dir = folder_;
+        command.shader_dir = PLUMB_SOURCE_DIR "/shaders";
         EXPECT_EQ(chart_scenes(command, out_, err_), ExitCode::fine) << err_.str();
         return std::min(made, until);
     }
+    Shard shard_{1, 2};
     [[nodiscard]] fs::path table(const char *scene) const {
         return folder_ / (std::string(scene) + ".convergence.1-of-2.csv");
     }
@@ -157,6 +159,18 @@ TEST_F(InterruptedChart, KeepsTheRowsOfOtherMethods) {
     EXPECT_EQ(rows_by_method(text_of(table("a"))), (Rows{{"tgs_soft", 2}}));
     EXPECT_EQ(chart({"a"}, {"soft_step", "rk4"}), 1);
     EXPECT_EQ(rows_by_method(text_of(table("a"))), (Rows{{"soft_step", 2}, {"rk4", 2}}));
+}
+
+// Even while the table of what was interrupted is kept, for another command's rows.
+TEST_F(InterruptedChart, LeavesNoPartialPictureBesideTheWholeOne) {
+    shard_ = {1, 1};
+    const fs::path stem = folder_ / "a.convergence";
+    EXPECT_EQ(chart({"a"}, {"soft_step", "rk4"}, 6), 6);
+    EXPECT_TRUE(fs::exists(stem.string() + ".partial.png")) << err_.str();
+    EXPECT_EQ(chart({"a"}, {"soft_step"}), 4);
+    EXPECT_TRUE(fs::exists(stem.string() + ".csv.partial"));
+    EXPECT_TRUE(fs::exists(stem.string() + ".png"));
+    EXPECT_FALSE(fs::exists(stem.string() + ".partial.png"));
 }
 
 TEST_F(InterruptedChart, FollowsLinks) {

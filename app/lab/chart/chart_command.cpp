@@ -60,6 +60,7 @@ ExitCode write_pictures(const SceneChart &chart, const std::filesystem::path &st
                         const std::string &command, LazyPainter &painter, std::ostream &err) {
     const ChartContent content = chart_content(chart, command);
     if (!chart.interrupted) {
+        std::filesystem::remove(stem.string() + ".partial.png");
         OutputFile svg(stem.string() + ".svg");
         write_chart_svg(svg.stream(), content);
         svg.finish();
@@ -142,8 +143,6 @@ ExitCode chart_one(const SceneDesc &scene, const ChartCommand &command, LazyPain
     } else {
         csv.finish();
         err << "wrote " << csv.path().string() << '\n';
-        if (others.empty())
-            std::filesystem::remove(stem.string() + ".partial.png");
         charted.push_back({std::move(earlier), rows.str(), others});
     }
     if (!chart.runs.empty() && shard.of == 1)
