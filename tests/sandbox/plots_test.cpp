@@ -55,6 +55,23 @@ TEST(Plots, FollowTheRunForthAndBack) {
     EXPECT_EQ(samples.size(), 1u);
 }
 
+TEST(Plots, BeginWhereTheFirstWasChosen) {
+    Session session({}, nullptr, make_fake());
+    ASSERT_TRUE(session.open(slow_balls()));
+    EXPECT_FALSE(session.plots().first_step());
+    for (int i = 0; i < 3; ++i)
+        ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.plot({"position.y", "right"}));
+    ASSERT_TRUE(session.step());
+    ASSERT_TRUE(session.plot({"position.y", "left"}));
+    EXPECT_EQ(session.plots().first_step(), 3U);
+    EXPECT_EQ(csv_of(session.plots()).find("\n3,"), csv_of(session.plots()).find('\n'));
+    session.unplot(0);
+    EXPECT_EQ(session.plots().first_step(), 4U);
+    ASSERT_TRUE(session.restart());
+    EXPECT_EQ(session.plots().first_step(), 0U);
+}
+
 // Whenever it is added to the plot, a displacement is measured from the start of the run.
 TEST(Plots, CountFromTheStartOfTheRun) {
     Session session({}, nullptr, make_fake());

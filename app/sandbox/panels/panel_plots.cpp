@@ -5,6 +5,9 @@
 #include "app/sandbox/panels/widgets.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
 
 #include <imgui/imgui.h>
 
@@ -148,7 +151,9 @@ void plots_tab(PanelContext &context) {
     if (ImGui::Button("Save CSV", {-1, 0}))
         context.save_plots = true;
     ImGui::EndDisabled();
-    tooltip("Writes all curves, from the first step to the current one.");
+    if (const std::optional<std::uint64_t> first = context.session.plots().first_step())
+        tooltip("Writes all curves, from step " + std::to_string(*first) +
+                " to the current one. A curve begins at the step at which it was chosen.");
     if (context.session.plots().curves().empty()) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("Choose the scene, a body, a particle or a spring, then the quantities "

@@ -59,6 +59,15 @@ void Plots::remove(const Simulation &simulation, std::size_t curve) {
     probe_anew(simulation);
 }
 
+std::optional<std::uint64_t> Plots::first_step() const {
+    std::optional<std::uint64_t> first;
+    for (const PlotCurve &curve : curves_)
+        if (!curve.samples.empty())
+            first =
+                std::min(first.value_or(curve.samples.front().step), curve.samples.front().step);
+    return first;
+}
+
 void Plots::write_csv(std::ostream &out) const {
     CsvWriter csv(out);
     csv.cell("step").cell("time (s)");

@@ -47,6 +47,8 @@ class Plots {
 
     [[nodiscard]] std::span<const PlotCurve> curves() const { return curves_; }
 
+    // The first that any curve has.
+    [[nodiscard]] std::optional<std::uint64_t> first_step() const;
     // One row per step that any curve has, one column per curve; empty where a curve has no sample.
     void write_csv(std::ostream &out) const;
 
