@@ -65,7 +65,8 @@ void add_chart(CommandLine &line) {
     chart_command->add_option(
         "--expect", arguments->command.options.expect,
         "Name of one expectation to chart, in its own unit (the worst of all, "
-        "each in units of its own tolerance)");
+        "each in units of its own tolerance; with --convergence of those of a value at a given "
+        "time)");
     chart_command
         ->add_option("--repeats", arguments->command.options.repeats, "Timings of each run")
         ->check(CLI::Range(1, 1000))

@@ -31,7 +31,7 @@ std::string unmeasured(const JudgedRun &run) {
 }
 
 void judge_error(const ErrorMeasure &measure, ChartRun &run) {
-    run.worst = worst_of(run.run.outcomes);
+    run.worst = worst_of(run.run.outcomes, measure.among);
     run.error = infinity;
     if (run.run.stopped) {
         run.status = ChartStatus::unfinished;
@@ -169,7 +169,7 @@ class Charting {
             (chart_.sweep.size() != 1 || chart_.sweep.front().setting.setting().name != "dt"))
             throw std::invalid_argument(
                 "a convergence chart sweeps dt alone: --sweep dt=1/960..1/30");
-        chart_.measure = choose_measure(scene, options_.expect);
+        chart_.measure = choose_measure(scene, options_.expect, options_.convergence);
         chart_.repeats = options_.convergence ? 0 : options_.repeats;
         chart_.timed = std::min(options_.timed, end_);
         chart_.wall_clock = std::ranges::any_of(options_.threads, [](int n) { return n > 1; });

@@ -125,7 +125,8 @@ SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
     else if (everything_expected(scene).empty())
         chart.measure = followed_measure(scene, charted == "max_penetration");
     else
-        chart.measure = choose_measure(scene, charted == "worst" ? std::string_view() : charted);
+        chart.measure = choose_measure(scene, charted == "worst" ? std::string_view() : charted,
+                                       chart.convergence);
     return chart;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace plumb {
 
@@ -82,13 +83,32 @@ ErrorMeasure worst_measure(std::size_t count) {
     return measure;
 }
 
+bool is_value_at_a_time(const ExpectDesc &expect) {
+    return expect.reduce == "last" && expect.relation == ExpectDesc::Relation::equals &&
+           expect.curve.empty() && !expect.quantity.empty();
+}
+
 } // namespace
 
-ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect) {
+ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect, bool convergence) {
     const std::vector<ExpectDesc> expects = everything_expected(scene);
     if (expect.empty()) {
         if (expects.empty())
             return followed_measure(scene, false);
+        std::vector<std::size_t> among;
+        for (std::size_t i = 0; i < expects.size(); ++i)
+            if (convergence && is_value_at_a_time(expects[i]))
+                among.push_back(i);
+        if (among.size() == 1)
+            return measure_of(expects[among.front()], among.front());
+        if (!among.empty() && among.size() < expects.size()) {
+            ErrorMeasure measure = worst_measure(among.size());
+            measure.explanation =
+                "the worst of the scene's " + std::to_string(among.size()) +
+                " expectations of a value at a given time, each in units of its own tolerance";
+            measure.among = std::move(among);
+            return measure;
+        }
         return expects.size() == 1 ? measure_of(expects.front(), 0) : worst_measure(expects.size());
     }
     std::string names;
@@ -139,11 +159,13 @@ ErrorMeasure one_step_measure(double frame, std::size_t instants) {
     return measure;
 }
 
-std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes) {
+std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes,
+                                    const std::vector<std::size_t> &among) {
     std::optional<std::size_t> worst;
     double error = 0;
     for (std::size_t i = 0; i < outcomes.size(); ++i)
-        if (outcomes[i].verdict != Verdict::unseen && outcomes[i].scaled_error > error) {
+        if ((among.empty() || std::ranges::find(among, i) != among.end()) &&
+            outcomes[i].verdict != Verdict::unseen && outcomes[i].scaled_error > error) {
             worst = i;
             error = outcomes[i].scaled_error;
         }
@@ -153,7 +175,7 @@ std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes) 
 double error_of(const ErrorMeasure &measure, const JudgedRun &run) {
     switch (measure.kind) {
     case ErrorMeasure::Kind::worst: {
-        const std::optional<std::size_t> worst = worst_of(run.outcomes);
+        const std::optional<std::size_t> worst = worst_of(run.outcomes, measure.among);
         if (worst)
             return run.outcomes[*worst].scaled_error;
         return run.any_judged() ? 0 : std::numeric_limits<double>::infinity();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace plumb {
 
@@ -14,6 +15,8 @@ struct ErrorMeasure {
     enum class Kind { worst, expectation, penetration, joint_drift, energy, one_step };
     Kind kind = Kind::energy;
     std::size_t expectation = 0; // index into everything_expected, for Kind::expectation
+    // Indices of those that Kind::worst is the worst of; empty: all.
+    std::vector<std::size_t> among;
     std::string name;
     std::string unit;        // "1" if dimensionless or in units of tolerances
     std::string title;       // for the axis
@@ -25,9 +28,12 @@ struct ErrorMeasure {
 };
 
 // The scene's worst expectation, in units of tolerances; if it has only one, or `expect` names one,
-// that one in its own unit; if it has none, followed_measure. Throws std::invalid_argument if none
-// has that name.
-[[nodiscard]] ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect);
+// that one in its own unit; if it has none, followed_measure. For `convergence` only expectations
+// of a value at a given time count, if there are any: an extreme or a crossing, found between
+// samples, is off by a power of dt of its own, and a bound is no true value. Throws
+// std::invalid_argument if none has that name.
+[[nodiscard]] ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect,
+                                          bool convergence = false);
 
 // For scenes without expectations: the error that applies to the scene.
 [[nodiscard]] ErrorMeasure followed_measure(const SceneDesc &scene, bool had_contacts);
@@ -35,8 +41,10 @@ struct ErrorMeasure {
 // For one-step charts: steps of `frame` seconds from `instants` states.
 [[nodiscard]] ErrorMeasure one_step_measure(double frame, std::size_t instants);
 
-// The outcome with the largest error in units of its tolerance; none if no error is above 0.
-[[nodiscard]] std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes);
+// The outcome with the largest error in units of its tolerance, of all or those at the indices
+// `among`; none if no error is above 0.
+[[nodiscard]] std::optional<std::size_t> worst_of(const std::vector<ExpectOutcome> &outcomes,
+                                                  const std::vector<std::size_t> &among = {});
 
 // The run's error by this measure, other than Kind::one_step; infinite if it could not be measured.
 [[nodiscard]] double error_of(const ErrorMeasure &measure, const JudgedRun &run);

@@ -57,6 +57,36 @@ TEST(Convergence, SmoothMethodsHaveTheirOrder) {
     EXPECT_THROW((void)chart_scene(file.scene, options), std::invalid_argument);
 }
 
+// By default it is judged by values at a given time: an extreme among samples is off by dt^2 of its
+// own, whatever the method.
+TEST(Convergence, IsOfValuesAtATimeUnlessTold) {
+    for (const auto &[path, measured] :
+         {std::pair{"springs/two_masses", "worst"}, std::pair{"springs/mass_on_spring", "worst"},
+          std::pair{"springs/damped_springs", "worst"},
+          std::pair{"free/kepler_orbit", "back after two turns"},
+          std::pair{"free/spinning_book", "spin about the middle axis after 8 s"}}) {
+        const SceneFileResult file =
+            load_scene(std::string(PLUMB_SOURCE_DIR "/scenes/") + path + ".toml");
+        ASSERT_TRUE(file.ok()) << path;
+        ChartOptions options;
+        options.convergence = true;
+        options.methods = {"velocity_verlet", "rk4"};
+        const SceneChart chart = chart_scene(file.scene, options);
+        EXPECT_EQ(chart.measure.name, measured);
+        for (const ChartRun &run : chart.runs) {
+            ASSERT_TRUE(run.worst) << path;
+            if (chart.measure.kind == ErrorMeasure::Kind::worst) {
+                EXPECT_EQ(run.run.outcomes[*run.worst].desc.reduce, "last") << path;
+            }
+        }
+        const std::vector<CurveOrder> orders = curve_orders(chart);
+        ASSERT_EQ(orders.size(), 2U);
+        ASSERT_TRUE(orders[0].fitted && orders[1].fitted) << path;
+        EXPECT_NEAR(orders[0].fitted->slope, 2, 0.1) << path;
+        EXPECT_NEAR(orders[1].fitted->slope, 4, 0.2) << path;
+    }
+}
+
 TEST(Convergence, SaysWhereThereIsNoOrder) {
     SceneChart chart;
     chart.scene = falling_scene();
