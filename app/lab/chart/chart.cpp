@@ -22,10 +22,12 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The first expectation that could not be measured.
-std::string unmeasured(const JudgedRun &run) {
+// The expectation charted, or else the first that should have been measured but could not be.
+std::string unmeasured(const ErrorMeasure &measure, const JudgedRun &run) {
+    if (measure.kind == ErrorMeasure::Kind::expectation)
+        return run.outcomes[measure.expectation].desc.name;
     for (const ExpectOutcome &outcome : run.outcomes)
-        if (!std::isfinite(outcome.error))
+        if (outcome.verdict != Verdict::unseen && !std::isfinite(outcome.error))
             return outcome.desc.name;
     return "nothing was judged";
 }
@@ -52,8 +54,8 @@ void judge_error(const ErrorMeasure &measure, ChartRun &run) {
                  : run.run.all_met()       ? ChartStatus::fine
                                            : ChartStatus::outside;
     run.failure = run.status != ChartStatus::no_result ? ""
-                  : run.one_step.failure.empty()       ? "no result: " + unmeasured(run.run)
-                                                       : "no result: " + run.one_step.failure;
+                  : run.one_step.failure.empty() ? "no result: " + unmeasured(measure, run.run)
+                                                 : "no result: " + run.one_step.failure;
 }
 
 void set_cost(ChartRun &run) {
@@ -112,6 +114,26 @@ double SceneChart::median_spread() const {
         if (run.timings.size() > 1)
             spreads.push_back((run.cost_high - run.cost_low) / run.cost);
     return spreads.empty() ? 0 : median(spreads);
+}
+
+std::vector<std::string> not_judged(const SceneChart &chart) {
+    std::vector<std::string> texts;
+    const std::vector<ExpectDesc> expects = everything_expected(chart.scene);
+    for (std::size_t i = 0; i < expects.size(); ++i) {
+        std::string who;
+        const MethodInfo *last = nullptr;
+        for (const ChartRun &run : chart.runs) {
+            const MethodInfo *method = run.resolved.method;
+            if (method == last || i >= run.run.outcomes.size() ||
+                run.run.outcomes[i].verdict != Verdict::unseen)
+                continue;
+            who.append(last == nullptr ? "" : ", ").append(method->title);
+            last = method;
+        }
+        if (last != nullptr)
+            texts.push_back('"' + expects[i].name + "\" cannot be measured for " + who);
+    }
+    return texts;
 }
 
 std::string run_key(const ResolvedRun &run, int threads) {
@@ -257,6 +279,8 @@ class Charting {
         judging.follow_errors = true;
         judging.progress = [&](double fraction) { progress(begin + share * fraction, run); };
         run.run = judge_run(*simulated, scene_, judging);
+        if (next.engine != nullptr)
+            drop_unmeasured(run.run.outcomes);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
         if (states_ && !run.run.divergence && !run.run.stopped) {
             std::shared_ptr<Simulation> engine; // it keeps its memory inside, not in the scene

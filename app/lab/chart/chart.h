@@ -137,6 +137,9 @@ struct SceneChart {
     [[nodiscard]] double median_spread() const; // of (greatest - least) / median over runs
 };
 
+// Which expectations do not count for which methods: ""rests" cannot be measured for Bullet, ODE".
+[[nodiscard]] std::vector<std::string> not_judged(const SceneChart &chart);
+
 // Runs everything once in full for the errors, then times all runs in rounds, so that a machine
 // that slows down does so for all of them. `changed` is called whenever a run was added or a round
 // of timings finished; it may be empty. Throws std::invalid_argument for options that make no

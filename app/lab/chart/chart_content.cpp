@@ -189,7 +189,9 @@ ChartContent chart_content(const SceneChart &chart, const std::string &command) 
     content.worst = worst.texts();
     content.limit = chart.measure.limit;
     content.limit_label = chart.measure.limit_label;
-    content.left_out = grouped_reasons(chart.left_out);
+    content.left_out = not_judged(chart);
+    for (std::string &why : grouped_reasons(chart.left_out))
+        content.left_out.push_back(std::move(why));
     if (chart.steps_from) {
         content.floor = chart.steps_from->floor();
         content.floor_label = "not resolved below " + short_quantity(*content.floor, "m");

@@ -27,8 +27,11 @@ std::optional<ChartStatus> find_status(std::string_view name) {
 ExpectOutcome read_outcome(const CsvReader &row, const ExpectDesc &expect) {
     const std::string_view passed = row.cell(expect.name + ".passed");
     ExpectOutcome outcome = judge(expect, row.number(expect.name + ".measured").value_or(NAN));
-    if (passed.empty())
-        outcome.verdict = Verdict::pending;
+    if (passed.empty()) {
+        const std::vector<std::string> unseen = parsed_reasons(row.cell("not_judged"));
+        outcome.verdict = std::ranges::find(unseen, expect.name) != unseen.end() ? Verdict::unseen
+                                                                                 : Verdict::pending;
+    }
     return outcome;
 }
 

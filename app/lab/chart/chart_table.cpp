@@ -21,6 +21,14 @@ std::string error_unit(const ErrorMeasure &measure) {
     return measure.kind == ErrorMeasure::Kind::worst ? "tolerance" : measure.unit;
 }
 
+std::vector<std::string> unseen_in(const JudgedRun &run) {
+    std::vector<std::string> names;
+    for (const ExpectOutcome &outcome : run.outcomes)
+        if (outcome.verdict == Verdict::unseen)
+            names.push_back(outcome.desc.name);
+    return names;
+}
+
 // Of what is swept, or differs, besides the table's usual columns.
 struct SweptColumn {
     std::string title;
@@ -69,6 +77,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
                              "error",
                              "error_unit",
                              "worst",
+                             "not_judged",
                              "end_s",
                              "steps",
                              "max_penetration_m",
@@ -122,6 +131,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
             .cell(run.error)
             .cell(error_unit(chart.measure))
             .cell(run.worst ? run.run.outcomes[*run.worst].desc.name : "")
+            .cell(reasons_text(unseen_in(run.run)))
             .cell(run.run.time)
             .cell(run.run.steps)
             .cell(run.run.max_penetration)
@@ -231,6 +241,8 @@ void print(std::ostream &out, const SceneChart &chart) {
             << order.why_none << '\n';
     if (!chart.runs.empty())
         out << "  worst: the slowest step in each one's first run\n";
+    for (const std::string &which : not_judged(chart))
+        out << "  not judged: " << which << '\n';
     for (const std::string &why : grouped_reasons(chart.left_out))
         out << "  left out: " << why << '\n';
     if (chart.interrupted)

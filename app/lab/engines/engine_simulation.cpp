@@ -2,10 +2,14 @@
 
 #include "app/lab/engines/pose_measures.h"
 #include "engine/core/hash.h"
+#include "engine/scene/expect.h"
 
+#include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 #include <glm/geometric.hpp>
 
@@ -19,6 +23,21 @@ RunOptions given_of(const ResolvedRun &run) {
     options.settings.give(&StepSettings::gravity, run.settings.gravity);
     options.precision = Precision::f64;
     return options;
+}
+
+// What needs contact forces, which the engines do not report, is not a number.
+Measures without_forces() {
+    Measures m;
+    m.signorini_residual = m.cone_residual = std::numeric_limits<double>::quiet_NaN();
+    m.dissipation_residual = m.contact_power = std::numeric_limits<double>::quiet_NaN();
+    return m;
+}
+
+bool needs_forces(std::string_view quantity) {
+    const QuantityInfo *info = find_quantity(quantity);
+    const auto *value =
+        info == nullptr ? nullptr : std::get_if<QuantityInfo::OfScene>(&info->value);
+    return value != nullptr && std::isnan((*value)(without_forces(), SceneStart{}));
 }
 
 class EngineSimulation final : public Simulation {
@@ -56,11 +75,8 @@ class EngineSimulation final : public Simulation {
     }
 
     Measures measure() const override {
-        Measures m;
+        Measures m = without_forces();
         m.time = time();
-        // These need contact forces, which the engines do not report.
-        m.signorini_residual = m.cone_residual = std::numeric_limits<double>::quiet_NaN();
-        m.dissipation_residual = m.contact_power = std::numeric_limits<double>::quiet_NaN();
         const std::vector<BodyState> states = engine_->states();
         for (std::size_t i = 0; i < states.size(); ++i) {
             const auto &[mass, inertia] = scene_.masses[i];
@@ -169,6 +185,12 @@ class EngineSimulation final : public Simulation {
 std::unique_ptr<Simulation> engine_simulation(const OtherEngine &engine, const SceneDesc &scene,
                                               const ResolvedRun &run) {
     return std::make_unique<EngineSimulation>(engine, scene, run);
+}
+
+void drop_unmeasured(std::vector<ExpectOutcome> &outcomes) {
+    for (ExpectOutcome &outcome : outcomes)
+        if (needs_forces(outcome.desc.quantity))
+            outcome.verdict = Verdict::unseen;
 }
 
 void put(Simulation &of_engine, const SceneDesc &scene) {

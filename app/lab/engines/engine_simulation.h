@@ -2,9 +2,11 @@
 #pragma once
 
 #include "app/lab/engines/other_engines.h"
+#include "app/lab/run/expectation.h"
 #include "engine/scene/simulation.h"
 
 #include <memory>
+#include <vector>
 
 namespace plumb {
 
@@ -14,6 +16,9 @@ namespace plumb {
 // Commands are not supported. Throws std::invalid_argument if why_not is not empty.
 [[nodiscard]] std::unique_ptr<Simulation>
 engine_simulation(const OtherEngine &engine, const SceneDesc &scene, const ResolvedRun &run);
+
+// Outcomes whose quantity the engines do not tell, those of contact forces, become unseen.
+void drop_unmeasured(std::vector<ExpectOutcome> &outcomes);
 
 // Sets the engine's dynamic bodies to the poses and velocities in `scene`, which may differ from
 // the original in nothing else; the engine keeps what it remembers. Requires a simulation made by

@@ -13,8 +13,9 @@ enum class Verdict {
     pending, // its time window has not ended, and it may still be met
     met,
     missed,
-    // The run, continued from a saved state, began after the window did, or after the moment its
-    // quantity counts from. No verdict is possible.
+    // No verdict is possible: the run, continued from a saved state, began after the window did, or
+    // after the moment its quantity counts from; or another engine ran it, which does not tell what
+    // the quantity is made of.
     unseen,
 };
 

@@ -2,11 +2,14 @@
 #include "app/lab/engines/engine_simulation.h"
 
 #include "app/lab/chart/chart.h"
+#include "app/lab/chart/chart_rows.h"
+#include "app/lab/csv.h"
 #include "app/lab/run/judged_run.h"
 #include "engine/scene/scene_file.h"
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -115,6 +118,55 @@ TEST(EngineSimulation, StandsOnTheChartBesideTheMethods) {
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(errors[i], 0.5 * gravity * std::pow(0.5, std::array{1, 2, 8}[i]), 1e-9);
     EXPECT_EQ(chart_content(chart, "").series.back().name, "Pretended, double");
+}
+
+// Other engines tell no contact forces: what is about them does not count against them, and the
+// chart says so, also once it is read back from its table.
+TEST(EngineSimulation, IsJudgedByWhatCanBeMeasured) {
+    const OtherEngine engine = falling_engine();
+    SceneDesc scene = ball_above_floor();
+    scene.expects[0].tolerance = 1;
+    ExpectDesc &residual = scene.expects.emplace_back();
+    residual.name = "is not pushed apart";
+    residual.quantity = "signorini_residual";
+    residual.reduce = "max";
+    residual.to = 0.2;
+    residual.relation = ExpectDesc::Relation::at_most;
+    residual.value = 1;
+    ChartOptions options;
+    options.methods = {"soft_step"};
+    options.engines = {&engine};
+    options.sweep = {parse_sweep("iterations=8")};
+    options.repeats = 1;
+    SceneChart chart = chart_scene(scene, options);
+    ASSERT_EQ(chart.runs.size(), 2U);
+    const ChartRun &run = chart.runs.back();
+    EXPECT_EQ(run.status, ChartStatus::fine) << run.failure;
+    EXPECT_NEAR(run.error, 0.5 * gravity * std::pow(0.5, 8), 1e-9);
+    EXPECT_EQ(chart.runs.front().run.outcomes[1].verdict, Verdict::met); // measured for ours
+    const std::string note = "\"is not pushed apart\" cannot be measured for Pretended";
+    EXPECT_EQ(not_judged(chart), std::vector{note});
+    EXPECT_EQ(chart_content(chart, "").left_out.front(), note);
+    std::ostringstream text, table;
+    print(text, chart);
+    EXPECT_NE(text.str().find("not judged: " + note), std::string::npos) << text.str();
+    chart.runs[1].resolved.method = chart.runs[0].resolved.method; // one a reader knows
+    write_chart_csv(table, chart);
+    std::istringstream in(table.str());
+    CsvReader rows(in);
+    ASSERT_TRUE(rows.next());
+    EXPECT_EQ(rows.cell("not_judged"), "");
+    ASSERT_TRUE(rows.next());
+    EXPECT_EQ(rows.cell("not_judged"), "is not pushed apart");
+    EXPECT_EQ(rows.cell("status"), "fine");
+    const SceneChart merged = merged_chart(scene, {{"table", table.str()}});
+    EXPECT_EQ(merged.runs[1].status, ChartStatus::fine);
+    EXPECT_EQ(merged.runs[1].run.outcomes[1].verdict, Verdict::unseen);
+
+    options.expect = residual.name; // asked for by name
+    const SceneChart alone = chart_scene(scene, options);
+    EXPECT_EQ(alone.runs.back().status, ChartStatus::no_result);
+    EXPECT_EQ(alone.runs.back().failure, "no result: is not pushed apart");
 }
 
 // Semi-implicit Euler that counts the calls of put().
