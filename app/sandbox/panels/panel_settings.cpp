@@ -97,7 +97,16 @@ std::string title_of(const SettingRow &row) {
     return title;
 }
 
-bool setting_row(const SettingRow &row, StepSettings &settings, const Columns &columns) {
+// "1 to 128" where islands choose their own substeps.
+std::string whole_format(const SettingRow &row, const MethodInfo &method,
+                         const StepSettings &settings) {
+    const bool is_least = row.member == SettingMember(&StepSettings::substeps) &&
+                          method.chooses_substeps() && settings.max_substeps > settings.substeps;
+    return is_least ? "%d to " + std::to_string(settings.max_substeps) : "%d";
+}
+
+bool setting_row(const SettingRow &row, const MethodInfo &method, StepSettings &settings,
+                 const Columns &columns) {
     if (row.member == SettingMember(&StepSettings::dt))
         return step_row(row, settings, columns);
     constexpr ImGuiSliderFlags flags =
@@ -106,9 +115,10 @@ bool setting_row(const SettingRow &row, StepSettings &settings, const Columns &c
     const std::string id = "##" + std::string(row.name);
     bool changed = false;
     if (const auto *whole = std::get_if<int StepSettings::*>(&row.member)) {
-        changed = ImGui::SliderInt(id.c_str(), &(settings.**whole), static_cast<int>(row.min),
-                                   static_cast<int>(row.max), "%d",
-                                   ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+        changed =
+            ImGui::SliderInt(id.c_str(), &(settings.**whole), static_cast<int>(row.min),
+                             static_cast<int>(row.max), whole_format(row, method, settings).c_str(),
+                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
     } else if (const auto *vector = std::get_if<glm::dvec3 StepSettings::*>(&row.member)) {
         // If three numbers do not fit beside the label, they go below it.
         if (ImGui::GetContentRegionAvail().x < least_vector_width * ImGui::GetFontSize()) {
@@ -140,7 +150,7 @@ bool rows_in_panel(const MethodInfo &method, StepSettings &settings) {
     for (const SettingRow &row : setting_rows)
         if (is_in_panel(row)) {
             ImGui::BeginDisabled(!reads(method, row));
-            changed |= setting_row(row, settings, panel_columns);
+            changed |= setting_row(row, method, settings, panel_columns);
             ImGui::EndDisabled();
         }
     return changed;
@@ -152,7 +162,7 @@ bool more_rows(const MethodInfo &method, StepSettings &settings) {
     bool changed = false;
     for (const SettingRow &row : setting_rows)
         if (!is_in_panel(row) && reads(method, row))
-            changed |= setting_row(row, settings, popup_columns);
+            changed |= setting_row(row, method, settings, popup_columns);
     ImGui::EndPopup();
     return changed;
 }
