@@ -22,7 +22,7 @@ constexpr std::array all_failings{
                 "penetration: over 1/4 of a width at the end, or more than allowed"},
     FailingInfo{Failing::drift, "drift", 'D', 0x56b4e9,
                 "joint drift: over 1/4 of a width at the end, or more than allowed"},
-    FailingInfo{Failing::fell, "fell", 'F', 0xcc79a7, "fell"},
+    FailingInfo{Failing::fell, "fell", 'F', 0xcc79a7, "fell over, or down from where it stood"},
     FailingInfo{Failing::never_rests, "never rests", 'R', 0xf0e442, "never comes to rest"},
     FailingInfo{Failing::missed, "missed", 'M', 0xa4abb2, "missed an expectation"},
 };
@@ -122,7 +122,15 @@ ToleratedDepths tolerated_depths(const SceneDesc &scene) {
             expects_about(scene, "joint_drift") || has_springs(scene) ? any : depth};
 }
 
-RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::string &passage) {
+bool expects_of_bodies(const SceneDesc &scene) {
+    return std::ranges::any_of(scene.expects, [](const ExpectDesc &expect) {
+        const QuantityInfo *quantity = find_quantity(expect.quantity);
+        return quantity != nullptr && quantity->needs_body();
+    });
+}
+
+RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::string &passage,
+                      const std::string &fallen) {
     if (run.divergence)
         return {Failing::not_finite, run.divergence->body};
     if (!passage.empty())
@@ -140,6 +148,8 @@ RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run, const std::s
         found(Failing::penetration, "");
     if (run.end_joint_drift > tolerated.drift)
         found(Failing::drift, "");
+    if (!fallen.empty() && !expects_of_bodies(scene))
+        found(Failing::fell, fallen);
     // Of several misses of one kind, the worst.
     double error = 0;
     for (std::size_t i = 0; i < run.outcomes.size(); ++i) {

@@ -43,6 +43,9 @@ inline constexpr double tolerated_depth = 0.25;      // of the smallest width of
 // failure.
 [[nodiscard]] bool brings_energy_in(const SceneDesc &scene);
 
+// Whether the scene expects anything of a body: where it is, how fast, how far tilted.
+[[nodiscard]] bool expects_of_bodies(const SceneDesc &scene);
+
 // Largest penetration and joint drift (m) tolerated at the end of a run; infinite if the scene has
 // its own expectation, and for drift if it has spring joints.
 struct ToleratedDepths {
@@ -56,15 +59,16 @@ struct RunFailing {
     friend bool operator==(const RunFailing &, const RunFailing &) = default;
 };
 
-// Why the run failed. Requires JudgeOptions::follow_errors; `passage` is PassageWatch::first().
+// Why the run failed. Requires JudgeOptions::follow_errors; `passage` is PassageWatch::first(),
+// `fallen` StandingWatch::fallen() at the end of the run: the body that should stand and does not.
 //
 // A scene's own expectations replace the general limits: if it has one on penetration, only that
-// counts; the same goes for drift and energy. The general energy limit does not apply if
-// brings_energy_in. Missed expectations are classified by quantity: too much energy is energy_grew;
-// penetration and joint_drift map to their namesakes; a body that does not stay above a height or
-// upright fell, as did one that left its place mostly downwards; one that is faster than allowed
-// never rests; all others are missed.
+// counts; the same goes for drift and energy, and `fallen` counts only if none is about a body. The
+// general energy limit does not apply if brings_energy_in. Missed expectations are classified by
+// quantity: too much energy is energy_grew; penetration and joint_drift map to their namesakes; a
+// body that does not stay above a height or upright fell, as did one that left its place mostly
+// downwards; one that is faster than allowed never rests; all others are missed.
 [[nodiscard]] RunFailing why_failed(const SceneDesc &scene, const JudgedRun &run,
-                                    const std::string &passage);
+                                    const std::string &passage, const std::string &fallen = {});
 
 } // namespace plumb

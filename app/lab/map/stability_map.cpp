@@ -1,6 +1,7 @@
 #include "app/lab/map/stability_map.h"
 
 #include "app/lab/map/passage.h"
+#include "app/lab/map/standing.h"
 #include "app/lab/run/method_choice.h"
 #include "engine/scene/file/change.h"
 
@@ -136,6 +137,9 @@ class Runner {
         const RunOptions run = point_.run(method, x, y);
         const auto simulation = Simulation::create(scene, run, nullptr);
         PassageWatch passage(scene, *simulation);
+        std::optional<StandingWatch> standing;
+        if (!expects_of_bodies(scene))
+            standing.emplace(scene, *simulation);
         JudgeOptions judging;
         judging.follow_errors = true;
         judging.duration = options_.duration.value_or(judging.duration);
@@ -151,7 +155,9 @@ class Runner {
         if (judged.stopped)
             return std::nullopt;
         advance(one_run - told);
-        return MapRun{why_failed(scene, judged, passage.first()), judged.time,
+        const std::string fallen =
+            standing && !judged.divergence ? standing->fallen(*simulation) : std::string();
+        return MapRun{why_failed(scene, judged, passage.first(), fallen), judged.time,
                       judged.max_penetration, judged.max_joint_drift, judged.max_energy_gain};
     }
 
