@@ -215,6 +215,7 @@ void World::share_budget() {
     for (const std::uint32_t root : roots) {
         IslandPace &pace = s.islands.needs[root].pace;
         pace.alternates = s.islands.needs[root].wanted <= most_wanted_in_turns * pace.substeps;
+        pace.is_joined = s.islands.needs[root].is_joined;
     }
     settle_slow_islands();
     settle_joined_islands();

@@ -37,6 +37,7 @@ struct IslandPace {
     // How many passes over the constraints, and relaxation passes, each substep takes on top of the
     // settings' own.
     int more_passes = 0;
+    bool is_joined = false; // has joints
     bool operator==(const IslandPace &) const = default;
 };
 
