@@ -83,8 +83,8 @@ struct BodyDesc {
     // State: the exact centre of mass and principal axes that a saved scene continues from.
     std::optional<MassPoseDesc> mass_pose;
     // State: its island's substeps in the last step (0: the settings' number), the substeps its own
-    // loads call for, for how many steps it has been at rest (65535: asleep), and for how many it has
-    // been struck.
+    // loads call for, for how many steps it has been at rest (65535: asleep), and for how many it
+    // has been struck.
     struct Pace {
         int substeps = 0;
         int wanted = 0;
