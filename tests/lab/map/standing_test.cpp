@@ -12,18 +12,18 @@ namespace plumb {
 namespace {
 
 // Boxes with half extents and centres as given, on the ground.
-struct Box {
+struct PiledBox {
     glm::dvec3 half, center;
 };
 
-SceneDesc pile(const std::vector<Box> &boxes) {
+SceneDesc pile(const std::vector<PiledBox> &boxes) {
     SceneDesc scene;
     scene.name = "pile";
     BodyDesc &ground = scene.bodies.emplace_back();
     ground.name = "ground";
     ground.kind = BodyKind::static_body;
     ground.colliders.emplace_back().shape = PlaneDesc{};
-    for (const Box &box : boxes) {
+    for (const PiledBox &box : boxes) {
         BodyDesc &body = scene.bodies.emplace_back();
         body.name = "box " + std::to_string(scene.bodies.size() - 2);
         body.colliders.emplace_back().shape = BoxDesc{box.half};
