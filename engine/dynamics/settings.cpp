@@ -12,6 +12,21 @@ namespace plumb {
 
 namespace {
 
+bool is_addition(const SettingRow &row) {
+    return row.group == SettingGroup::additions || row.group == SettingGroup::order;
+}
+
+// By its name, unless it has the default of StepSettings: so these can be left out of methods that
+// do not know them, and of hashes from before there were any.
+void hash_unusual(StateHash &hash, const StepSettings &settings, SettingNumber number) {
+    const double value = setting_value(settings, number);
+    if (value == setting_value({}, number))
+        return;
+    for (const char c : number.setting().name)
+        hash.add(static_cast<std::uint64_t>(c));
+    hash.add(value);
+}
+
 // "1e-9", not "1e-09".
 std::string text_of(double value) {
     std::array<char, 32> buffer{};
@@ -98,13 +113,16 @@ void check_settings(const StepSettings &settings) {
 }
 
 void hash_settings(StateHash &hash, const StepSettings &settings) {
-    // Numbers first, then whole numbers.
+    // Numbers first, then whole numbers, then additions to published methods.
     for (const SettingNumber number : setting_numbers())
-        if (!is_whole(number.setting()))
+        if (!is_whole(number.setting()) && !is_addition(number.setting()))
             hash.add(setting_value(settings, number));
     for (const SettingNumber number : setting_numbers())
-        if (is_whole(number.setting()))
+        if (is_whole(number.setting()) && !is_addition(number.setting()))
             hash.add(static_cast<std::uint64_t>(setting_value(settings, number)));
+    for (const SettingNumber number : setting_numbers())
+        if (is_addition(number.setting()))
+            hash_unusual(hash, settings, number);
 }
 
 } // namespace plumb

@@ -33,6 +33,10 @@ struct StepSettings {
     double penetration_slop = 0.0005;
     double baumgarte = 0.2;
     int split_impulse = 1;
+    double baumgarte_time = 1.0 / 60.0;
+    int foresee_turns = 1;
+    int alternate_points = 1;
+    int closed_form_flight = 1;
     double contact_frequency_ratio = 0.125;
     double contact_damping_ratio = 10;
     double joint_frequency_ratio = 0.2;
@@ -62,6 +66,8 @@ enum class SettingGroup {
     kept,        // manifolds kept while bodies rest against each other
     baumgarte,   // a share of each error removed per substep
     split,       // by pseudo velocities, or through the velocities
+    additions,   // what sequential impulses as published lack
+    order,       // in which a contact's points are solved
     soft,        // contacts and joints as springs
     push,        // the fastest that overlap is removed
     threshold,   // impacts too slow to bounce
@@ -119,13 +125,25 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
     {"penetration_slop", &StepSettings::penetration_slop, "m", 0, 1e9, SettingGroup::baumgarte,
      "Penetration left uncorrected, so that contacts persist."},
     {"baumgarte", &StepSettings::baumgarte, "", 0, 1, SettingGroup::baumgarte,
-     "Fraction of penetration or joint drift removed per substep (Baumgarte 1972). If substeps are "
-     "shorter than 1/60 s, sequential_impulses and nncg remove that fraction of drift per 1/60 s, "
-     "unless split_impulse is 2."},
+     "Fraction of penetration or joint drift removed per substep (Baumgarte 1972)."},
     {"split_impulse", &StepSettings::split_impulse, "", 0, 2, SettingGroup::split,
      "What is corrected by pseudo velocities that are then discarded (split impulse), not through "
      "the velocities: 0 nothing, and stacks rock; 1 contacts; 2 joints too, and no chain gains "
      "energy, but swinging bodies lose more."},
+    {"baumgarte_time", &StepSettings::baumgarte_time, "s", 0, 1e9, SettingGroup::additions,
+     "Where substeps are shorter than this, joints lose that fraction of drift per this time, "
+     "unless "
+     "split_impulse is 2; 0: always per substep, and chains gain more energy the shorter the "
+     "step."},
+    {"foresee_turns", &StepSettings::foresee_turns, "", 0, 1, SettingGroup::additions,
+     "1: how far joints drift because bodies turn within the substep is removed beforehand, to "
+     "second order, unless split_impulse is 2; 0: drift grows until its bias balances it."},
+    {"alternate_points", &StepSettings::alternate_points, "", 0, 1, SettingGroup::order,
+     "1: every other pass takes a contact's points from last to first; 0: none does, and stacks "
+     "sway, as each point leaves too much to the last."},
+    {"closed_form_flight", &StepSettings::closed_form_flight, "", 0, 1, SettingGroup::additions,
+     "1: what nothing touches flies along its parabola and turns by its mean spin; 0: by "
+     "semi-implicit Euler, g h t / 2 too low after a time t with substeps of h."},
     {"contact_frequency_ratio", &StepSettings::contact_frequency_ratio, "", 1e-6, 1000,
      SettingGroup::soft,
      "Natural frequency of soft contacts as a fraction of the substep rate: above 1/4 the spring "
@@ -153,7 +171,7 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "body before it bounces; slightly early does no harm, as the rebound accounts for the gap."},
     {"impact_sweeps", &StepSettings::impact_sweeps, "", 0, 10000, SettingGroup::impacts,
      "Maximum number of sweeps that propagate impacts from contact to contact in a substep; 0: "
-     "nothing bounces."},
+     "soft_step does not bounce, the others bounce once a step, each contact by itself."},
     {"impact_passes", &StepSettings::impact_passes, "", 1, 10000, SettingGroup::impacts,
      "Gauss-Seidel passes over the points that share an impact; four corners of a box converge to "
      "float precision in about 16."},

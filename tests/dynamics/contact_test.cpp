@@ -97,7 +97,7 @@ TEST(SequentialImpulses, SixCubesRockWithBaumgartesBiasInTheirVelocities) {
 
 // Always visiting a contact's points from first to last would feed the sway: eight cubes fell after
 // 30 s. More than ten cubes still need more than the usual ten passes.
-TEST(SequentialImpulses, TenCubesComeToRestAtTheDefaultsAndThirteenFall) {
+TEST(SequentialImpulses, WithOurAdditionsTenCubesComeToRestAndThirteenFall) {
     const auto stack = [](int count, int iterations) {
         StepSettings settings = settings_for("sequential_impulses");
         settings.iterations = iterations;

@@ -41,7 +41,7 @@ dt = 1@/60
          R"([world]
 @zzzzzz = 1
 )",
-         {R"(unknown key "zzzzzz" in [world]; choose from gravity, dt, substeps, max_substeps, substep_tolerance, substep_budget, sleep_after, iterations, speculative_distance, kept_travel, penetration_slop, baumgarte, split_impulse, contact_frequency_ratio, contact_damping_ratio, joint_frequency_ratio, joint_damping_ratio, push_velocity, restitution_threshold, impact_lookahead and 11 more)"}},
+         {R"(unknown key "zzzzzz" in [world]; choose from gravity, dt, substeps, max_substeps, substep_tolerance, substep_budget, sleep_after, iterations, speculative_distance, kept_travel, penetration_slop, baumgarte, split_impulse, baumgarte_time, foresee_turns, alternate_points, closed_form_flight, contact_frequency_ratio, contact_damping_ratio, joint_frequency_ratio and 15 more)"}},
         {"UnknownTable",
          R"([@lights]
 )",

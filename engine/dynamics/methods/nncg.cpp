@@ -4,8 +4,8 @@
 // pass of projected Gauss-Seidel takes the impulses from f to F(f); f - F(f) serves as the
 // gradient, and the previous passes' direction is followed on as long as the gradient shrinks. So
 // an error that Gauss-Seidel passes on from contact to contact, reducing it only a little per pass,
-// is gone in about the square root of the passes. Everything else is as in sequential_impulses,
-// including the pass itself, but that it always runs forwards.
+// is gone in about the square root of the passes. Everything else is as in sequential_impulses
+// with its additions (the publication leaves it open), but that passes always run forwards.
 #include "engine/dynamics/methods/parts/impulse_substeps.h"
 
 namespace plumb::inline PLUMB_PRECISION {

@@ -102,7 +102,8 @@ TEST(Sweep, SettingsThatAMethodDoesNotReadMakeNoDifference) {
         for (const SettingNumber number : setting_numbers()) {
             const StepSettings a = method.defaults;
             StepSettings b = a;
-            set_setting(b, number, number.setting().max);
+            const SettingRow &row = number.setting();
+            set_setting(b, number, setting_value(a, number) < row.max ? row.max : row.min);
             EXPECT_EQ(same_work(method, a, b), !reads(method, number.setting()))
                 << method.name << " " << setting_name(number);
             EXPECT_TRUE(same_work(method, a, a));

@@ -10,13 +10,13 @@
 // step, for penetration, velocity and load. That grows wherever s < beta: with four corners per
 // contact, six cubes rock for ever at ten passes.
 //
-// Joints are still corrected through the velocities by default, at about half the cost. For steps
-// shorter than 1/60 s, beta shrinks with the step, so that Baumgarte's rate (1972) does not grow:
-// otherwise a chain whose joints propagate errors slowly would gain more energy the shorter the
-// step. The distance by which anchors would leave their circles is removed beforehand
-// (foresee_turns): with a bias alone a pendulum hangs where its drift has grown enough to balance
-// it. With pseudo velocities for joints nothing is foreseen: no chain gains energy then, but
-// swinging bodies, pulled back along chords, lose three times as much.
+// Joints are still corrected through the velocities unless split_impulse is 2, at about half the
+// cost. For steps shorter than baumgarte_time, beta shrinks with the step, so that Baumgarte's rate
+// (1972) does not grow: otherwise a chain whose joints propagate errors slowly would gain more
+// energy the shorter the step. The distance by which anchors would leave their circles is removed
+// beforehand (foresee_turns): with a bias alone a pendulum hangs where its drift has grown enough
+// to balance it. With pseudo velocities for joints nothing is foreseen: no chain gains energy then,
+// but swinging bodies, pulled back along chords, lose three times as much.
 #pragma once
 
 #include "engine/dynamics/bodies/motion.h"
@@ -87,8 +87,23 @@ void correct_poses(StepContext &context, const ContactBias &bias, const Softness
 // The settings that advance_by_impulses reads.
 inline std::vector<SettingGroup> read_by_impulses() {
     return {SettingGroup::constraints, SettingGroup::speculative, SettingGroup::baumgarte,
-            SettingGroup::split,       SettingGroup::push,        SettingGroup::threshold,
-            SettingGroup::impacts,     SettingGroup::gyroscopic};
+            SettingGroup::split,       SettingGroup::additions,   SettingGroup::push,
+            SettingGroup::threshold,   SettingGroup::impacts,     SettingGroup::gyroscopic};
+}
+
+// The velocities that gravity and spin alone lead to; and what is left of the substep after the
+// solver.
+inline void begin_motion(StepContext &context, const Vec3 &gravity, Real h) {
+    if (context.settings.closed_form_flight != 0)
+        begin_flights(context, gravity, h, Kick::before);
+    else
+        kick(context, gravity, h);
+}
+inline void end_motion(StepContext &context, Real h) {
+    if (context.settings.closed_form_flight != 0)
+        end_flights(context, h, Kick::before);
+    else
+        drift(context, h);
 }
 
 // `solve` gets a pass over all rows and may call it any number of times, with each contact's points
@@ -98,11 +113,13 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
     const Real h = context.substep();
     const Vec3 gravity{settings.gravity};
     const Softness rigid{static_cast<Real>(settings.baumgarte) / h, Real(1), Real(0)};
-    constexpr Real baumgarte_time = Real(1) / Real(60); // s
-    const Softness gentle{static_cast<Real>(settings.baumgarte) / std::max(h, baumgarte_time),
+    const Softness gentle{static_cast<Real>(settings.baumgarte) /
+                              std::max(h, static_cast<Real>(settings.baumgarte_time)),
                           Real(1), Real(0)};
     const bool splits = settings.split_impulse >= 1;
     const bool splits_joints = settings.split_impulse == 2;
+    const bool foresees = settings.foresee_turns != 0 && !splits_joints;
+    const bool bounces_at_the_end = settings.impact_sweeps == 0;
     const ContactBias push{.softness = rigid,
                            .push_velocity = static_cast<Real>(settings.push_velocity),
                            .slop = static_cast<Real>(settings.penetration_slop),
@@ -115,15 +132,17 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
     prepare_contacts(context);
     prepare_joints(context);
     prepare_particles(context);
+    if (bounces_at_the_end)
+        note_approach(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
         resolve_impacts(context, h);
-        begin_flights(context, gravity, h, Kick::before);
+        begin_motion(context, gravity, h);
         refresh_joints(context);
         remember_joints(context);
         remember_contacts(context);
         warm_start_joints(context, Real(1), Springs::at_the_end);
         warm_start_contacts(context, Real(1));
-        if (!splits_joints)
+        if (foresees)
             foresee_turns(context, h);
         kick_particles(context, gravity, h);
         refresh_particles(context, h, SpringRule::implicit_euler);
@@ -134,14 +153,18 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
             solve_particle_contacts(context, particle_push, h);
             solve_contacts(context, in_order(contact_bias, order), h);
         });
-        end_flights(context, h, Kick::before);
+        end_motion(context, h);
         drift_particles(context, h);
         // Speeds that only removed penetration end with the substep.
         solve_particle_contacts(context, {.loaded_only = true}, h);
         restitute_particles(context, static_cast<Real>(settings.restitution_threshold));
         if (splits)
             correct_poses(context, push, splits_joints ? rigid : Softness{}, h, solve);
+        if (bounces_at_the_end)
+            note_loads(context);
     }
+    if (bounces_at_the_end)
+        restitute(context, static_cast<Real>(settings.restitution_threshold));
     store_joints(context);
     store_contacts(context);
 }
