@@ -79,6 +79,10 @@ void add(StateHash &hash, const Body &body) {
     hash.add(body.gravity_scale);
     hash.add(body.linear_damping);
     hash.add(body.angular_damping);
+    if (body.has_force || body.has_torque) {
+        add(hash, body.force);
+        add(hash, body.torque);
+    }
 }
 
 void add(StateHash &hash, const Motion &motion) {

@@ -30,7 +30,8 @@ BodyMeasure measure_of(const Body &body, const Motion &motion, const glm::dvec3 
     const glm::dvec3 spin_momentum = glm::dvec3{body.inertia} * spin;
     return {0.5 * mass * glm::dot(v, v) + 0.5 * glm::dot(spin_momentum, spin),
             mass * static_cast<double>(body.gravity_scale) *
-                (attraction_potential(attractors, x) - glm::dot(gravity, x)),
+                    (attraction_potential(attractors, x) - glm::dot(gravity, x)) -
+                (body.has_force ? glm::dot(glm::dvec3{body.force}, x) : 0),
             mass * v, mass * glm::cross(x, v) + rotation * spin_momentum};
 }
 

@@ -8,8 +8,9 @@ namespace plumb {
 struct Measures {
     double time = 0;           // s
     double kinetic_energy = 0; // J, of dynamic bodies and particles
-    double potential_energy =
-        0; // J: gravity, 0 at the world's origin; attractors, 0 far away; springs
+    // J: gravity and constant forces, 0 at the world's origin; attractors, 0 far away; springs. The
+    // work of a constant torque has no potential: it changes the energy.
+    double potential_energy = 0;
     glm::dvec3 linear_momentum{0};  // kg m/s
     glm::dvec3 angular_momentum{0}; // kg m^2/s about the world's origin
     double max_penetration = 0;     // m, the deepest contact point at the present poses

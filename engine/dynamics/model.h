@@ -29,6 +29,8 @@ struct Model {
     std::uint32_t heeded_layers = 0;
     std::uint32_t alive_bodies = 0;
     std::uint32_t dynamic_bodies = 0;
+    std::uint32_t bodies_with_force = 0;
+    std::uint32_t bodies_with_torque = 0;
     std::uint32_t alive_joints = 0;
     std::uint32_t free_particles = 0; // not pinned
 

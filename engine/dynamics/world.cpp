@@ -41,6 +41,19 @@ void check_collider(const ColliderDef &collider) {
     check_not_negative("density", collider.density);
 }
 
+// Only what forces move can feel one.
+void check_loads(const BodyDef &def) {
+    const auto check = [&](const char *what, const Vec3 &load) {
+        PLUMB_CHECK(std::isfinite(load.x + load.y + load.z),
+                    "a body's " << what << " must be finite, got " << load.x << ' ' << load.y << ' '
+                                << load.z);
+        PLUMB_CHECK(def.kind == BodyKind::dynamic || load == Vec3{Real(0)},
+                    "only a dynamic body has a " << what);
+    };
+    check("force", def.force);
+    check("torque", def.torque);
+}
+
 // The inverse of a mass frame: from the body's frame into it.
 Transform into(const Transform &frame) {
     const Quat back = glm::conjugate(frame.rotation);
@@ -138,7 +151,7 @@ Vec3 World::pull_on(std::uint32_t body) const {
     Vec3 pull{settings_.gravity};
     if (!model_->attractors.empty())
         pull += attraction(model_->attractors, state_.motions[body].position);
-    return gravity_on(model_->bodies[body], pull);
+    return plumb::pull_on(model_->bodies[body], pull);
 }
 
 Vec3 World::pull_on_particle(std::uint32_t particle) const {
@@ -161,6 +174,7 @@ BodyId World::add_body(const BodyDef &def) {
     check_not_negative("angular_damping", def.angular_damping);
     PLUMB_CHECK(std::isfinite(def.gravity_scale),
                 "gravity_scale must be finite, got " << def.gravity_scale);
+    check_loads(def);
     check_pose(def.pose);
     if (def.mass_pose)
         check_pose(*def.mass_pose);
@@ -184,6 +198,12 @@ BodyId World::add_body(const BodyDef &def) {
         body.locked = def.locked;
         body.has_locks = std::ranges::find(def.locked, true) != def.locked.end();
         body.gravity_scale = def.gravity_scale;
+        body.force = def.force;
+        body.torque = def.torque;
+        body.has_force = def.force != Vec3{Real(0)};
+        body.has_torque = def.torque != Vec3{Real(0)};
+        model.bodies_with_force += body.has_force ? 1 : 0;
+        model.bodies_with_torque += body.has_torque ? 1 : 0;
         body.linear_damping = def.linear_damping;
         body.angular_damping = def.angular_damping;
         ++model.dynamic_bodies;
@@ -261,6 +281,8 @@ void World::remove_body(BodyId id) {
     --model.alive_bodies;
     if (body.kind == BodyKind::dynamic)
         --model.dynamic_bodies;
+    model.bodies_with_force -= body.has_force ? 1 : 0;
+    model.bodies_with_torque -= body.has_torque ? 1 : 0;
     const Body gone = body;
     body = Body{}; // a hole is a static body that nothing touches
     body.generation = gone.generation + 1;

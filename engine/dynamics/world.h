@@ -243,8 +243,8 @@ class World {
     void add_particles(Measures &m) const;
     double particle_energy() const;
 
-    // The acceleration by gravity and attractors where a body or particle began the step; zero for
-    // anything that forces do not move.
+    // The acceleration by gravity, attractors and constant force where a body or particle began the
+    // step; zero for anything that forces do not move.
     Vec3 pull_on(std::uint32_t body) const;
     Vec3 pull_on_particle(std::uint32_t particle) const;
 

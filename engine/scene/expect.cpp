@@ -95,8 +95,9 @@ constexpr std::array all_quantities{
     QuantityInfo{"potential_energy", "J",
                  [](const Measures &now, const SceneStart &) { return now.potential_energy; },
                  "of all dynamic bodies and particles in gravity: sum of -m g.r, r from the "
-                 "world's origin; due to attractors: sum of -m mu / |r|, r from the attractor; and "
-                 "of springs that are not torn: sum of k (l - l0)^2 / 2"},
+                 "world's origin; due to attractors: sum of -m mu / |r|, r from the attractor; of "
+                 "constant forces: sum of -F.r, but constant torques have none; and of springs "
+                 "that are not torn: sum of k (l - l0)^2 / 2"},
     QuantityInfo{"energy", "J",
                  [](const Measures &now, const SceneStart &) { return now.energy(); },
                  "kinetic_energy + potential_energy"},

@@ -77,6 +77,8 @@ struct BodyDesc {
     glm::dvec3 angular_velocity{0}; // rad/s, world
     std::array<bool, 6> locked{};   // translation along world x, y, z; rotation about them
     double gravity_scale = 1;
+    glm::dvec3 force{0};        // N, constant, at the centre of mass, world
+    glm::dvec3 torque{0};       // N m, constant, world
     double linear_damping = 0;  // 1/s: the velocity's decay rate
     double angular_damping = 0; // 1/s
     std::optional<glm::vec3> colour;

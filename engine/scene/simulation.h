@@ -31,6 +31,8 @@ struct BodyInfo {
     std::vector<ColliderDesc> colliders;
     double mass = 0;       // kg; 0 for static and kinematic
     glm::dvec3 inertia{0}; // kg m^2, principal, body frame
+    glm::dvec3 force{0};   // N, constant, world
+    glm::dvec3 torque{0};  // N m, constant, world
     std::string material;
     std::optional<glm::vec3> colour; // body's or material's
 };

@@ -106,6 +106,7 @@ const double *known_failing(const MethodInfo &method, const std::string &scene) 
           {"bouncing", 670},
           {"666", 2.3},
           {"elastic_666", 5.2},
+          {"rolling", 140},
           {"kapla", 9.6e5},
           {"static_stability", 120},
           {"seams", 17},

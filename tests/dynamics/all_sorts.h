@@ -102,6 +102,10 @@ inline BodyDef one_of_all_sorts(Random &random, int i, const V &at) {
     def.angular_velocity = narrow(any_vector(random, 2));
     def.locked[5] = i % 11 == 10;
     def.linear_damping = Real(i % 13 == 0 ? 0.5 : 0);
+    if (i % 17 == 3) {
+        def.force = Vec3{Real(0.5), Real(-1), Real(0.2)};
+        def.torque = Vec3{Real(0), Real(0.1), Real(0.05)};
+    }
     return with_material(def, random.next_unit(), 0.3 * random.next_unit());
 }
 

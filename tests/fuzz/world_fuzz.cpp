@@ -185,6 +185,10 @@ class Caller {
             axis = input_.below(8) == 0;
         def.linear_damping = input_.below(4) == 0 ? input_.number() : Real(0);
         def.angular_damping = input_.below(4) == 0 ? input_.number() : Real(0);
+        if (def.kind == BodyKind::dynamic && input_.below(4) == 0) {
+            def.force = input_.point();
+            def.torque = input_.point();
+        }
         def.gravity_scale = input_.below(4) == 0 ? input_.number() : Real(1);
         if (input_.below(8) == 0)
             def.center_of_mass = input_.point();

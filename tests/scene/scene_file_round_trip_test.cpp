@@ -101,7 +101,7 @@ std::vector<std::string> words(const SceneDesc &scene) {
         w.number(static_cast<std::uint64_t>(b.pace.wanted));
         w.number(static_cast<std::uint64_t>(b.pace.rested));
         w.number(static_cast<std::uint64_t>(b.pace.struck));
-        w.add(b.linear_damping), w.add(b.angular_damping);
+        w.add(b.linear_damping), w.add(b.angular_damping), w.add(b.force), w.add(b.torque);
         for (const bool is_locked : b.locked)
             w.number(is_locked);
         w.add(b.material), w.add(b.mass), w.add(b.density), w.add(b.position), w.add(b.orientation);
@@ -387,6 +387,10 @@ class Scenes {
             b.gravity_scale = number();
             b.linear_damping = positive();
             b.angular_damping = positive();
+        }
+        if (b.kind == BodyKind::dynamic && one_in(4)) {
+            b.force = vector();
+            b.torque = vector();
         }
         if (!one_in(3))
             b.material = scene.materials[random_.next_index(3)].name;

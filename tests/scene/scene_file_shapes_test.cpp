@@ -116,6 +116,7 @@ TEST(SceneFileShapes, SeveralComeBackEachWithItsOwn) {
 TEST(SceneFileShapes, MassAndFreedomComeBack) {
     const std::string lines = "mass = 3\ncenter_of_mass = [0, 0.5, 0]\ninertia = [1, 2, 2.5]\n";
     const std::string freedom = "locked = [\"z\", \"rotation_x\"]\ngravity_scale = -0.5\n"
+                                "force = [1, 2, 3]\ntorque = [0, -4, 0]\n"
                                 "linear_damping = 0.25\nangular_damping = 2\n";
     const std::string pose = "mass_pose = { position = [0, 0.5, 0], orientation = [0, 1, 0, 0] }\n";
     const SceneDesc scene =
@@ -124,6 +125,8 @@ TEST(SceneFileShapes, MassAndFreedomComeBack) {
     EXPECT_EQ(read.inertia, glm::dvec3(1, 2, 2.5));
     EXPECT_EQ(read.locked, (std::array{false, false, true, true, false, false}));
     EXPECT_EQ(read.gravity_scale, -0.5);
+    EXPECT_EQ(read.force, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(read.torque, glm::dvec3(0, -4, 0));
     ASSERT_TRUE(read.mass_pose);
     EXPECT_EQ(read.mass_pose->orientation.x, 1);
     const std::string text = write_scene(scene);

@@ -67,6 +67,8 @@ std::string beyond_engines(const SceneDesc &scene) {
         const BodyDesc &body = scene.bodies[i];
         if (body.gravity_scale != 1 || body.linear_damping > 0 || body.angular_damping > 0)
             return "bodies with damping or a gravity scale";
+        if (body.force != glm::dvec3(0) || body.torque != glm::dvec3(0))
+            return "bodies with a constant force or torque";
         if (std::ranges::find(body.locked, true) != body.locked.end())
             return "bodies with locked axes";
         if (body.kind == BodyKind::dynamic && !lies_in_its_mass_frame(body, described.bodies[i]))

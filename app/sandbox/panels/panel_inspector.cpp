@@ -217,6 +217,10 @@ void inspector_panel(PanelContext &context) {
     value_row("Velocity", triple(state.velocity) + " m/s");
     value_row("Speed", state.asleep ? "asleep" : number(glm::length(state.velocity), "m/s"));
     value_row("Spin", triple(state.angular_velocity) + " rad/s");
+    if (info.force != glm::dvec3(0))
+        value_row("Own force", triple(info.force) + " N");
+    if (info.torque != glm::dvec3(0))
+        value_row("Own torque", triple(info.torque) + " N m");
     ImGui::Separator();
     contact_rows(frame, *body);
     joints_of(*simulation, frame, *body);

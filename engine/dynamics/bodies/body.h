@@ -68,6 +68,9 @@ struct BodyDef {
     // Which translations, then which rotations, are locked, about the world axes.
     std::array<bool, 6> locked{};
     Real gravity_scale = Real(1);
+    // Constant, in world axes, wherever the body is and however it turns; dynamic bodies only.
+    Vec3 force{Real(0)};            // N, at the centre of mass
+    Vec3 torque{Real(0)};           // N m
     Real linear_damping = Real(0);  // 1/s, >= 0: v' = -c v
     Real angular_damping = Real(0); // 1/s, >= 0
 };
@@ -112,6 +115,10 @@ struct Body {
     std::array<bool, 6> locked{};
     bool has_locks = false;
     Real gravity_scale = Real(1);
+    Vec3 force{Real(0)};  // see BodyDef; 0 for static and kinematic
+    Vec3 torque{Real(0)}; // the same
+    bool has_force = false;
+    bool has_torque = false;
     Real linear_damping = Real(0);
     Real angular_damping = Real(0);
 };

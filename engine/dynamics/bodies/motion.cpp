@@ -240,7 +240,7 @@ inline Drive drive_of(const Body &body, const Vec3 &gravity, Real h) {
     Drive drive;
     if (body.kind != BodyKind::dynamic)
         return drive;
-    const Vec3 pull = gravity_on(body, gravity);
+    const Vec3 pull = pull_on(body, gravity);
     const Damped linear = damped(body.linear_damping, h);
     drive.mean_kept = linear.mean_kept;
     drive.late_kept = linear.kept - linear.mean_kept;
@@ -392,11 +392,21 @@ namespace {
 // A few microseconds of work.
 constexpr std::size_t bodies_a_part = 64;
 
+void twist_bodies(StepContext &context, Real h) {
+    if (context.model.bodies_with_torque == 0)
+        return;
+    for (const std::uint32_t i : context.moving())
+        twist(context.bodies[i], context.model.bodies[i], h);
+    context.report.body_passes += context.moving().size();
+}
+
 } // namespace
 
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
-    attract_bodies(context, kick == Kick::around ? Real(0.5) * h : h);
+    const Real before = kick == Kick::around ? Real(0.5) * h : h;
+    attract_bodies(context, before);
+    twist_bodies(context, before);
     flights.resize(context.moving().size());
     const auto begin_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -436,8 +446,10 @@ void end_flights(StepContext &context, Real h, Kick kick) {
     };
     for_parts(context.tasks, flights.size(), bodies_a_part, end_part);
     context.report.body_passes += flights.size();
-    if (kick == Kick::around)
+    if (kick == Kick::around) {
         attract_bodies(context, Real(0.5) * h);
+        twist_bodies(context, Real(0.5) * h);
+    }
 }
 
 namespace {
@@ -464,11 +476,41 @@ int fly_attracted(SolverBody &motion, const Body &body, const Vec3 &gravity,
     return 3 * context.settings.substeps;
 }
 
+// Half of a constant torque before each substep's torque-free turn, half after. Returns passes over
+// the body.
+int turn_twisted(SolverBody &motion, const Body &body, const Drive &drive,
+                 const StepContext &context) {
+    const Real h = context.substep();
+    const Damped angular = damped(body.angular_damping, h);
+    FreeFlight flight;
+    for (int substep = 0; substep < context.settings.substeps; ++substep) {
+        twist(motion, body, Real(0.5) * h);
+        if (drive.is_gyroscopic) {
+            flight.start_spin =
+                turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
+            turn_freely(flight, body, angular, h, context.settings.gyroscopic_iterations);
+            motion.turned += h * rotated(motion.rotation, flight.mean_spin);
+            motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
+            motion.angular_velocity = turned_to_rounding(motion.rotation, flight.end_spin);
+        } else {
+            const Vec3 mean = angular.mean_kept * motion.angular_velocity;
+            motion.turned += h * mean;
+            motion.rotation = turned(motion.rotation, mean, h);
+            motion.angular_velocity *= angular.kept;
+        }
+        twist(motion, body, Real(0.5) * h);
+    }
+    motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
+    return 3 * context.settings.substeps;
+}
+
 // Its rotation: closed form about a constant axis, otherwise substep by substep with the spin kept
 // in body axes. Returns passes over the body.
 int turn_alone(SolverBody &motion, const Body &body, const Drive &drive,
                const StepContext &context) {
     const Real h = context.substep();
+    if (body.has_torque)
+        return turn_twisted(motion, body, drive, context);
     if (!drive.is_gyroscopic || motion.angular_velocity == Vec3{Real(0)}) {
         const auto dt = static_cast<Real>(context.settings.dt);
         const Damped angular = drive.is_dynamic ? damped(body.angular_damping, dt) : Damped{};
@@ -529,7 +571,7 @@ void kick(StepContext &context, const Vec3 &gravity, Real h) {
         if (body.kind != BodyKind::dynamic)
             continue;
         motion.velocity =
-            damped(body.linear_damping, h).kept * motion.velocity + h * gravity_on(body, gravity);
+            damped(body.linear_damping, h).kept * motion.velocity + h * pull_on(body, gravity);
         if (has_gyroscopic_spin(body)) {
             const Vec3 spin = rotated(glm::conjugate(motion.rotation), motion.angular_velocity);
             motion.angular_velocity =
@@ -537,6 +579,7 @@ void kick(StepContext &context, const Vec3 &gravity, Real h) {
                                                          context.settings.gyroscopic_iterations));
         }
         motion.angular_velocity *= damped(body.angular_damping, h).kept;
+        twist(motion, body, h);
     }
     context.report.body_passes += context.moving().size();
 }

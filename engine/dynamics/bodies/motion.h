@@ -4,6 +4,8 @@
 #include "engine/dynamics/attractor.h"
 #include "engine/dynamics/bodies/body.h"
 
+#include <glm/geometric.hpp>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 // The inverse inertia tensor in world axes.
@@ -43,15 +45,30 @@ Vec3 gyroscopic_spin(const Vec3 &inertia, const Vec3 &spin, Real h, int iteratio
 // Verlet).
 enum class Kick { before, around };
 
+// An acceleration without its parts along a body's locked axes.
+inline Vec3 along_free_axes(const Body &body, Vec3 acceleration) {
+    for (int i = 0; body.has_locks && i < 3; ++i)
+        if (body.locked[static_cast<std::size_t>(i)])
+            acceleration[i] = Real(0);
+    return acceleration;
+}
+
 // The gravity that acts on a body: 0 unless it is dynamic, and 0 along locked axes.
 inline Vec3 gravity_on(const Body &body, const Vec3 &gravity) {
     if (body.kind != BodyKind::dynamic)
         return Vec3{Real(0)};
-    Vec3 felt = body.gravity_scale * gravity;
-    for (int i = 0; body.has_locks && i < 3; ++i)
-        if (body.locked[static_cast<std::size_t>(i)])
-            felt[i] = Real(0);
-    return felt;
+    return along_free_axes(body, body.gravity_scale * gravity);
+}
+
+// The acceleration (m/s^2) by gravity and by the body's own constant force.
+inline Vec3 pull_on(const Body &body, const Vec3 &gravity) {
+    const Vec3 pull = gravity_on(body, gravity);
+    return body.has_force ? pull + along_free_axes(body, body.force / body.mass) : pull;
+}
+
+// How much a body is pulled at most (m/s^2), by gravity of this size and its own force.
+inline Real greatest_pull(const Body &body, Real gravity) {
+    return body.has_force ? gravity + glm::length(body.force) / body.mass : gravity;
 }
 
 // Adds h seconds of the attractors' pull at the body's position to its velocity.
@@ -75,6 +92,13 @@ inline Mat3 solver_inverse_inertia(const Body &body, const Quat &rotation) {
     return solver_inverse_inertia(body, body.inv_inertia, rotation);
 }
 
+// Adds h seconds of the body's own constant torque to its spin, at its present rotation.
+inline void twist(Motion &motion, const Body &body, Real h) {
+    if (body.has_torque)
+        motion.angular_velocity +=
+            h * (solver_inverse_inertia(body, motion.rotation) * body.torque);
+}
+
 // Whether a torque-free body's spin is more than a constant world vector. Bodies with a locked
 // rotation are limited to their remaining axes.
 bool has_gyroscopic_spin(const Body &body);
@@ -86,11 +110,11 @@ bool has_gyroscopic_spin(const Body &body);
 //   move(...)                               the pose after h
 //   end_flight(...)                         velocities at the end of h
 //
-// A body whose velocities come back unchanged flew free: its path is then exact under gravity, x +
-// v h + g h^2 / 2, or with damping the closed form of v' = g - c v, and its torque-free turn keeps
-// energy and world angular momentum. Otherwise the pose follows the solver's velocities, which is
-// what the constraints were solved for; between the two half kicks the gyroscopic torque is then
-// that of the spin that the solver left, or spinning tops would sink.
+// A body whose velocities come back unchanged flew free: its path is then exact under gravity and a
+// constant force, x + v h + g h^2 / 2, or with damping the closed form of v' = g - c v, and its
+// torque-free turn keeps energy and world angular momentum. Otherwise the pose follows the solver's
+// velocities, which is what the constraints were solved for; between the two half kicks the
+// gyroscopic torque is then that of the spin that the solver left, or spinning tops would sink.
 struct FreeFlight {
     Vec3 velocity{Real(0)};         // as given to the solver
     Vec3 angular_velocity{Real(0)}; // as given to the solver
@@ -115,7 +139,8 @@ void move(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFli
           Real h);
 void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick);
 
-// The same for all moving bodies, with the flights kept in the context.
+// The same for all moving bodies, with the flights kept in the context. Attractors and constant
+// torques act on the velocities beforehand or, around the move, half before and half after it.
 struct StepContext;
 void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick);
 // After warm starting: notes which bodies that turned.

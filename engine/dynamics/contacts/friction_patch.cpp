@@ -44,8 +44,10 @@ bool spin_flat(const StepContext &context, const Contact &contact) {
         const Vec3 from = contact.anchors[k].arm_a - first;
         squared = std::max(squared, glm::dot(from, from));
     }
-    const Vec3 gravity{context.settings.gravity};
-    const Real speed = slow * static_cast<Real>(context.settings.dt) * glm::length(gravity);
+    const Real gravity = glm::length(Vec3{context.settings.gravity});
+    const Real pull = std::max(greatest_pull(context.model.bodies[contact.key.a], gravity),
+                               greatest_pull(context.model.bodies[contact.key.b], gravity));
+    const Real speed = slow * static_cast<Real>(context.settings.dt) * pull;
     return along * along * squared > speed * speed;
 }
 

@@ -91,9 +91,10 @@ void look_at(const StepContext &context, Blow &blow, Real h) {
 
 Blow blow_on(const StepContext &context, ContactConstraint &contact, Real h) {
     const auto pull_on = [&](std::uint32_t body) {
-        return gravity_on(context.model.bodies[body],
-                          Vec3{context.settings.gravity} +
-                              attraction(context.model.attractors, context.bodies[body].position));
+        return plumb::pull_on(
+            context.model.bodies[body],
+            Vec3{context.settings.gravity} +
+                attraction(context.model.attractors, context.bodies[body].position));
     };
     Blow blow;
     blow.contact = &contact;

@@ -112,15 +112,19 @@ void World::guess_needs() {
         load(joint.a, joint.anchor_a_local);
         load(joint.b, joint.anchor_b_local);
     }
-    for (const std::uint32_t i : s.moving)
-        islands.needs[islands.root_of(i)].mass += static_cast<double>(model_->bodies[i].mass);
+    for (const std::uint32_t i : s.moving) {
+        Islands::Needs &needs = islands.needs[islands.root_of(i)];
+        needs.mass += static_cast<double>(model_->bodies[i].mass);
+        if (model_->bodies[i].has_force)
+            needs.force += static_cast<double>(glm::length(model_->bodies[i].force));
+    }
     for (const std::uint32_t i : s.moving) {
         const Body &body = model_->bodies[i];
         if (body.kind != BodyKind::dynamic || !is_first(i))
             continue;
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
         // A body that is let go suddenly pulls twice as hard at first.
-        const double weight = 2 * needs.mass * glm::length(settings_.gravity);
+        const double weight = 2 * (needs.mass * glm::length(settings_.gravity) + needs.force);
         const double rate = std::sqrt(
             weight * static_cast<double>(squared_rate(s.guessed_stiffness[i], body.inertia)));
         needs.wanted =

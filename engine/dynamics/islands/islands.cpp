@@ -139,8 +139,13 @@ void World::gather_needs() {
     Scratch &s = scratch_;
     Islands &islands = s.islands;
     islands.needs.assign(islands.parent.size(), {});
-    const auto slow = static_cast<Real>(slow_share * glm::length(settings_.gravity) * settings_.dt);
+    const double gravity = glm::length(settings_.gravity);
     for (const std::uint32_t i : s.moving) {
+        const double pull =
+            model_->bodies[i].has_force
+                ? static_cast<double>(greatest_pull(model_->bodies[i], static_cast<Real>(gravity)))
+                : gravity;
+        const auto slow = static_cast<Real>(slow_share * pull * settings_.dt);
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
         needs.wanted = std::max(needs.wanted, int{s.paces[i].wanted});
         needs.before = std::max(needs.before, int{s.paces[i].substeps});

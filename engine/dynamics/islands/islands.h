@@ -60,9 +60,10 @@ struct IslandGroup {
 // The islands of a step, as sets of bodies. Kinematic bodies join what they touch, static ones do
 // not.
 struct Islands : DisjointSets {
-    struct Needs {       // per root's island
-        int work = 0;    // contacts and joints
-        double mass = 0; // kg
+    struct Needs {        // per root's island
+        int work = 0;     // contacts and joints
+        double mass = 0;  // kg
+        double force = 0; // N, the bodies' own, all added up in size
         int wanted = 0;
         int before = 0; // the most substeps that any of its bodies took in the last step
         bool rests = true;

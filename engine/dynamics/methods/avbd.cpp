@@ -165,7 +165,7 @@ void predict(StepContext &context, const std::vector<Vec3> &accelerations, const
             own.free_spin = body.angular_velocity;
             own.start = body.rotation;
             own.turn = own.free_turn = turned(identity_rotation, body.angular_velocity, h);
-            const Vec3 pull = gravity_on(model, gravity);
+            const Vec3 pull = pull_on(model, gravity);
             const Real squared = glm::dot(pull, pull);
             if (squared > Real(0) && !uses_of(d.body_uses, d.place[i]).empty()) {
                 const Real felt = glm::dot(pull + accelerations[i], pull) / squared;

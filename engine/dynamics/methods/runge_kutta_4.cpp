@@ -80,7 +80,8 @@ void take_substep(StepContext &context, Real h) {
     const auto moving = context.moving();
     const bool has_particles = context.active.has_particles;
     // Otherwise no force depends on positions.
-    const bool reads_places = has_particles || !context.model.attractors.empty();
+    const bool reads_places =
+        has_particles || !context.model.attractors.empty() || context.model.bodies_with_torque > 0;
     Accelerations &now = context.scratch.accelerations[0];
     Stages<Motion> bodies(context.scratch.motions, moving.size());
     Stages<ParticleMotion> particles(context.scratch.particle_motions,
@@ -121,7 +122,7 @@ void take_substep(StepContext &context, Real h) {
             if (body.kind != BodyKind::dynamic)
                 continue;
             bodies.rate(i) = rate_of(bodies.stage(i), body, now.bodies[i].linear);
-            if (has_particles) {
+            if (has_particles || body.has_torque) {
                 const SolverBody &motion = context.bodies[moving[i]];
                 bodies.rate(i).angular_velocity += rotated(
                     glm::conjugate(motion.rotation), motion.inv_inertia * now.bodies[i].torque);

@@ -62,6 +62,16 @@ RelaxingPasses relaxing_passes(const StepContext &context, Real struck_speed) {
             changed * struck_speed};
 }
 
+// How much any body is pulled at most (m/s^2).
+Real strongest_pull(const StepContext &context) {
+    const Real gravity = glm::length(Vec3{context.settings.gravity});
+    Real greatest = gravity;
+    if (context.model.bodies_with_force > 0)
+        for (const std::uint32_t i : context.moving())
+            greatest = std::max(greatest, greatest_pull(context.model.bodies[i], gravity));
+    return greatest;
+}
+
 void advance_soft_step(StepContext &context) {
     const StepSettings &settings = context.settings;
     const Vec3 gravity{settings.gravity};
@@ -89,7 +99,7 @@ void advance_soft_step(StepContext &context) {
         make_soft(Real(2) * static_cast<Real>(settings.contact_frequency_ratio) * rate,
                   static_cast<Real>(settings.contact_damping_ratio), h);
     contact_bias.struck_speed = relax_bias.struck_speed =
-        glm::length(gravity) * static_cast<Real>(settings.dt);
+        strongest_pull(context) * static_cast<Real>(settings.dt);
 
     // More than four substeps push no faster than four: bodies resting on the joints are pushed
     // too, and not all of that speed is removed again.

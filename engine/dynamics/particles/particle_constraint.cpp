@@ -44,8 +44,8 @@ Real approach_of(const StepContext &context, const ParticleContact &contact,
         return gravity + attraction(context.model.attractors, position);
     };
     const Real pull = glm::dot(pull_at(context.particles[contact.particle].position) -
-                                   gravity_on(context.model.bodies[contact.body],
-                                              pull_at(context.bodies[contact.body].position)),
+                                   pull_on(context.model.bodies[contact.body],
+                                           pull_at(context.bodies[contact.body].position)),
                                contact.normal);
     const Real speed =
         glm::dot(relative_velocity(context, contact, row), contact.normal) - kicked * pull;

@@ -152,6 +152,18 @@ void read_velocity(Reading &reading, const Table &table, BodyDesc &body) {
                              suggestion);
 }
 
+// A force on what forces do not move would do nothing.
+void read_loads(const Table &table, BodyDesc &body) {
+    const auto read = [&](std::string_view key, glm::dvec3 &load) {
+        load = table.vector(key, moderate).value_or(load);
+        if (load != glm::dvec3(0) && body.kind != BodyKind::dynamic)
+            table.error(key, "only a dynamic body has a " + std::string(key),
+                        R"(kind = "dynamic" moves under forces)");
+    };
+    read("force", body.force);
+    read("torque", body.torque);
+}
+
 // Room for `count` copies of the body.
 bool has_room_for(Reading &reading, const BodyDesc &body, std::size_t count,
                   const FilePosition &at) {
@@ -211,6 +223,8 @@ void repeat_body(Reading &reading, const Table &table, const BodyDesc &body, boo
             copy.orientation = placed[i].turn * body.orientation;
             copy.velocity = placed[i].turn * body.velocity;
             copy.angular_velocity = placed[i].turn * body.angular_velocity;
+            copy.force = placed[i].turn * body.force;
+            copy.torque = placed[i].turn * body.torque;
         }
         if (!reading.bodies.add(reading.report, table.position("name"), "body", copy.name))
             return;
@@ -261,6 +275,8 @@ void read_body(Reading &reading, const toml::table &source) {
                                "angular_velocity_deg",
                                "locked",
                                "gravity_scale",
+                               "force",
+                               "torque",
                                "linear_damping",
                                "angular_damping",
                                "color",
@@ -286,6 +302,7 @@ void read_body(Reading &reading, const toml::table &source) {
                                   std::holds_alternative<PlaneDesc>(body.colliders.front().shape));
     read_velocity(reading, table, body);
     read_freedom(table, body);
+    read_loads(table, body);
     body.colour = table.colour("color");
 
     if (table.has("repeat")) {

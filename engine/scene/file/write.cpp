@@ -197,6 +197,10 @@ class SceneWriter {
             line("locked", "[" + locked + "]");
         if (!same_bits(body.gravity_scale, 1))
             line("gravity_scale", shortest(body.gravity_scale));
+        if (!same_bits(body.force, {0, 0, 0}))
+            line("force", array3(body.force));
+        if (!same_bits(body.torque, {0, 0, 0}))
+            line("torque", array3(body.torque));
         if (!same_bits(body.linear_damping, 0))
             line("linear_damping", shortest(body.linear_damping));
         if (!same_bits(body.angular_damping, 0))

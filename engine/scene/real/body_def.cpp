@@ -62,6 +62,8 @@ BodyDef body_def(const SceneDesc &scene, const BodyDesc &desc) {
     def.angular_velocity = Vec3{desc.angular_velocity};
     def.locked = desc.locked;
     def.gravity_scale = static_cast<Real>(desc.gravity_scale);
+    def.force = Vec3{desc.force};
+    def.torque = Vec3{desc.torque};
     def.linear_damping = static_cast<Real>(desc.linear_damping);
     def.angular_damping = static_cast<Real>(desc.angular_damping);
     return def;

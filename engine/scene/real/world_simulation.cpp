@@ -276,6 +276,8 @@ void WorldSimulation::insert(const BodyDesc &desc) {
     info.colliders = desc.colliders;
     info.mass = static_cast<double>(body.mass);
     info.inertia = glm::dvec3{body.inertia};
+    info.force = glm::dvec3{body.force};
+    info.torque = glm::dvec3{body.torque};
     info.material = desc.material;
     info.colour = desc.colour ? desc.colour : material_of(book_->scene, desc.material).colour;
     Book &book = edit();

@@ -75,8 +75,10 @@ void find_linear_accelerations(StepContext &context, Accelerations &out) {
         out.bodies[i] = {};
         if (body.kind == BodyKind::dynamic)
             out.bodies[i].linear =
-                gravity_on(body, gravity + attraction(context.model.attractors, motion.position)) -
+                pull_on(body, gravity + attraction(context.model.attractors, motion.position)) -
                 body.linear_damping * motion.velocity;
+        if (body.has_torque)
+            out.bodies[i].torque = body.torque;
     }
     context.report.body_passes += moving.size();
     if (!context.active.has_particles)
@@ -103,7 +105,7 @@ void find_accelerations(StepContext &context, Accelerations &out) {
             continue;
         out.bodies[i].angular =
             torque_free(body, motion) - body.angular_damping * motion.angular_velocity;
-        if (context.active.has_particles)
+        if (context.active.has_particles || body.has_torque)
             out.bodies[i].angular += motion.inv_inertia * out.bodies[i].torque;
     }
 }

@@ -1,5 +1,5 @@
-// The one acceleration function of the smooth methods: gravity, attractors, springs, damping and
-// the torque of free spin, at the present state.
+// The one acceleration function of the smooth methods: gravity, attractors, springs, constant
+// forces and torques, damping and the torque of free spin, at the present state.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
@@ -15,7 +15,7 @@ struct Accelerations {
     struct OfBody {
         Vec3 linear{Real(0)};
         Vec3 angular{Real(0)};
-        Vec3 torque{Real(0)}; // from springs alone (N m), about the centre of mass
+        Vec3 torque{Real(0)}; // of springs, and its own (N m), about the centre of mass
     };
     std::vector<OfBody> bodies;
     std::vector<Vec3> particles;
