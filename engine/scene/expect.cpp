@@ -1,6 +1,7 @@
 #include "engine/scene/expect.h"
 
 #include "engine/core/check.h"
+#include "engine/scene/joint_type.h"
 #include "engine/scene/simulation.h"
 
 #include <algorithm>
@@ -26,6 +27,12 @@ glm::dvec3 up(const BodyState &body) {
 
 glm::dvec3 local_spin(const BodyState &body) {
     return glm::conjugate(body.orientation) * body.angular_velocity;
+}
+
+double kinetic_energy(const BodyState &now, const BodyInertia &mass) {
+    const glm::dvec3 spin = glm::conjugate(mass.axes) * local_spin(now);
+    return 0.5 * mass.mass * glm::dot(now.velocity, now.velocity) +
+           0.5 * glm::dot(mass.moments * spin, spin);
 }
 
 constexpr std::array all_quantities{
@@ -82,6 +89,49 @@ constexpr std::array all_quantities{
                      return angle_between(up(now), up(start));
                  },
                  "angle between the body's y axis and where it pointed at t = 0, 0..pi", true},
+    QuantityInfo{"body_kinetic_energy", "J", kinetic_energy,
+                 "of this one: m v.v / 2 + w.I w / 2; 0 unless it is dynamic", false, true},
+    QuantityInfo{"joint_force", "N", [](const JointView &now) { return glm::length(now.force); },
+                 "length of the force on `body_b` at its anchor, mean over the last substep"},
+    QuantityInfo{"joint_force.x", "N", [](const JointView &now) { return now.force.x; },
+                 "that force, world"},
+    QuantityInfo{"joint_force.y", "N", [](const JointView &now) { return now.force.y; },
+                 "that force, world"},
+    QuantityInfo{"joint_force.z", "N", [](const JointView &now) { return now.force.z; },
+                 "that force, world"},
+    QuantityInfo{"joint_torque", "N m",
+                 [](const JointView &now) { return glm::length(now.torque); },
+                 "length of the torque on `body_b` about its anchor, mean over the last substep"},
+    QuantityInfo{"joint_torque.x", "N m", [](const JointView &now) { return now.torque.x; },
+                 "that torque, world"},
+    QuantityInfo{"joint_torque.y", "N m", [](const JointView &now) { return now.torque.y; },
+                 "that torque, world"},
+    QuantityInfo{"joint_torque.z", "N m", [](const JointView &now) { return now.torque.z; },
+                 "that torque, world"},
+    QuantityInfo{.name = "joint_angle",
+                 .unit = "rad",
+                 .value = [](const JointView &now) { return now.position; },
+                 .description = "angle of a hinge, -pi..pi",
+                 .joints = QuantityInfo::Joints::turning},
+    QuantityInfo{.name = "joint_angle_rate",
+                 .unit = "rad/s",
+                 .value = [](const JointView &now) { return now.speed; },
+                 .description = "how fast that angle grows",
+                 .joints = QuantityInfo::Joints::turning},
+    QuantityInfo{.name = "joint_extension",
+                 .unit = "m",
+                 .value = [](const JointView &now) { return now.position; },
+                 .description = "position of a slider; distance between the anchors of a distance "
+                                "joint",
+                 .joints = QuantityInfo::Joints::sliding},
+    QuantityInfo{.name = "joint_extension_rate",
+                 .unit = "m/s",
+                 .value = [](const JointView &now) { return now.speed; },
+                 .description = "how fast that position or distance grows",
+                 .joints = QuantityInfo::Joints::sliding},
+    QuantityInfo{"joint_error", "m",
+                 [](const JointView &now) { return std::hypot(now.drift, now.angle_drift); },
+                 "`joint_drift` of this one"},
     QuantityInfo{"length", "m", [](const SpringState &now) { return now.length; },
                  "distance between the spring's ends"},
     QuantityInfo{"strain", "1",
@@ -258,6 +308,14 @@ const QuantityInfo *find_quantity(std::string_view name) {
     const auto found = std::find_if(all_quantities.begin(), all_quantities.end(),
                                     [&](const QuantityInfo &info) { return info.name == name; });
     return found == all_quantities.end() ? nullptr : &*found;
+}
+
+bool has_quantity(JointType type, const QuantityInfo &quantity) {
+    const JointTypeInfo &info = joint_type(type);
+    return quantity.needs_joint() &&
+           (quantity.joints == QuantityInfo::Joints::all ||
+            (!info.place.empty() &&
+             info.turns == (quantity.joints == QuantityInfo::Joints::turning)));
 }
 
 double relative_change(double change, double scale_at_start) {

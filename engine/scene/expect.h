@@ -2,6 +2,7 @@
 // to one number.
 #pragma once
 
+#include "engine/dynamics/kinds.h"
 #include "engine/dynamics/measures.h"
 
 #include <cstddef>
@@ -10,9 +11,19 @@
 #include <string_view>
 #include <variant>
 
+#include <glm/gtc/quaternion.hpp>
+
 namespace plumb {
 
 struct BodyState;
+struct JointView;
+
+// What a body's energy depends on besides its motion. A particle has no moments.
+struct BodyInertia {
+    double mass = 0;             // kg; 0: static or kinematic
+    glm::dvec3 moments{0};       // kg m^2, principal
+    glm::dquat axes{1, 0, 0, 0}; // the principal axes, in the body's frame
+};
 
 // A spring as it is now.
 struct SpringState {
@@ -29,20 +40,34 @@ struct SceneStart {
 
 struct QuantityInfo {
     using OfBody = double (*)(const BodyState &now, const BodyState &start);
+    using OfMass = double (*)(const BodyState &now, const BodyInertia &mass);
     using OfSpring = double (*)(const SpringState &now);
+    using OfJoint = double (*)(const JointView &now);
     using OfScene = double (*)(const Measures &now, const SceneStart &start);
 
     std::string_view name;
     std::string_view unit;
-    std::variant<OfBody, OfSpring, OfScene> value;
+    std::variant<OfBody, OfMass, OfSpring, OfJoint, OfScene> value;
     std::string_view description;
     bool since_start = false;  // counted from t = 0
     bool of_particles = false; // particles have it as well as bodies
     bool of_contacts = false;  // 0 where there are none
+    // Which joints have it: all, or those that turn or move along a free coordinate.
+    enum class Joints { all, turning, sliding } joints = Joints::all;
 
-    constexpr bool needs_body() const { return std::holds_alternative<OfBody>(value); }
+    constexpr bool needs_body() const {
+        return std::holds_alternative<OfBody>(value) || std::holds_alternative<OfMass>(value);
+    }
     constexpr bool needs_spring() const { return std::holds_alternative<OfSpring>(value); }
+    constexpr bool needs_joint() const { return std::holds_alternative<OfJoint>(value); }
+    // The key in scene files that names what it is measured on; empty: the whole scene.
+    constexpr std::string_view subject() const {
+        return needs_body() ? "body" : needs_spring() ? "spring" : needs_joint() ? "joint" : "";
+    }
 };
+
+// Whether joints of this type have a quantity of joints.
+bool has_quantity(JointType type, const QuantityInfo &quantity);
 
 // All quantities, in listing order.
 std::span<const QuantityInfo> quantities();

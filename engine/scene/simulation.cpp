@@ -111,6 +111,13 @@ const SoftParts &Simulation::soft_parts() const {
     return none;
 }
 
+std::optional<std::size_t> Simulation::find_joint(std::string_view name) const {
+    for (std::size_t i = 0; i < joint_count(); ++i)
+        if (const JointDesc *desc = joint(i); desc != nullptr && desc->name == name)
+            return i;
+    return {};
+}
+
 std::string Simulation::free_name(const std::string &name) const {
     std::string free = name;
     for (int number = 2; find_body(free) || soft_parts().has_name(free); ++number)

@@ -29,10 +29,11 @@ struct BodyInfo {
     std::string name;
     BodyKind kind = BodyKind::dynamic;
     std::vector<ColliderDesc> colliders;
-    double mass = 0;       // kg; 0 for static and kinematic
-    glm::dvec3 inertia{0}; // kg m^2, principal, body frame
-    glm::dvec3 force{0};   // N, constant, world
-    glm::dvec3 torque{0};  // N m, constant, world
+    double mass = 0;             // kg; 0 for static and kinematic
+    glm::dvec3 inertia{0};       // kg m^2, principal
+    glm::dquat axes{1, 0, 0, 0}; // the principal axes, in the body's frame
+    glm::dvec3 force{0};         // N, constant, world
+    glm::dvec3 torque{0};        // N m, constant, world
     std::string material;
     std::optional<glm::vec3> colour; // body's or material's
 };
@@ -137,6 +138,10 @@ class Simulation {
     virtual std::span<const AttractorDesc> attractors() const { return {}; }
 
     virtual const std::string &joint_name(std::size_t joint) const = 0; // a JointView's
+    virtual std::size_t joint_count() const { return 0; }               // holes included
+    // As in the scene or when it was added; null for a hole.
+    virtual const JointDesc *joint(std::size_t) const { return nullptr; }
+    std::optional<std::size_t> find_joint(std::string_view name) const;
 
     virtual std::optional<GrabView> grab() const { return {}; } // empty: nothing held
 

@@ -146,7 +146,7 @@ TEST(Plots, OfferWhatTheLabMeasures) {
             const auto found = quantities_of(fake, name);
             return std::find(found.begin(), found.end(), &info) != found.end();
         };
-        EXPECT_EQ(has(""), !info.needs_body() && !info.needs_spring()) << info.name;
+        EXPECT_EQ(has(""), info.subject().empty()) << info.name;
         EXPECT_EQ(has("left"), info.needs_body()) << info.name;
         EXPECT_FALSE(has("nobody")) << info.name;
     }

@@ -256,6 +256,41 @@ min_length = @5
          two + hinge + R"(impulses = @[1, 2, 3]
 )",
          {"impulses has 3 elements; for a hinge joint it must be an array of 8 numbers"}},
+        {"ExpectOfJoints",
+         two + joint + R"(anchor = [0, 0, 0]
+[[expect]]
+name = "e"
+quantity = "joint_force"
+joint = @"k"
+to = 1
+at_most = 1
+source = "by hand"
+[[expect]]
+name = "f"
+quantity = "joint_angle"
+joint = @"j"
+to = 1
+at_most = 1
+source = "by hand"
+[[expect]]
+name = "g"
+quantity = "speed"
+body = "a"
+@joint = "j"
+to = 1
+at_most = 1
+source = "by hand"
+@[[expect]]
+name = "h"
+quantity = "joint_force"
+to = 1
+at_most = 1
+source = "by hand"
+)",
+         {R"(there is no joint "k"; the only one is j)",
+          R"("j" is of type "ball" and has no joint_angle; one of type "hinge" has)",
+          "speed has no joint; it is measured on a body",
+          R"([[expect]] "h" has no joint; joint_force is measured on one joint: which?)"}},
         {"UnknownTypeAndUnknownBody",
          two + R"([[joint]]
 name = "j"

@@ -562,6 +562,15 @@ class Scenes {
                          : scene.bodies[random_.next_index(8)].name;
         if (quantity.needs_spring())
             e.body = scene.springs[random_.next_index(3)].name;
+        if (quantity.needs_joint()) {
+            std::vector<std::string> able;
+            for (const JointDesc &joint : scene.joints)
+                if (has_quantity(joint.type, quantity))
+                    able.push_back(joint.name);
+            if (able.empty())
+                return expect(scene); // another quantity
+            e.body = able[random_.next_index(static_cast<std::uint32_t>(able.size()))];
+        }
         const ReductionInfo &reduction =
             reductions()[random_.next_index(static_cast<std::uint32_t>(reductions().size()))];
         e.reduce = reduction.name;

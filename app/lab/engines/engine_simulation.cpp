@@ -25,7 +25,7 @@ RunOptions given_of(const ResolvedRun &run) {
     return options;
 }
 
-// What needs contact forces, which the engines do not report, is not a number.
+// What needs forces, which the engines do not report, is not a number; nor are joints' quantities.
 Measures without_forces() {
     Measures m;
     m.signorini_residual = m.cone_residual = std::numeric_limits<double>::quiet_NaN();
@@ -37,7 +37,8 @@ bool needs_forces(std::string_view quantity) {
     const QuantityInfo *info = find_quantity(quantity);
     const auto *value =
         info == nullptr ? nullptr : std::get_if<QuantityInfo::OfScene>(&info->value);
-    return value != nullptr && std::isnan((*value)(without_forces(), SceneStart{}));
+    return (info != nullptr && info->needs_joint()) ||
+           (value != nullptr && std::isnan((*value)(without_forces(), SceneStart{})));
 }
 
 class EngineSimulation final : public Simulation {
@@ -141,6 +142,8 @@ class EngineSimulation final : public Simulation {
     const std::string &joint_name(std::size_t joint) const override {
         return start_->joint_name(joint);
     }
+    std::size_t joint_count() const override { return start_->joint_count(); }
+    const JointDesc *joint(std::size_t joint) const override { return start_->joint(joint); }
     void read(Frame &into, const FrameParts &) const override {
         into = {};
         into.step_count = steps_;

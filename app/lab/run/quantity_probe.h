@@ -10,7 +10,7 @@
 
 namespace plumb {
 
-// A quantity, and the body, particle or spring it belongs to, if it needs one.
+// A quantity, and the body, particle, spring or joint it belongs to, if it needs one.
 struct QuantityName {
     std::string quantity;
     std::string body;
@@ -41,9 +41,10 @@ class QuantityProbe {
   private:
     struct Item {
         const QuantityInfo *quantity;
-        enum class Of { scene, body, particle, spring } of = Of::scene;
-        std::size_t index = 0; // of that body, particle or spring
+        enum class Of { scene, body, particle, spring, joint } of = Of::scene;
+        std::size_t index = 0; // of that body, particle, spring or joint
         BodyState start;       // of the body, or of the particle treated as one
+        BodyInertia mass;      // the same
     };
     Item item_of(const Simulation &simulation, const QuantityInfo &quantity,
                  const std::string &name, const RunStart *start) const;
@@ -54,6 +55,7 @@ class QuantityProbe {
     std::vector<Item> items_;
     bool measures_ = false;
     bool reads_ = false; // whether sample() needs a frame
+    FrameParts parts_;   // of the frame
     Frame frame_;
     SceneStart start_;
 };

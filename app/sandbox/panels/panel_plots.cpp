@@ -156,8 +156,8 @@ void plots_tab(PanelContext &context) {
                 " to the current one. A curve begins at the step at which it was chosen.");
     if (context.session.plots().curves().empty()) {
         ImGui::PushTextWrapPos(0);
-        ImGui::TextDisabled("Choose the scene, a body, a particle or a spring, then the quantities "
-                            "to plot. Those with the same unit share a plot.");
+        ImGui::TextDisabled("Choose the scene, a body, a particle, a spring or a joint, then the "
+                            "quantities to plot. Those with the same unit share a plot.");
         ImGui::PopTextWrapPos();
         return;
     }

@@ -104,11 +104,13 @@ std::vector<const QuantityInfo *> quantities_of(const Simulation &simulation,
     const bool is_body = !is_scene && simulation.find_body(name).has_value();
     const bool is_particle = !is_scene && soft.find_particle(name).has_value();
     const bool is_spring = !is_scene && soft.find_spring(name).has_value();
+    const std::optional<std::size_t> joint = is_scene ? std::nullopt : simulation.find_joint(name);
     std::vector<const QuantityInfo *> found;
     for (const QuantityInfo &info : quantities())
-        if (info.needs_spring() ? is_spring
-            : info.needs_body() ? is_body || (is_particle && info.of_particles)
-                                : is_scene)
+        if (info.needs_spring()  ? is_spring
+            : info.needs_joint() ? joint && has_quantity(simulation.joint(*joint)->type, info)
+            : info.needs_body()  ? is_body || (is_particle && info.of_particles)
+                                 : is_scene)
             found.push_back(&info);
     return found;
 }
@@ -128,6 +130,9 @@ std::vector<std::string> plot_subjects(const Simulation &simulation) {
     for (std::size_t i = 0; i < soft.springs.size(); ++i)
         if (!soft.springs[i].cloth)
             add(soft.spring_name(i));
+    for (std::size_t i = 0; i < simulation.joint_count(); ++i)
+        if (const JointDesc *joint = simulation.joint(i))
+            add(joint->name);
     return names;
 }
 

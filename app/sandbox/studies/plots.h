@@ -60,12 +60,12 @@ class Plots {
     std::optional<QuantityProbe> probe_; // reads all curves
 };
 
-// The quantities of the body, particle or spring of this name; without a name, those of the whole
-// scene.
+// The quantities of the body, particle, spring or joint of this name; without a name, those of the
+// whole scene.
 [[nodiscard]] std::vector<const QuantityInfo *> quantities_of(const Simulation &simulation,
                                                               const std::string &name);
 
-// All names quantities_of knows: bodies, then particles, then springs.
+// All names quantities_of knows: bodies, then particles, springs and joints.
 [[nodiscard]] std::vector<std::string> plot_subjects(const Simulation &simulation);
 
 // "energy", "position.y of ball"

@@ -2,6 +2,7 @@
 #include "engine/scene/file/number.h"
 #include "engine/scene/file/particle.h"
 #include "engine/scene/file/reading.h"
+#include "engine/scene/joint_type.h"
 
 namespace plumb::scene_file {
 
@@ -19,6 +20,66 @@ std::optional<std::string> read_spring_name(Reading &reading, const Table &table
     return name;
 }
 
+// The same for a joint of a type that has the quantity.
+std::optional<std::string> read_joint_name(Reading &reading, const Table &table,
+                                           const QuantityInfo &quantity) {
+    std::optional<std::string> name = table.string("joint");
+    if (!name)
+        return name;
+    const auto found = std::ranges::find(reading.scene.joints, *name, &JointDesc::name);
+    if (found == reading.scene.joints.end()) {
+        table.error("joint", "there is no joint " + in_quotes(*name),
+                    reading.joints.suggestion(*name));
+        return std::nullopt;
+    }
+    if (has_quantity(found->type, quantity))
+        return name;
+    std::string types;
+    for (const JointTypeInfo *type : joint_types())
+        if (has_quantity(type->type, quantity))
+            types += (types.empty() ? "" : " or ") + in_quotes(type->name);
+    table.error("joint",
+                in_quotes(*name) + " is of type " + in_quotes(joint_type(found->type).name) +
+                    " and has no " + std::string(quantity.name),
+                "one of type " + types + " has");
+    return std::nullopt;
+}
+
+// The name of an existing body, or of a particle if particles have the quantity.
+std::string read_body_name(Reading &reading, const Table &table, const QuantityInfo &quantity) {
+    const toml::node *name = table.node("body");
+    if (name != nullptr && name->is_string() && is_particle(reading, name->as_string()->get())) {
+        const std::string &particle = name->as_string()->get();
+        if (!quantity.of_particles)
+            table.error("body", "there is no body " + in_quotes(particle),
+                        "a particle has no " + std::string(quantity.name));
+        return particle;
+    }
+    const std::optional<std::size_t> body = find_body(reading, table, "body");
+    return body ? reading.scene.bodies[*body].name : "";
+}
+
+void read_subject(Reading &reading, const Table &table, const QuantityInfo &quantity,
+                  ExpectDesc &expect) {
+    const std::string subject(quantity.subject());
+    const std::string measured_on =
+        subject.empty()     ? "it is measured on the whole scene"
+        : subject == "body" ? "it is measured on a body"
+                            : "it is measured on a " + subject + ": " + subject + " = \"...\"";
+    for (const std::string_view key : {"body", "spring", "joint"})
+        if (key != subject)
+            table.refuse({key}, expect.quantity, measured_on);
+    if (subject.empty() ||
+        !table.require(subject, expect.quantity + " is measured on one " + subject + ": which?"))
+        return;
+    if (subject == "spring")
+        expect.body = read_spring_name(reading, table).value_or("");
+    else if (subject == "joint")
+        expect.body = read_joint_name(reading, table, quantity).value_or("");
+    else
+        expect.body = read_body_name(reading, table, quantity);
+}
+
 void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
     if (!table.require("quantity", "which quantity is measured?"))
         return;
@@ -29,31 +90,7 @@ void read_quantity(Reading &reading, const Table &table, ExpectDesc &expect) {
     if (!chosen)
         return;
     expect.quantity = names[*chosen];
-    const QuantityInfo &quantity = quantities()[*chosen];
-    if (quantity.needs_spring()) {
-        table.refuse({"body"}, expect.quantity, "it is measured on a spring: spring = \"...\"");
-        if (table.require("spring", expect.quantity + " is measured on one spring: which?"))
-            expect.body = read_spring_name(reading, table).value_or("");
-        return;
-    }
-    table.refuse({"spring"}, expect.quantity,
-                 quantity.needs_body() ? "it is measured on a body"
-                                       : "it is measured on the whole scene");
-    if (!quantity.needs_body()) {
-        table.refuse({"body"}, expect.quantity, "it is measured on the whole scene");
-        return;
-    }
-    const toml::node *name = table.node("body");
-    if (name != nullptr && name->is_string() && is_particle(reading, name->as_string()->get())) {
-        expect.body = name->as_string()->get();
-        if (!quantity.of_particles)
-            table.error("body", "there is no body " + in_quotes(expect.body),
-                        "a particle has no " + expect.quantity);
-        return;
-    }
-    if (table.require("body", expect.quantity + " is measured on one body: which?"))
-        if (const std::optional<std::size_t> body = find_body(reading, table, "body"))
-            expect.body = reading.scene.bodies[*body].name;
+    read_subject(reading, table, quantities()[*chosen], expect);
 }
 
 // Whether `equals` is a curve rather than a number.
@@ -128,8 +165,8 @@ bool is_of_missing_copy(const Reading &reading, const Table &table) {
 } // namespace
 
 void read_expect(Reading &reading, const toml::table &source) {
-    static constexpr std::array<std::string_view, 14> keys{
-        "name", "quantity", "body",    "spring",   "reduce",    "level",    "from",
+    static constexpr std::array<std::string_view, 15> keys{
+        "name", "quantity", "body",    "spring",   "joint",     "reduce",   "level", "from",
         "to",   "equals",   "at_most", "at_least", "tolerance", "estimate", "source"};
     static constexpr std::array<std::string_view, 3> relations{"equals", "at_most", "at_least"};
     const Table table(reading.report, source, title_of("expect", source), keys);

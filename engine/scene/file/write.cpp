@@ -310,8 +310,7 @@ class SceneWriter {
         line("name", string(expect.name));
         line("quantity", string(expect.quantity));
         if (!expect.body.empty())
-            line(find_quantity(expect.quantity)->needs_spring() ? "spring" : "body",
-                 string(expect.body));
+            line(std::string(find_quantity(expect.quantity)->subject()), string(expect.body));
         line("reduce", string(expect.reduce));
         if (expect.level)
             line("level", shortest(*expect.level));

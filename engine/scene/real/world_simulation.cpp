@@ -132,6 +132,10 @@ class WorldSimulation final : public Simulation {
     const std::string &joint_name(std::size_t joint) const override {
         return book_->scene.joints.at(joint).name;
     }
+    std::size_t joint_count() const override { return world_.joints().size(); }
+    const JointDesc *joint(std::size_t joint) const override {
+        return world_.joints()[joint].alive ? &book_->scene.joints[joint] : nullptr;
+    }
     const SoftParts &soft_parts() const override { return soft_; }
     std::span<const AttractorDesc> attractors() const override { return book_->scene.attractors; }
     void read(Frame &into, const FrameParts &parts) const override {
@@ -276,6 +280,7 @@ void WorldSimulation::insert(const BodyDesc &desc) {
     info.colliders = desc.colliders;
     info.mass = static_cast<double>(body.mass);
     info.inertia = glm::dvec3{body.inertia};
+    info.axes = glm::dquat{body.mass_frame.rotation};
     info.force = glm::dvec3{body.force};
     info.torque = glm::dvec3{body.torque};
     info.material = desc.material;
@@ -461,8 +466,10 @@ SceneDesc WorldSimulation::describe() const {
     describe_grab(out);
     set_run(out.world, method(), world.settings());
     std::erase_if(out.expects, [this](const ExpectDesc &expect) {
-        return !expect.body.empty() && !book_->index_of.contains(expect.body) &&
-               !soft_.find_particle(expect.body) && !soft_.find_spring(expect.body);
+        const QuantityInfo &quantity = *find_quantity(expect.quantity);
+        return (quantity.needs_body() && !book_->index_of.contains(expect.body) &&
+                !soft_.find_particle(expect.body)) ||
+               (quantity.needs_joint() && !find_joint(expect.body));
     });
     out.world.precision = precision_;
     for (std::uint32_t i = 0; i < book_->infos.size(); ++i) {
