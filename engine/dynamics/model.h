@@ -20,7 +20,7 @@ struct Model {
     std::vector<Spring> springs;       // never removed
     std::vector<Attractor> attractors; // never removed
     std::vector<std::uint32_t> free_bodies; // descending
-    std::vector<std::uint32_t> free_joints;
+    std::vector<std::uint32_t> free_joints; // descending
     JoinedBodies joined;
     std::vector<std::uint32_t> half_spaces; // colliders, ascending
     // Bit n: layer n. `layers`: some collider is on it; `heeded_layers`: some collider does not

@@ -438,7 +438,8 @@ void World::remove_joint(JointId id) {
     --model.alive_joints;
     state_.joints[id.index] = JointMemory{};
     remember_penalty(id.index, {});
-    model.free_joints.push_back(id.index);
+    model.free_joints.insert( // as for bodies: the first hole is filled first
+        std::ranges::upper_bound(model.free_joints, id.index, std::ranges::greater{}), id.index);
 }
 
 bool World::is_alive(JointId id) const {

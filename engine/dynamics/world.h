@@ -55,6 +55,7 @@ class World {
     // A joint between two bodies that are not dynamic does nothing.
     JointId add_joint(const JointDef &def);
     void remove_joint(JointId id);
+    JointId joint_id(std::uint32_t index) const { return {index, joints()[index].generation}; }
     bool is_alive(JointId id) const;
 
     // Particles and springs are never removed. Both functions return the index. They fail a check

@@ -37,6 +37,25 @@ struct RemoveBody {
     }
 };
 
+// The joint's name must be free and its bodies there; anchors and frames are theirs, as in
+// JointDesc. Fails under a method without joints.
+struct AddJoint {
+    static constexpr std::string_view name = "add_joint";
+    JointDesc joint;
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("joint", self.joint);
+    }
+};
+
+// Lets its bodies go; they stay. A broken joint can be removed, too.
+struct RemoveJoint {
+    static constexpr std::string_view name = "remove_joint";
+    std::string joint;
+    template <typename Self, typename Visit> static void each_field(Self &self, Visit &&visit) {
+        visit("joint", self.joint);
+    }
+};
+
 // Teleports a body and sets its velocity; velocities stay 0 along locked axes and for static
 // bodies.
 struct SetMotion {
@@ -136,7 +155,7 @@ struct SetSettings {
     }
 };
 
-using Command = std::variant<AddBody, RemoveBody, SetMotion, ApplyImpulse, GrabBody, GrabParticle,
-                             MoveGrab, ReleaseGrab, SetMethod, SetSettings>;
+using Command = std::variant<AddBody, RemoveBody, AddJoint, RemoveJoint, SetMotion, ApplyImpulse,
+                             GrabBody, GrabParticle, MoveGrab, ReleaseGrab, SetMethod, SetSettings>;
 
 } // namespace plumb

@@ -18,10 +18,19 @@ BodyDesc placeholder(const std::string &name) {
     return body;
 }
 
+// The same for a removed joint; it goes with the placeholder that it holds.
+JointDesc placeholder_joint(const std::string &name, const std::string &body) {
+    JointDesc joint;
+    joint.name = name;
+    joint.body_b = body;
+    return joint;
+}
+
 } // namespace
 
-// Added bodies fill the holes left by removed ones, which changes the solver's order. Scenes have
-// no holes, so the recording recreates them: it adds placeholders and removes them again.
+// Added bodies and joints fill the holes left by removed ones, which changes the solver's order.
+// Scenes have no holes, so the recording recreates them: it adds placeholders and removes them
+// again.
 Recorder::Recorder(const Simulation &simulation) {
     recording_.scene = simulation.describe();
     std::vector<BodyDesc> &bodies = recording_.scene.bodies;
@@ -32,16 +41,43 @@ Recorder::Recorder(const Simulation &simulation) {
         bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(i), placeholder(name));
         recording_.commands.push_back({recording_.first_step(), RemoveBody{name}, 0});
     }
+    const bool has_joint_holes = add_joint_placeholders(simulation);
     if (recording_.commands.empty())
         return;
-    // A method without contacts would refuse the scene with placeholders, though not what remains.
+    // A method without contacts or joints would refuse the scene with placeholders, though not what
+    // remains.
     const MethodInfo &method = simulation.method();
-    if (!method.contacts) {
+    if (!method.contacts || (has_joint_holes && !method.joints)) {
         const WorldDesc other;
         set_run(recording_.scene.world, *find_method_info(other.method), simulation.settings());
         recording_.commands.push_back(
             {recording_.first_step(), SetMethod{std::string(method.name)}, 0});
     }
+}
+
+// All hold one body, so that removing it wakes nothing else. If no body's hole is to be filled, one
+// after the last body is: there a new body would go anyway. Returns whether there are any.
+bool Recorder::add_joint_placeholders(const Simulation &simulation) {
+    std::vector<JointDesc> &joints = recording_.scene.joints;
+    std::string body;
+    for (std::size_t i = 0; i < simulation.joint_count(); ++i) {
+        if (simulation.joint(i) != nullptr)
+            continue;
+        if (body.empty()) {
+            if (recording_.commands.empty()) {
+                const std::string name = simulation.free_name("removed");
+                recording_.scene.bodies.push_back(placeholder(name));
+                recording_.commands.push_back({recording_.first_step(), RemoveBody{name}, 0});
+            }
+            body = std::get<RemoveBody>(recording_.commands.front().command).body;
+        }
+        std::string name = "removed_" + std::to_string(i);
+        while (std::ranges::find(joints, name, &JointDesc::name) != joints.end())
+            name += '_';
+        joints.insert(joints.begin() + static_cast<std::ptrdiff_t>(i),
+                      placeholder_joint(name, body));
+    }
+    return !body.empty();
 }
 
 void Recorder::add(const Simulation &simulation, const Command &command) {

@@ -48,6 +48,7 @@ class Recorder {
     Recording recording(const Simulation &simulation) const;
 
   private:
+    bool add_joint_placeholders(const Simulation &simulation);
     void forget_after(std::uint64_t step);
 
     Recording recording_; // with hashes of all states but the current one

@@ -257,7 +257,19 @@ class Run {
     }
 
     Command command() {
-        switch (input_.below(10)) {
+        switch (input_.below(11)) {
+        case 10: {
+            if (input_.below(3) == 0)
+                return RemoveJoint{input_.below(2) == 0 ? "j0" : "added"};
+            JointDesc joint;
+            joint.name = "added";
+            joint.type = static_cast<JointType>(input_.below(5));
+            joint.body_b = body();
+            joint.anchor_a_local = point();
+            joint.anchor_b_local = point();
+            joint.max_length = size();
+            return AddJoint{joint};
+        }
         case 0:
         case 1:
             return AddBody{new_body()};

@@ -58,6 +58,18 @@ SceneDesc scene(const std::string &precision = "float") {
     return result.scene;
 }
 
+JointDesc rod(const char *name) {
+    JointDesc joint;
+    joint.name = name;
+    joint.type = JointType::distance;
+    joint.body_a = "crate_3";
+    joint.body_b = "ball";
+    joint.anchor_a_local = {0, 0.4, 1.0 / 3};
+    joint.min_length = 0.5;
+    joint.max_length = 6;
+    return joint;
+}
+
 BodyDesc shot(const char *name) {
     BodyDesc body;
     body.name = name;
@@ -86,8 +98,10 @@ std::vector<std::pair<std::uint64_t, Command>> commands() {
         {22, SetMotion{"bob", {3, 3, 0.2}, turned, {0, 0, 1}, {0.1, 0.2, 0.3}}},
         {25, SetMethod{"sequential_impulses"}},
         {25, SetSettings{settings}},
-        {30, RemoveBody{"bob"}}, // and its joint
+        {30, RemoveBody{"bob"}},    // and its joint
+        {31, AddJoint{rod("rod")}}, // into its hole
         {32, GrabParticle{"mote", {6, 3, 1.0 / 3}, 50, {7, 0.5}}},
+        {36, RemoveJoint{"rod"}},
         {40, ApplyImpulse{"ball", {0, 0.5, 0}, {0, 0, 0}}},
     };
 }
@@ -262,6 +276,51 @@ TEST(Recording, StartsAfterBodiesWereRemoved) {
     }
 }
 
+// The same of joints, also where all bodies are still there, some of them asleep.
+TEST(Recording, StartsAfterJointsWereRemoved) {
+    SceneDesc heap = scene();
+    const auto hung = [&](const char *name, double x) {
+        JointDesc joint;
+        joint.name = name;
+        joint.body_b = "club";
+        joint.anchor_a_local = heap.bodies[5].position + glm::dvec3(x, 2, 0);
+        joint.anchor_b_local = {x, 2, 0};
+        return joint;
+    };
+    ASSERT_EQ(heap.bodies[5].name, "club");
+    for (const auto &[name, x] : {std::pair("left", -0.1), {"middle", 0.0}, {"right", 0.1}})
+        heap.joints.push_back(hung(name, x));
+    const auto simulation = Simulation::create(heap, {}, nullptr);
+    const auto step = [&](int count) {
+        for (int i = 0; i < count; ++i)
+            simulation->step();
+    };
+    step(60);
+    for (const char *name : {"right", "left", "string"})
+        simulation->apply(RemoveJoint{name});
+    EXPECT_THROW(simulation->apply(RemoveJoint{"left"}), std::invalid_argument);
+    EXPECT_THROW(simulation->apply(AddJoint{hung("middle", 0)}), std::invalid_argument);
+    step(60);
+    Recorder recorder(*simulation);
+    const auto obey = [&](const Command &command) {
+        simulation->apply(command);
+        recorder.add(*simulation, command);
+    };
+    obey(AddBody{shot("ball")});
+    for (int i = 0; i < 20; ++i) {
+        if (i == 5)
+            for (const auto &[name, x] : {std::pair("third", 0.3), {"left", -0.1}})
+                obey(AddJoint{hung(name, x)});
+        recorder.before_step(*simulation);
+        simulation->step();
+    }
+    EXPECT_TRUE(simulation->find_joint("left"));
+    EXPECT_EQ(simulation->find_joint("third"), 0U); // in the hole of "string"
+    const Recording recording = recorder.recording(*simulation);
+    EXPECT_EQ(first_difference(recording), std::nullopt);
+    EXPECT_EQ(first_difference(parsed(write_recording(recording))), std::nullopt);
+}
+
 // Also while a method without contacts steps the remaining bodies.
 TEST(Recording, StartsAfterBodiesWereRemovedWhereNothingCollides) {
     SceneDesc heap = scene();
@@ -316,6 +375,10 @@ TEST(Recording, MistakesAreNamedAtTheirPlace) {
              {"hashes = [\n", "hashes = [\n\"12345678901234xy\",\n", "16 hexadecimal digits"},
              {"hashes = [\n", "hashes = [\n17,\n", "16 hexadecimal digits"},
              {"\nbody = \"ball\"\n", "\n", "body"},
+             {"max_length = 6", "max_length = -6", "max_length"},
+             {"max_length = 6", "damping_ratio = 1", "needs a length"},
+             {"anchor_a_local = [0, 0.4", "anchor_a = [0, 0.4", "takes no anchor_a"},
+             {"joint = \"rod\"", "joint = 3", "joint is a number"},
          }) {
         std::string wrong = text;
         const std::size_t at = wrong.find(mistake.from);

@@ -3,6 +3,7 @@
 #include "engine/scene/file/reading.h"
 #include "engine/scene/file/spelling.h"
 #include "engine/scene/file/text.h"
+#include "engine/scene/joint_type.h"
 
 #include <algorithm>
 #include <array>
@@ -76,6 +77,41 @@ struct Fields {
             field = own.scene.bodies.front();
         else if (reading.report.error_count() == 0)
             table.error(key, "a command adds one body", "write one [[command]] for each");
+    }
+    // Like [[joint]], but that its anchors and frames are the bodies' own: where these will be is
+    // not known here, nor which there are.
+    void read(std::string_view key, JointDesc &field) {
+        const toml::table *source = table_at(reading.report, table, key);
+        if (!source)
+            return;
+        const std::size_t errors = reading.report.error_count();
+        for (const auto &[name, value] : *source)
+            for (const std::string_view refused :
+                 {"anchor", "anchor_a", "anchor_b", "axis", "chain"})
+                if (name.str() == refused)
+                    reading.report.error(position_of(value),
+                                         "a command's joint takes no " + std::string(refused),
+                                         "it takes anchor_a_local, anchor_b_local, frame_a_local "
+                                         "and frame_b_local");
+        const auto *type = source->get_as<std::string>("type");
+        if (type != nullptr && type->get() == joint_type(JointType::distance).name &&
+            !source->contains("length") && !source->contains("max_length"))
+            reading.report.error(position_of(*type), "a command's distance joint needs a length",
+                                 "length = metres, or max_length");
+        if (reading.report.error_count() != errors)
+            return;
+        Reading own;
+        for (const char *end : {"body_a", "body_b"})
+            if (const auto *body = source->get_as<std::string>(end);
+                body != nullptr && body->get() != "world") {
+                own.bodies_by_name.try_emplace(body->get(), own.scene.bodies.size());
+                own.scene.bodies.emplace_back().name = body->get();
+            }
+        std::swap(own.report, reading.report);
+        read_joint(own, *source);
+        std::swap(own.report, reading.report);
+        if (own.scene.joints.size() == 1)
+            field = own.scene.joints.front();
     }
 };
 
@@ -184,6 +220,7 @@ struct PartLines {
         table(key, settings_text(field));
     }
     void operator()(std::string_view key, const BodyDesc &field) { table(key, body_text(field)); }
+    void operator()(std::string_view key, const JointDesc &field) { table(key, joint_text(field)); }
 
     void line(std::string_view key, const std::string &value) {
         text += std::string(key) + " = " + value + "\n";

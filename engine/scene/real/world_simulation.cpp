@@ -162,6 +162,8 @@ class WorldSimulation final : public Simulation {
 
     void obey(const AddBody &command);
     void obey(const RemoveBody &command);
+    void obey(const AddJoint &command);
+    void obey(const RemoveJoint &command);
     void obey(const SetMotion &command);
     void obey(const ApplyImpulse &command);
     void obey(const GrabBody &command);
@@ -223,6 +225,26 @@ void WorldSimulation::obey(const RemoveBody &command) {
     Book &book = edit();
     book.index_of.erase(command.body);
     book.infos[body].alive = false;
+}
+
+void WorldSimulation::obey(const AddJoint &command) {
+    const JointDesc &joint = command.joint;
+    if (!world_.method().info.joints)
+        throw std::invalid_argument(std::string(world_.method().info.name) +
+                                    " does not support joints, so none can be added");
+    if (find_joint(joint.name))
+        throw std::invalid_argument("there is already a joint \"" + joint.name + '"');
+    for (const std::string &body : {joint.body_a, joint.body_b})
+        if (!body.empty())
+            (void)index_of(body);
+    insert(joint);
+}
+
+void WorldSimulation::obey(const RemoveJoint &command) {
+    const std::optional<std::size_t> joint = find_joint(command.joint);
+    if (!joint)
+        throw std::invalid_argument("there is no joint \"" + command.joint + '"');
+    world_.remove_joint(world_.joint_id(static_cast<std::uint32_t>(*joint)));
 }
 
 void WorldSimulation::obey(const SetMotion &command) {
@@ -317,8 +339,10 @@ void WorldSimulation::insert(const JointDesc &desc) {
         def.penalty[i] = static_cast<Real>(desc.penalties[i]);
     }
     def.memory.broken = desc.broken;
-    world_.add_joint(def);
-    edit().scene.joints.push_back(desc);
+    const std::size_t index = world_.add_joint(def).index;
+    std::vector<JointDesc> &joints = edit().scene.joints;
+    joints.resize(std::max(joints.size(), index + 1));
+    joints[index] = desc;
 }
 
 void WorldSimulation::insert(const ParticleInfo &info) {
