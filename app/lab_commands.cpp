@@ -95,7 +95,10 @@ void add_map(CommandLine &line) {
     const auto arguments = std::make_shared<MapArguments>();
     CLI::App *map_command = line.app.add_subcommand(
         "map", "Maps where each method holds a scene and why it fails, over two parameters: a grid "
-               "of runs, with the limits between held and failed found by bisection along x");
+               "of runs, with the limits between held and failed found by bisection along x. Over "
+               "gravity or a number of the scene file, only what the scene expects whatever that "
+               "number is counts: laws, and what an accurate run meets at both ends and in the "
+               "middle; the map says what does not");
     map_command
         ->add_option("SCENE", line.common.scenes, "A scene file, or a name from `plumb list`")
         ->required()

@@ -2,6 +2,7 @@
 
 #include "app/lab/csv.h"
 #include "app/lab/fingerprint.h"
+#include "app/lab/map/answers.h"
 
 namespace plumb {
 
@@ -16,6 +17,10 @@ std::string map_fingerprint(const SceneText &scene, const MapAxis &x, const MapA
     for (const MapAxis *axis : {&x, &y}) {
         print.add(axis->name);
         print.add(axis->logarithmic ? 1 : 0);
+        if (varies_the_scene(*axis)) { // its ends decide which expectations hold
+            print.add(axis->values.front());
+            print.add(axis->values.back());
+        }
     }
     print.add(options.base);
     print.add(options.duration.value_or(0));

@@ -10,7 +10,8 @@
 namespace plumb {
 
 // Fingerprint of everything that decides a table row's contents except the row's own method and
-// place: the scene's text, the axes' names and scales, the options, the program. Rows with another
+// place: the scene's text, the axes' names and scales, the ends of those that vary the scene, the
+// options, the program. Rows with another
 // fingerprint are useless.
 [[nodiscard]] std::string map_fingerprint(const SceneText &scene, const MapAxis &x,
                                           const MapAxis &y, const MapOptions &options);

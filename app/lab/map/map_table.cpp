@@ -20,6 +20,13 @@ std::string in_words(const RunFailing &failing) {
            (failing.what.empty() ? "" : ": " + failing.what);
 }
 
+std::string joined(const std::vector<std::string> &names) {
+    std::string all;
+    for (const std::string &name : names)
+        all += (all.empty() ? "" : "; ") + name;
+    return all;
+}
+
 void print_grid(std::ostream &out, const StabilityMap &map, const MethodMap &of_method) {
     std::vector<std::string> labels;
     std::size_t width = 0;
@@ -51,13 +58,13 @@ void write_map_csv(std::ostream &out, const StabilityMap &map) {
             settings.push_back(number);
     for (const SettingNumber number : settings)
         csv.cell(setting_column(number));
-    csv.cell("precision").cell("machine").cell("commit").cell("run");
+    csv.cell("not_judged").cell("precision").cell("machine").cell("commit").cell("run");
     csv.end_row();
     const std::string here = machine(), commit = build_commit();
     const auto end_row = [&](const MethodMap &of_method) {
         for (const SettingNumber number : settings)
             csv.cell(setting_value(of_method.settings, number));
-        csv.cell(precision_name(map.precision)).cell(here).cell(commit);
+        csv.cell(joined(map.outdated)).cell(precision_name(map.precision)).cell(here).cell(commit);
         csv.cell(map.fingerprint).end_row();
     };
     for (const MethodMap &of_method : map.methods) {

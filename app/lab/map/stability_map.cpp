@@ -1,5 +1,6 @@
 #include "app/lab/map/stability_map.h"
 
+#include "app/lab/map/answers.h"
 #include "app/lab/map/passage.h"
 #include "app/lab/map/standing.h"
 #include "app/lab/run/method_choice.h"
@@ -125,6 +126,49 @@ std::vector<std::string> find_unjudged(const SceneText &text, const StabilityMap
     return unjudged;
 }
 
+bool is_outdated(const StabilityMap &map, const ExpectDesc &expect) {
+    return std::ranges::find(map.outdated, expect.name) != map.outdated.end();
+}
+
+// Finds which expectations no cell can be judged by, and says so.
+void find_outdated(StabilityMap &map, const SceneText &text, const MapOptions &options) {
+    const Point point(text, map.x, &map.y, options.base);
+    map.outdated = outdated_answers(
+        map.scene, map.x, map.y,
+        {[&](double x, double y) { return point.scene(x, y); }, options.base, options.stop});
+    if (map.outdated.empty())
+        return;
+    std::string axes, names;
+    for (const MapAxis *axis : {&map.x, &map.y})
+        if (varies_the_scene(*axis))
+            axes += (axes.empty() ? "" : " and ") + axis->name;
+    for (const std::string &name : map.outdated)
+        names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    map.unjudged.push_back("not judged, as it is stated for the file's own " + axes + ": " + names);
+    if (map.outdated.size() == map.scene.expects.size())
+        map.unjudged.push_back("judged only by the limits for scenes that expect nothing");
+}
+
+// The scene, and its run's outcomes, without those expectations.
+SceneDesc without_outdated(const StabilityMap &map, SceneDesc scene) {
+    std::erase_if(scene.expects,
+                  [&](const ExpectDesc &expect) { return is_outdated(map, expect); });
+    return scene;
+}
+
+JudgedRun without_outdated(const StabilityMap &map, JudgedRun run) {
+    std::vector<ExpectOutcome> outcomes;
+    std::vector<double> drops;
+    for (std::size_t i = 0; i < run.outcomes.size(); ++i)
+        if (!is_outdated(map, run.outcomes[i].desc)) {
+            outcomes.push_back(run.outcomes[i]);
+            drops.push_back(run.drops[i]);
+        }
+    run.outcomes = std::move(outcomes);
+    run.drops = std::move(drops);
+    return run;
+}
+
 // Runs work items on all threads, and reports progress.
 class Runner {
   public:
@@ -133,7 +177,8 @@ class Runner {
 
     // nullopt if interrupted.
     std::optional<MapRun> run(const MethodInfo &method, double x, double y) {
-        const SceneDesc scene = point_.scene(x, y);
+        const SceneDesc as_asked = point_.scene(x, y);
+        const SceneDesc scene = without_outdated(map_, as_asked);
         const RunOptions run = point_.run(method, x, y);
         const auto simulation = Simulation::create(scene, run, nullptr);
         PassageWatch passage(scene, *simulation);
@@ -151,9 +196,11 @@ class Runner {
             if (now > told)
                 advance(now - std::exchange(told, now));
         };
-        const JudgedRun judged = judge_run(*simulation, scene, judging);
+        // Runs for as long as the file asks, whatever it is judged by.
+        JudgedRun judged = judge_run(*simulation, as_asked, judging);
         if (judged.stopped)
             return std::nullopt;
+        judged = without_outdated(map_, std::move(judged));
         advance(one_run - told);
         const std::string fallen =
             standing && !judged.divergence ? standing->fallen(*simulation) : std::string();
@@ -299,6 +346,9 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
         throw std::invalid_argument(why_no_method(map.left_out));
 
     map.unjudged = find_unjudged(scene, map, options.base);
+    if (options.progress)
+        options.progress(0, map.scene.name + ": what is expected");
+    find_outdated(map, scene, options);
     Runner runner(scene, map, options);
     std::vector<CellItem> cells; // those not known
     for (MethodMap &of_method : map.methods) {

@@ -50,7 +50,11 @@ struct StabilityMap {
     MapAxis x, y;
     std::vector<MethodMap> methods;
     std::vector<std::string> left_out; // why each of these methods cannot run the scene
-    std::vector<std::string> unjudged; // expectations on bodies that some cells do not have
+    // The scene's expectations that no cell is judged by, as an axis changes their answer, by name;
+    // see outdated_answers. Cells are held to the limits of scenes without them.
+    std::vector<std::string> outdated;
+    // For people: those, and expectations on bodies that some cells do not have.
+    std::vector<std::string> unjudged;
     Precision precision = Precision::f32;
     std::string fingerprint; // see map_resume.h; may be empty
     bool interrupted = false;

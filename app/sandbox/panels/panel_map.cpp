@@ -125,7 +125,7 @@ void draw_numbers(const PanelContext &context, const Grid &grid) {
     }
 }
 
-// Lists only the outcomes that occur.
+// Lists only the outcomes that occur, and what was not judged.
 void legend(const PanelContext &context, const StabilityMap &map) {
     const float em = context.fonts.small->FontSize;
     const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
@@ -150,6 +150,8 @@ void legend(const PanelContext &context, const StabilityMap &map) {
         ImGui::SameLine(0, 0.25f * em);
         ImGui::TextUnformatted(name.c_str());
     }
+    for (const std::string &what : map.unjudged)
+        ImGui::TextWrapped("%s", what.c_str());
     ImGui::PopFont();
 }
 
