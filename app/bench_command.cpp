@@ -33,7 +33,7 @@ struct BenchArguments {
 void refuse_options_of_others(const CLI::App &bench_command, const std::string &what) {
     const std::map<std::string, std::set<std::string>> readers{
         {"--rounds", {"geometry"}},
-        {"--only", {"dynamics", "scenes", "truth"}},
+        {"--only", {"dynamics", "scenes", "truth", "problems"}},
         {"--seconds", {"dynamics"}},
         {"--size", {"dynamics", "scenes"}},
         {"--threads", {"dynamics"}}};
@@ -88,19 +88,19 @@ void add_bench(CommandLine &line) {
                      "geometry: cost of queries; dynamics: cost and error of a step of the same "
                      "scenes in several engines; scenes: writes those scenes as files, to run, "
                      "chart and map; truth: what each engine reaches in small problems with known "
-                     "answers, beside the aim")
+                     "answers, beside the aim; problems: writes those as scene files, to run")
         ->required()
-        ->check(CLI::IsMember({"geometry", "dynamics", "scenes", "truth"}));
+        ->check(CLI::IsMember({"geometry", "dynamics", "scenes", "truth", "problems"}));
     bench_command
         ->add_option("--rounds", arguments->rounds,
                      "geometry: rounds of timings; the median counts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     bench_command
-        ->add_option(
-            "--only", arguments->only,
-            "dynamics, scenes, truth: the scenes or problems of that name, else those whose names "
-            "start with it (all)")
+        ->add_option("--only", arguments->only,
+                     "dynamics, scenes, truth, problems: the scenes or problems of that name, else "
+                     "those whose names "
+                     "start with it (all)")
         ->type_name("NAME,...");
     bench_command
         ->add_option("--seconds", arguments->seconds,

@@ -41,10 +41,7 @@ Answer ask(const Problem &problem, const EngineKind &kind) {
 } // namespace
 
 ExitCode bench_truth(const EngineBenchOptions &options) {
-    std::vector<Problem> problems = motion_problems();
-    for (auto more : {joint_problems(), standing_problems(), fast_problems()})
-        problems.insert(problems.end(), more.begin(), more.end());
-    problems = chosen(std::move(problems), options.only);
+    const std::vector<Problem> problems = chosen(all_problems(), options.only);
     const std::vector<EngineKind> kinds = engines(nullptr);
 
     create_folder(options.out_dir);

@@ -31,4 +31,7 @@ ExitCode bench_scene_files(const EngineBenchOptions &options);
 // Small problems with a known answer: each engine's error beside the aim.
 ExitCode bench_truth(const EngineBenchOptions &options);
 
+// Writes the scenes of bench_truth to files in a folder.
+ExitCode bench_problem_files(const EngineBenchOptions &options);
+
 } // namespace plumb

@@ -34,9 +34,12 @@ int bench(const std::vector<std::string> &arguments) {
         code = bench_scene_files(options);
     else if (what == "truth")
         code = bench_truth(options);
+    else if (what == "problems")
+        code = bench_problem_files(options);
     else
         throw std::invalid_argument(
-            R"(there are "geometry", "dynamics", "scenes" and "truth", got ")" + what + '"');
+            R"(there are "geometry", "dynamics", "scenes", "truth" and "problems", got ")" + what +
+            '"');
     return InterruptGuard::requested() ? InterruptGuard::exit_code() : static_cast<int>(code);
 }
 

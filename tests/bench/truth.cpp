@@ -59,4 +59,12 @@ glm::dvec3 Trial::angular_momentum() const {
     return sum;
 }
 
+std::vector<Problem> all_problems() {
+    std::vector<Problem> problems;
+    for (auto more : {motion_problems(), contact_problems(), joint_problems(), standing_problems(),
+                      fast_problems()})
+        problems.insert(problems.end(), more.begin(), more.end());
+    return problems;
+}
+
 } // namespace plumb

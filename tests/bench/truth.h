@@ -60,9 +60,12 @@ struct Problem {
     std::function<double(const EngineKind &)> error;
 };
 
-[[nodiscard]] std::vector<Problem> motion_problems(); // free bodies and contacts
+[[nodiscard]] std::vector<Problem> motion_problems();  // free bodies and contacts
+[[nodiscard]] std::vector<Problem> contact_problems(); // what bounces, rolls and rides on others
 [[nodiscard]] std::vector<Problem> joint_problems();
 [[nodiscard]] std::vector<Problem> standing_problems(); // stacks, pyramids, mass ratios
 [[nodiscard]] std::vector<Problem> fast_problems();     // tunnelling and ghost collisions
+
+[[nodiscard]] std::vector<Problem> all_problems(); // in the order of the table
 
 } // namespace plumb
