@@ -1,6 +1,7 @@
 // What a chart's picture shows.
 #include "app/lab/chart/chart.h"
 #include "app/lab/chart/convergence.h"
+#include "app/lab/chart/curve_style.h"
 #include "app/lab/chart/log_axis.h"
 #include "app/lab/provenance.h"
 #include "app/lab/run/method_choice.h"
@@ -73,21 +74,24 @@ bool has_both_modes(const SceneChart &chart) {
     });
 }
 
-// Colour and shape: further curves of a method keep its colour and take another shape, until all
-// shapes are taken.
+// Each method has a style of its own, the same on every chart. Further curves of a method keep its
+// colour, and take other dashes and another shape; other engines take what no method has.
 std::size_t style_of(const MethodInfo &method, const std::vector<ChartSeries> &earlier) {
-    const auto own = std::ranges::find_if(method_infos(),
-                                          [&](const MethodInfo &each) { return &each == &method; });
-    const bool is_ours = own != method_infos().end(); // not another engine
-    std::size_t style = static_cast<std::size_t>(own - method_infos().begin());
-    const auto is_taken = [&] {
-        return std::ranges::any_of(earlier, [&](const ChartSeries &series) {
-            return series.style % style_count == style % style_count;
-        });
+    const auto methods = method_infos();
+    const auto own = static_cast<std::size_t>(
+        std::ranges::find_if(methods, [&](const MethodInfo &each) { return &each == &method; }) -
+        methods.begin());
+    const auto is_free = [&](std::size_t style) {
+        return std::ranges::find(earlier, style, &ChartSeries::style) == earlier.end();
     };
-    for (std::size_t tried = 1; is_taken() && tried <= style_count; ++tried)
-        style += is_ours && tried % shape_count != 0 ? series_colour_count : 1;
-    return style;
+    if (own < methods.size())
+        for (std::size_t style = own; style < style_count; style += series_colour_count)
+            if ((style == own || style >= methods.size()) && is_free(style))
+                return style;
+    for (std::size_t style = methods.size(); style < style_count; ++style)
+        if (is_free(style))
+            return style;
+    return own % style_count;
 }
 
 // The first run's text, plus "and others" if any run differs.

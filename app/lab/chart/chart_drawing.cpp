@@ -12,6 +12,7 @@ using namespace chart_colour;
 namespace {
 
 constexpr float hollow_radius = chart_style::mark_radius - 2.4f;
+constexpr float line_width = 1.8f;
 
 ImU32 series_colour(const ChartSeries &series) {
     return colour(series_colours[series.style % series_colours.size()]);
@@ -83,14 +84,20 @@ void draw_marks(ChartPen &pen, const ChartContent &content, const ChartLayout &l
     if (!layout.budget_label.empty())
         pen.text(layout.budget_text.min, layout.budget_label, Face::label, budget_ink);
     for (const ChartSeries &series : content.series)
-        for (const auto &line : series.lines)
-            for (std::size_t k = 1; k < line.size(); ++k) {
+        for (const auto &line : series.lines) {
+            std::vector<glm::vec2> points;
+            const auto draw = [&] {
+                pen.styled(series.style, points, series_colour(series), line_width);
+                points.clear();
+            };
+            for (const std::size_t mark : line)
                 // A line to a failed run would suggest an error that can be read off.
-                if (content.marks[line[k - 1]].failed || content.marks[line[k]].failed)
-                    continue;
-                pen.line(layout.marks[line[k - 1]], layout.marks[line[k]], series_colour(series),
-                         1.8f);
-            }
+                if (content.marks[mark].failed)
+                    draw();
+                else
+                    points.push_back(layout.marks[mark]);
+            draw();
+        }
     const auto x_of = [&](double cost) {
         return static_cast<float>(field.min.x + log_position(layout.cost_range, cost) *
                                                     (field.max.x - field.min.x));
@@ -144,8 +151,9 @@ std::vector<std::string> rows_of(const ChartPen &pen, const std::string &name, f
 
 void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &layout) {
     using chart_style::mark_radius;
-    const float left = layout.plot.max.x + 28;
-    const float text_left = left + 34;
+    constexpr float sample = 38; // a line long enough to show its dashes beside the mark
+    const float left = layout.plot.max.x + 24, middle = left + 0.5f * sample;
+    const float text_left = left + sample + 10;
     const float width = layout.size.x - 20 - text_left;
     float y = layout.plot.min.y + 10;
     // Down to the footer; many series are set closer to leave room for the rest.
@@ -153,9 +161,10 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
     const bool many = content.series.size() > 9;
     const float row = many ? chart_style::close_row : 26, entry_row = many ? 19 : 23;
     for (const ChartSeries &series : content.series) {
-        pen.line({left, y}, {left + 24, y}, series_colour(series), 1.8f);
-        pen.mark({left + 12, y}, series.style, mark_radius + 1.3f, paper);
-        pen.mark({left + 12, y}, series.style, mark_radius, series_colour(series));
+        const std::array line{glm::vec2(left, y), glm::vec2(left + sample, y)};
+        pen.styled(series.style, line, series_colour(series), line_width);
+        pen.mark({middle, y}, series.style, mark_radius + 1.3f, paper);
+        pen.mark({middle, y}, series.style, mark_radius, series_colour(series));
         const std::vector<std::string> rows = rows_of(pen, series.name, width);
         for (const std::string &text : rows) {
             pen.text({text_left, y}, text, Face::axis, ink, {0, 0.5f});
@@ -171,24 +180,24 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         y += entry_row;
     };
     if (!layout.pareto_steps.empty()) {
-        pen.line({left, y}, {left + 24, y}, front, 7);
-        pen.mark({left + 12, y}, 0, mark_radius + 2.5f, ink);
-        pen.mark({left + 12, y}, 0, mark_radius + 0.6f, paper);
-        pen.mark({left + 12, y}, 0, mark_radius - 2, faint_ink);
+        pen.line({left, y}, {left + sample, y}, front, 7);
+        pen.mark({middle, y}, 0, mark_radius + 2.5f, ink);
+        pen.mark({middle, y}, 0, mark_radius + 0.6f, paper);
+        pen.mark({middle, y}, 0, mark_radius - 2, faint_ink);
         entry("Pareto front");
     }
     if (layout.failed_line) {
-        draw_failed(pen, {left + 12, y}, 0, soft_ink);
+        draw_failed(pen, {middle, y}, 0, soft_ink);
         entry("diverged, or no result");
     }
     if (any([](const ChartMark &mark) { return mark.outside && !mark.failed; })) {
-        pen.mark({left + 12, y}, 0, mark_radius, soft_ink);
-        pen.mark({left + 12, y}, 0, hollow_radius, paper);
+        pen.mark({middle, y}, 0, mark_radius, soft_ink);
+        pen.mark({middle, y}, 0, hollow_radius, paper);
         entry("misses an expectation");
     }
     if (layout.corner) {
-        pen.fill({{left, y - 7}, {left + 24, y + 7}}, fine_tint);
-        pen.dashed({left, y - 7}, {left + 24, y - 7}, limit_ink, 1.5f, 6, 3);
+        pen.fill({{left, y - 7}, {left + sample, y + 7}}, fine_tint);
+        pen.dashed({left, y - 7}, {left + sample, y - 7}, limit_ink, 1.5f, 6, 3);
         entry(content.budget ? "accurate enough, in budget" : "accurate enough");
     }
     if (!content.label_meaning.empty()) {
@@ -196,11 +205,11 @@ void draw_legend(ChartPen &pen, const ChartContent &content, const ChartLayout &
         const auto mark = std::find_if(content.marks.begin(), content.marks.end(),
                                        [](const ChartMark &m) { return !m.failed; });
         if (mark != content.marks.end() && pen.text_size(mark->label, Face::label).x < 30)
-            pen.text({left + 12, y}, mark->label, Face::label, ink, {0.5f, 0.5f});
+            pen.text({middle, y}, mark->label, Face::label, ink, {0.5f, 0.5f});
         entry("label: " + content.label_meaning);
     }
     if (any([](const ChartMark &mark) { return mark.cost_high > mark.cost_low; })) {
-        pen.line({left, y}, {left + 24, y}, faint_ink, 1);
+        pen.line({left, y}, {left + sample, y}, faint_ink, 1);
         entry("spread of the timings");
     }
     struct List {

@@ -25,14 +25,9 @@ struct ChartMark {
     std::size_t series = 0;
 };
 
-// A style is a colour, style % series_colour_count, and a shape, style % shape_count.
-inline constexpr std::size_t series_colour_count = 7;
-inline constexpr std::size_t shape_count = 5; // coprime to the number of colours
-inline constexpr std::size_t style_count = series_colour_count * shape_count;
-
 struct ChartSeries {
     std::string name;
-    std::size_t style = 0;                       // colour and shape
+    std::size_t style = 0;                       // see curve_style.h
     std::vector<std::vector<std::size_t>> lines; // mark indices, joined in this order
 };
 

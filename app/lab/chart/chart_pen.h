@@ -2,11 +2,13 @@
 #pragma once
 
 #include "app/lab/chart/chart_canvas.h"
+#include "app/lab/chart/curve_style.h"
 #include "app/lab/chart/log_axis.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,11 +38,6 @@ inline constexpr ImU32 limit_ink = colour(0x2f7d4f);
 inline constexpr ImU32 budget_ink = colour(0x9a5b13);
 inline constexpr ImU32 front = colour(0xdcdfe3);
 
-// Distinguishable with any common type of colour blindness (Okabe and Ito 2008), without the
-// yellow, which is too light on white. Mark shapes repeat the distinction.
-inline constexpr std::array<unsigned, series_colour_count> series_colours{
-    0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x4d4d4d};
-
 } // namespace chart_colour
 
 class ChartPen {
@@ -68,25 +65,13 @@ class ChartPen {
         line(p + glm::vec2(-r, -r), p + glm::vec2(r, r), c, width);
         line(p + glm::vec2(-r, r), p + glm::vec2(r, -r), c, width);
     }
-    // A filled mark; all shapes have the same visual weight.
-    void mark(glm::vec2 p, std::size_t shape, float r, ImU32 c) {
-        switch (shape % shape_count) {
-        case 0:
-            polygon(p, r, 40, 0, c);
-            break;
-        case 1:
-            fill({p - 0.86f * r, p + 0.86f * r}, c);
-            break;
-        case 2:
-            polygon(p, r * 1.15f, 3, -90, c);
-            break;
-        case 3:
-            polygon(p, r * 1.18f, 4, 0, c);
-            break;
-        default:
-            polygon(p, r * 1.15f, 3, 90, c);
-            break;
-        }
+    // A style's line, and its mark, filled.
+    void styled(std::size_t style, std::span<const glm::vec2> points, ImU32 c, float width) {
+        for (const LinePiece &piece : line_pieces(style, points))
+            canvas_.stroke(piece, c, width);
+    }
+    void mark(glm::vec2 p, std::size_t style, float r, ImU32 c) {
+        canvas_.polygon(mark_outline(style, p, r), c);
     }
 
     [[nodiscard]] glm::vec2 text_size(std::string_view text, Face face) const {
@@ -142,15 +127,6 @@ class ChartPen {
 
     [[nodiscard]] glm::vec2 plain_size(std::string_view text, Face face, float scale) const {
         return plumb::text_size(canvas_.fonts(), text, face, scale);
-    }
-    void polygon(glm::vec2 p, float r, int corners, float degrees, ImU32 c) {
-        std::vector<glm::vec2> points;
-        for (int i = 0; i < corners; ++i) {
-            const float angle = 0.01745329f * (degrees + 360.0f * static_cast<float>(i) /
-                                                             static_cast<float>(corners));
-            points.push_back(p + r * glm::vec2(std::cos(angle), std::sin(angle)));
-        }
-        canvas_.polygon(points, c);
     }
 
     ChartCanvas &canvas_;

@@ -1,4 +1,5 @@
 // Cost against error of the running scene, by method. Clicking a point applies it.
+#include "app/lab/chart/curve_style.h"
 #include "app/lab/run/run_text.h"
 #include "app/sandbox/panels/lab_draw.h"
 #include "app/sandbox/panels/panel.h"
@@ -6,7 +7,10 @@
 #include "app/sandbox/panels/widgets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <imgui/imgui.h>
 #include <imgui/imgui_stdlib.h>
@@ -121,27 +125,48 @@ void draw_axes(const PanelContext &context, const Placed &placed) {
                      1.5f);
 }
 
+glm::vec2 pixel(const ImVec2 &at) {
+    return {at.x, at.y};
+}
+
+void draw_line(const ChartSeries &series, std::span<const glm::vec2> points, float opacity,
+               float scale) {
+    for (const LinePiece &piece : line_pieces(series.style, points, scale))
+        ImGui::GetWindowDrawList()->AddLine({piece[0].x, piece[0].y}, {piece[1].x, piece[1].y},
+                                            packed(series_colour(series), opacity), 1.5f);
+}
+
+void draw_mark(const ChartSeries &series, const ImVec2 &at, float radius, ImU32 colour) {
+    std::vector<ImVec2> corners;
+    for (const glm::vec2 &corner : mark_outline(series.style, pixel(at), radius))
+        corners.emplace_back(corner.x, corner.y);
+    ImGui::GetWindowDrawList()->AddConvexPolyFilled(corners.data(),
+                                                    static_cast<int>(corners.size()), colour);
+}
+
 void draw_marks(const Placed &placed, const SceneChart &chart, const Simulation &running,
                 float radius) {
     ImDrawList &list = *ImGui::GetWindowDrawList();
     for (const ChartSeries &series : placed.content.series)
-        for (const auto &line : series.lines)
-            for (std::size_t k = 1; k < line.size(); ++k)
-                list.AddLine(placed.at(placed.layout.marks[line[k - 1]]),
-                             placed.at(placed.layout.marks[line[k]]),
-                             packed(series_colour(series), 0.55f), 1.5f);
+        for (const auto &line : series.lines) {
+            std::vector<glm::vec2> points;
+            for (const std::size_t mark : line)
+                points.push_back(pixel(placed.at(placed.layout.marks[mark])));
+            draw_line(series, points, 0.55f, radius / mark_radius);
+        }
     for (std::size_t i = 0; i < placed.content.marks.size(); ++i) {
         const ChartMark &mark = placed.content.marks[i];
         const ImVec2 at = placed.at(placed.layout.marks[i]);
-        const ImU32 colour = packed(series_colour(placed.content.series[mark.series]));
+        const ChartSeries &series = placed.content.series[mark.series];
+        const ImU32 colour = packed(series_colour(series));
         if (mark.failed) {
             list.AddLine({at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}, colour, 2);
             list.AddLine({at.x - radius, at.y + radius}, {at.x + radius, at.y - radius}, colour, 2);
         } else if (mark.outside) {
-            list.AddCircleFilled(at, radius, packed(theme::panel));
-            list.AddCircle(at, radius, colour, 0, 1.8f);
+            draw_mark(series, at, radius + 0.5f, colour);
+            draw_mark(series, at, radius - 1.6f, packed(theme::panel));
         } else {
-            list.AddCircleFilled(at, radius, colour);
+            draw_mark(series, at, radius, colour);
         }
         if (mark.pareto)
             list.AddCircle(at, radius + 3, packed(theme::text), 0, 1.2f);
@@ -150,21 +175,24 @@ void draw_marks(const Placed &placed, const SceneChart &chart, const Simulation 
     }
 }
 
-// Method names in their colours, as many to a line as fit.
+// Method names beside their lines and marks, as many to a line as fit.
 void legend(const PanelContext &context, const ChartContent &content) {
     const float em = context.fonts.small->FontSize;
     const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
     ImGui::PushFont(context.fonts.small);
+    const float sample = 2.2f * em;
     bool first = true;
     for (const ChartSeries &series : content.series) {
-        const float width = em + ImGui::CalcTextSize(series.name.c_str()).x;
+        const float width = sample + 0.25f * em + ImGui::CalcTextSize(series.name.c_str()).x;
         if (!first && ImGui::GetItemRectMax().x + em + width < right)
             ImGui::SameLine(0, em);
         first = false;
         const ImVec2 at = ImGui::GetCursorScreenPos();
-        ImGui::GetWindowDrawList()->AddCircleFilled({at.x + 0.35f * em, at.y + 0.5f * em},
-                                                    0.32f * em, packed(series_colour(series)));
-        ImGui::Dummy({0.75f * em, em});
+        const float y = at.y + 0.5f * em;
+        draw_line(series, std::array{glm::vec2(at.x, y), glm::vec2(at.x + sample, y)}, 0.8f,
+                  em / 13);
+        draw_mark(series, {at.x + 0.5f * sample, y}, 0.32f * em, packed(series_colour(series)));
+        ImGui::Dummy({sample, em});
         ImGui::SameLine(0, 0.25f * em);
         ImGui::TextUnformatted(series.name.c_str());
     }
