@@ -18,7 +18,7 @@ PAGE = ROOT / "scenes" / "geometry" / "RECIPES.md"
 
 HEAD = """# The recipes
 
-Chapters 1 to 13 and the appendix of the *Game Physics Cookbook* (G. Szauer, Packt 2017): where each recipe is a
+Chapters 1 to 16 and the appendix of the *Game Physics Cookbook* (G. Szauer, Packt 2017): where each recipe is a
 function, which test holds it against what oracle, and in which scene it can be seen (`./plumb run NAME`).
 
 Made by `tests/recipes/recipes.py --write` from `tests/recipes/recipes.csv`; a test fails when a function, a test or
