@@ -183,14 +183,16 @@ std::vector<Problem> standing_problems() {
     problems.push_back({"card_house", "how far any card went in 10 s", "mm", 0.5, card_house});
     problems.push_back({"arch", "how far any of its 13 stones went in 10 s", "mm", 0.5, arch});
     for (const auto &[side, count] : {std::pair(2, 3), {2, 10}, {20, 3}, {20, 10}})
-        problems.push_back(
-            {"cubes_" + std::to_string(side) + "mm_" + std::to_string(count),
-             "how far the top of so many is from its place after 30 s", "%", 1,
-             [=](const EngineKind &kind) { return small_stack(kind, count, 1e-3 * side); }});
+        problems.push_back({"cubes_" + std::to_string(side) + "mm_" + std::to_string(count),
+                            "how far the top of so many is from its place after 30 s", "%", 1,
+                            [count = count, side = side](const EngineKind &kind) {
+                                return small_stack(kind, count, 1e-3 * side);
+                            }});
     for (const auto &[ratio, aim] : {std::pair(30, 1.0), {100, 1.0}, {1000, 5.0}, {3000, 500.0}})
-        problems.push_back({"on_one_" + std::to_string(ratio),
-                            "depth of a box so many times as heavy on one", "mm", aim,
-                            [=](const EngineKind &kind) { return unlike_masses(kind, ratio); }});
+        problems.push_back(
+            {"on_one_" + std::to_string(ratio), "depth of a box so many times as heavy on one",
+             "mm", aim,
+             [ratio = ratio](const EngineKind &kind) { return unlike_masses(kind, ratio); }});
     problems.push_back(
         {"pile", "deepest in a pile of 2000 that falls, in 5 s", "mm", 150, deepest_in_pile});
     problems.push_back(
