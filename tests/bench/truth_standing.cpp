@@ -194,9 +194,9 @@ std::vector<Problem> standing_problems() {
              "mm", aim,
              [ratio = ratio](const EngineKind &kind) { return unlike_masses(kind, ratio); }});
     problems.push_back(
-        {"pile", "deepest in a pile of 2000 that falls, in 5 s", "mm", 150, deepest_in_pile});
+        {"pile", "deepest in a pile of 2000 that falls, in 5 s", "mm", 100, deepest_in_pile});
     problems.push_back(
-        {"pile_rest", "the same in the tenth second, at rest", "mm", 20, deepest_at_rest});
+        {"pile_rest", "the same in the tenth second, at rest", "mm", 5, deepest_at_rest});
     return problems;
 }
 

@@ -23,8 +23,13 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
 using Mask = hn::Mask<decltype(tag)>;
-constexpr int new_sweeps = 8;
+constexpr int most_sweeps = 8;
 constexpr int most_rubs = 4;
+// A contact of one or two points whose last sweep changed no normal impulse by more than this share
+// of the greater is swept no more. Three or four share a load in many ways, and settle slowly: a
+// stack that lands would tilt.
+constexpr Real swept_share = Real(1e-5);
+constexpr int few_points = 2;
 // As a share of struck_speed: contacts that close or part faster are solved as a whole before their
 // points.
 constexpr Real even_share = Real(1) / Real(20);
@@ -504,18 +509,25 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         const auto even = hn::Gt(hn::Abs(first_speed), even_speed);
         auto stops = hn::FirstN(tag, 0);
         Lanes corrected = zero;
-        if (!hn::AllFalse(tag, even))
+        if (block.points_used > 1 && !hn::AllFalse(tag, even))
             stops = solve_evenly(block, lane, pair, n, even, struck, driven, bias.loaded_only,
                                  soft_mass, soft_impulse, separation_at, target_of, corrected);
         // Struck contacts are swept again, too: otherwise the first of their corners would take
         // most of the impact, and tilt the body. (Zeros are lanes without a point.)
-        auto again = hn::FirstN(tag, sweeps_all ? column_lanes : 0);
-        for (int sweep = 0; sweep < new_sweeps; ++sweep) {
-            const bool is_first = sweep == 0;
-            if (sweep == 1)
-                again = hn::Or(again, struck);
-            if (!is_first && hn::AllFalse(tag, again))
+        auto again = hn::FirstN(tag, column_lanes);
+        Lanes changed = zero; // the most that the last sweep changed a normal impulse
+        Lanes most = zero;    // normal impulse
+        for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+            if (sweep == 1 && !sweeps_all)
+                again = struck;
+            if (sweep > 0)
+                again = hn::And(again, block.points_used <= few_points
+                                           ? hn::Gt(changed, hn::Mul(all(swept_share), most))
+                                           : hn::Gt(most, zero));
+            if (hn::AllFalse(tag, again))
                 break;
+            const bool is_first = sweep == 0;
+            changed = most = zero;
             for (int i = 0; i < block.points_used; ++i) {
                 const int k = bias.backwards ? block.points_used - 1 - i : i;
                 ContactBlock::Point &point = block.points[k];
@@ -548,12 +560,14 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                                            before, total);
                 if (!is_first)
                     total = hn::IfThenElse(again, total, before);
+                changed = max(changed, hn::Abs(hn::Sub(total, before)));
+                most = max(most, total);
                 corrected = max(corrected, hn::IfThenZeroElse(hn::Eq(total, before),
                                                               hn::Abs(hn::Add(speed, target))));
                 pair.apply(times(hn::Sub(total, before), n), r_a, r_b);
                 store(total, point.impulse.x, lane);
             }
-            auto rubs = is_first ? hn::FirstN(tag, column_lanes) : again;
+            auto rubs = again;
             for (int rub = 0; rub < (pushes ? most_rubs : 1) && !hn::AllFalse(tag, rubs); ++rub)
                 rubs = hn::And(rubs, solve_friction(block, lane, pair, patch, t1, t2, friction,
                                                     rubs, bias.backwards));
