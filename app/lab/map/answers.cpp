@@ -34,10 +34,10 @@ bool only_forbids_gain(const ExpectDesc &expect) {
            expect.reduce != "max_abs";
 }
 
-// Whether the axis may make a motor, a spring joint or a moving body of what was none, or joints
-// that start apart.
+// Whether the axis may make a motor, a spring joint, a torque or a moving body of what was none, or
+// joints that start apart.
 bool may_drive(const SceneDesc &scene, const MapAxis &axis) {
-    return axis.name.starts_with("joint.") ||
+    return axis.name.starts_with("joint.") || axis.name.find(".torque.") != std::string::npos ||
            std::ranges::any_of(scene.bodies, [&](const BodyDesc &body) {
                return body.kind == BodyKind::kinematic &&
                       axis.name.starts_with("body." + body.name + ".");

@@ -95,8 +95,9 @@ bool brings_energy_in(const SceneDesc &scene) {
                scene.joints,
                [](const JointDesc &joint) { return joint.motor_speed.has_value(); }) ||
            std::ranges::any_of(scene.bodies, [&](const BodyDesc &body) {
-               return body.kind == BodyKind::kinematic &&
-                      (body.velocity != still || body.angular_velocity != still);
+               return body.torque != still ||
+                      (body.kind == BodyKind::kinematic &&
+                       (body.velocity != still || body.angular_velocity != still));
            });
 }
 

@@ -39,8 +39,8 @@ struct FailingInfo {
 inline constexpr double tolerated_energy_gain = 0.1; // of K0 + |U0|
 inline constexpr double tolerated_depth = 0.25;      // of the smallest width of any moving body
 
-// Whether a motor, a spring joint or a moving kinematic body adds energy: then gaining energy is no
-// failure.
+// Whether a motor, a spring joint, a constant torque or a moving kinematic body adds energy: then
+// gaining energy is no failure.
 [[nodiscard]] bool brings_energy_in(const SceneDesc &scene);
 
 // Whether the scene expects anything of a body: where it is, how fast, how far tilted.

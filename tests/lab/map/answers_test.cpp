@@ -52,11 +52,15 @@ TEST(MapAnswers, HoldWhateverVariesIfTheyAreLaws) {
     for (const char *axis : {"gravity.y", "body.bob.mass", "material.steel.friction"})
         EXPECT_EQ(hold(scene, axis), "--dng--") << axis;
     EXPECT_EQ(hold(scene, "joint.rod.motor_speed"), "---n---");
+    EXPECT_EQ(hold(scene, "body.bob.torque.x"), "---n---");
     EXPECT_EQ(hold(scene, "body.bob.repeat.count"), "-sdngeh");
     scene.joints[0].frequency = 2;
     EXPECT_EQ(hold(scene, "gravity.y"), "---n---");
     scene.joints[0].frequency = 0;
     scene.joints[0].motor_speed = 1;
+    EXPECT_EQ(hold(scene, "gravity.y"), "--dn---");
+    scene.joints[0].motor_speed.reset();
+    scene.bodies.back().torque.y = 1;
     EXPECT_EQ(hold(scene, "gravity.y"), "--dn---");
 }
 
