@@ -38,7 +38,8 @@ struct RemoveBody {
 };
 
 // The joint's name must be free and its bodies there; anchors and frames are theirs, as in
-// JointDesc. Fails under a method without joints.
+// JointDesc. Fields that its type does not read must be at their defaults: a recording leaves them
+// out. Fails under a method without joints.
 struct AddJoint {
     static constexpr std::string_view name = "add_joint";
     JointDesc joint;
