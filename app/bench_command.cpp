@@ -99,8 +99,7 @@ void add_bench(CommandLine &line) {
     bench_command
         ->add_option("--only", arguments->only,
                      "dynamics, scenes, truth, problems: the scenes or problems of that name, else "
-                     "those whose names "
-                     "start with it (all)")
+                     "those whose names start with it (all)")
         ->type_name("NAME,...");
     bench_command
         ->add_option("--seconds", arguments->seconds,

@@ -132,9 +132,8 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      "energy, but swinging bodies lose more."},
     {"baumgarte_time", &StepSettings::baumgarte_time, "s", 0, 1e9, SettingGroup::additions,
      "Where substeps are shorter than this, joints lose that fraction of drift per this time, "
-     "unless "
-     "split_impulse is 2; 0: always per substep, and chains gain more energy the shorter the "
-     "step."},
+     "unless split_impulse is 2; 0: always per substep, and chains gain more energy the shorter "
+     "the step."},
     {"foresee_turns", &StepSettings::foresee_turns, "", 0, 1, SettingGroup::additions,
      "1: how far joints drift because bodies turn within the substep is removed beforehand, to "
      "second order, unless split_impulse is 2; 0: drift grows until its bias balances it."},

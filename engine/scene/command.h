@@ -38,8 +38,7 @@ struct RemoveBody {
 };
 
 // The joint's name must be free and its bodies there; anchors and frames are theirs, as in
-// JointDesc. Fields that its type does not read must be at their defaults: a recording leaves them
-// out. Fails under a method without joints.
+// JointDesc. Fails under a method without joints.
 struct AddJoint {
     static constexpr std::string_view name = "add_joint";
     JointDesc joint;

@@ -2,6 +2,9 @@
 
 #include "engine/core/check.h"
 
+#include <algorithm>
+#include <type_traits>
+
 namespace plumb {
 
 namespace {
@@ -162,6 +165,25 @@ std::span<const JointTypeInfo *const> joint_types() {
         return types;
     }();
     return all;
+}
+
+JointDesc as_read(JointDesc joint) {
+    const JointTypeInfo &own = joint_type(joint.type);
+    if (own.frames == JointTypeInfo::Frames::none)
+        joint.frame_a_local = joint.frame_b_local = JointDesc{}.frame_a_local;
+    const auto reads = [&](const JointKey &key) {
+        return std::ranges::find(own.keys, key.name, &JointKey::name) != own.keys.end();
+    };
+    for (const JointTypeInfo *type : joint_types())
+        for (const JointKey &key : type->keys)
+            if (!reads(key))
+                std::visit(
+                    [&]<typename Member>(Member member) {
+                        if constexpr (!std::is_same_v<Member, JointKey::Length>)
+                            joint.*member = JointDesc{}.*member;
+                    },
+                    key.member);
+    return joint;
 }
 
 std::string joint_reference() {

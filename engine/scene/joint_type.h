@@ -56,6 +56,8 @@ struct JointTypeInfo {
 
 const std::vector<JointKey> &common_joint_keys();
 const JointTypeInfo &joint_type(JointType type);
+// With the fields that its type does not read at their defaults, as a file leaves them out.
+JointDesc as_read(JointDesc joint);
 std::span<const JointTypeInfo *const> joint_types(); // in the order of the enumeration
 
 // The types and keys as Markdown tables for scenes/README.md.

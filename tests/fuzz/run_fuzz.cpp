@@ -267,9 +267,7 @@ class Run {
             joint.body_b = body();
             joint.anchor_a_local = point();
             joint.anchor_b_local = point();
-            // A recording has only the fields that the type reads.
-            if (joint.type == JointType::distance)
-                joint.max_length = size();
+            joint.max_length = size();
             return AddJoint{joint};
         }
         case 0:

@@ -321,6 +321,27 @@ TEST(Recording, StartsAfterJointsWereRemoved) {
     EXPECT_EQ(first_difference(parsed(write_recording(recording))), std::nullopt);
 }
 
+// What its type does not read makes no difference, and is not in a file.
+TEST(Recording, HasOfAJointOnlyWhatItsTypeReads) {
+    JointDesc joint;
+    joint.name = "added";
+    joint.body_b = "club";
+    JointDesc more = joint;
+    more.max_length = 2;
+    more.limits = {-1, 1};
+    more.motor_speed = 3;
+    more.frame_b_local = {0, 1, 0, 0};
+    const auto plain = Simulation::create(scene(), {}, nullptr);
+    const auto with_more = Simulation::create(scene(), {}, nullptr);
+    Recorder recorder(*with_more);
+    plain->apply(AddJoint{joint});
+    with_more->apply(AddJoint{more});
+    recorder.add(*with_more, AddJoint{more});
+    EXPECT_EQ(plain->hash(), with_more->hash());
+    EXPECT_EQ(first_difference(parsed(write_recording(recorder.recording(*with_more)))),
+              std::nullopt);
+}
+
 // Also while a method without contacts steps the remaining bodies.
 TEST(Recording, StartsAfterBodiesWereRemovedWhereNothingCollides) {
     SceneDesc heap = scene();

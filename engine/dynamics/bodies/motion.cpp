@@ -476,55 +476,22 @@ int fly_attracted(SolverBody &motion, const Body &body, const Vec3 &gravity,
     return 3 * context.settings.substeps;
 }
 
-// Half of a constant torque before each substep's torque-free turn, half after. Returns passes over
-// the body.
-int turn_twisted(SolverBody &motion, const Body &body, const Drive &drive,
-                 const StepContext &context) {
-    const Real h = context.substep();
-    const Damped angular = damped(body.angular_damping, h);
-    FreeFlight flight;
-    for (int substep = 0; substep < context.settings.substeps; ++substep) {
-        twist(motion, body, Real(0.5) * h);
-        if (drive.is_gyroscopic) {
-            flight.start_spin =
-                turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
-            turn_freely(flight, body, angular, h, context.settings.gyroscopic_iterations);
-            motion.turned += h * rotated(motion.rotation, flight.mean_spin);
-            motion.rotation = glm::normalize(motion.rotation * cayley(flight.mean_spin, h));
-            motion.angular_velocity = turned_to_rounding(motion.rotation, flight.end_spin);
-        } else {
-            const Vec3 mean = angular.mean_kept * motion.angular_velocity;
-            motion.turned += h * mean;
-            motion.rotation = turned(motion.rotation, mean, h);
-            motion.angular_velocity *= angular.kept;
-        }
-        twist(motion, body, Real(0.5) * h);
-    }
-    motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
-    return 3 * context.settings.substeps;
-}
-
-// Its rotation: closed form about a constant axis, otherwise substep by substep with the spin kept
-// in body axes. Returns passes over the body.
-int turn_alone(SolverBody &motion, const Body &body, const Drive &drive,
-               const StepContext &context) {
-    const Real h = context.substep();
-    if (body.has_torque)
-        return turn_twisted(motion, body, drive, context);
+// A torque-free turn for `time` seconds, `substeps` times h: closed form about a constant axis,
+// otherwise substep by substep with the spin kept in body axes. Returns passes over the body.
+int turn_torque_free(SolverBody &motion, const Body &body, const Drive &drive, Real time, Real h,
+                     int substeps, int iterations) {
     if (!drive.is_gyroscopic || motion.angular_velocity == Vec3{Real(0)}) {
-        const auto dt = static_cast<Real>(context.settings.dt);
-        const Damped angular = drive.is_dynamic ? damped(body.angular_damping, dt) : Damped{};
+        const Damped angular = drive.is_dynamic ? damped(body.angular_damping, time) : Damped{};
         const Vec3 mean = angular.mean_kept * motion.angular_velocity;
-        motion.turned += dt * mean;
-        motion.rotation = turned(motion.rotation, mean, dt);
+        motion.turned += time * mean;
+        motion.rotation = turned(motion.rotation, mean, time);
         motion.angular_velocity *= angular.kept;
         return 1;
     }
     const Damped angular = damped(body.angular_damping, h);
     Vec3 spin = turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
-    for (int substep = 0; substep < context.settings.substeps; ++substep) {
-        const Vec3 undamped =
-            gyroscopic_spin(body.inertia, spin, h, context.settings.gyroscopic_iterations);
+    for (int substep = 0; substep < substeps; ++substep) {
+        const Vec3 undamped = gyroscopic_spin(body.inertia, spin, h, iterations);
         const Vec3 mean = angular.mean_kept * (Real(0.5) * (spin + undamped));
         spin = angular.kept * undamped;
         motion.turned += h * rotated(motion.rotation, mean);
@@ -532,7 +499,25 @@ int turn_alone(SolverBody &motion, const Body &body, const Drive &drive,
     }
     motion.angular_velocity = turned_to_rounding(motion.rotation, spin);
     motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
-    return context.settings.substeps;
+    return substeps;
+}
+
+// The rotation of a body alone; of a constant torque, half acts before each substep's turn, half
+// after. Returns passes over the body.
+int turn_alone(SolverBody &motion, const Body &body, const Drive &drive,
+               const StepContext &context) {
+    const StepSettings &settings = context.settings;
+    const Real h = context.substep();
+    const int iterations = settings.gyroscopic_iterations;
+    if (!body.has_torque)
+        return turn_torque_free(motion, body, drive, static_cast<Real>(settings.dt), h,
+                                settings.substeps, iterations);
+    for (int substep = 0; substep < settings.substeps; ++substep) {
+        twist(motion, body, Real(0.5) * h);
+        turn_torque_free(motion, body, drive, h, h, 1, iterations);
+        twist(motion, body, Real(0.5) * h);
+    }
+    return 3 * settings.substeps;
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "engine/dynamics/world.h"
 #include "engine/math/basis.h"
 #include "engine/scene/expect.h"
+#include "engine/scene/joint_type.h"
 #include "engine/scene/real/body_def.h"
 #include "engine/scene/real/read_world.h"
 
@@ -315,7 +316,8 @@ void WorldSimulation::insert(const BodyDesc &desc) {
     book.index_of[desc.name] = index;
 }
 
-void WorldSimulation::insert(const JointDesc &desc) {
+void WorldSimulation::insert(const JointDesc &given) {
+    const JointDesc desc = as_read(given);
     JointDef def;
     def.type = desc.type;
     def.a = id_of(desc.body_a);
