@@ -2,8 +2,6 @@
 #include "tests/bench/benches.h"
 
 #include "app/files/output_file.h"
-#include "app/lab/interrupt.h"
-#include "app/lab/progress.h"
 #include "engine/scene/scene_file.h"
 #include "tests/bench/only.h"
 #include "tests/bench/truth.h"
@@ -37,13 +35,7 @@ SceneDesc scene_of(const Problem &problem) {
 ExitCode bench_problem_files(const EngineBenchOptions &options) {
     const std::vector<Problem> problems = chosen(all_problems(), options.only);
     create_folder(options.out_dir);
-    const InterruptGuard interrupt;
-    ProgressLine line(std::cerr);
-    std::size_t done = 0;
     for (const Problem &problem : problems) {
-        if (InterruptGuard::requested())
-            break;
-        line.show(static_cast<double>(done++) / static_cast<double>(problems.size()), problem.name);
         SceneDesc scene = scene_of(problem);
         scene.title = problem.name;
         char aim[32];
@@ -54,7 +46,6 @@ ExitCode bench_problem_files(const EngineBenchOptions &options) {
         OutputFile file(options.out_dir / (problem.name + ".toml"));
         file.stream() << write_scene(scene);
         file.finish();
-        line.clear();
         std::cout << file.path().string() << '\n';
     }
     return ExitCode::fine;
