@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <optional>
+#include <variant>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -155,6 +158,18 @@ Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &
                                             : Real(0);
 }
 
+// Of a capsule or cylinder, in the body's frame, of any length.
+std::optional<Vec3> axis_of(const Shape &shape) {
+    return std::visit(
+        []<typename Solid>(const Solid &solid) -> std::optional<Vec3> {
+            if constexpr (std::same_as<Solid, Capsule> || std::same_as<Solid, Cylinder>)
+                return solid.b - solid.a;
+            else
+                return std::nullopt;
+        },
+        shape);
+}
+
 // Needs the contact's origin.
 void set_rounding(Contact &contact, const Model &model) {
     const ContactOrigin &origin = contact.origin;
@@ -240,6 +255,35 @@ Real Contact::way_round(bool of_a, const Vec3 &turn) const {
     return std::sqrt(most);
 }
 
+// Whether the line between two round surfaces turns: as one rolls or slides over the other, its
+// normal turns with it. With the normal held for the step, a ball that rolls over another would
+// follow the tangents, hop, and not come off where it should.
+bool World::goes_round_the_other(const Contact &contact) const {
+    constexpr Real askew = Real(1e-2);
+    const auto dt = static_cast<Real>(settings_.dt);
+    const Motion &a = state_.motions[contact.key.a];
+    const Motion &b = state_.motions[contact.key.b];
+    const Vec3 &normal = contact.manifold.normal;
+    const Vec3 line = contact.line_between_cores(a, b);
+    const Vec3 velocity = b.velocity - a.velocity;
+    const Real length = glm::length(line);
+    if (contact.moment == Moment::touch && glm::length(glm::cross(normal, line)) > askew * length)
+        return false; // they meet later in the step
+    const Real slow = dt * static_cast<Real>(glm::length(settings_.gravity));
+    if (contact.is_new && std::abs(glm::dot(velocity, normal)) >= slow)
+        return false; // they hit
+    const Vec3 turn = static_cast<Real>(contact.manifold.count) * dt * glm::cross(normal, velocity);
+    const Real way = glm::length(turn);
+    // Along an axis the contact moves, and the line between the same two points is no normal.
+    const auto is_along = [&](std::uint32_t collider, const Quat &rotation) {
+        const std::optional<Vec3> axis = axis_of(model_->colliders[collider].shape);
+        return axis &&
+               glm::length(glm::cross(rotation * *axis, turn)) > askew * way * glm::length(*axis);
+    };
+    return way > rolling_far * length && !is_along(contact.collider_a, a.rotation) &&
+           !is_along(contact.collider_b, b.rotation);
+}
+
 // A coin that leans, a ball with a heavy side, a plank on a barrel: with arms and normal held for
 // the step they would be driven apart along the tangents and swing ever wider. In a crowd that
 // costs more than it is worth.
@@ -253,6 +297,8 @@ Rolling World::rolling_of(const Contact &contact) const {
     if ((!is_a && !is_b) || !method_->info.looks_ahead ||
         (!is_alone(contact.key.a) && !is_alone(contact.key.b)))
         return Rolling::straight;
+    if (is_a && is_b && goes_round_the_other(contact))
+        return Rolling::on_face;
     // Frictionless bodies that hit in space and slide past each other do not roll, nor do those
     // that bounce off a wall.
     if (contact.friction == Real(0) &&

@@ -92,6 +92,10 @@ struct Contact {
     std::array<Vec3, 4> impulses{};
 
     bool turns() const { return is_turning || is_braced || rolling == Rolling::on_face; }
+    // Between two round surfaces, one of which rolls or slides over the other.
+    bool goes_round_the_other() const {
+        return rolling == Rolling::on_face && rounding_a > Real(0) && rounding_b > Real(0);
+    }
     // How far its normal has turned since it was found, with the bodies at these rotations: with
     // one of them, or, between two round surfaces, with the line between their cores. `line`: from
     // a's cores to b's, the sum over all points.

@@ -89,6 +89,27 @@ void look_at(const StepContext &context, Blow &blow, Real h) {
     }
 }
 
+// Round surfaces meet on the line between their cores, unless the cores coincide or the line is far
+// off the present normal.
+void meet_between_cores(ContactConstraint &contact, const Contact &found, const SolverBody &a,
+                        const SolverBody &b, const Vec3 &between) {
+    const auto points = std::span(contact.points).first(static_cast<std::size_t>(contact.count));
+    Vec3 line{Real(0)};
+    for (const ContactPointConstraint &point : points)
+        line += between + b.rotation * point.core_b - a.rotation * point.core_a;
+    if (glm::dot(line, contact.normal) > Real(0.5) * glm::length(line))
+        contact.normal = glm::normalize(line);
+    contact.tangents = tangent_basis(contact.normal);
+    for (ContactPointConstraint &point : points) {
+        const Vec3 core_a = a.rotation * point.core_a;
+        const Vec3 core_b = b.rotation * point.core_b;
+        const Real half = Real(0.5) * (glm::dot(between + core_b - core_a, contact.normal) -
+                                       found.rounding_a - found.rounding_b);
+        point.r_a = core_a + (found.rounding_a + half) * contact.normal;
+        point.r_b = core_b - (found.rounding_b + half) * contact.normal;
+    }
+}
+
 Blow blow_on(const StepContext &context, ContactConstraint &contact, Real h) {
     const auto pull_on = [&](std::uint32_t body) {
         return plumb::pull_on(
@@ -96,6 +117,12 @@ Blow blow_on(const StepContext &context, ContactConstraint &contact, Real h) {
             Vec3{context.settings.gravity} +
                 attraction(context.model.attractors, context.bodies[body].position));
     };
+    const Contact &found = context.contacts[contact.contact];
+    const SolverBody &a = context.bodies[contact.a];
+    const SolverBody &b = context.bodies[contact.b];
+    // As one rolls over the other it would be struck by the plane that it leaves behind.
+    if (found.goes_round_the_other())
+        meet_between_cores(contact, found, a, b, b.position - a.position);
     Blow blow;
     blow.contact = &contact;
     blow.pull = glm::dot(pull_on(contact.b) - pull_on(contact.a), contact.normal);
@@ -320,23 +347,6 @@ bool are_apart(const ContactConstraint &contact, const Vec3 &between) {
                enough * enough * (glm::dot(point.r_a, point.r_a) + glm::dot(point.r_b, point.r_b));
     };
     return std::any_of(contact.points.begin(), contact.points.begin() + contact.count, is_apart);
-}
-
-// Round surfaces meet on the line between their cores, unless the cores coincide or the line is far
-// off the present normal.
-void meet_between_cores(ContactConstraint &contact, const Contact &found, const SolverBody &a,
-                        const SolverBody &b, const Vec3 &between) {
-    ContactPointConstraint &point = contact.points[0];
-    const Vec3 core_a = a.rotation * point.core_a;
-    const Vec3 core_b = b.rotation * point.core_b;
-    const Vec3 line = between + core_b - core_a;
-    if (glm::dot(line, contact.normal) > Real(0.5) * glm::length(line))
-        contact.normal = glm::normalize(line);
-    contact.tangents = tangent_basis(contact.normal);
-    const Real half =
-        Real(0.5) * (glm::dot(line, contact.normal) - found.rounding_a - found.rounding_b);
-    point.r_a = core_a + (found.rounding_a + half) * contact.normal;
-    point.r_b = core_b - (found.rounding_b + half) * contact.normal;
 }
 
 // Where the points of two dynamic bodies will coincide when they touch, so that the angular
