@@ -143,7 +143,7 @@ std::uint64_t World::hash() const {
             add(hash, model_->colliders[body.first_collider + c]);
         add(hash, state_.motions[i]);
         if (const Pace &pace = state_.paces[i];
-            pace.substeps > 0 || pace.rested > 0 || pace.struck > 0)
+            pace.substeps > 0 || pace.wanted > 0 || pace.rested > 0 || pace.struck > 0)
             hash.add(std::uint64_t{pace.struck} << 48 | std::uint64_t{pace.rested} << 32 |
                      std::uint64_t{pace.substeps} << 16 | pace.wanted);
     }

@@ -531,7 +531,7 @@ void World::release() {
 void World::set_pace(BodyId id, const Pace &pace) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
     state_.paces[id.index] = pace;
-    if (!sleeps())
+    if (pace.is_asleep() && !sleeps())
         state_.paces[id.index].rested = 0;
 }
 

@@ -5,6 +5,9 @@
 #include "engine/math/printed.h"
 
 #include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -59,7 +62,15 @@ Capsule placed(const Capsule &local, const Transform &pose) {
 
 Cylinder placed(const Cylinder &local, const Transform &pose) {
     check_placing(local, pose);
-    return {to_world_point(pose, local.a), to_world_point(pose, local.b), local.radius};
+    Cylinder there{to_world_point(pose, local.a), to_world_point(pose, local.b), local.radius};
+    if (there.a == there.b) {
+        const Vec3 axis = pose.rotation * (local.b - local.a);
+        const Vec3 size = glm::abs(axis);
+        const int most = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        there.b[most] = std::nextafter(
+            there.b[most], std::copysign(std::numeric_limits<Real>::infinity(), axis[most]));
+    }
+    return there;
 }
 
 Segment placed(const Segment &local, const Transform &pose) {

@@ -98,6 +98,7 @@ struct Ray {
 };
 
 // The shape moved by `pose`. An invalid shape or pose fails a check, here and in everything below.
+// A cylinder so far off that its ends would coincide keeps one rounding of its length.
 Sphere placed(const Sphere &local, const Transform &pose);
 Box placed(const Box &local, const Transform &pose);
 Capsule placed(const Capsule &local, const Transform &pose);

@@ -26,7 +26,46 @@ JointDesc placeholder_joint(const std::string &name, const std::string &body) {
     return joint;
 }
 
+// What is written of a shape must not depend on a file; without its points it cannot be written.
+void check_points(const BodyDesc &body) {
+    const auto check = [&](const auto &points) {
+        if (points == nullptr)
+            throw std::invalid_argument("a shape of \"" + body.name + "\" has no points");
+    };
+    for (const ColliderDesc &collider : body.colliders) {
+        if (const auto *hull = std::get_if<HullDesc>(&collider.shape))
+            check(hull->points);
+        if (const auto *mesh = std::get_if<MeshDesc>(&collider.shape))
+            check(mesh->data);
+        if (const auto *field = std::get_if<HeightFieldDesc>(&collider.shape))
+            check(field->heights);
+    }
+}
+
+void forget_files(BodyDesc &body) {
+    for (ColliderDesc &collider : body.colliders) {
+        if (auto *hull = std::get_if<HullDesc>(&collider.shape))
+            hull->file.reset();
+        if (auto *mesh = std::get_if<MeshDesc>(&collider.shape))
+            mesh->source = std::monostate{};
+    }
+}
+
 } // namespace
+
+void check_readable(const Command &command, const std::vector<MaterialDesc> &materials) {
+    Recording alone;
+    alone.scene.materials = materials;
+    alone.hashes.push_back(0);
+    alone.commands.push_back({0, command, 0});
+    if (auto *add = std::get_if<AddBody>(&alone.commands.front().command)) {
+        check_points(add->body);
+        forget_files(add->body);
+    }
+    const RecordingResult read = parse_recording(write_recording(alone), "command");
+    if (!read.ok())
+        throw std::invalid_argument(read.messages.front().what);
+}
 
 // Added bodies and joints fill the holes left by removed ones, which changes the solver's order.
 // Scenes have no holes, so the recording recreates them: it adds placeholders and removes them

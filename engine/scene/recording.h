@@ -68,6 +68,11 @@ RecordingResult load_recording(const std::filesystem::path &path);
 // Like write_scene; files used by the scene are written by name only.
 std::string write_recording(const Recording &recording);
 
+// Throws std::invalid_argument, with the reader's message, if a file could not give the command
+// back: a value out of range, a name that no body may have, a body with both mass and density.
+// `materials`: the scene's. Bodies and joints that it names need not exist.
+void check_readable(const Command &command, const std::vector<MaterialDesc> &materials);
+
 // A state's hash as 16 hexadecimal digits.
 std::string hash_text(std::uint64_t hash);
 

@@ -19,7 +19,7 @@ bool do_collide(const ColliderDesc &a, const ColliderDesc &b) {
 
 } // namespace
 
-// Empty for shapes that are skipped, and for those single precision cannot resolve.
+// Empty for shapes that are skipped.
 std::optional<f32::Shape> StartOverlaps::placed(const ColliderDesc &collider,
                                                 const glm::dvec3 &position,
                                                 const glm::dquat &orientation) {
@@ -29,11 +29,7 @@ std::optional<f32::Shape> StartOverlaps::placed(const ColliderDesc &collider,
     if (!made->second.shape)
         return std::nullopt;
     const f32::Transform pose{f32::Vec3(position), f32::unit(f32::Quat(orientation))};
-    const f32::Shape shape = f32::placed(*made->second.shape, pose);
-    const auto *cylinder = std::get_if<f32::Cylinder>(&shape);
-    if (cylinder != nullptr && cylinder->a == cylinder->b)
-        return std::nullopt; // so far off that its ends coincide
-    return shape;
+    return f32::placed(*made->second.shape, pose);
 }
 
 std::optional<double> StartOverlaps::deepest(const BodyDesc &a, const BodyDesc &b, double margin) {

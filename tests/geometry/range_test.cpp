@@ -1,6 +1,7 @@
 // The stated range of sizes: scaling by a power of two rounds nothing, so the answer scales with
 // the query.
 #include "engine/geometry/epa.h"
+#include "engine/geometry/manifold.h"
 #include "engine/geometry/plane.h"
 #include "engine/geometry/raycast.h"
 #include "engine/geometry/shape_cast.h"
@@ -110,6 +111,19 @@ TEST_P(Range, AnswersScaleWithTheirQuestions) {
 
 INSTANTIATE_TEST_SUITE_P(Ends, Range,
                          is_float ? testing::Values(-18, 26) : testing::Values(-158, 158));
+
+// However far off, a cylinder has an axis; a body that fell for long would stop the whole world.
+TEST(RangeOfPoses, ACylinderFarAwayIsStillOne) {
+    for (const double far : {1e3, 4.2e6, 1e9, 1e15, 1e18})
+        for (const Vec3 &way : {Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{-1, 1, 1}}) {
+            const Cylinder there =
+                placed(Cylinder{{0, 0, Real(-0.2)}, {0, Real(0.1), Real(0.2)}, Real(0.15)},
+                       Transform{Real(far) * way, identity_rotation});
+            EXPECT_NE(there.a, there.b) << far;
+            EXPECT_GE((there.b - there.a).z, Real(0)) << far;
+            EXPECT_NO_THROW(collide(there, Sphere{there.a, Real(1)}, Real(0)));
+        }
+}
 
 // Signs are exact down to the least float; the doubles of predicates.h have a limit of their own.
 TEST(RangeOfSigns, AreExactForTheLeastFloats) {

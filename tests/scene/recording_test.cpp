@@ -469,7 +469,8 @@ TEST(Recording, AGrabHasTheSpringThatIsGiven) {
     }
 }
 
-// A command that cannot be obeyed changes nothing and reports why.
+// A command that cannot be obeyed, or that no file could give back, changes nothing and reports
+// why.
 TEST(Commands, ThatCannotBeObeyedChangeNothing) {
     const auto simulation = Simulation::create(scene(), {}, nullptr);
     for (int i = 0; i < 3; ++i)
@@ -478,15 +479,48 @@ TEST(Commands, ThatCannotBeObeyedChangeNothing) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     GivenSettings settings;
     settings.give(&StepSettings::dt, -1);
-    BodyDesc bad = shot("bad");
-    bad.velocity.x = nan;
+    const auto but = [](auto &&change) {
+        BodyDesc body = shot("bad");
+        change(body);
+        return AddBody{body};
+    };
+    JointDesc nameless = rod("");
+    nameless.body_b = "bob";
     for (const Command &command : std::initializer_list<Command>{
-             AddBody{bad}, AddBody{shot("bob")}, RemoveBody{"bell"},
+             but([&](BodyDesc &body) { body.velocity.x = nan; }),
+             but([](BodyDesc &body) { body.velocity.x = 1e30; }),
+             but([](BodyDesc &body) { body.position.y = 1e12; }),
+             but([](BodyDesc &body) {
+                 body.orientation = {2, 0, 0, 0};
+             }),
+             but([](BodyDesc &body) {
+                 body.orientation = {0, 0, 0, 0};
+             }),
+             but([](BodyDesc &body) { body.material = "snow"; }),
+             but([](BodyDesc &body) { body.colliders.front().material = "snow"; }),
+             but([](BodyDesc &body) { body.colliders.front().shape = HullDesc{}; }),
+             but([](BodyDesc &body) { body.colliders.front().shape = MeshDesc{}; }),
+             but([](BodyDesc &body) { body.colliders.front().shape = HeightFieldDesc{}; }),
+             but([](BodyDesc &body) { body.name = ""; }),
+             but([](BodyDesc &body) { body.name = "world"; }),
+             but([](BodyDesc &body) { body.mass = body.density = 1; }),
+             but([](BodyDesc &body) { body.mass = 1e20; }),
+             but([](BodyDesc &body) { body.kind = BodyKind::static_body; }), // it moves
+             AddJoint{nameless},
+             SetMotion{"bob", {1e12, 0, 0}, {1, 0, 0, 0}, {}, {}},
+             SetMotion{"bob", {}, {2, 0, 0, 0}, {}, {}},
+             AddBody{shot("bob")},
+             RemoveBody{"bell"},
              SetMotion{"bob", {nan, 0, 0}, {1, 0, 0, 0}, {}, {}},
-             SetMotion{"bell", {}, {1, 0, 0, 0}, {}, {}}, ApplyImpulse{"bob", {nan, 0, 0}, {}},
-             GrabBody{"bob", {}, {}, -1}, GrabBody{"bob", {}, {}, 1, {0, 1}},
-             GrabBody{"bob", {}, {}, 1, {5, nan}}, GrabBody{"bob", {nan, 0, 0}, {}, 1},
-             MoveGrab{{0, nan, 0}}, SetMethod{"rk4"}, SetMethod{"soft_stop"},
+             SetMotion{"bell", {}, {1, 0, 0, 0}, {}, {}},
+             ApplyImpulse{"bob", {nan, 0, 0}, {}},
+             GrabBody{"bob", {}, {}, -1},
+             GrabBody{"bob", {}, {}, 1, {0, 1}},
+             GrabBody{"bob", {}, {}, 1, {5, nan}},
+             GrabBody{"bob", {nan, 0, 0}, {}, 1},
+             MoveGrab{{0, nan, 0}},
+             SetMethod{"rk4"},
+             SetMethod{"soft_stop"},
              SetSettings{settings}}) {
         EXPECT_THROW(simulation->apply(command), std::invalid_argument) << command.index();
         EXPECT_EQ(simulation->hash(), before) << command.index();

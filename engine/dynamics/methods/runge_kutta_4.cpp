@@ -73,6 +73,9 @@ void place(SolverBody &motion, const Motion &stage, const Body &body) {
     motion.velocity = stage.velocity;
     motion.rotation = glm::normalize(stage.rotation);
     motion.angular_velocity = rotated(motion.rotation, stage.angular_velocity);
+    for (std::size_t axis = 0; axis < 3 && body.has_locks; ++axis)
+        if (body.locked[3 + axis]) // but for rounding
+            motion.angular_velocity[static_cast<int>(axis)] = Real(0);
     motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
 }
 

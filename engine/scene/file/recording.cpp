@@ -50,7 +50,7 @@ struct Fields {
         field = table.number(key, finite).value_or(field);
     }
     void read(std::string_view key, glm::dvec3 &field) {
-        field = table.vector(key, finite).value_or(field);
+        field = table.vector(key, moderate).value_or(field);
     }
     void read(std::string_view key, glm::dquat &field) {
         field = table.unit_quaternion(key).value_or(field);

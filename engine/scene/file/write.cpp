@@ -181,7 +181,7 @@ class SceneWriter {
 
     void write_pace(const BodyDesc &body) {
         const BodyDesc::Pace &pace = body.pace;
-        if (pace.substeps > 0 || pace.rested > 0 || pace.struck > 0)
+        if (pace.substeps > 0 || pace.wanted > 0 || pace.rested > 0 || pace.struck > 0)
             line("pace", "{ substeps = " + std::to_string(pace.substeps) +
                              ", wanted = " + std::to_string(pace.wanted) +
                              ", rested = " + std::to_string(pace.rested) +

@@ -8,6 +8,7 @@
 #include "engine/scene/joint_type.h"
 #include "engine/scene/real/body_def.h"
 #include "engine/scene/real/read_world.h"
+#include "engine/scene/recording.h"
 
 #include <algorithm>
 #include <map>
@@ -96,6 +97,7 @@ class WorldSimulation final : public Simulation {
     Precision precision() const override { return precision_; }
 
     void apply(const Command &command) override {
+        check_readable(command, book_->scene.materials);
         try {
             std::visit([this](const auto &one) { obey(one); }, command);
         } catch (const CheckFailure &failure) {
