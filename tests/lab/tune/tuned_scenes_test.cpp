@@ -48,8 +48,7 @@ const std::set<std::string> &keep_own_substeps() {
 // The scene as it stands, and as many variations as tuning tries. For heaps, where chance plays a
 // part, only the first variation at which cheaper settings miss.
 std::vector<SceneDesc> starts_to_try(const SceneText &text, const std::string &name) {
-    static const std::map<std::string, int> misses_from{
-        {"666", 5}, {"kapla", 6}, {"mesh_terrain", 9}};
+    static const std::map<std::string, int> misses_from{{"kapla", 6}, {"mesh_terrain", 9}};
     const auto found = misses_from.find(name);
     if (found == misses_from.end())
         return starts_of(text, TuneOptions{}.starts);
