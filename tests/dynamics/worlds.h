@@ -173,14 +173,11 @@ inline V impulse_of(const World &world, std::size_t joint) {
     return {double(impulses[0]), double(impulses[1]), double(impulses[2])};
 }
 
-// The method's default settings; for sequential impulses with everything that is not as published,
-// as for NNCG.
+// The method's default settings; for sequential impulses with all our additions, as for NNCG.
 inline StepSettings settings_for(const std::string &method) {
     StepSettings settings = find_method(method)->info.defaults;
     if (method == "sequential_impulses") {
-        settings.split_impulse = 1;
-        settings.baumgarte_time = 1.0 / 60;
-        settings.foresee_turns = settings.alternate_points = settings.closed_form_flight = 1;
+        settings.foresee_turns = settings.closed_form_flight = 1;
         settings.push_velocity = 3;
         settings.impact_sweeps = 32;
     }
