@@ -131,7 +131,8 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
     JudgedRun run;
     std::vector<QuantityName> followed;
     if (options.follow_errors)
-        for (const char *quantity : {"penetration", "joint_drift", "energy", "energy_error"})
+        for (const char *quantity : {"penetration", "joint_drift", "energy", "energy_error",
+                                     "kinetic_energy", "potential_energy"})
             followed.push_back({quantity, ""});
     const std::vector<std::string> fallers =
         options.follow_errors ? fallers_of(scene) : std::vector<std::string>();
@@ -139,19 +140,23 @@ JudgedRun judge_run(Simulation &simulation, const SceneDesc &scene, const JudgeO
     for (const std::string &name : fallers)
         followed.push_back({"position.y", name});
     ExpectationWatch watch(simulation, scene.expects, followed);
-    double start_energy = 0;
+    double start_energy = 0, energy_scale = 0;  // J
     std::vector<double> start_heights, heights; // of the fallers
     const auto follow = [&](bool first) {
         if (!options.follow_errors)
             return;
         const std::span<const double> now = watch.also_now();
-        if (first)
+        if (first) {
             start_energy = now[2];
+            energy_scale = now[4] + std::abs(now[5]);
+        }
         run.max_penetration = std::max(run.max_penetration, now[0]);
         run.max_joint_drift = std::max(run.max_joint_drift, now[1]);
         run.max_energy_change = std::max(run.max_energy_change, std::abs(now[2] - start_energy));
         run.max_energy_error = std::max(run.max_energy_error, std::abs(now[3]));
-        run.max_energy_gain = std::max(run.max_energy_gain, now[3]);
+        const double scale = std::max(energy_scale, now[4]);
+        if (scale > 0)
+            run.max_energy_gain = std::max(run.max_energy_gain, (now[2] - start_energy) / scale);
         run.end_penetration = now[0];
         run.end_joint_drift = now[1];
         heights.assign(now.begin() + static_cast<std::ptrdiff_t>(first_height), now.end());

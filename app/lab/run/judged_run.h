@@ -70,7 +70,9 @@ struct JudgedRun {
     double max_joint_drift = 0;   // m
     double max_energy_change = 0; // J, |E - E0|
     double max_energy_error = 0;  // |E - E0| / (K0 + |U0|)
-    double max_energy_gain = 0;   // (E - E0) / (K0 + |U0|), at least 0
+    // (E - E0) / (K0 + |U0|), at least 0; or / K where that is more: what starts at rest near the
+    // origin has no energy to compare with.
+    double max_energy_gain = 0;
     // With follow_errors, at the end of the run:
     double end_penetration = 0; // m
     double end_joint_drift = 0; // m

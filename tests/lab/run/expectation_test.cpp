@@ -318,7 +318,25 @@ TEST(Expectation, FollowedErrorsAreTheWorstOfTheRun) {
     EXPECT_DOUBLE_EQ(run.max_joint_drift, 0.1);
     EXPECT_DOUBLE_EQ(run.max_energy_change, 1);
     EXPECT_DOUBLE_EQ(run.max_energy_error, 0.25); // of 3 + |-1|
-    EXPECT_EQ(fake.measure_calls, 1 + 9);         // the probe's start, then once per sample
+    EXPECT_DOUBLE_EQ(run.max_energy_gain, 0.25);
+    EXPECT_EQ(fake.measure_calls, 1 + 9); // the probe's start, then once per sample
+}
+
+// What starts at rest at the origin has no energy; rounding of what it gains by falling is no gain.
+TEST(Expectation, AnEnergyGainIsComparedWithTheMotionThereIs) {
+    FakeSimulation fake(0.125);
+    fake.measures_at = [](double t) {
+        Measures measures;
+        measures.kinetic_energy = 1000 * t * t;
+        measures.potential_energy = -1001 * t * t + 3 * t; // 2 J too much after a second
+        return measures;
+    };
+    JudgeOptions options;
+    options.follow_errors = true;
+    options.duration = 1;
+    const JudgedRun run = judge_run(fake, scene_of({}), options);
+    EXPECT_DOUBLE_EQ(run.max_energy_error, 2); // J, for want of a scale
+    EXPECT_LT(run.max_energy_gain, 0.03);
 }
 
 // x grows by 1 m/s, and z falls at the same rate.
