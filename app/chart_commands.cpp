@@ -75,7 +75,7 @@ void add_chart(CommandLine &line) {
         ->add_option(
             "--with", arguments->engines,
             "Other engines to chart beside the methods, by the same measures: bullet, ode (in a "
-            "build with PLUMB_BENCH=ON)")
+            "build with PLUMB_BENCH=ON); nothing sleeps then unless sleep_after is given")
         ->type_name("ENGINE,...");
     chart_command
         ->add_option("--budget", arguments->budget,
@@ -121,6 +121,10 @@ void add_chart(CommandLine &line) {
             arguments->command.options.methods = parse_list(arguments->methods);
         arguments->command.scenes = line.common.scene_paths();
         arguments->command.options.base = line.common.run();
+        GivenSettings &given = arguments->command.options.base.settings;
+        // The other engines never sleep: what does would cost nothing beside them.
+        if (!arguments->engines.empty() && !given.find(find_setting_numbers("sleep_after").front()))
+            given.give(&StepSettings::sleep_after, 0.0);
         arguments->command.out_dir = line.common.out;
         arguments->command.shader_dir = line.common.shader_dir();
         arguments->command.command = line.text;

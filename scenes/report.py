@@ -209,6 +209,9 @@ class Report:
             self.say(f"| {method} | {held[method]} of {len(cells)} | {why_not or '–'} |" +
                      (found if problem.product else ""))
         self.say("")
+        if rows[0]["not_judged"]:
+            self.say(f"Not judged on this map, as they do not hold all over it: {rows[0]['not_judged']}.",
+                     "")
         return held, len(cells)
 
     def answer_of_map(self, problem, rows, charted):
