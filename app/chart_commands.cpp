@@ -135,7 +135,7 @@ void add_chart(CommandLine &line) {
 void add_merge(CommandLine &line) {
     const auto command = std::make_shared<MergeCommand>();
     CLI::App *merge_command = line.app.add_subcommand(
-        "merge", "Merges the tables written by `plumb chart --shard` into one chart");
+        "merge", "Merges the tables written by `plumb chart --shard` into one chart per scene");
     merge_command->add_option("CSV", command->tables, "All the tables, in any order")->required();
     merge_command->add_option("--scene", command->scene,
                               "The scene's file, if `plumb list` does not have it");

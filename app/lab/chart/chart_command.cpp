@@ -15,6 +15,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -203,17 +204,11 @@ ExitCode chart_scenes(const ChartCommand &command, std::ostream &out, std::ostre
     return code;
 }
 
-ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostream &err) {
-    std::vector<NamedTable> tables;
-    for (const std::filesystem::path &path : command.tables) {
-        std::ifstream in(path, std::ios::binary);
-        if (!in)
-            throw std::invalid_argument("cannot read " + path.string());
-        tables.push_back({path.string(), {std::istreambuf_iterator<char>(in), {}}});
-        if (scene_of_chart(tables.back().text).empty())
-            throw std::invalid_argument(path.string() +
-                                        " is not a table from `plumb chart`, or has no rows");
-    }
+namespace {
+
+// The tables of one scene.
+ExitCode merge_chart(const MergeCommand &command, const std::vector<NamedTable> &tables,
+                     LazyPainter &painter, std::ostream &out, std::ostream &err) {
     const std::filesystem::path scene =
         command.scene.empty() ? command.find_scene(scene_of_chart(tables[0].text)) : command.scene;
     const LoadedScenes loaded = load_scenes({scene}, err);
@@ -221,8 +216,8 @@ ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostre
         return ExitCode::bad_input;
     const SceneChart chart = merged_chart(loaded.scenes.front(), tables);
     if (chart.runs.size() < chart.planned) {
-        err << "merge: only " << chart.runs.size() << " of " << chart.planned
-            << " runs are in these tables; nothing is written\n";
+        err << "merge: only " << chart.runs.size() << " of " << chart.planned << " runs of "
+            << chart.scene.name << " are in these tables; nothing is written\n";
         return ExitCode::bad_input;
     }
     create_folder(command.out_dir);
@@ -234,8 +229,34 @@ ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostre
     print(out, chart);
     out << std::flush;
     err << "wrote " << csv.path().string() << '\n';
-    LazyPainter painter(command.shader_dir);
     return worse(code_of(chart, err), write_pictures(chart, stem, command.command, painter, err));
+}
+
+} // namespace
+
+ExitCode merge_charts(const MergeCommand &command, std::ostream &out, std::ostream &err) {
+    std::map<std::string, std::vector<NamedTable>> of_scene;
+    for (const std::filesystem::path &path : command.tables) {
+        std::ifstream in(path, std::ios::binary);
+        if (!in)
+            throw std::invalid_argument("cannot read " + path.string());
+        NamedTable table{path.string(), {std::istreambuf_iterator<char>(in), {}}};
+        const std::string scene = scene_of_chart(table.text);
+        if (scene.empty())
+            throw std::invalid_argument(path.string() +
+                                        " is not a table from `plumb chart`, or has no rows");
+        of_scene[scene].push_back(std::move(table));
+    }
+    if (!command.scene.empty() && of_scene.size() > 1)
+        throw std::invalid_argument(
+            "--scene is of one scene, but " + of_scene.rbegin()->second.front().name + " is from " +
+            of_scene.rbegin()->first + " and " + of_scene.begin()->second.front().name + " from " +
+            of_scene.begin()->first);
+    LazyPainter painter(command.shader_dir);
+    ExitCode code = ExitCode::fine;
+    for (const auto &[scene, tables] : of_scene)
+        code = worse(code, merge_chart(command, tables, painter, out, err));
+    return code;
 }
 
 } // namespace plumb
