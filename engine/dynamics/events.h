@@ -5,7 +5,7 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// A bounce: where, along which normal (from a to b), and how hard.
+// A bounce, or a blow without one: where, along which normal (from a to b), and how hard.
 struct Impact {
     ContactKey key;
     Vec3 position{Real(0)}; // world

@@ -152,6 +152,7 @@ void World::step_together(StepTimes *times) {
     }
     const PhaseTimer timer(times ? &times->finish : nullptr);
     note_struck();
+    record_landings();
     gather_memory();
     gather_penalties();
     fall_asleep();

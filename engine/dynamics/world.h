@@ -172,6 +172,7 @@ class World {
     bool is_pressed(const ContactKey &key) const;
     void note_ends();
     void note_struck();
+    void record_landings();
     void advance();
     void advance_groups();
     std::uint32_t remembered_points(const Contact &contact) const;

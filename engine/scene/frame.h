@@ -82,7 +82,7 @@ struct GrabView {
     std::optional<std::size_t> particle{}; // instead of the body
 };
 
-// A bounce during the last step.
+// A bounce, or a blow without one, during the last step.
 struct ImpactView {
     std::size_t body_a = 0;
     std::size_t body_b = 0;

@@ -502,6 +502,39 @@ TEST_P(Impacts, AHuddleGainsNothing) {
     }
 }
 
+// What lands and stays is recorded once, with its momentum; what rests is not, nor what slides.
+TEST_P(Bounce, WithoutRestitutionIsABlow) {
+    const double mass = 2, height = 1;
+    const double speed = std::sqrt(2 * gravity * height);
+    for (const bool is_ball : {true, false}) {
+        World world(GetParam(), settings_for(GetParam()));
+        world.add_body(ground(0.5, 0));
+        const Shape shape = is_ball ? Shape{ball(0.1)} : Shape{block(V{0.1})};
+        world.add_body(dynamic_body(shape, mass, V{0, 0.1 + height, 0}));
+        world.add_body(dynamic_body(block(V{0.2}), 1, V{3, 0.2, 0}, V{2, 0, 0}));
+        std::vector<double> blows;
+        for (int i = 0; i < 120; ++i) {
+            world.step(nullptr);
+            EXPECT_EQ(world.report().impacts, world.impacts().size());
+            for (const Impact &impact : world.impacts()) {
+                EXPECT_EQ(impact.key.b, 1U);
+                EXPECT_NEAR(std::abs(double(impact.normal.y)), 1, 1e-3);
+                EXPECT_NEAR(impact.position.y, 0, 0.1);
+                blows.push_back(double(impact.impulse));
+            }
+        }
+        ASSERT_GE(blows.size(), 1U) << is_ball;
+        double sum = 0;
+        for (const double blow : blows)
+            sum += blow;
+        // These take more than one step to stop it, and a blow is of one.
+        const bool is_slow =
+            GetParam() == "xpbd" || GetParam() == "avbd" || GetParam() == "naive_impulses";
+        EXPECT_LT(sum, 1.2 * mass * speed) << is_ball;
+        EXPECT_GT(sum, (is_slow ? 0.2 : 0.8) * mass * speed) << is_ball;
+    }
+}
+
 // Below the threshold there is no bounce, so that things come to rest.
 TEST_P(Impacts, SlowImpactsDoNotBounce) {
     World world(GetParam(), weightless(settings_for(GetParam())));
