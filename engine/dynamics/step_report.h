@@ -16,7 +16,7 @@ struct StepReport {
     std::uint32_t joints = 0;
     std::uint32_t springs = 0;           // not torn
     std::uint32_t particle_contacts = 0; // of particles with bodies, touching or nearly
-    std::uint32_t impacts = 0;           // bounces resolved
+    std::uint32_t impacts = 0;           // bounces, and blows without one
     // Substeps whose last allowed sweep still bounced something.
     std::uint32_t unresolved_impacts = 0;
     bool finite = true; // all positions and velocities

@@ -252,7 +252,7 @@ class World {
 
     bool is_turned(const Candidate &candidate) const;
     bool is_crowded(std::uint32_t body) const;
-    bool goes_round_the_other(const Contact &contact) const;
+    bool rolls_over_the_other(const Contact &contact) const;
     Rolling rolling_of(const Contact &contact) const;
     bool needs_contacts() const;
     bool is_asked(std::uint32_t body) const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <stdexcept>
+#include <variant>
 
 namespace plumb {
 
@@ -26,7 +28,7 @@ JointDesc placeholder_joint(const std::string &name, const std::string &body) {
     return joint;
 }
 
-// What is written of a shape must not depend on a file; without its points it cannot be written.
+// A shape without its points cannot be written.
 void check_points(const BodyDesc &body) {
     const auto check = [&](const auto &points) {
         if (points == nullptr)
@@ -42,6 +44,7 @@ void check_points(const BodyDesc &body) {
     }
 }
 
+// So that reading what was written looks for no file.
 void forget_files(BodyDesc &body) {
     for (ColliderDesc &collider : body.colliders) {
         if (auto *hull = std::get_if<HullDesc>(&collider.shape))

@@ -214,6 +214,28 @@ TEST(CommandLine, AChartThatNoMethodCanRunLeavesTheEarlierOne) {
     EXPECT_EQ(text_of(folder.path() / "pendulum.csv"), "earlier\n");
 }
 
+TEST(CommandLine, ShardsOfSeveralScenesMergeIntoAChartEach) {
+    const TemporaryFolder folder;
+    const std::string at = folder.path().string();
+    for (const std::string n : {"1", "2"}) {
+        const ProgramResult part = run_program("chart free_fall mass_on_spring --methods rk4 "
+                                               "--sweep substeps=1,2 --repeats 1 --shard " +
+                                               n + "/2 --out " + at);
+        EXPECT_EQ(part.exit_code, 0) << part.err;
+    }
+    std::string tables;
+    for (const std::string &name : names_in(folder.path()))
+        tables += " " + at + "/" + name;
+    const ProgramResult merged = run_program("merge" + tables + " --out " + at + "/whole");
+    EXPECT_EQ(merged.exit_code, 0) << merged.err;
+    const std::set<std::string> files = names_in(folder.path() / "whole");
+    EXPECT_TRUE(files.contains("free_fall.csv"));
+    EXPECT_TRUE(files.contains("mass_on_spring.csv"));
+    const ProgramResult refused = run_program("merge" + tables + " --scene free_fall.toml");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_TRUE(has(refused.err, "--scene is of one scene")) << refused.err;
+}
+
 TEST(CommandLine, AnUnknownMethodIsAnsweredWithThoseThereAre) {
     for (const char *command : {"hash --steps 1", "check", "measure", "snapshot"}) {
         const ProgramResult result =

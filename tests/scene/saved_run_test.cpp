@@ -2,7 +2,6 @@
 #include "engine/scene/scene_file.h"
 #include "engine/scene/simulation.h"
 
-#include <functional>
 #include <memory>
 #include <string>
 

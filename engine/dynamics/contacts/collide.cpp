@@ -258,7 +258,7 @@ Real Contact::way_round(bool of_a, const Vec3 &turn) const {
 // Whether the line between two round surfaces turns: as one rolls or slides over the other, its
 // normal turns with it. With the normal held for the step, a ball that rolls over another would
 // follow the tangents, hop, and not come off where it should.
-bool World::goes_round_the_other(const Contact &contact) const {
+bool World::rolls_over_the_other(const Contact &contact) const {
     constexpr Real askew = Real(1e-2);
     const auto dt = static_cast<Real>(settings_.dt);
     const Motion &a = state_.motions[contact.key.a];
@@ -297,7 +297,7 @@ Rolling World::rolling_of(const Contact &contact) const {
     if ((!is_a && !is_b) || !method_->info.looks_ahead ||
         (!is_alone(contact.key.a) && !is_alone(contact.key.b)))
         return Rolling::straight;
-    if (is_a && is_b && goes_round_the_other(contact))
+    if (is_a && is_b && rolls_over_the_other(contact))
         return Rolling::on_face;
     // Frictionless bodies that hit in space and slide past each other do not roll, nor do those
     // that bounce off a wall.
