@@ -296,7 +296,7 @@ TEST(CommandLine, ListNamesScenesMethodsAndKeys) {
     EXPECT_TRUE(has(methods.out, "soft_step")) << methods.out;
     for (const char *line :
          {"soft_step             Soft step             contacts, joints, springs  ",
-          "naive_impulses        Naive impulses        contacts                   Szauer",
+          "naive_impulses        Naive impulses        contacts, joints           Szauer",
           "rk4                   Runge-Kutta 4         free bodies, springs       "})
         EXPECT_TRUE(has(methods.out, line)) << line << '\n' << methods.out;
     const ProgramResult keys = run_program("list --keys");

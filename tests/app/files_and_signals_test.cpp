@@ -268,7 +268,7 @@ methods, keys = (json.load(open(name)) for name in sys.argv[1:])
 assert {m["name"] for m in methods} >= {"soft_step", "rk4"}, methods
 runs = {m["name"]: (m["contacts"], m["joints"], m["springs"]) for m in methods}
 assert runs["soft_step"] == (True, True, True) and runs["rk4"] == (False, False, True), runs
-assert runs["naive_impulses"] == (True, False, False), runs
+assert runs["naive_impulses"] == (True, True, False), runs
 assert all(type(m["contacts"]) is bool and m["title"] and m["source"] for m in methods), methods
 assert any("Ctrl+Q" in k.get("keys", []) for k in keys), keys
 assert any(k.get("gesture") == "Wheel" for k in keys), keys

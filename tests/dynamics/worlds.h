@@ -192,6 +192,19 @@ inline double substep_of(const World &world) {
     return world.settings().dt / world.settings().substeps;
 }
 
+// Naive impulses come before gravity's, so what rests falls by g h^2 in each substep, still moves at
+// g h after it, and a share (baumgarte) of its drift is taken back.
+inline double speed_left_at_rest(const World &world) {
+    return world.method().info.name == "naive_impulses" ? gravity * substep_of(world) : 0;
+}
+inline double sag_of_joints(const World &world) {
+    return speed_left_at_rest(world) * substep_of(world) / world.settings().baumgarte;
+}
+// With k (x + h v) + c v = m g for v = g h: the sag beyond m g / k.
+inline double more_sag_of_springs(const World &world, double omega, double damping_ratio) {
+    return speed_left_at_rest(world) * (substep_of(world) + 2 * damping_ratio / omega);
+}
+
 // The spin XPBD loses over a time in which the integral of its cube is `cubed`. XPBD rotates by a
 // quaternion's first order and recovers the spin from the imaginary part (Mueller et al. 2020, alg.
 // 2), which falls (w h)^2 / 8 short of it in each substep h.

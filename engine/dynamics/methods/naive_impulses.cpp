@@ -8,6 +8,10 @@
 //
 // Only contacts that overlap at the start of the step count. The book takes the lesser of two
 // bodies' restitutions; here a pair's restitution, like free spin, is as in all other methods.
+//
+// Joints are made of the same two parts: impulses from scratch in each pass, and linear projection,
+// which also turns bodies back where rows are angular. The book has none between bodies, only rods
+// between particles (chapter 16, "Distance joint"), which are corrected in the same way.
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
 
@@ -83,6 +87,63 @@ void project(StepContext &context) {
     context.report.constraint_passes += context.scratch.contacts.size();
 }
 
+// The error that a row may not have: of a limit, only what is beyond it.
+Real error_to_correct(const RowBlock &rows, int row) {
+    const Real error = rows.error[row];
+    switch (rows.bounds) {
+    case RowBounds::equal:
+        return error;
+    case RowBounds::at_least:
+        return std::min(error, Real(0));
+    case RowBounds::at_most:
+        return std::max(error, Real(0));
+    case RowBounds::motor:
+    case RowBounds::pull:
+        break;
+    }
+    return Real(0);
+}
+
+// Moves two bodies along a row, or turns them about it, by a share of its error.
+void project_row(SolverBody &a, SolverBody &b, RowKind kind, const Vec3 &axis, Real correction) {
+    if (kind == RowKind::angular) {
+        const Real inverse = glm::dot(axis, (a.inv_inertia + b.inv_inertia) * axis);
+        if (!(inverse > Real(0)))
+            return;
+        const Vec3 turn = (correction / inverse) * axis;
+        a.rotation = turned(a.rotation, a.inv_inertia * turn, Real(-1));
+        b.rotation = turned(b.rotation, b.inv_inertia * turn, Real(1));
+        return;
+    }
+    const Real inverse = a.inv_mass_along(axis) + b.inv_mass_along(axis);
+    if (!(inverse > Real(0)))
+        return;
+    const Vec3 move = (correction / inverse) * axis;
+    a.position -= a.inv_mass * move;
+    b.position += b.inv_mass * move;
+}
+
+// The same for joints that are rigid.
+void project_joints(StepContext &context) {
+    const auto part = static_cast<Real>(context.settings.baumgarte);
+    refresh_joints(context);
+    for (const JointConstraint &joint : context.scratch.joints) {
+        const RowBlock &rows = joint.rows;
+        if (joint.is_spring())
+            continue;
+        for (int row = 0; row < rows.count; ++row) {
+            Vec3 axis{Real(0)};
+            if (rows.kind == RowKind::point)
+                axis[row] = Real(1);
+            else
+                axis = rows.axes[static_cast<std::size_t>(row)];
+            project_row(context.body(joint.a), context.body(joint.b), rows.kind, axis,
+                        -part * error_to_correct(rows, row));
+        }
+    }
+    context.report.constraint_passes += context.scratch.joints.size();
+}
+
 void leave_out_what_is_apart(StepContext &context) {
     for (ContactConstraint &contact : context.scratch.contacts) {
         const Manifold &manifold = context.contacts[contact.contact].manifold;
@@ -126,15 +187,23 @@ void advance_naive_impulses(StepContext &context) {
 
     prepare_contacts(context);
     leave_out_what_is_apart(context);
+    prepare_joints(context);
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        remember_contacts(context); // start from zero
-        for (int i = 0; i < settings.iterations; ++i)
+        refresh_joints(context);
+        remember_joints(context);
+        remember_contacts(context); // both start from zero
+        for (int i = 0; i < settings.iterations; ++i) {
+            solve_joints(context, {.softness = {}, .h = h});
             strike_all(context);
+        }
         record_bounces(context);
+        note_joint_loads(context);
         project(context);
+        project_joints(context);
         kick(context, gravity, h);
         drift(context, h);
     }
+    store_joints(context);   // for display and breaking
     store_contacts(context); // for display only
 }
 
@@ -146,6 +215,7 @@ Method naive_impulses() {
          .title = "Naive impulses",
          .source = "Szauer 2017, Game Physics Cookbook, chapter 15",
          .contacts = true,
+         .joints = true,
          .reads = {SettingGroup::speculative, SettingGroup::constraints, SettingGroup::baumgarte,
                    SettingGroup::gyroscopic},
          .defaults = {.substeps = 1, .iterations = 5, .penetration_slop = 0.01, .baumgarte = 0.45}},
