@@ -3,8 +3,8 @@
 
 #include "engine/core/check.h"
 #include "engine/dynamics/bodies/mass_frame.h"
+#include "engine/dynamics/bodies/solid.h"
 #include "engine/dynamics/check_value.h"
-#include "engine/dynamics/contacts/approach.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,25 +60,8 @@ Transform into(const Transform &frame) {
     return {back * -frame.position, back};
 }
 
-// Products of rotations round off; normalising keeps the error from passing on to the next one.
-Shape with_unit_rotation(Shape shape) {
-    if (auto *box = std::get_if<Box>(&shape))
-        box->rotation = glm::normalize(box->rotation);
-    else if (auto *hull = std::get_if<ConvexHull>(&shape))
-        hull->rotation = glm::normalize(hull->rotation);
-    return shape;
-}
-
 bool is_identity(const Transform &frame) {
     return frame.position == Vec3{Real(0)} && frame.rotation == identity_rotation;
-}
-
-Real rounding_radius(const Shape &shape) {
-    if (const auto *sphere = std::get_if<Sphere>(&shape))
-        return sphere->radius;
-    if (const auto *capsule = std::get_if<Capsule>(&shape))
-        return capsule->radius;
-    return Real(0);
 }
 
 Real surface_extent(const TriangleSurface &surface, const Transform &pose) {
@@ -240,7 +223,7 @@ void World::add_colliders(const BodyDef &def, Body &body, std::uint32_t slot) {
                       .material = from.material,
                       .filter = from.filter,
                       .sensor = from.sensor,
-                      .rounding = from.surface ? Real(0) : rounding_radius(from.shape),
+                      .rounding = from.surface ? Real(0) : rounding_of(from.shape),
                       .body = slot,
                       .child = static_cast<std::uint16_t>(i)};
         model.note_layers(from.filter);

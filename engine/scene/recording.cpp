@@ -28,32 +28,6 @@ JointDesc placeholder_joint(const std::string &name, const std::string &body) {
     return joint;
 }
 
-// A shape without its points cannot be written.
-void check_points(const BodyDesc &body) {
-    const auto check = [&](const auto &points) {
-        if (points == nullptr)
-            throw std::invalid_argument("a shape of \"" + body.name + "\" has no points");
-    };
-    for (const ColliderDesc &collider : body.colliders) {
-        if (const auto *hull = std::get_if<HullDesc>(&collider.shape))
-            check(hull->points);
-        if (const auto *mesh = std::get_if<MeshDesc>(&collider.shape))
-            check(mesh->data);
-        if (const auto *field = std::get_if<HeightFieldDesc>(&collider.shape))
-            check(field->heights);
-    }
-}
-
-// So that reading what was written looks for no file.
-void forget_files(BodyDesc &body) {
-    for (ColliderDesc &collider : body.colliders) {
-        if (auto *hull = std::get_if<HullDesc>(&collider.shape))
-            hull->file.reset();
-        if (auto *mesh = std::get_if<MeshDesc>(&collider.shape))
-            mesh->source = std::monostate{};
-    }
-}
-
 } // namespace
 
 void check_readable(const Command &command, const std::vector<MaterialDesc> &materials) {
@@ -62,8 +36,11 @@ void check_readable(const Command &command, const std::vector<MaterialDesc> &mat
     alone.hashes.push_back(0);
     alone.commands.push_back({0, command, 0});
     if (auto *add = std::get_if<AddBody>(&alone.commands.front().command)) {
-        check_points(add->body);
-        forget_files(add->body);
+        for (ColliderDesc &collider : add->body.colliders) {
+            if (!is_complete(collider.shape))
+                throw std::invalid_argument("a shape of \"" + add->body.name + "\" has no points");
+            forget_source(collider.shape); // reading must not look for a file
+        }
     }
     const RecordingResult read = parse_recording(write_recording(alone), "command");
     if (!read.ok())

@@ -21,6 +21,28 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+struct ForgetSource {
+    void operator()(SphereDesc &) const {}
+    void operator()(BoxDesc &) const {}
+    void operator()(CapsuleDesc &) const {}
+    void operator()(CylinderDesc &) const {}
+    void operator()(HullDesc &h) const { h.file.reset(); }
+    void operator()(PlaneDesc &) const {}
+    void operator()(MeshDesc &m) const { m.source = std::monostate{}; }
+    void operator()(HeightFieldDesc &f) const { f.hills.reset(); }
+};
+
+struct IsComplete {
+    bool operator()(const SphereDesc &) const { return true; }
+    bool operator()(const BoxDesc &) const { return true; }
+    bool operator()(const CapsuleDesc &) const { return true; }
+    bool operator()(const CylinderDesc &) const { return true; }
+    bool operator()(const HullDesc &h) const { return h.points != nullptr; }
+    bool operator()(const PlaneDesc &) const { return true; }
+    bool operator()(const MeshDesc &m) const { return m.data != nullptr; }
+    bool operator()(const HeightFieldDesc &f) const { return f.heights != nullptr; }
+};
+
 struct Volume {
     double operator()(const SphereDesc &s) const {
         return 4.0 / 3.0 * std::numbers::pi * std::pow(s.radius, 3);
@@ -101,6 +123,14 @@ struct BoundsOf {
 };
 
 } // namespace
+
+void forget_source(ShapeDesc &shape) {
+    std::visit(ForgetSource{}, shape);
+}
+
+bool is_complete(const ShapeDesc &shape) {
+    return std::visit(IsComplete{}, shape);
+}
 
 double volume(const ShapeDesc &shape) {
     return std::visit(Volume{}, shape);

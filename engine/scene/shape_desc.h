@@ -108,6 +108,12 @@ template <typename... Kinds> const ShapeFile *shape_file(const std::variant<Kind
         shape);
 }
 
+// Forgets where its numbers came from: it is written with them inline.
+void forget_source(ShapeDesc &shape);
+
+// Whether the points, triangles or heights that its kind needs are there.
+bool is_complete(const ShapeDesc &shape);
+
 // m^3; infinite for a plane, 0 for surfaces (meshes and height fields) and for points without a
 // solid hull.
 double volume(const ShapeDesc &shape);

@@ -1,6 +1,7 @@
 #include "engine/dynamics/bodies/mass_frame.h"
 
 #include "engine/core/check.h"
+#include "engine/dynamics/bodies/solid.h"
 #include "engine/geometry/mass.h"
 
 #include <cmath>
@@ -58,19 +59,7 @@ bool is_plain(const BodyDef &def) {
     if (def.colliders.size() != 1 || def.center_of_mass || def.inertia ||
         def.colliders.front().sensor)
         return false;
-    const Shape &shape = def.colliders.front().shape;
-    if (const auto *sphere = std::get_if<Sphere>(&shape))
-        return sphere->center == Vec3{Real(0)};
-    if (const auto *box = std::get_if<Box>(&shape))
-        return box->center == Vec3{Real(0)} && box->rotation == identity_rotation;
-    const auto is_upright = [](const auto &round) {
-        return round.a == -round.b && round.b.x == Real(0) && round.b.z == Real(0);
-    };
-    if (const auto *capsule = std::get_if<Capsule>(&shape))
-        return is_upright(*capsule);
-    if (const auto *cylinder = std::get_if<Cylinder>(&shape))
-        return is_upright(*cylinder);
-    return false;
+    return has_principal_frame(def.colliders.front().shape);
 }
 
 } // namespace

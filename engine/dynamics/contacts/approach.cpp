@@ -1,6 +1,7 @@
 #include "engine/dynamics/contacts/approach.h"
 
 #include "engine/dynamics/bodies/motion.h"
+#include "engine/dynamics/bodies/solid.h"
 #include "engine/geometry/face_gap.h"
 #include "engine/geometry/gjk.h"
 #include "engine/geometry/half_space.h"
@@ -59,44 +60,8 @@ Gap gap_between(const Shape &a, const Shape &b, const Vec3 &guess) {
         b);
 }
 
-// How far a shape's core reaches along a vector of any length, from the origin of its frame.
-Real core_reach(const Shape &local, const Vec3 &along) {
-    return std::visit(
-        [&]<typename Solid>(const Solid &solid) -> Real {
-            if constexpr (std::same_as<Solid, Sphere>)
-                return glm::dot(solid.center, along);
-            else if constexpr (std::same_as<Solid, Box>)
-                return glm::dot(solid.center, along) +
-                       glm::dot(solid.half_extents,
-                                glm::abs(glm::conjugate(solid.rotation) * along));
-            else if constexpr (std::same_as<Solid, Capsule>)
-                return std::max(glm::dot(solid.a, along), glm::dot(solid.b, along));
-            else if constexpr (std::same_as<Solid, Cylinder>) {
-                const Vec3 axis = solid.b - solid.a;
-                const Vec3 outward = along - (glm::dot(axis, along) / glm::dot(axis, axis)) * axis;
-                return std::max(glm::dot(solid.a, along), glm::dot(solid.b, along)) +
-                       solid.radius * glm::length(outward);
-            } else if constexpr (std::same_as<Solid, ConvexHull>) {
-                const Vec3 inside = glm::conjugate(solid.rotation) * along;
-                const std::uint32_t farthest = support_vertex(*solid.mesh, inside);
-                return glm::dot(solid.position, along) +
-                       glm::dot(solid.mesh->vertices[farthest], inside);
-            } else {
-                return std::numeric_limits<Real>::infinity();
-            }
-        },
-        local);
-}
-
 Real core_reach(const Triangle &local, const Vec3 &along) {
     return std::max({glm::dot(local.a, along), glm::dot(local.b, along), glm::dot(local.c, along)});
-}
-
-Real rounding_of(const Shape &shape) {
-    if (const auto *sphere = std::get_if<Sphere>(&shape))
-        return sphere->radius;
-    const auto *capsule = std::get_if<Capsule>(&shape);
-    return capsule != nullptr ? capsule->radius : Real(0);
 }
 
 Real rounding_of(const Triangle & /*triangle*/) {
@@ -264,55 +229,6 @@ Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_
     };
     return advance(gap_after, apart_for, a.motion, a.extent, motion_b, extent_b, duration, margin,
                    gap_after(Real(0), guess));
-}
-
-Real core_extent(const Shape &local) {
-    return std::visit(
-        []<typename Solid>(const Solid &solid) -> Real {
-            if constexpr (std::same_as<Solid, Sphere>)
-                return glm::length(solid.center);
-            else if constexpr (std::same_as<Solid, Box>)
-                return glm::length(solid.center) + glm::length(solid.half_extents);
-            else if constexpr (std::same_as<Solid, Capsule>)
-                return std::max(glm::length(solid.a), glm::length(solid.b));
-            else if constexpr (std::same_as<Solid, Cylinder>)
-                return std::max(glm::length(solid.a), glm::length(solid.b)) + solid.radius;
-            else if constexpr (std::same_as<Solid, ConvexHull>) {
-                Real farthest = Real(0);
-                for (const Vec3 &vertex : solid.mesh->vertices)
-                    farthest = std::max(farthest, glm::dot(vertex, vertex));
-                return glm::length(solid.position) + std::sqrt(farthest);
-            } else {
-                return Real(0);
-            }
-        },
-        local);
-}
-
-Real half_width(const Shape &local) {
-    return std::visit(
-        []<typename Solid>(const Solid &solid) -> Real {
-            if constexpr (std::same_as<Solid, Sphere> || std::same_as<Solid, Capsule>)
-                return solid.radius;
-            else if constexpr (std::same_as<Solid, Box>)
-                return std::min({solid.half_extents.x, solid.half_extents.y, solid.half_extents.z});
-            else if constexpr (std::same_as<Solid, Cylinder>)
-                return std::min(solid.radius, Real(0.5) * glm::distance(solid.a, solid.b));
-            else if constexpr (std::same_as<Solid, ConvexHull>) {
-                // The least distance across the hull from one of its face planes.
-                Real least = std::numeric_limits<Real>::infinity();
-                for (const Plane &plane : solid.mesh->planes) {
-                    Real lowest = plane.offset;
-                    for (const Vec3 &vertex : solid.mesh->vertices)
-                        lowest = std::min(lowest, glm::dot(plane.normal, vertex));
-                    least = std::min(least, plane.offset - lowest);
-                }
-                return Real(0.5) * least;
-            } else {
-                return std::numeric_limits<Real>::infinity();
-            }
-        },
-        local);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -45,10 +45,4 @@ Approach approach(const MovingSolid &a, const MovingSolid &b, Real duration, Rea
 Approach approach(const MovingSolid &a, const Triangle &b, const Motion &motion_b, Real extent_b,
                   Real duration, Real margin, const Vec3 &guess = Vec3{Real(0)});
 
-// The distance from the origin to the farthest point of a shape's core, the part that turning moves
-// (m).
-Real core_extent(const Shape &local);
-// Half of the least width of a shape (m); infinite for a half-space.
-Real half_width(const Shape &local);
-
 } // namespace plumb::inline PLUMB_PRECISION

@@ -1,4 +1,5 @@
 // The narrow phase: where the candidates touch, and what is remembered of it.
+#include "engine/dynamics/bodies/solid.h"
 #include "engine/dynamics/contacts/rolling_contact.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
@@ -156,18 +157,6 @@ Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &
     const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
     return std::abs(sine) <= least_rim_sine ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
                                             : Real(0);
-}
-
-// Of a capsule or cylinder, in the body's frame, of any length.
-std::optional<Vec3> axis_of(const Shape &shape) {
-    return std::visit(
-        []<typename Solid>(const Solid &solid) -> std::optional<Vec3> {
-            if constexpr (std::same_as<Solid, Capsule> || std::same_as<Solid, Cylinder>)
-                return solid.b - solid.a;
-            else
-                return std::nullopt;
-        },
-        shape);
 }
 
 // Needs the contact's origin.

@@ -1,6 +1,7 @@
 // Contacts of bodies that do not touch yet, found where they will touch within the step, or come
 // closest. The present nearest points say little about that: a ball that flies past another has the
 // other's side in front of it, and would be stopped by the plane through it.
+#include "engine/dynamics/bodies/solid.h"
 #include "engine/dynamics/contacts/approach.h"
 #include "engine/dynamics/contacts/inner_edges.h"
 #include "engine/dynamics/contacts/surface_contact.h"
@@ -56,22 +57,6 @@ Real World::extent_of(std::uint32_t index) const {
 
 namespace {
 
-// The middle of a solid, if turning moves the solid's surface.
-std::optional<Vec3> middle_of(const Shape &shape) {
-    return std::visit(
-        []<typename Solid>(const Solid &solid) -> std::optional<Vec3> {
-            if constexpr (std::same_as<Solid, Box>)
-                return solid.center;
-            else if constexpr (std::same_as<Solid, Capsule> || std::same_as<Solid, Cylinder>)
-                return Real(0.5) * (solid.a + solid.b);
-            else if constexpr (std::same_as<Solid, ConvexHull>)
-                return solid.position + solid.rotation * solid.mesh->center;
-            else
-                return std::nullopt;
-        },
-        shape);
-}
-
 // A body that strikes with a corner is spun so fast that other corners could pass the contact plane
 // within the step, and the whole body with them: the guard keeps at least its middle in front.
 // `normal` points from the solid to the body it strikes, `plane` is a point of that.
@@ -85,7 +70,7 @@ ManifoldPoint guard(const Vec3 &middle, Real half_width, const Vec3 &plane, cons
 // is 1 if the manifold's normal points away from the solid.
 void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Shape &other,
                Real sign) {
-    const std::optional<Vec3> middle = middle_of(solid);
+    const std::optional<Vec3> middle = middle_if_turning_shows(solid);
     if (manifold.count == 0 || !middle)
         return;
     const Vec3 normal = sign * manifold.normal;
