@@ -192,8 +192,8 @@ inline double substep_of(const World &world) {
     return world.settings().dt / world.settings().substeps;
 }
 
-// Naive impulses come before gravity's, so what rests falls by g h^2 in each substep, still moves at
-// g h after it, and a share (baumgarte) of its drift is taken back.
+// Naive impulses come before gravity's, so what rests falls by g h^2 in each substep, still moves
+// at g h after it, and a share (baumgarte) of its drift is taken back.
 inline double speed_left_at_rest(const World &world) {
     return world.method().info.name == "naive_impulses" ? gravity * substep_of(world) : 0;
 }
