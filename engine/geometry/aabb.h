@@ -22,6 +22,10 @@ inline Aabb joined(const Aabb &a, const Aabb &b) {
     return {glm::min(a.min, b.min), glm::max(a.max, b.max)};
 }
 
+inline Vec3 middle_of(const Aabb &box) {
+    return Real(0.5) * (box.min + box.max);
+}
+
 // Half the surface area, m^2: the measure of tree cost (Goldsmith and Salmon 1987).
 inline Real half_area(const Aabb &box) {
     const Vec3 size = box.max - box.min;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <glm/common.hpp>
 
@@ -34,6 +35,21 @@ Aabb bounds(const TriangleMesh &mesh) {
             box.max = glm::max(box.max, mesh.vertices[corner]);
         }
     return box;
+}
+
+std::vector<std::uint32_t> same_places(const std::vector<Vec3> &vertices) {
+    std::vector<std::uint32_t> order(vertices.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    const auto key = [&](std::uint32_t i) {
+        return std::tuple(vertices[i].x, vertices[i].y, vertices[i].z, i);
+    };
+    std::ranges::sort(order, {}, key);
+    std::vector<std::uint32_t> first(vertices.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        first[order[i]] =
+            i > 0 && vertices[order[i]] == vertices[order[i - 1]] ? first[order[i - 1]] : order[i];
+    return first;
 }
 
 bool is_closed(const TriangleMesh &mesh) {

@@ -34,6 +34,9 @@ inline Triangle triangle(const TriangleMesh &mesh, std::size_t index) {
 // The smallest axis-aligned box around the triangles; empty if there are none.
 Aabb bounds(const TriangleMesh &mesh);
 
+// For each vertex, the first in the same place.
+std::vector<std::uint32_t> same_places(const std::vector<Vec3> &vertices);
+
 // Whether each edge is used equally often in both directions, so that the surface has no border and
 // consistent winding. Corners are the same only if they share an index.
 bool is_closed(const TriangleMesh &mesh);

@@ -150,7 +150,8 @@ template <> struct Kind<HullDesc> {
 };
 
 inline constexpr std::array<std::string_view, 4> mesh_model_names{"ball", "torus", "knot", "bowl"};
-inline constexpr std::array<std::string_view, 2> mesh_side_names{"one", "both"};
+inline constexpr std::array<std::string_view, 3> mesh_side_names{"one", "both", "solid"};
+inline constexpr std::array<std::string_view, 2> field_side_names{"one", "solid"};
 
 template <> struct Kind<MeshDesc> {
     static constexpr KindInfo info{
@@ -160,7 +161,9 @@ template <> struct Kind<MeshDesc> {
         .about =
             "triangles: as given, counter-clockwise seen from the front; or those of a Wavefront "
             "OBJ file, times `scale`; or a model with these `half_extents`. Bodies collide with "
-            "its front side only, or with both `sides`. At most 100,000 triangles",
+            "its front side only, with both `sides`, or with the solid that a closed mesh "
+            "encloses, "
+            "which pushes out what is inside. At most 100,000 triangles",
         .moves = Moves::never};
     static void fields(MeshDesc &m, auto &visitor) {
         visitor.either(
@@ -182,7 +185,7 @@ template <> struct Kind<MeshDesc> {
                 }},
             Way{"vertices", std::holds_alternative<std::monostate>(m.source),
                 [&] { visitor.surface("vertices", "triangles", m.data); }});
-        visitor.word("sides", m.both_sides, mesh_side_names, true);
+        visitor.word("sides", m.sides, mesh_side_names, true);
     }
 };
 
@@ -193,7 +196,8 @@ template <> struct Kind<HeightFieldDesc> {
         .size = "its size is half_extents, or that of its heights",
         .about = "ground centred on its position: rows of `heights` along x, one after another "
                  "along z, `spacing` apart; or hills within `half_extents`, with `detail` squares "
-                 "along x. Bodies collide with its top side only",
+                 "along x. Bodies collide with its top side only, or it is solid below, as deep as "
+                 "it is long, and pushes up what is inside",
         .placing = Placing::position,
         .moves = Moves::never};
     static void fields(HeightFieldDesc &f, auto &visitor) {
@@ -209,6 +213,7 @@ template <> struct Kind<HeightFieldDesc> {
                                visitor.heights("heights", f);
                                visitor.length("spacing", f.spacing);
                            }});
+        visitor.word("sides", f.is_solid, field_side_names, true);
     }
 };
 

@@ -103,9 +103,8 @@ double sample_count(const HillsModel &hills) {
     return rows_of(hills) * (hills.detail + 1);
 }
 
-HeightFieldDesc make_height_field(const HillsModel &hills) {
-    HeightFieldDesc field;
-    field.hills = hills;
+void make_heights(HeightFieldDesc &field) {
+    const HillsModel &hills = *field.hills;
     field.spacing = spacing_of(hills);
     field.columns = hills.detail + 1;
     field.rows = static_cast<int>(rows_of(hills));
@@ -119,7 +118,6 @@ HeightFieldDesc make_height_field(const HillsModel &hills) {
                                0.3 * std::sin(1.7 * z - 0.6 * x)));
         }
     field.heights = std::make_shared<const std::vector<double>>(std::move(heights));
-    return field;
 }
 
 } // namespace plumb

@@ -8,8 +8,9 @@ namespace plumb {
 // Closed except for the bowl; fronts face outwards.
 MeshData make_mesh(const MeshModel &model);
 
-// Hills on a grid of squares, as many along z as fit the half extents best.
-HeightFieldDesc make_height_field(const HillsModel &hills);
+// The heights of a field that has hills, on a grid of squares, as many along z as fit the half
+// extents best.
+void make_heights(HeightFieldDesc &field);
 
 // That height field's rows times columns, as a double so that it cannot overflow.
 double sample_count(const HillsModel &hills);

@@ -40,29 +40,13 @@ void add_vector(StateHash &hash, const Vec3 &v) {
     hash.add(v.z);
 }
 
-// Identifies vertices by position, so triangles that duplicate a corner's coordinates are
-// neighbours, too.
-std::vector<std::uint32_t> same_places(const std::vector<Vec3> &vertices) {
-    std::vector<std::uint32_t> order(vertices.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    const auto key = [&](std::uint32_t i) {
-        return std::tuple(vertices[i].x, vertices[i].y, vertices[i].z, i);
-    };
-    std::ranges::sort(order, {}, key);
-    std::vector<std::uint32_t> first(vertices.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        first[order[i]] =
-            i > 0 && vertices[order[i]] == vertices[order[i - 1]] ? first[order[i - 1]] : order[i];
-    return first;
-}
-
 } // namespace
 
 TriangleSurface::TriangleSurface(TriangleMesh mesh, Sides sides)
     : source_(MeshTree(std::move(mesh))), sides_(sides) {
     const TriangleMesh &kept = std::get<MeshTree>(source_).mesh();
     bounds_ = plumb::bounds(kept);
+    // Triangles that repeat a corner's coordinates are neighbours, too.
     const std::vector<std::uint32_t> place = same_places(kept.vertices);
     std::vector<std::array<std::uint32_t, 3>> corners;
     corners.reserve(kept.triangles.size());
@@ -76,6 +60,8 @@ TriangleSurface::TriangleSurface(HeightField field, Sides sides)
     const auto &kept = std::get<HeightField>(source_);
     check_valid(kept);
     bounds_ = plumb::bounds(kept);
+    if (sides_ == Sides::solid)
+        bounds_.min.y -= std::max(bounds_.max.x - bounds_.min.x, bounds_.max.z - bounds_.min.z);
     std::vector<std::array<std::uint32_t, 3>> corners;
     const auto sample = [&](const Vec3 &p) {
         const auto column =
@@ -97,6 +83,21 @@ Triangle TriangleSurface::triangle(std::uint32_t index) const {
     if (const auto *field = std::get_if<HeightField>(&source_))
         return plumb::triangle(*field, index);
     return plumb::triangle(std::get<MeshTree>(source_).mesh(), index);
+}
+
+bool TriangleSurface::encloses(const Vec3 &point) const {
+    if (sides_ != Sides::solid)
+        return false;
+    if (const auto *field = std::get_if<HeightField>(&source_)) {
+        const std::optional<Real> height = height_at(*field, point.x, point.z);
+        return height && point.y < *height && point.y > bounds_.min.y;
+    }
+    return contains(std::get<MeshTree>(source_), point);
+}
+
+Vec3 TriangleSurface::closest_point(const Vec3 &point) const {
+    return std::visit([&](const auto &source) { return plumb::closest_point(source, point); },
+                      source_);
 }
 
 Vec3 TriangleSurface::normal_beyond(std::uint32_t index, int edge) const {

@@ -14,8 +14,11 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// Which sides of the triangles are solid.
-enum class Sides { front, both };
+// front: solids touch the fronts of the triangles, and pass from behind. both: they touch both
+// sides of what is a thin sheet. solid: a closed mesh whose fronts face out, or the ground below a
+// height field, as deep as the field is long; they touch its outside, and what is inside is pushed
+// out.
+enum class Sides { front, both, solid };
 
 class TriangleSurface {
   public:
@@ -28,6 +31,9 @@ class TriangleSurface {
     const Aabb &bounds() const { return bounds_; }
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(outer_edges_.size()); }
     Triangle triangle(std::uint32_t index) const;
+    // Whether the point is inside; false unless the surface is solid.
+    bool encloses(const Vec3 &point) const;
+    Vec3 closest_point(const Vec3 &point) const;
 
     // Whether the surface turns away beyond the edge from corner `edge` to the next: a border or a
     // ridge. At other edges, flat or concave, nothing can rest on the edge alone: a shape that

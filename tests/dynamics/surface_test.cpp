@@ -1,6 +1,7 @@
 // Bodies on meshes and height fields.
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "tests/dynamics/worlds.h"
+#include "tests/space/meshes.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
@@ -298,6 +299,82 @@ TEST(Surface, WhatTumblesDownHillsGainsLittleEnergy) {
         }
         EXPECT_LT(more, is_box ? 2 : 13) << is_box;
     }
+}
+
+// A mesh that is solid pushes what is inside out by the shortest way; one that is not lets it fall
+// through to the ground.
+TEST(Surface, WhatIsInsideASolidMeshIsPushedOut) {
+    constexpr double half = 0.5;
+    for (const Sides sides : {Sides::front, Sides::solid})
+        for (const bool is_cube : {true, false}) {
+            const auto mesh = std::make_shared<const TriangleSurface>(
+                is_cube ? meshes::cube(3, half) : meshes::sphere(24, 16, half), sides);
+            Random random(5);
+            for (int trial = 0; trial < 40; ++trial) {
+                World world("soft_step", weightless(settings_for("soft_step")));
+                world.add_body(surface_body(mesh, 0.5));
+                const V from = any_vector(random, 0.45 * half);
+                const bool is_ball = trial % 2 == 0;
+                BodyDef def =
+                    dynamic_body(is_ball ? Shape{ball(0.05)} : Shape{block(V{0.05})}, 1, from);
+                if (!is_ball)
+                    def.pose.rotation = narrow(any_rotation(random));
+                const BodyId id = world.add_body(def);
+                const auto reach = [&] {
+                    const V at = glm::abs(position_of(world, id));
+                    return is_cube ? std::max({at.x, at.y, at.z}) : glm::length(at);
+                };
+                const double left = half - reach();
+                int steps = 0;
+                for (; steps < 90 && reach() < half; ++steps)
+                    run(world, 1);
+                if (sides == Sides::front) {
+                    EXPECT_LT(glm::distance(position_of(world, id), from), 1e-3) << "it is held";
+                    continue;
+                }
+                EXPECT_LT(steps, 30) << is_cube << is_ball;
+                EXPECT_LT(glm::distance(position_of(world, id), from), 1.2 * left + 0.05);
+                // As from a solid ball, what turns out of it keeps some of the speed.
+                EXPECT_LT(glm::length(velocity_of(world, id)), is_ball ? 0.01 : 1.2);
+            }
+        }
+}
+
+// The ground below a solid height field: as on a half-space, what is inside comes up and rests.
+TEST(Surface, WhatIsInSolidGroundComesUpAndRests) {
+    const auto hills = [](double x, double z) { return 0.3 * std::sin(x) * std::cos(0.7 * z); };
+    for (const Sides sides : {Sides::front, Sides::solid}) {
+        const auto ground = std::make_shared<const TriangleSurface>(field(40, 0.25, hills), sides);
+        for (const double deep : {0.05, 0.3, 1.0, 4.0}) {
+            World world("soft_step", settings_for("soft_step"));
+            world.add_body(surface_body(ground, 1));
+            const V start{0.4, hills(0.4, -0.3) - deep, -0.3};
+            const BodyId id =
+                world.add_body(with_material(dynamic_body(ball(0.1), 1, start), 1, 0));
+            run(world, 240);
+            const V at = position_of(world, id);
+            if (sides == Sides::front)
+                EXPECT_LT(at.y, -10) << deep;
+            else
+                EXPECT_GT(at.y, hills(at.x, at.z) + 0.09) << deep;
+        }
+    }
+}
+
+// What never is inside does not notice: the same bits.
+TEST(Surface, SolidIsAsOneSidedFromOutside) {
+    const auto hills = [](double x, double z) { return 0.3 * std::sin(x) * std::cos(0.7 * z); };
+    std::array<V, 2> ends{};
+    for (const Sides sides : {Sides::front, Sides::solid}) {
+        World world("soft_step", settings_for("soft_step"));
+        world.add_body(surface_body(
+            std::make_shared<const TriangleSurface>(field(40, 0.25, hills), sides), 0.5));
+        const BodyId id = world.add_body(
+            dynamic_body(block(V{0.2, 0.1, 0.3}), 1, V{0.2, 1.5, 0.4}, V{1, 0, 0.5}));
+        run(world, 300);
+        ends[sides == Sides::solid ? 1 : 0] = position_of(world, id);
+    }
+    EXPECT_EQ(ends[0], ends[1]);
 }
 
 } // namespace

@@ -123,7 +123,7 @@ class Run {
             }
             MeshDesc desc;
             desc.data = std::make_shared<const MeshData>(std::move(mesh));
-            desc.both_sides = input_.below(2) == 0;
+            desc.sides = static_cast<MeshSides>(input_.below(3));
             return desc;
         }
         }

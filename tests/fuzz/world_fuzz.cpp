@@ -223,7 +223,7 @@ class Caller {
         collider.shape = ConvexHull{collider.hull.get(), at, input_.rotation()};
     }
     void give_surface(ColliderDef &collider) {
-        const Sides sides = input_.below(2) == 0 ? Sides::front : Sides::both;
+        const auto sides = static_cast<Sides>(input_.below(3));
         if (input_.below(2) == 0) {
             HeightField field;
             field.rows = 2 + static_cast<int>(input_.below(3));

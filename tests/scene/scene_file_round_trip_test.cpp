@@ -55,13 +55,13 @@ class Words {
         for (const auto &triangle : m.data->triangles)
             for (const std::uint32_t corner : triangle)
                 number(corner);
-        number(m.source.index()), number(m.both_sides);
+        number(m.source.index()), number(static_cast<std::uint64_t>(m.sides));
     }
     void add(const HeightFieldDesc &f) {
         for (const double height : *f.heights)
             add(height);
         number(static_cast<std::uint64_t>(f.rows)), number(static_cast<std::uint64_t>(f.columns));
-        add(f.spacing), number(f.hills.has_value());
+        add(f.spacing), number(f.hills.has_value()), number(f.is_solid);
     }
     void add(const MassPoseDesc &pose) { add(pose.position), add(pose.orientation); }
     void add(const GivenSettings &given) {
@@ -327,13 +327,14 @@ class Scenes {
         case 6: {
             MeshDesc mesh;
             mesh.data = std::make_shared<const MeshData>(MeshData{*corners(), {{0, 2, 1}}});
-            mesh.both_sides = one_in(2);
+            mesh.sides = one_in(2) ? MeshSides::one : MeshSides::both;
             return mesh;
         }
         default: {
             HeightFieldDesc field;
             field.columns = 3;
             field.spacing = x;
+            field.is_solid = one_in(2);
             field.heights = std::make_shared<const std::vector<double>>(6, number());
             return field;
         }

@@ -59,7 +59,8 @@ std::vector<std::string> every_kind() {
             "shape = \"mesh\"\n" + pyramid_mesh,
             "shape = \"mesh\"\nmodel = \"torus\"\nhalf_extents = [2, 1, 2]\nsides = \"both\"",
             "shape = \"height_field\"\n" + heights,
-            "shape = \"height_field\"\nhalf_extents = [4, 1, 3]\ndetail = 6"};
+            "shape = \"mesh\"\nsides = \"solid\"\n" + pyramid_mesh,
+            "shape = \"height_field\"\nhalf_extents = [4, 1, 3]\ndetail = 6\nsides = \"solid\""};
 }
 
 // As an inline table for `shapes`.
@@ -181,6 +182,14 @@ TEST(SceneFileShapes, MistakesAreToldWhereTheyAre) {
            "s.toml:5:21: error: triangles[0][2] is 3; it must be a whole number from 0 to 2");
     expect("shape = \"mesh\"\nmodel = \"ball\"\nhalf_extents = [1, 1, 1]\nsides = \"none\"",
            "s.toml:6:9: error: unknown sides \"none\"; did you mean \"one\"?");
+    const std::string no_space = " encloses no space, so it cannot be solid; close it, with its "
+                                 "triangles counter-clockwise seen from outside; or sides = "
+                                 "\"both\"";
+    expect("shape = \"mesh\"\nmodel = \"bowl\"\nhalf_extents = [1, 1, 1]\nsides = \"solid\"",
+           "s.toml:6:9: error: [[body]] \"a\"" + no_space);
+    expect("shape = \"mesh\"\nsides = \"solid\"\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], "
+           "[0, 0, 1]]\ntriangles = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]", // inside out
+           no_space);
     expect("shape = \"mesh\"\nfile = \"../x.obj\"", "is not the name of a file beside the scene");
     expect("shape = \"height_field\"\nheights = [[1, 2], [3]]\nspacing = 1",
            "s.toml:4:20: error: heights[1] has 1 heights");

@@ -120,7 +120,7 @@ TEST(ShapeDesc, AreSummedUpInAFewWords) {
     field.rows = 2;
     field.columns = 3;
     field.hills.reset();
-    EXPECT_EQ(summary(field), "height field of 2 × 3, spacing 1 m");
+    EXPECT_EQ(summary(field), "height field of 2 × 3, spacing 1 m, sides one");
     HullDesc hull;
     hull.points = std::make_shared<std::vector<glm::dvec3>>(8);
     EXPECT_EQ(summary(hull), "hull of 8 points");

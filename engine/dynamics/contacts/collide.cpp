@@ -534,6 +534,15 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         return;
     const Collider &surface = solid_first ? b : a;
     const Transform pose = surface_pose(surface, state_.motions[surface.body]);
+    FoundManifold inside{collide_inside(solid, *surface.surface, pose), motion_a, motion_b};
+    if (inside.manifold.count > 0) {
+        if (!solid_first)
+            inside.manifold.normal = -inside.manifold.normal;
+        ContactKey key = candidate.key;
+        key.triangle = 0; // for all of the surface
+        add_contact(candidate, key.triangle, find_memory(state_, key), inside, out);
+        return;
+    }
     // The solid's box in the surface's frame.
     const Aabb box = bounds(solid);
     const Box around{Real(0.5) * (box.min + box.max), identity_rotation,

@@ -28,10 +28,6 @@ constexpr Real passed_share = Real(0.05);
 // Cosine between unit normals that face about the same way.
 constexpr Real same_side = Real(0.4);
 
-Vec3 middle_of(const Aabb &box) {
-    return Real(0.5) * (box.min + box.max);
-}
-
 // A solid before and after a step, in the frame of a surface.
 struct Passage {
     Transform before; // of its body
@@ -59,7 +55,7 @@ Manifold passed_points(const Passage &passage, const Triangle &triangle, Sides s
         return passed;
     const Vec3 front = cross / doubled_area;
     const bool was_behind = is_behind(passage.bounds_before, triangle);
-    if (was_behind && sides == Sides::front)
+    if (was_behind && sides != Sides::both)
         return passed;
     const Vec3 face = was_behind ? -front : front;
     passed.normal = -face;

@@ -1,5 +1,6 @@
 #include "engine/dynamics/contacts/surface_contact.h"
 
+#include "engine/geometry/aabb.h"
 #include "engine/geometry/raycast.h"
 #include "engine/geometry/support.h"
 #include "engine/geometry/triangle.h"
@@ -17,6 +18,8 @@ namespace {
 
 // The solid's deepest point against a face, when the contact is with the face alone.
 constexpr std::uint32_t deepest_point_feature = 0xFFFFFFFFU;
+// The same, of a solid that is inside.
+constexpr std::uint32_t inside_feature = 0xFFFFFFFDU;
 
 // The solid's farthest point along a unit direction.
 Vec3 farthest(const Shape &solid, const Vec3 &direction) {
@@ -90,8 +93,30 @@ bool is_in_hollow(Real bend, Real depth, Real beyond) {
 
 } // namespace
 
+Manifold collide_inside(const Shape &solid, const TriangleSurface &surface, const Transform &pose) {
+    if (surface.sides() != Sides::solid || std::holds_alternative<HalfSpace>(solid))
+        return {};
+    const Vec3 middle = middle_of(bounds(solid));
+    const Vec3 local = to_local_point(pose, middle);
+    if (!is_finite(local) || !surface.encloses(local))
+        return {};
+    const Vec3 at = to_world_point(pose, surface.closest_point(local));
+    const Vec3 way = at - middle;
+    const Real depth = glm::length(way);
+    if (!(depth > Real(0))) // on the surface: it touches triangles
+        return {};
+    const Vec3 out = way / depth;
+    const Vec3 deepest = farthest(solid, -out);
+    const Real separation = glm::dot(out, deepest - at);
+    Manifold manifold;
+    manifold.normal = -out;
+    manifold.count = 1;
+    manifold.points[0] = {deepest - Real(0.5) * separation * out, separation, inside_feature};
+    return manifold;
+}
+
 bool is_behind(const Aabb &solid, const Triangle &triangle) {
-    const Vec3 middle = Real(0.5) * (solid.min + solid.max);
+    const Vec3 middle = middle_of(solid);
     const Vec3 front = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
     return glm::dot(front, middle - triangle.a) < Real(0);
 }
@@ -112,7 +137,7 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
 
     const Aabb box = bounds(solid);
     const bool from_behind = is_behind(box, placed_one);
-    if (from_behind && surface.sides() == Sides::front)
+    if (from_behind && surface.sides() != Sides::both)
         return {};
     Manifold manifold = collide_triangle(solid, placed_one, margin);
     if (manifold.count == 0)

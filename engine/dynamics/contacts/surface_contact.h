@@ -21,4 +21,8 @@ bool is_behind(const Aabb &solid, const Triangle &triangle);
 Manifold collide(const Shape &solid, const TriangleSurface &surface, const Transform &pose,
                  std::uint32_t index, Real margin);
 
+// The contact of a solid whose middle is inside a surface that is solid: at the nearest place on
+// that surface, as deep as the solid's farthest point is behind it. None for any other solid.
+Manifold collide_inside(const Shape &solid, const TriangleSurface &surface, const Transform &pose);
+
 } // namespace plumb::inline PLUMB_PRECISION

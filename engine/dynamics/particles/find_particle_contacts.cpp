@@ -99,6 +99,12 @@ void World::collide_particle(std::uint32_t index, std::uint32_t collider, std::s
     }
     const Transform pose = surface_pose(what, motion);
     const Vec3 local = to_local_point(pose, going.position);
+    const Manifold inside =
+        collide_inside(Sphere{going.position, particle.radius}, *what.surface, pose);
+    if (inside.count > 0) {
+        add_particle_contact(index, collider, inside, motion, out);
+        return;
+    }
     what.surface->each_touching(
         around(local, particle.radius + near + way), s.near_triangles[part],
         [&](std::uint32_t triangle) {

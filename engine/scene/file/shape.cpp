@@ -4,6 +4,7 @@
 #include "engine/scene/file/spelling.h"
 #include "engine/scene/obj_file.h"
 #include "engine/scene/real/hull_measures.h"
+#include "engine/scene/real/solid_shape.h"
 #include "engine/scene/shape_fields.h"
 #include "engine/scene/shape_models.h"
 
@@ -316,11 +317,15 @@ class Completion {
                              "make it smaller");
                 return;
             }
+        if (mesh.sides == MeshSides::solid && !encloses_space(*mesh.data))
+            table_.error("sides", table_.title() + " encloses no space, so it cannot be solid",
+                         "close it, with its triangles counter-clockwise seen from outside; or "
+                         "sides = \"both\"");
     }
     void operator()(HeightFieldDesc &field) const {
         if (field.hills) {
             if (sample_count(*field.hills) <= static_cast<double>(max_height_samples))
-                field = make_height_field(*field.hills);
+                make_heights(field);
             else
                 table_.error("half_extents",
                              table_.title() + " would have " +

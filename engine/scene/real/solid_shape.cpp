@@ -3,21 +3,40 @@
 #include "engine/geometry/quickhull.h"
 #include "engine/scene/real/hull_measures.h"
 
+#include <array>
+#include <cstdint>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-std::shared_ptr<const TriangleSurface> make_surface(const MeshDesc &desc) {
+TriangleMesh mesh_of(const MeshData &data) {
     TriangleMesh mesh;
-    for (const glm::dvec3 &vertex : desc.data->vertices)
+    for (const glm::dvec3 &vertex : data.vertices)
         mesh.vertices.emplace_back(vertex);
-    mesh.triangles = desc.data->triangles;
-    return std::make_shared<const TriangleSurface>(std::move(mesh),
-                                                   desc.both_sides ? Sides::both : Sides::front);
+    mesh.triangles = data.triangles;
+    return mesh;
+}
+
+Sides sides_of(MeshSides sides) {
+    switch (sides) {
+    case MeshSides::one:
+        return Sides::front;
+    case MeshSides::both:
+        return Sides::both;
+    case MeshSides::solid:
+        break;
+    }
+    return Sides::solid;
+}
+
+std::shared_ptr<const TriangleSurface> make_surface(const MeshDesc &desc) {
+    return std::make_shared<const TriangleSurface>(mesh_of(*desc.data), sides_of(desc.sides));
 }
 
 std::shared_ptr<const TriangleSurface> make_surface(const HeightFieldDesc &desc) {
@@ -30,7 +49,8 @@ std::shared_ptr<const TriangleSurface> make_surface(const HeightFieldDesc &desc)
     field.origin = Vec3{static_cast<Real>(x), Real(0), static_cast<Real>(z)};
     for (const double height : *desc.heights)
         field.heights.push_back(static_cast<Real>(height));
-    return std::make_shared<const TriangleSurface>(std::move(field), Sides::front);
+    return std::make_shared<const TriangleSurface>(std::move(field),
+                                                   desc.is_solid ? Sides::solid : Sides::front);
 }
 
 template <typename Desc>
@@ -74,6 +94,21 @@ struct MakeSolid {
 
 SolidShape solid_shape(const ShapeDesc &desc) {
     return std::visit(MakeSolid{}, desc);
+}
+
+bool encloses_space(const MeshData &data) {
+    TriangleMesh mesh = mesh_of(data);
+    const std::vector<std::uint32_t> place = same_places(mesh.vertices);
+    double volume = 0;
+    for (std::array<std::uint32_t, 3> &corners : mesh.triangles) {
+        volume += glm::dot(data.vertices[corners[0]] - data.vertices.front(),
+                           glm::cross(data.vertices[corners[1]] - data.vertices.front(),
+                                      data.vertices[corners[2]] - data.vertices.front())) /
+                  6;
+        for (std::uint32_t &corner : corners)
+            corner = place[corner];
+    }
+    return volume > 0 && is_closed(mesh);
 }
 
 std::shared_ptr<const TriangleSurface> triangle_surface(const ShapeDesc &desc) {

@@ -19,6 +19,9 @@ struct SolidShape {
 // Has no shape for surfaces and for points without a solid hull.
 SolidShape solid_shape(const ShapeDesc &desc);
 
+// Whether a mesh can be solid: it has no border, and its fronts face out.
+bool encloses_space(const MeshData &data);
+
 // Null for solids.
 std::shared_ptr<const TriangleSurface> triangle_surface(const ShapeDesc &desc);
 
