@@ -155,7 +155,8 @@ inline constexpr auto setting_rows = std::to_array<SettingRow>({
      SettingGroup::soft,
      "Natural frequency of soft joints as a fraction of the substep rate. Stiffer joints make a "
      "pendulum more accurate, but at four substeps tear apart a chain of ten with a hundredfold "
-     "weight at its end; 0.2 with a damping ratio of 5 is the stiffest that handles both."},
+     "weight at its end; in soft_step, 0.2 with a damping ratio of 5 is the stiffest that handles "
+     "both. TGS Soft has its own."},
     {"joint_damping_ratio", &StepSettings::joint_damping_ratio, "", 0, 1e6, SettingGroup::soft,
      "Damping ratio of soft joints; 1 is critical."},
     {"push_velocity", &StepSettings::push_velocity, "m/s", 0, 1e9, SettingGroup::push,

@@ -168,9 +168,10 @@ TEST_P(JointTypes, LimitsStopASliderAndAHinge) {
             most = std::max(most, place_of(j));
         }
         // One pass does not split an impact exactly between the stop and the anchor.
-        EXPECT_LE(most, 0.5 + 0.02);
+        const double give = GetParam() == "tgs_soft" ? 0.003 : 0; // as published, it is softer
+        EXPECT_LE(most, 0.5 + 0.02 + give);
         EXPECT_GE(least, -0.25 - 0.02);
-        EXPECT_NEAR(place_of(j), 0.5 + (slides ? sag_of_joints(j.world) : 0), 0.005); // at rest
+        EXPECT_NEAR(place_of(j), 0.5 + (slides ? sag_of_joints(j.world) : 0), 0.005 + give);
         // Five passes from nothing do not split the weight between the hinge and its stop.
         const double shared = GetParam() == "naive_impulses" && !slides ? 3 : 1;
         EXPECT_LE(glm::length(velocity_of(j.world, j.id)),

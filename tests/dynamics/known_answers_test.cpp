@@ -235,7 +235,7 @@ const std::vector<Problem> &problems() {
         {"TornChain",
          torn_chain,
          {{"soft_step", {0.0001}},
-          {"tgs_soft", {0.035, 0.015}},
+          {"tgs_soft", {0.07, 0.03}},
           // It tears, and then whips about: by metres in double, by 0.14 m in float.
           {"sequential_impulses", is_double ? Bound{6, 1} : Bound{0.15, 0.05}},
           {"nncg", {1e-05}},

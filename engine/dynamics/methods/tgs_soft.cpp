@@ -4,9 +4,9 @@
 //
 // As there, contacts are twice as stiff against immovable bodies. What differs: lever arms stay
 // those of the step's start, as in that article's Soft Step (turned with their bodies, they make
-// rolling balls gain a tenth of their speed, and 2.7 times of it over tiles); and frequencies are
-// fractions of the substep rate, without a cap in hertz. Bounces, joint frequency and damping, and
-// the push velocity are ours.
+// rolling balls gain a tenth of their speed, and 2.7 times of it over tiles); bounces, which it
+// does not have; and frequencies, which keep their ratio to the substep rate when substeps get
+// finer. At 60 Hz and four substeps they are its own: 30 Hz for contacts and joints.
 #include "engine/dynamics/method.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -80,7 +80,11 @@ Method tgs_soft() {
              .springs = true,
              .reads = {SettingGroup::constraints, SettingGroup::speculative, SettingGroup::soft,
                        SettingGroup::push, SettingGroup::threshold, SettingGroup::gyroscopic},
-             .defaults = {.substeps = 4, .iterations = 1}},
+             .defaults = {.substeps = 4,
+                          .iterations = 1,
+                          .joint_frequency_ratio = 0.125,
+                          .joint_damping_ratio = 10,
+                          .push_velocity = 4}},
             advance_tgs_soft};
 }
 
