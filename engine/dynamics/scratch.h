@@ -62,8 +62,8 @@ struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Paddin
     std::vector<ContactEnds> ends; // one per contact, while the step advances
     // Bodies that went another way than at the start of the step, the motion now expected of each
     // body, and the contacts that this adds.
-    std::vector<std::uint8_t> surprised; // empty: none
-    std::vector<Motion> going;
+    std::vector<std::uint8_t> deflected; // empty: none
+    std::vector<Motion> deflected_motions;
     std::vector<Contact> more;
     FoundParts<Contact> contact_parts;
     std::vector<std::vector<std::uint32_t>> triangles; // near the solid, in each part of the loop

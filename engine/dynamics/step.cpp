@@ -71,7 +71,7 @@ bool World::is_turned(const Candidate &candidate) const {
 void World::step(TaskPool *tasks, StepTimes *times) {
     report_ = StepReport{};
     scratch_.impacts.clear();
-    scratch_.surprised.clear();
+    scratch_.deflected.clear();
     scratch_.paces = state_.paces;
     note_still(true);
     // Everything sleeps or never moves.
@@ -139,7 +139,7 @@ void World::step_together(StepTimes *times) {
         constexpr int most_missed_of_solids = 2;
         int missed = 0;
         const auto must_try_again = [&] {
-            if (find_surprises())
+            if (find_contacts_of_deflected())
                 return true;
             ++missed;
             return missed <= most_missed && find_missed_points(missed <= most_missed_of_solids);
@@ -148,7 +148,7 @@ void World::step_together(StepTimes *times) {
             recall_impulses();
             try_step();
         }
-        scratch_.surprised.clear();
+        scratch_.deflected.clear();
     }
     const PhaseTimer timer(times ? &times->finish : nullptr);
     note_struck();

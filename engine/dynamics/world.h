@@ -291,9 +291,9 @@ class World {
     void drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
                           FoundManifold &found) const;
     // Contacts of bodies that do not touch yet (predicted_contact.cpp).
-    const Motion &going(std::uint32_t body) const;
+    const Motion &expected_motion(std::uint32_t body) const;
     Real least_half_width(const Body &body) const;
-    bool find_surprises();
+    bool find_contacts_of_deflected();
     // Bodies that no contact stopped (missed_contact.cpp).
     bool find_missed_points(bool of_solids);
     bool find_missed_points(Contact &contact) const;

@@ -454,7 +454,8 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
 // How far a turns against b in half a step.
 Vec3 World::half_turn_of(const Candidate &candidate) const {
     return (Real(0.5) * static_cast<Real>(settings_.dt)) *
-           (going(candidate.key.a).angular_velocity - going(candidate.key.b).angular_velocity);
+           (expected_motion(candidate.key.a).angular_velocity -
+            expected_motion(candidate.key.b).angular_velocity);
 }
 
 // Whether either body rolls on a rim and will get lower there than where it stood.

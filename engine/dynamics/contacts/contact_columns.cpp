@@ -78,7 +78,7 @@ void colour(StepContext &context) {
 // Between balls the impulses before and after the touch cancel, so only friction turns them.
 bool is_found_again(const StepContext &context, const Contact &contact) {
     return contact.manifold.count == 1 && contact.restitution == Real(0) &&
-           are_lone(context, contact) && !are_balls(context, contact);
+           touch_nothing_else(context, contact) && !are_balls(context, contact);
 }
 
 void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,

@@ -75,7 +75,7 @@ void find_partners(StepContext &context) {
         is_held(context.grab.body);
 }
 
-bool are_lone(const StepContext &context, const Contact &contact) {
+bool touch_nothing_else(const StepContext &context, const Contact &contact) {
     const std::vector<std::uint32_t> &partners = context.scratch.partners;
     return partners[contact.key.a] == contact.key.b && partners[contact.key.b] == contact.key.a &&
            are_both_dynamic(context, contact);
@@ -123,8 +123,9 @@ void prepare_contacts(StepContext &context, Prepare which) {
     constraints.clear();
     for (const std::uint32_t i : context.active.contacts) {
         const Contact &contact = context.contacts[i];
-        const bool strikes = contact.restitution > Real(0) ||
-                             (contact.moment == Moment::touch && are_lone(context, contact));
+        const bool strikes =
+            contact.restitution > Real(0) ||
+            (contact.moment == Moment::touch && touch_nothing_else(context, contact));
         if (which == Prepare::striking && !strikes)
             continue;
         ContactConstraint &out = constraints.emplace_back();

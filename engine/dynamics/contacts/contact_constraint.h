@@ -70,10 +70,10 @@ struct ContactBias {
 // Whether both bodies are dynamic; and whether both colliders are balls.
 bool are_both_dynamic(const StepContext &context, const Contact &contact);
 bool are_balls(const StepContext &context, const Contact &contact);
-// are_lone: whether two dynamic bodies touch each other and nothing else, and no joint or grab
-// holds either. find_partners works that out for all bodies first.
+// touch_nothing_else: whether two dynamic bodies touch each other and nothing else, and no joint or
+// grab holds either. find_partners works that out for all bodies first.
 void find_partners(StepContext &context);
-bool are_lone(const StepContext &context, const Contact &contact);
+bool touch_nothing_else(const StepContext &context, const Contact &contact);
 
 // K along a unit vector: the inverse of the effective mass of two points against each other.
 Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,

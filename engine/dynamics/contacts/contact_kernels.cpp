@@ -24,7 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
 using Mask = hn::Mask<decltype(tag)>;
 constexpr int most_sweeps = 8;
-constexpr int most_rubs = 4;
+constexpr int most_friction_passes = 4;
 // A contact of one or two points whose last sweep changed no normal impulse by more than this share
 // of the greater is swept no more. Three or four share a load in many ways, and settle slowly: a
 // stack that lands would tilt.
@@ -567,10 +567,11 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 pair.apply(times(hn::Sub(total, before), n), r_a, r_b);
                 store(total, point.impulse.x, lane);
             }
-            auto rubs = again;
-            for (int rub = 0; rub < (pushes ? most_rubs : 1) && !hn::AllFalse(tag, rubs); ++rub)
-                rubs = hn::And(rubs, solve_friction(block, lane, pair, patch, t1, t2, friction,
-                                                    rubs, bias.backwards));
+            auto sliding = again;
+            for (int pass = 0;
+                 pass < (pushes ? most_friction_passes : 1) && !hn::AllFalse(tag, sliding); ++pass)
+                sliding = hn::And(sliding, solve_friction(block, lane, pair, patch, t1, t2,
+                                                          friction, sliding, bias.backwards));
         }
         store_pair(pair, block, bodies, lane);
         const Lanes before = pushes ? zero : load(block.struck, lane);

@@ -97,7 +97,7 @@ Aabb World::swept_bounds(const Aabb &box, const ColliderReach &of) const {
 // Whether pairs with that body are looked for. Once some bodies were seen to go another way than
 // expected, only their pairs are.
 bool World::is_asked(std::uint32_t body) const {
-    return scratch_.surprised.empty() || scratch_.surprised[body] != 0;
+    return scratch_.deflected.empty() || scratch_.deflected[body] != 0;
 }
 
 // Whether there is nothing that a collider may collide with. Particles collide with every layer.
@@ -123,7 +123,7 @@ bool World::place_collider(std::uint32_t i) const {
     const Body &body = model_->bodies[collider.body];
     s.reach[i] = {};
     if (body.kind != BodyKind::static_body)
-        s.reach[i] = {going(collider.body).velocity, pull_on(collider.body),
+        s.reach[i] = {expected_motion(collider.body).velocity, pull_on(collider.body),
                       turning_reach(collider.body)};
     if (!collider.surface)
         s.placed[i] = placed(collider.shape, mass_pose(motion));
@@ -259,7 +259,8 @@ void World::find_pairs_with_planes() const {
         HalfSpace reached = std::get<HalfSpace>(s.placed[plane]);
         reached.offset += static_cast<Real>(settings_.speculative_distance) / 2;
         if (model_->bodies[body].kind != BodyKind::static_body)
-            reached.offset += glm::length(going(body).velocity) * static_cast<Real>(settings_.dt);
+            reached.offset +=
+                glm::length(expected_motion(body).velocity) * static_cast<Real>(settings_.dt);
         for (std::uint32_t i = 0; i < model_->colliders.size(); ++i) {
             const Collider &other = model_->colliders[i];
             if (other.body != no_body && !other.is_half_space() && may_touch(i, plane) &&

@@ -1,4 +1,4 @@
-// The patch over which two bodies rub. Contact points lie on its outline, but under even pressure
+// The patch over which two bodies touch. Contact points lie on its outline, but under even pressure
 // friction acts closer to its centre and slows a spin less.
 #pragma once
 

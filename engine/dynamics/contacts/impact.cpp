@@ -250,7 +250,7 @@ void weigh_with_joints(StepContext &context, Blow &blow, Answers &joints) {
 }
 
 // Friction under the points' loads so far.
-void rub(StepContext &context, Blow &blow, Answers &joints) {
+void add_friction(StepContext &context, Blow &blow, Answers &joints) {
     const ContactConstraint &contact = *blow.contact;
     SolverBody &a = context.bodies[contact.a];
     SolverBody &b = context.bodies[contact.b];
@@ -270,15 +270,15 @@ void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
     constexpr Real enough = Real(8) * std::numeric_limits<Real>::epsilon();
     // Plastic impacts are solved with their friction, since they leave no spare speed along the
     // normal: with friction after that, some would gain energy.
-    const auto is_rubbed = [](const Blow &blow) {
+    const auto has_friction = [](const Blow &blow) {
         return blow.is_plastic() && blow.contact->friction > Real(0);
     };
-    const bool rubs = std::ranges::any_of(blows, is_rubbed);
+    const bool any_friction = std::ranges::any_of(blows, has_friction);
     const bool is_one = blows.size() == 1 && blows.front().contact->count == 1;
-    const int passes = is_one && !rubs ? 1 : context.settings.impact_passes;
+    const int passes = is_one && !any_friction ? 1 : context.settings.impact_passes;
     bool agree = false;
     for (int pass = 0; pass < passes && !agree; ++pass) {
-        agree = !rubs;
+        agree = !any_friction;
         for (Blow &blow : blows) {
             for (std::size_t k = 0; k < static_cast<std::size_t>(blow.contact->count); ++k) {
                 if (!blow.rebounds[k].struck)
@@ -293,8 +293,8 @@ void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
                 apply_along_normal(context, *blow.contact, k, change);
                 joints.give(*blow.contact);
             }
-            if (is_rubbed(blow))
-                rub(context, blow, joints);
+            if (has_friction(blow))
+                add_friction(context, blow, joints);
         }
     }
     if (is_one || std::ranges::all_of(blows, &Blow::is_plastic))
@@ -402,7 +402,7 @@ bool touch(const StepContext &context, const Contact &contact, Real time) {
 // passes give back no speed.
 bool comes_to_touch(const StepContext &context, Blow &blow, Real h) {
     const Contact &contact = context.contacts[blow.contact->contact];
-    if (contact.moment != Moment::touch || !are_lone(context, contact) ||
+    if (contact.moment != Moment::touch || !touch_nothing_else(context, contact) ||
         (!blow.is_plastic() && !are_balls(context, contact)))
         return true;
     if (blow.pull != Real(0))
@@ -442,7 +442,7 @@ void strike(StepContext &context, std::span<Blow> blows, Real h) {
     share_out(context, blows, joints);
     for (Blow &blow : blows)
         if (!blow.is_plastic() && blow.contact->friction > Real(0))
-            rub(context, blow, joints);
+            add_friction(context, blow, joints);
     const std::size_t recorded = context.impacts.size();
     for (const Blow &blow : blows)
         record_impact(context, *blow.contact, along_normal(blow.impulses));

@@ -19,14 +19,14 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 // How a body is expected to move in this step: as at its start, until a try shows otherwise.
-const Motion &World::going(std::uint32_t body) const {
-    return scratch_.surprised.empty() ? state_.motions[body] : scratch_.going[body];
+const Motion &World::expected_motion(std::uint32_t body) const {
+    return scratch_.deflected.empty() ? state_.motions[body] : scratch_.deflected_motions[body];
 }
 
 // How far two colliders may move against each other in a step (m).
 Real World::way_of(const Candidate &candidate) const {
-    const Motion &a = going(candidate.key.a);
-    const Motion &b = going(candidate.key.b);
+    const Motion &a = expected_motion(candidate.key.a);
+    const Motion &b = expected_motion(candidate.key.b);
     const Real turning =
         glm::length(a.angular_velocity) * model_->colliders[candidate.collider_a].extent +
         glm::length(b.angular_velocity) * model_->colliders[candidate.collider_b].extent;
@@ -38,7 +38,8 @@ Real World::way_of(const Candidate &candidate) const {
 Real World::turning_reach(std::uint32_t index) const {
     if (!method_->info.looks_ahead)
         return Real(0);
-    const Real spin = glm::length(going(index).angular_velocity) * static_cast<Real>(settings_.dt);
+    const Real spin =
+        glm::length(expected_motion(index).angular_velocity) * static_cast<Real>(settings_.dt);
     if (spin == Real(0))
         return Real(0);
     const Real extent = extent_of(index);
@@ -91,9 +92,10 @@ void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Sh
 // Guards the smaller of two solids, if they approach far for its size in a step.
 void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
                          Manifold &manifold) const {
-    const Real way = static_cast<Real>(settings_.dt) *
-                     glm::dot(going(candidate.key.a).velocity - going(candidate.key.b).velocity,
-                              manifold.normal);
+    const Real way =
+        static_cast<Real>(settings_.dt) * glm::dot(expected_motion(candidate.key.a).velocity -
+                                                       expected_motion(candidate.key.b).velocity,
+                                                   manifold.normal);
     const Real width_a = model_->colliders[candidate.collider_a].half_width;
     const Real width_b = model_->colliders[candidate.collider_b].half_width;
     const bool a_moves = model_->bodies[candidate.key.a].kind == BodyKind::dynamic;
@@ -121,8 +123,8 @@ Gap gap_of(const Manifold &manifold) {
 FoundManifold World::predicted_manifold(const Candidate &candidate, const Manifold &now) const {
     const Collider &a = model_->colliders[candidate.collider_a];
     const Collider &b = model_->colliders[candidate.collider_b];
-    const Motion &motion_a = going(candidate.key.a);
-    const Motion &motion_b = going(candidate.key.b);
+    const Motion &motion_a = expected_motion(candidate.key.a);
+    const Motion &motion_b = expected_motion(candidate.key.b);
     const auto dt = static_cast<Real>(settings_.dt);
     const Real near = contact_reach(candidate);
     // Other shapes' gaps are found at next to no cost.
@@ -155,8 +157,8 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
         model_->colliders[solid_first ? candidate.collider_a : candidate.collider_b];
     const Collider &surface =
         model_->colliders[solid_first ? candidate.collider_b : candidate.collider_a];
-    const Motion &motion = going(solid_body);
-    const Motion &surface_motion = going(surface_body);
+    const Motion &motion = expected_motion(solid_body);
+    const Motion &surface_motion = expected_motion(surface_body);
     const auto dt = static_cast<Real>(settings_.dt);
     const Real near = contact_reach(candidate);
     const Triangle local = surface.surface->triangle(triangle);
@@ -194,7 +196,7 @@ Real World::least_half_width(const Body &body) const {
 
 // After a try of the step: whether struck bodies went far, for their size, where nothing was looked
 // for, and met something there. Their contacts are added, and the step must be tried again.
-bool World::find_surprises() {
+bool World::find_contacts_of_deflected() {
     if (!method_->info.looks_ahead)
         return false;
     Scratch &s = scratch_;
@@ -206,15 +208,16 @@ bool World::find_surprises() {
             continue;
         const Vec3 way = s.bodies[i].position - state_.motions[i].position;
         const Real enough = Real(0.5) * least_half_width(body);
-        if (!(glm::length(way) > enough) || !(glm::length(way - dt * going(i).velocity) > enough))
+        if (!(glm::length(way) > enough) ||
+            !(glm::length(way - dt * expected_motion(i).velocity) > enough))
             continue;
-        if (s.surprised.empty()) {
-            s.surprised.assign(state_.motions.size(), 0);
-            s.going = state_.motions;
+        if (s.deflected.empty()) {
+            s.deflected.assign(state_.motions.size(), 0);
+            s.deflected_motions = state_.motions;
         }
-        s.surprised[i] = 1;
-        s.going[i].velocity = way / dt;
-        s.going[i].angular_velocity = s.bodies[i].angular_velocity;
+        s.deflected[i] = 1;
+        s.deflected_motions[i].velocity = way / dt;
+        s.deflected_motions[i].angular_velocity = s.bodies[i].angular_velocity;
         any = true;
     }
     if (!any)
@@ -238,7 +241,7 @@ bool World::find_surprises() {
     if (s.more.empty())
         return false;
     if (wake_touched(s.more)) {
-        s.surprised.clear();
+        s.deflected.clear();
         find_contacts();
         return true;
     }
