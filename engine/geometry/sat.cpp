@@ -11,11 +11,6 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-// Edges whose directions' cross product (the sine of their angle) is shorter than this count as
-// parallel. Dropping the axis costs at most this angle times the edge length, which is within
-// rounding.
-constexpr Real parallel_sine = Real(16) * std::numeric_limits<Real>::epsilon();
-
 // Normalises the rotation to the last place: a valid box may have one that is slightly off.
 Box unit(const Box &box) {
     return {box.center, glm::normalize(box.rotation), box.half_extents};
@@ -53,74 +48,10 @@ bool have_no_gap(const RelativeBox &relative, const Vec3 &half_a, const Vec3 &ha
 
 } // namespace
 
-RelativeBox relative_to(const Box &a, const Box &b) {
-    const Quat to_a = glm::conjugate(a.rotation);
-    return {to_a * (b.center - a.center), glm::mat3_cast(to_a * b.rotation)};
-}
-
-BoxAxes best_axes(const RelativeBox &relative, const Vec3 &half_a, const Vec3 &half_b,
-                  Real margin) {
-    const Vec3 &t = relative.position;
-    const Mat3 &r = relative.axes;
-    BoxAxes best;
-
-    for (int i = 0; i < 3; ++i) {
-        const Real reach = half_a[i] + std::abs(r[0][i]) * half_b.x + std::abs(r[1][i]) * half_b.y +
-                           std::abs(r[2][i]) * half_b.z;
-        const Real separation = std::abs(t[i]) - reach;
-        if (separation > best.face_a.separation) {
-            Vec3 normal{Real(0)};
-            normal[i] = t[i] < Real(0) ? Real(-1) : Real(1);
-            best.face_a = {separation, normal, i, 0};
-            if (separation > margin)
-                return best;
-        }
-    }
-
-    for (int j = 0; j < 3; ++j) {
-        const Real along = glm::dot(t, r[j]);
-        const Real separation = std::abs(along) - (half_b[j] + glm::dot(glm::abs(r[j]), half_a));
-        if (separation > best.face_b.separation) {
-            best.face_b = {separation, along < Real(0) ? -r[j] : r[j], 0, j};
-            if (separation > margin)
-                return best;
-        }
-    }
-
-    // Both boxes are projected with all three half edges, including the two whose cross product is
-    // the axis. So an axis turned by rounding is still valid: it never separates overlapping boxes.
-    // And because the Minkowski difference's face spanned by two nearly parallel edges is thin
-    // exactly where the axis is uncertain, what the axis misses is within rounding too.
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            Vec3 axis{Real(0)}; // e_i x r_j
-            axis[(i + 1) % 3] = -r[j][(i + 2) % 3];
-            axis[(i + 2) % 3] = r[j][(i + 1) % 3];
-            const Real sine = glm::length(axis);
-            if (sine <= parallel_sine)
-                continue;
-            axis /= sine;
-            const Real along = glm::dot(t, axis);
-            const Real reach = glm::dot(glm::abs(axis), half_a) +
-                               std::abs(glm::dot(axis, r[0])) * half_b.x +
-                               std::abs(glm::dot(axis, r[1])) * half_b.y +
-                               std::abs(glm::dot(axis, r[2])) * half_b.z;
-            const Real separation = std::abs(along) - reach;
-            if (separation > best.edges.separation) {
-                best.edges = {separation, along < Real(0) ? -axis : axis, i, j};
-                if (separation > margin)
-                    return best;
-            }
-        }
-    }
-    return best;
-}
-
 SatResult separating_axis(const Box &a, const Box &b) {
     check_valid(a);
     check_valid(b);
-    const BoxAxes best = best_axes(relative_to(unit(a), unit(b)), a.half_extents, b.half_extents,
-                                   std::numeric_limits<Real>::infinity());
+    const BoxAxes best = best_axes(relative_to(unit(a), unit(b)), a.half_extents, b.half_extents);
     const BoxAxis *axis = &best.face_a;
     SatAxis kind = SatAxis::face_a;
     if (best.face_b.separation > axis->separation) {

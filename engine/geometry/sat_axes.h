@@ -1,10 +1,14 @@
-// The 15 candidate axes of two boxes, best of each kind: shared by the overlap test and the contact
-// manifold.
+// The 15 candidate axes of two boxes, best of each kind.
 #pragma once
 
 #include "engine/geometry/shapes.h"
 
 namespace plumb::inline PLUMB_PRECISION {
+
+// Edges whose directions' cross product (the sine of their angle) is shorter than this count as
+// parallel. Dropping the axis costs at most this angle times the edge length, which is within
+// rounding.
+inline constexpr Real parallel_sine = Real(16) * std::numeric_limits<Real>::epsilon();
 
 // Box B relative to box A: `position` is B's centre and the columns of `axes` are B's axes, both in
 // A's frame.
@@ -13,7 +17,10 @@ struct RelativeBox {
     Mat3 axes{Real(1)};
 };
 
-RelativeBox relative_to(const Box &a, const Box &b);
+inline RelativeBox relative_to(const Box &a, const Box &b) {
+    const Quat to_a = glm::conjugate(a.rotation);
+    return {to_a * (b.center - a.center), glm::mat3_cast(to_a * b.rotation)};
+}
 
 struct BoxAxis {
     Real separation = -std::numeric_limits<Real>::infinity();
@@ -28,8 +35,7 @@ struct BoxAxes {
     BoxAxis edges; // separation -infinity when all edges of A are parallel to edges of B
 };
 
-// The best axis of each kind. Stops at the first axis with a separation above `margin`, with the
-// best axes so far.
-BoxAxes best_axes(const RelativeBox &relative, const Vec3 &half_a, const Vec3 &half_b, Real margin);
+// The best axis of each kind.
+BoxAxes best_axes(const RelativeBox &relative, const Vec3 &half_a, const Vec3 &half_b);
 
 } // namespace plumb::inline PLUMB_PRECISION
