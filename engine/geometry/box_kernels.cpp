@@ -23,6 +23,7 @@
 // After foreach_target.h, which must choose the target first.
 #include <hwy/highway.h>
 
+#include "engine/geometry/clip_face-inl.h"
 #include "engine/math/four-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -190,50 +191,6 @@ Vec3 normal_of_face_b(const Placing &placing, std::size_t j) {
 
 // --- Contacts of a face --------------------------------------------------------------------------
 
-// The polygon being clipped. Each corner is a row: its two coordinates along the reference face and
-// its height above it. A label holds the name of a corner and, above it, the label of the side from
-// this corner to the next. Names are 0..3 for a corner of the incident face, else 4 + 4 * label of
-// the polygon side + clip plane; sides are 0..3 for the incident face, 4..7 for clip planes.
-struct FacePolygon {
-    static constexpr std::size_t most = 8;
-    // What one more plane may add fits, too.
-    std::array<Row, 2 * most + 1> corners;
-    std::array<std::uint32_t, 2 * most + 1> labels;
-    std::size_t count;
-};
-constexpr std::uint32_t name_mask = 0xff;
-constexpr int side_shift = 8;
-
-// How far each corner of a polygon is beyond a plane, and the first again at the end. Within
-// feature_tolerance a corner counts as on the plane.
-using Beyond = std::array<Real, FacePolygon::most + 1>;
-
-// One plane of Sutherland and Hodgman 1974, "Reentrant polygon clipping". Corners on the plane keep
-// their names. Each corner and each crossing is written to the next free place, and stays if it
-// counts: which ones do is hard to foresee, so that branches would cost more.
-HWY_INLINE void clip(FacePolygon &in, const Beyond &beyond, std::uint32_t plane, FacePolygon &out) {
-    in.corners[in.count] = in.corners[0];
-    const std::uint32_t along_plane = (4 + plane) << side_shift;
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < in.count; ++i) {
-        const Real d0 = beyond[i], d1 = beyond[i + 1];
-        const Four here = load(in.corners[i].data()), next = load(in.corners[i + 1].data());
-        const std::uint32_t label = in.labels[i];
-        const std::uint32_t side = label >> side_shift;
-        store(here, out.corners[n].data());
-        out.labels[n] = label;
-        if (d0 == Real(0)) [[unlikely]] // the polygon continues along the plane
-            out.labels[n] = d1 > Real(0) ? (label & name_mask) | along_plane : label;
-        n += d0 <= Real(0) ? 1 : 0;
-        store(here + all(d0 / (d0 - d1)) * (next - here), out.corners[n].data());
-        const std::uint32_t is_exit = 0U - (d0 < Real(0) ? 1U : 0U); // all bits, or none
-        out.labels[n] =
-            (4 + 4 * side + plane) | ((along_plane & is_exit) | ((side << side_shift) & ~is_exit));
-        n += d0 * d1 < Real(0) ? 1 : 0; // on both sides of the plane, and neither within tolerance
-    }
-    out.count = std::min(n, FacePolygon::most);
-}
-
 // `side` is 1 if the normal of the contacts points from the first box to the second, else -1.
 HWY_INLINE Vec3 normal_in_world(const Vec3 &normal, const Box &frame, Real side) {
     return side * glm::normalize(frame.rotation * normal);
@@ -241,12 +198,10 @@ HWY_INLINE Vec3 normal_in_world(const Vec3 &normal, const Box &frame, Real side)
 
 // Contacts with a face of the reference box, in the coordinates of the face.
 struct FaceContacts {
-    std::array<Row, FacePolygon::most> points; // u, v and separation
-    std::array<std::uint32_t, FacePolygon::most> features;
-    std::size_t count;
-    Real deepest;
-    const Box *frame; // the reference box
-    std::size_t axis; // its face
+    Clipped points;
+    std::uint32_t feature; // but for the points' names
+    const Box *frame;      // the reference box
+    std::size_t axis;      // its face
     Real sign;
     Vec3 normal; // in the world
 };
@@ -278,55 +233,21 @@ HWY_INLINE void find_face_contacts(const Box &frame, Real side, std::size_t axis
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
     const Real incident_sign = incident_axes[i][axis] * sign > Real(0) ? Real(-1) : Real(1);
+    contacts.feature =
+        feature | bits(number) << 16 | bits(face_number(static_cast<int>(i), incident_sign)) << 8;
 
-    const auto in_face = [&](const Row &row)
-                             HWY_ATTR { return four(row[u], row[v], row[axis], Real(0)); };
-    const Four middle =
-        in_face(incident_position) + in_face(incident_axes[i]) * (incident_sign * incident_half[i]);
-    const Four side_j = in_face(incident_axes[j]) * incident_half[j];
-    const Four side_k = in_face(incident_axes[k]) * incident_half[k];
-    // The third coordinate becomes the height above the face.
-    const Four up = four(Real(1), Real(1), sign, Real(0));
-    const Four face = four(Real(0), Real(0), half[axis], Real(0));
-    std::array<FacePolygon, 2> polygons;
-    FacePolygon *polygon = &polygons[0], *other = &polygons[1];
-    store((middle - side_j - side_k) * up - face, polygon->corners[0].data());
-    store((middle + side_j - side_k) * up - face, polygon->corners[1].data());
-    store((middle + side_j + side_k) * up - face, polygon->corners[2].data());
-    store((middle - side_j + side_k) * up - face, polygon->corners[3].data());
-    for (std::uint32_t c = 0; c < 4; ++c)
-        polygon->labels[c] = c | c << side_shift;
-    polygon->count = 4;
-    for (std::uint32_t plane = 0; plane < 4; ++plane) {
-        const std::size_t coordinate = plane / 2;
-        const Real limit = half[plane < 2 ? u : v];
-        const Real way = plane % 2 == 0 ? Real(-1) : Real(1);
-        Beyond beyond;
-        Real most = Real(0);
-        for (std::size_t c = 0; c < polygon->count; ++c) {
-            const Real distance = way * polygon->corners[c][coordinate] - limit;
-            beyond[c] = std::abs(distance) <= feature_tolerance ? Real(0) : distance;
-            most = std::max(most, distance);
-        }
-        if (most > feature_tolerance) {
-            beyond[polygon->count] = beyond[0];
-            clip(*polygon, beyond, plane, *other);
-            std::swap(polygon, other);
-        }
-    }
-
-    feature |= bits(number) << 16 | bits(face_number(static_cast<int>(i), incident_sign)) << 8;
-    std::size_t n = 0;
-    Real deepest = infinity;
-    for (std::size_t c = 0; c < polygon->count; ++c) {
-        const Real height = polygon->corners[c][2];
-        store(load(polygon->corners[c].data()), contacts.points[n].data());
-        contacts.features[n] = feature | (polygon->labels[c] & name_mask);
-        deepest = std::min(deepest, height);
-        n += height <= margin ? 1 : 0;
-    }
-    contacts.count = n;
-    contacts.deepest = n > 0 ? deepest : infinity;
+    const auto in_face = [&](const Row &row, Real scale) HWY_ATTR {
+        return InFace{row[u] * scale, row[v] * scale, row[axis] * scale};
+    };
+    const InFace out = in_face(incident_axes[i], incident_sign * incident_half[i]);
+    const FacePair faces = {{incident_position[u] + out[0], incident_position[v] + out[1],
+                             incident_position[axis] + out[2]},
+                            in_face(incident_axes[j], incident_half[j]),
+                            in_face(incident_axes[k], incident_half[k]),
+                            sign,
+                            half[axis],
+                            {half[u], half[v]}};
+    clip_face(faces, margin, contacts.points);
 }
 
 // A number for each of at most eight points.
@@ -343,17 +264,16 @@ HWY_INLINE Eight each_half(const Of &of, const Eights &...numbers) {
 // alternate.
 [[gnu::flatten]] HWY_NOINLINE void keep_best_four(FaceContacts &contacts) {
     constexpr Real clearly = Real(1.01);
-    auto &points = contacts.points;
-    const std::size_t count = contacts.count;
-    const Real deepest = contacts.deepest, sign = contacts.sign;
+    Clipped &points = contacts.points;
+    const std::size_t count = points.count;
+    const Real deepest = points.lowest, sign = contacts.sign;
     struct Flat {
         Real u, v;
     };
-    Eight u, v, separation;
-    Four unused;
-    load_columns(points[0].data(), u.low, v.low, separation.low, unused);
-    load_columns(points[4].data(), u.high, v.high, separation.high, unused);
-
+    const auto eight = [](const std::array<Real, 8> &numbers) HWY_ATTR {
+        return Eight{load(&numbers[0]), load(&numbers[4])};
+    };
+    const Eight separation = eight(points.height);
     std::size_t first = 0;
     const auto is_shallow = [&](const Four &separations) HWY_ATTR {
         return greater_bits(separations - all(feature_tolerance), all(deepest));
@@ -365,22 +285,25 @@ HWY_INLINE Eight each_half(const Of &of, const Eights &...numbers) {
         first = static_cast<std::size_t>(std::countr_zero(deep));
     } else {
         for (std::size_t i = 1; i < count; ++i)
-            if (points[i][2] < points[first][2] - feature_tolerance)
+            if (points.height[i] < points.height[first] - feature_tolerance)
                 first = i;
         // The scan above may leave one that is shallower than the deepest by more than the
         // tolerance, because the tolerances of successive replacements add up. Allow only one.
-        for (std::size_t i = 0; i < count && points[first][2] > deepest + feature_tolerance; ++i)
-            if (points[i][2] <= deepest + feature_tolerance)
+        for (std::size_t i = 0; i < count && points.height[first] > deepest + feature_tolerance;
+             ++i)
+            if (points.height[i] <= deepest + feature_tolerance)
                 first = i;
     }
     unsigned taken = 1U << first;
 
-    const Flat origin = {points[first][0], points[first][1]};
-    u = each_half([&](const Four &a) HWY_ATTR { return a - all(origin.u); }, u);
-    v = each_half([&](const Four &a) HWY_ATTR { return a - all(origin.v); }, v);
+    const Flat origin = {points.u[first], points.v[first]};
+    const Eight u =
+        each_half([&](const Four &a) HWY_ATTR { return a - all(origin.u); }, eight(points.u));
+    const Eight v =
+        each_half([&](const Four &a) HWY_ATTR { return a - all(origin.v); }, eight(points.v));
     const auto pick = [&](const auto &score) HWY_ATTR {
         const Eight scores = each_half(score, u, v);
-        std::array<Real, FacePolygon::most> score_of;
+        std::array<Real, Clipped::most> score_of;
         store(scores.low, score_of.data());
         store(scores.high, score_of.data() + 4);
         std::size_t best = 0;
@@ -391,7 +314,7 @@ HWY_INLINE Eight each_half(const Of &of, const Eights &...numbers) {
                 best_score = score_of[i];
             }
         taken |= 1U << best;
-        return Flat{points[best][0] - origin.u, points[best][1] - origin.v};
+        return Flat{points.u[best] - origin.u, points.v[best] - origin.v};
     };
     // Twice the area between two sides at a corner, positive if they turn like the face's normal.
     const auto area = [&](const Flat &a, const Four &b_u, const Four &b_v)
@@ -414,21 +337,25 @@ HWY_INLINE Eight each_half(const Of &of, const Eights &...numbers) {
     std::size_t n = 0;
     for (unsigned left = taken & everyone; left != 0; left &= left - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(left));
-        store(load(points[i].data()), points[n].data());
-        contacts.features[n++] = contacts.features[i];
+        points.u[n] = points.u[i];
+        points.v[n] = points.v[i];
+        points.height[n] = points.height[i];
+        points.name[n] = points.name[i];
+        ++n;
     }
-    contacts.count = n;
+    points.count = n;
 }
 
 HWY_INLINE void add_face_contacts(Manifold &manifold, FaceContacts &contacts) {
-    if (contacts.count > 4)
+    const Clipped &kept = contacts.points;
+    if (kept.count > 4)
         keep_best_four(contacts);
     const Box &frame = *contacts.frame;
     const Real half = numbered(frame.half_extents)[contacts.axis];
     std::array<Four, 3> local;
-    Four separation, unused;
-    load_columns(contacts.points[0].data(), local[(contacts.axis + 1) % 3],
-                 local[(contacts.axis + 2) % 3], separation, unused);
+    const Four separation = load(kept.height.data());
+    local[(contacts.axis + 1) % 3] = load(kept.u.data());
+    local[(contacts.axis + 2) % 3] = load(kept.v.data());
     local[contacts.axis] = all(contacts.sign) * (all(half) + all(Real(0.5)) * separation);
     // frame.center + frame.rotation * local, in the same order of operations.
     const Quat &q = frame.rotation;
@@ -439,7 +366,7 @@ HWY_INLINE void add_face_contacts(Manifold &manifold, FaceContacts &contacts) {
     const Four uuv_z = uv_y * q.x - uv_x * q.y;
     // All four points are written, for their count is hard to foresee: zeros where there is none.
     const Four place = four(Real(0), Real(1), Real(2), Real(3));
-    const Four count = all(static_cast<Real>(contacts.count));
+    const Four count = all(static_cast<Real>(kept.count));
     const auto if_there = [&](const Four &a)
                               HWY_ATTR { return where_greater(count, place, a, all(Real(0))); };
     std::array<Row, 4> points;
@@ -448,12 +375,13 @@ HWY_INLINE void add_face_contacts(Manifold &manifold, FaceContacts &contacts) {
                   if_there(all(frame.center.z) + (z + (uv_z * q.w + uuv_z) * Real(2))),
                   if_there(separation), points[0].data());
     manifold.normal = contacts.normal;
-    manifold.count = static_cast<int>(contacts.count);
+    manifold.count = static_cast<int>(kept.count);
+    const auto name = [&](std::size_t i) { return bits(static_cast<int>(kept.name[i])); };
     for (std::size_t i = 0; i < 4; ++i) {
         const Row &point = points[i];
         manifold.points[i] = {{point[0], point[1], point[2]},
                               point[3],
-                              i < contacts.count ? contacts.features[i] : 0};
+                              i < kept.count ? contacts.feature | name(i) : 0};
     }
 }
 
@@ -591,10 +519,10 @@ HWY_INLINE bool is_reference(const Vec3 &a, const Vec3 &b) {
                                use_a ? placing.b_position : placing.a_position,
                                use_a ? half_b : half_a, margin,
                                use_a ? kind_face : kind_face | 1U << 20, tried[attempt]);
-            const Real off = std::abs(tried[attempt].deepest - best);
+            const Real off = std::abs(tried[attempt].points.lowest - best);
             if (off < least_off) {
                 least_off = off;
-                depth = tried[attempt].deepest;
+                depth = tried[attempt].points.lowest;
                 closest_face = attempt;
             }
             if (off <= tight) {
