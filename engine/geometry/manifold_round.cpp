@@ -16,6 +16,14 @@ namespace {
 // end.
 constexpr Real side_by_side_sine = Real(0.02);
 
+// Adds the contact of two balls, given the normal between their centres and their separation.
+void add_ball_contact(Manifold &manifold, const Vec3 &center_a, Real radius_a, const Vec3 &center_b,
+                      Real radius_b, const Vec3 &normal, Real separation) {
+    const Vec3 on_a = center_a + radius_a * normal;
+    const Vec3 on_b = center_b - radius_b * normal;
+    add_point(manifold, Real(0.5) * (on_a + on_b), separation, 0);
+}
+
 // The contact of two balls, given the normal and distance between their centres.
 Manifold ball_contact(const Vec3 &center_a, Real radius_a, const Vec3 &center_b, Real radius_b,
                       const Vec3 &normal, Real distance, Real margin) {
@@ -24,9 +32,7 @@ Manifold ball_contact(const Vec3 &center_a, Real radius_a, const Vec3 &center_b,
     if (separation > margin)
         return manifold;
     manifold.normal = normal;
-    const Vec3 on_a = center_a + radius_a * normal;
-    const Vec3 on_b = center_b - radius_b * normal;
-    add_point(manifold, Real(0.5) * (on_a + on_b), separation, 0);
+    add_ball_contact(manifold, center_a, radius_a, center_b, radius_b, normal, separation);
     return manifold;
 }
 
@@ -44,6 +50,71 @@ bool is_significant(const Vec3 &v, Real squared_size) {
     constexpr Real noise = Real(16) * std::numeric_limits<Real>::epsilon();
     const Real squared = glm::dot(v, v);
     return squared >= std::numeric_limits<Real>::min() && squared > noise * noise * squared_size;
+}
+
+Real squared_length(const Capsule &capsule) {
+    const Vec3 along = capsule.b - capsule.a;
+    return glm::dot(along, along);
+}
+
+// Moves the contact of nearly parallel capsules, the first no shorter than the second, to both ends
+// of the overlap of their axes, unless the axes cross there.
+[[gnu::noinline]] void spread_to_ends(Manifold &manifold, const Capsule &a, const Capsule &b,
+                                      Real margin) {
+    const Vec3 along_a = a.b - a.a;
+    const Vec3 along_b = b.b - b.a;
+    const Vec3 offset = b.a - a.a;
+    const Real squared_a = glm::dot(along_a, along_a);
+    // The overlap of the axes, in the parameter of A's axis.
+    const Real at_start = glm::dot(offset, along_a) / squared_a;
+    const Real at_end = glm::dot(offset + along_b, along_a) / squared_a;
+    const bool same_way = at_start <= at_end;
+    const Real low_b = same_way ? at_start : at_end;
+    const Real high_b = same_way ? at_end : at_start;
+    const Real low = std::max(Real(0), low_b);
+    const Real high = std::min(Real(1), high_b);
+    if (!(high > low))
+        return;
+
+    Manifold two;
+    two.normal = manifold.normal;
+    // Both contacts share the normal. If a pair of axis points is offset sideways from it by e, the
+    // contact point is e / 2 off each axis, and so off a surface of radius r by (e / 2)^2 / (2 r).
+    const Real thinner = std::min(a.radius, b.radius);
+    const Real sideways_limit =
+        std::max(Real(2) * feature_tolerance, std::sqrt(Real(8) * thinner * feature_tolerance));
+    bool is_straight = true;
+    const auto add_end = [&](Real s, bool from_b, Real t_of_b, std::uint32_t feature) {
+        const Real t = from_b ? t_of_b : closest_parameter(offset, along_b, s * along_a);
+        const Vec3 difference = (offset + t * along_b) - s * along_a;
+        const Real distance = glm::dot(difference, two.normal);
+        if (glm::length(difference - distance * two.normal) > sideways_limit)
+            is_straight = false;
+        // Nothing is deeper than where the axes are closest.
+        const Real separation =
+            std::max(distance - (a.radius + b.radius), manifold.points[0].separation);
+        if (separation > margin)
+            return;
+        const Vec3 on_a = a.a + s * along_a + a.radius * two.normal;
+        const Vec3 on_b = b.a + t * along_b - b.radius * two.normal;
+        add_point(two, Real(0.5) * (on_a + on_b), separation, feature);
+    };
+    // Features: 1..4 name the end that bounds the overlap: 1, 2 for A's ends and 3, 4 for B's.
+    if (low_b > Real(0))
+        add_end(low, true, same_way ? Real(0) : Real(1), same_way ? 3 : 4);
+    else
+        add_end(low, false, Real(0), 1);
+    if (high_b < Real(1))
+        add_end(high, true, same_way ? Real(1) : Real(0), same_way ? 4 : 3);
+    else
+        add_end(high, false, Real(0), 2);
+
+    // If the axes cross between the ends, the ends are not the deepest points.
+    Real deepest = std::numeric_limits<Real>::infinity();
+    for (int i = 0; i < two.count; ++i)
+        deepest = std::min(deepest, two.points[static_cast<std::size_t>(i)].separation);
+    if (is_straight && deepest <= manifold.points[0].separation + feature_tolerance)
+        manifold = two;
 }
 
 } // namespace
@@ -115,20 +186,29 @@ Manifold collide(const Capsule &a, const HalfSpace &b, Real margin) {
     return manifold;
 }
 
-Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
-    const Vec3 along_a = a.b - a.a;
-    const Vec3 along_b = b.b - b.a;
-    const Real squared_a = glm::dot(along_a, along_a);
-    const Real squared_b = glm::dot(along_b, along_b);
+[[gnu::flatten]] Manifold collide(const Capsule &one, const Capsule &two, Real margin) {
     // The longer capsule, or if equal the thicker one, is the reference: a choice that does not
     // change while the bodies move or with the argument order.
-    if (squared_b > squared_a || (squared_b == squared_a && b.radius > a.radius))
-        return mirrored(collide(b, a, margin));
+    const Real squared_one = squared_length(one), squared_two = squared_length(two);
+    const bool is_swapped =
+        squared_two > squared_one || (squared_two == squared_one && two.radius > one.radius);
+    const Capsule &a = is_swapped ? two : one;
+    const Capsule &b = is_swapped ? one : two;
+    const Real side = is_swapped ? Real(-1) : Real(1);
+    const Vec3 along_a = a.b - a.a;
+    const Vec3 along_b = b.b - b.a;
+    const Real squared_a = is_swapped ? squared_two : squared_one;
+    const Real squared_b = is_swapped ? squared_one : squared_two;
 
     const Vec3 offset = b.a - a.a;
     const Vec3 cross = glm::cross(along_a, along_b);
     const Real squared_cross = glm::dot(cross, cross);
     const SegmentPair closest = closest_between_segments(Vec3{Real(0)}, along_a, offset, along_b);
+    const Real separation = std::sqrt(closest.squared_distance) - (a.radius + b.radius);
+    Manifold manifold;
+    manifold.normal = side * manifold.normal;
+    if (separation > margin)
+        return manifold;
 
     // The normal is perpendicular to each axis that the contact is beside, however close the axes
     // are. Where the axes cross, the shortest way out is along their common perpendicular.
@@ -152,61 +232,13 @@ Manifold collide(const Capsule &a, const Capsule &b, Real margin) {
     if (!is_significant(away, squared_size))
         away = is_significant(cross, squared_sizes) ? cross / std::sqrt(squared_cross)
                                                     : any_perpendicular(along_a);
-    const Manifold one =
-        ball_contact(a.a + closest.s * along_a, a.radius, b.a + closest.t * along_b, b.radius,
-                     glm::normalize(away), std::sqrt(closest.squared_distance), margin);
-    if (one.count == 0 || !is_parallel || !(squared_b > Real(0)))
-        return one;
-
-    // The overlap of the axes, in the parameter of A's axis.
-    const Real at_start = glm::dot(offset, along_a) / squared_a;
-    const Real at_end = glm::dot(offset + along_b, along_a) / squared_a;
-    const bool same_way = at_start <= at_end;
-    const Real low_b = same_way ? at_start : at_end;
-    const Real high_b = same_way ? at_end : at_start;
-    const Real low = std::max(Real(0), low_b);
-    const Real high = std::min(Real(1), high_b);
-    if (!(high > low))
-        return one;
-
-    Manifold two;
-    two.normal = one.normal;
-    // Both contacts share the normal. If a pair of axis points is offset sideways from it by e, the
-    // contact point is e / 2 off each axis, and so off a surface of radius r by (e / 2)^2 / (2 r).
-    const Real thinner = std::min(a.radius, b.radius);
-    const Real sideways_limit =
-        std::max(Real(2) * feature_tolerance, std::sqrt(Real(8) * thinner * feature_tolerance));
-    bool is_straight = true;
-    const auto add_end = [&](Real s, bool from_b, Real t_of_b, std::uint32_t feature) {
-        const Real t = from_b ? t_of_b : closest_parameter(offset, along_b, s * along_a);
-        const Vec3 difference = (offset + t * along_b) - s * along_a;
-        const Real distance = glm::dot(difference, one.normal);
-        if (glm::length(difference - distance * one.normal) > sideways_limit)
-            is_straight = false;
-        // Nothing is deeper than where the axes are closest.
-        const Real separation =
-            std::max(distance - (a.radius + b.radius), one.points[0].separation);
-        if (separation > margin)
-            return;
-        const Vec3 on_a = a.a + s * along_a + a.radius * one.normal;
-        const Vec3 on_b = b.a + t * along_b - b.radius * one.normal;
-        add_point(two, Real(0.5) * (on_a + on_b), separation, feature);
-    };
-    // Features: 1..4 name the end that bounds the overlap: 1, 2 for A's ends and 3, 4 for B's.
-    if (low_b > Real(0))
-        add_end(low, true, same_way ? Real(0) : Real(1), same_way ? 3 : 4);
-    else
-        add_end(low, false, Real(0), 1);
-    if (high_b < Real(1))
-        add_end(high, true, same_way ? Real(1) : Real(0), same_way ? 4 : 3);
-    else
-        add_end(high, false, Real(0), 2);
-
-    // If the axes cross between the ends, the ends are not the deepest points.
-    Real deepest = std::numeric_limits<Real>::infinity();
-    for (int i = 0; i < two.count; ++i)
-        deepest = std::min(deepest, two.points[static_cast<std::size_t>(i)].separation);
-    return is_straight && deepest <= one.points[0].separation + feature_tolerance ? two : one;
+    manifold.normal = glm::normalize(away);
+    add_ball_contact(manifold, a.a + closest.s * along_a, a.radius, b.a + closest.t * along_b,
+                     b.radius, manifold.normal, separation);
+    if (is_parallel && squared_b > Real(0))
+        spread_to_ends(manifold, a, b, margin);
+    manifold.normal = side * manifold.normal;
+    return manifold;
 }
 
 } // namespace unchecked
