@@ -282,7 +282,7 @@ Penetration core_penetration(const CorePair &cores, const GjkResult &overlap) {
     Penetration result;
     const auto support = [&](const Vec3 &direction) {
         const SimplexVertex vertex = cores.support(direction);
-        size = glm::max(size, glm::abs(vertex.a) + glm::abs(vertex.b));
+        size = glm::max(size, magnitudes(vertex.a) + magnitudes(vertex.b));
         ++result.iterations;
         return vertex;
     };

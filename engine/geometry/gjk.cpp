@@ -189,13 +189,15 @@ Vec3 triangle_normal(const Vec3 &pq, const Vec3 &pr, const Vec3 &qr) {
     const Real squared_pq = glm::dot(pq, pq);
     const Real squared_pr = glm::dot(pr, pr);
     const Real squared_qr = glm::dot(qr, qr);
-    const auto across = [](const Vec3 &normal, const Vec3 &side, Real squared) {
-        return squared > Real(0) ? normal - side * (glm::dot(normal, side) / squared) : normal;
-    };
-    if (squared_qr >= squared_pq && squared_qr >= squared_pr)
-        return across(glm::cross(pq, pr), qr, squared_qr);
-    return squared_pr >= squared_pq ? across(glm::cross(pq, qr), pr, squared_pr)
-                                    : across(glm::cross(pr, qr), pq, squared_pq);
+    // Which side is the longest is hard to foresee: chosen without branches.
+    const bool is_qr = (squared_qr >= squared_pq) & (squared_qr >= squared_pr);
+    const bool is_pq = !is_qr & !(squared_pr >= squared_pq);
+    const Vec3 &one = is_pq ? pr : pq;
+    const Vec3 &other = is_qr ? pr : qr;
+    const Vec3 &longest = is_qr ? qr : is_pq ? pq : pr;
+    const Vec3 normal = glm::cross(one, other);
+    const Real squared = glm::dot(longest, longest);
+    return squared > Real(0) ? normal - longest * (glm::dot(normal, longest) / squared) : normal;
 }
 
 SimplexPart closest_part(const Simplex &simplex, const Vec3 &size, Real slack) {
@@ -272,8 +274,8 @@ Witnesses witnesses(const GjkResult &result) {
         const SimplexVertex &vertex = simplex.vertices[i];
         on_a += simplex.weights[i] * vertex.a;
         on_b += simplex.weights[i] * vertex.b;
-        const Vec3 from_a = glm::abs(vertex.a - simplex.vertices[0].a);
-        const Vec3 from_b = glm::abs(vertex.b - simplex.vertices[0].b);
+        const Vec3 from_a = magnitudes(vertex.a - simplex.vertices[0].a);
+        const Vec3 from_b = magnitudes(vertex.b - simplex.vertices[0].b);
         spread_a = std::max(spread_a, from_a.x + from_a.y + from_a.z);
         spread_b = std::max(spread_b, from_b.x + from_b.y + from_b.z);
     }

@@ -9,6 +9,7 @@
 
 #include "engine/geometry/gauss_map.h"
 #include "engine/geometry/support.h"
+#include "engine/math/vectors.h"
 
 #include <array>
 #include <concepts>
@@ -77,7 +78,7 @@ struct SimplexPart {
 // support point carries up to 4 half epsilons, and so does the dot product.
 inline Real rounding_along(const Vec3 &v, const Vec3 &size) {
     constexpr Real roundings = Real(4) * std::numeric_limits<Real>::epsilon();
-    return roundings * glm::dot(glm::abs(v), size);
+    return roundings * glm::dot(magnitudes(v), size);
 }
 
 // The same for a unit vector in any direction.

@@ -22,7 +22,7 @@ GjkResult gjk(const CoreA &a, const CoreB &b, const Vec3 &guess, Real far) {
         added.a = a.support(v);
         added.b = b.support(-v);
         added.w = added.b - added.a;
-        result.size = glm::max(result.size, glm::abs(added.a) + glm::abs(added.b));
+        result.size = glm::max(result.size, magnitudes(added.a) + magnitudes(added.b));
         ++result.iterations;
 
         const Real along = glm::dot(v, added.w);

@@ -22,7 +22,7 @@ NearestPoints from_point(const PointCore &a, const Vec3 &difference,
     const Real squared = glm::dot(difference, difference);
     const bool is_overlapping =
         squared < std::numeric_limits<Real>::min() ||
-        (size && squared <= rounding_along(difference, glm::abs(a.point) + *size));
+        (size && squared <= rounding_along(difference, magnitudes(a.point) + *size));
     return {a.point, a.point + difference, difference, squared, is_overlapping, 0};
 }
 
@@ -36,13 +36,13 @@ NearestPoints to_box(const PointCore &a, const Vec3 &center, const Mat3 &axes,
 }
 
 Vec3 larger(const Vec3 &a, const Vec3 &b) {
-    return glm::max(glm::abs(a), glm::abs(b));
+    return glm::max(magnitudes(a), magnitudes(b));
 }
 
 } // namespace
 
 NearestPoints nearest_points(const PointCore &a, const PointCore &b) {
-    return from_point(a, b.point - a.point, glm::abs(b.point));
+    return from_point(a, b.point - a.point, magnitudes(b.point));
 }
 
 NearestPoints nearest_points(const PointCore &a, const SegmentCore &b) {

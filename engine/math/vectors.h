@@ -41,6 +41,11 @@ inline Real accurate_cross(const Vec2 &a, const Vec2 &b) {
     return difference_of_products(a.x, b.y, a.y, b.x);
 }
 
+// Each component's magnitude. glm::abs asks for each sign, which is hard to foresee, and leaves -0.
+inline Vec3 magnitudes(const Vec3 &v) {
+    return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+}
+
 template <int N> Real largest_magnitude(const VecN<N> &v) {
     Real largest = std::abs(v[0]);
     for (int i = 1; i < N; ++i)
