@@ -85,8 +85,7 @@ HWY_INLINE Best best_of(const Four &separations) {
     return {first(most), lane};
 }
 
-// Half of the sum of what both boxes measure along B's axes or A's. The last lane, made infinite,
-// is never the best.
+// The best face of each box.
 struct Faces {
     Best a, b;
 };
@@ -111,6 +110,7 @@ HWY_INLINE Faces best_faces(const RelativeBox &relative, const Vec3 &half_a, con
     store(row_2, placing.a_axes[2].data());
     store(along_a, placing.b_position.data());
     store(-along_b, placing.a_position.data());
+    // The last lane is never the best: its reach is infinite.
     const Four reach_a = spread(half_a, infinity) + abs(column_0) * half_b.x +
                          abs(column_1) * half_b.y + abs(column_2) * half_b.z;
     const Four reach_b = spread(half_b, infinity) +
@@ -540,7 +540,6 @@ HWY_INLINE bool is_reference(const Vec3 &a, const Vec3 &b) {
             least_off = off;
             depth = contact.separation;
             closest_face = 2;
-            manifold.count = 0;
             fill_with_point(manifold, contact.position, contact.separation, contact.feature,
                             edge_normal, a, side);
             if (off <= tight)
