@@ -1,6 +1,7 @@
 // Commands that check, measure, map and tune.
 #include "app/commands.h"
 
+#include "app/lab/map/axis_names.h"
 #include "app/lab/map/stability_map.h"
 #include "app/lab/run/check.h"
 #include "app/lab/run/measure.h"
@@ -106,8 +107,9 @@ void add_map(CommandLine &line) {
     const std::string axis_about =
         "a setting from `plumb list --settings`, or the path of a number in the scene file, such "
         "as body.ball.velocity.x, material.steel.friction or body.box.repeat.count; its key alone "
-        "(stiffness) will do if the file has it only once (of velocity = [0, 5, 0], the component "
-        "that is not 0). N values (10) in equal steps, or in equal ratios with log: "
+        "(radius) will do if the file has it only once (of velocity = [0, 5, 0], the component "
+        "that is not 0), or one of the names below. N values (10) in equal steps, or in equal "
+        "ratios with log: "
         "dt=1/480..1/30:9log; or a list: substeps=1,2,4";
     map_command->add_option("--x", arguments->x, "The x axis: " + axis_about)
         ->required()
@@ -129,6 +131,12 @@ void add_map(CommandLine &line) {
         ->check(positive());
     add_run_options(*map_command, line.common, true);
     add_threads(*map_command, line.common);
+    map_command->footer([] {
+        std::string names = "Names of numbers that most scenes have, for --x and --y:\n";
+        for (const AxisName &each : axis_names())
+            names.append("  ").append(each.name).append(": ").append(each.meaning).append("\n");
+        return names;
+    });
     map_command->callback([=, &line] {
         TaskPool tasks(line.common.threads);
         arguments->command.scene = line.common.scene_paths().front();

@@ -1,6 +1,9 @@
 #include "engine/scene/file/change.h"
 
+#include <cmath>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -71,6 +74,55 @@ TEST(SceneFileChange, PutsANumberInThePlaceOfAnother) {
 TEST(SceneFileChange, AddsAPlainNumberThatTheFileLeavesOut) {
     EXPECT_EQ(scene("material.steel.friction", 0.25).materials[0].friction, 0.25);
     EXPECT_EQ(scene("body.ball.mass", 12).bodies[0].mass, 12);
+}
+
+// A spring given by its frequency takes a stiffness all the same, and keeps its damping ratio.
+TEST(SceneFileChange, ANumberReplacesTheOtherWayToGiveIt) {
+    constexpr const char *given_otherwise = R"(
+[[particle]]
+name = "bob"
+mass = 2
+position = [0, -1, 0]
+[[spring]]
+name = "coil"
+b = "bob"
+anchor_a = [0, 0, 0]
+frequency = 3
+damping_ratio = 0.5
+[[body]]
+name = "ball"
+shape = "sphere"
+radius = 0.1
+density = 3000
+)";
+    const auto with = [&](const char *path, double value) {
+        const ChangedNumber number{path, value};
+        const SceneFileResult result = parse_scene(given_otherwise, "scene.toml", {}, {&number, 1});
+        EXPECT_TRUE(result.ok()) << path;
+        return result.scene;
+    };
+    const SpringDesc stiff = with("spring.coil.stiffness", 200).springs.at(0);
+    EXPECT_EQ(stiff.stiffness, 200);
+    EXPECT_NEAR(stiff.damping, 2 * 0.5 * std::sqrt(200.0 * 2), 1e-9);
+    EXPECT_EQ(with("spring.coil.damping", 7).springs.at(0).damping, 7);
+    EXPECT_EQ(with("body.ball.mass", 5).bodies.at(0).mass, 5);
+}
+
+TEST(SceneFileChange, NumbersAndTablesAreFoundByTheirPaths) {
+    EXPECT_EQ(number_paths(text),
+              (std::vector<std::string>{
+                  "body.ball.radius", "body.ball.velocity.x", "body.ball.velocity.y",
+                  "body.ball.small.position.y", "body.ball.small.radius", "body.box.position.x",
+                  "body.box.position.y", "body.box.repeat.count",
+                  "body.box.shapes.0.half_extents.x", "body.box.shapes.0.half_extents.y",
+                  "body.box.shapes.0.half_extents.z", "body.box.shapes.1.radius"}));
+    EXPECT_EQ(table_paths(text, "body"),
+              (std::vector<std::string>{"body.ball", "body.ball.small", "body.box"}));
+    EXPECT_EQ(table_paths("[[particle]]\n[[particle]]\n", "particle"),
+              (std::vector<std::string>{"particle.0", "particle.1"}));
+    EXPECT_TRUE(table_paths(text, "spring").empty());
+    EXPECT_TRUE(table_paths("no toml", "body").empty());
+    EXPECT_TRUE(number_paths("no toml").empty());
 }
 
 TEST(SceneFileChange, ANameMayHaveDots) {

@@ -37,11 +37,15 @@ bool only_forbids_gain(const ExpectDesc &expect) {
 // Whether the axis may make a motor, a spring joint, a torque or a moving body of what was none, or
 // joints that start apart.
 bool may_drive(const SceneDesc &scene, const MapAxis &axis) {
-    return axis.name.starts_with("joint.") || axis.name.find(".torque.") != std::string::npos ||
-           std::ranges::any_of(scene.bodies, [&](const BodyDesc &body) {
-               return body.kind == BodyKind::kinematic &&
-                      axis.name.starts_with("body." + body.name + ".");
-           });
+    return std::ranges::any_of(
+        changed_numbers(axis, axis.values.front()), [&](const ChangedNumber &number) {
+            const std::string &path = number.path;
+            return path.starts_with("joint.") || path.find(".torque.") != std::string::npos ||
+                   std::ranges::any_of(scene.bodies, [&](const BodyDesc &body) {
+                       return body.kind == BodyKind::kinematic &&
+                              path.starts_with("body." + body.name + ".");
+                   });
+        });
 }
 
 bool is_law(const SceneDesc &scene, const ExpectDesc &expect, const MapAxis &axis) {

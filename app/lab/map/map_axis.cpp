@@ -2,7 +2,6 @@
 
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/sweep.h"
-#include "engine/scene/file/change.h"
 #include "engine/scene/given_settings.h"
 
 #include <algorithm>
@@ -48,21 +47,6 @@ std::optional<SettingNumber> find_setting_number(std::string_view whole, std::st
         refuse(whole, std::string(name) + " has three components; give one of them, as in " +
                           setting_name(numbers[1]) + "=-20..-1");
     return numbers.front();
-}
-
-// For a key that is neither a setting nor in the scene.
-std::string why_unknown(std::string_view key) {
-    try {
-        (void)find_setting_numbers(key);
-        return {};
-    } catch (const std::invalid_argument &error) {
-        const std::string why = error.what();
-        return why + (why.ends_with('?') ? " " : ". ") +
-               "A number in the scene file is given by its path: body.NAME.mass, "
-               "body.NAME.position.y (its height), body.NAME.velocity.x, "
-               "material.NAME.friction, material.NAME.restitution, spring.NAME.stiffness; "
-               "or by its key alone, if the file has it only once";
-    }
 }
 
 // Strips ":N", "log" and ":Nlog" from the end of a range.
@@ -140,6 +124,8 @@ std::string_view unit_of_path(std::string_view path) {
         Row{"", ".angular_velocity", "rad/s"},
         Row{"body.", ".radius", "m"},
         Row{"body.", ".half_extents", "m"},
+        Row{"speed", "", "m/s"},
+        Row{"distance", "", "m"},
     };
     const auto *const found = std::ranges::find_if(rows, [&](const Row &row) {
         return path.starts_with(row.head) && path.ends_with(row.key);
@@ -192,22 +178,15 @@ MapAxis parse_map_axis(std::string_view text) {
     return axis.setting && is_whole(axis.setting->setting()) ? in_whole_numbers(axis) : axis;
 }
 
-MapAxis with_whole_path(MapAxis axis, std::string_view scene_text) {
-    if (axis.setting || axis.name.find('.') != std::string::npos)
-        return axis;
-    const std::vector<std::string> paths = number_paths(scene_text, axis.name);
-    if (paths.empty())
-        refuse(axis.name, why_unknown(axis.name));
-    if (paths.size() > 1) {
-        constexpr std::size_t most_named = 8;
-        std::string which;
-        for (std::size_t i = 0; i < std::min(paths.size(), most_named); ++i)
-            which += (i > 0 ? ", " : "") + paths[i];
-        refuse(axis.name, "this scene has " + std::to_string(paths.size()) + "; give one of " +
-                              which + (paths.size() > most_named ? ", ..." : ""));
-    }
-    axis.name = paths.front();
-    return axis;
+std::vector<ChangedNumber> changed_numbers(const MapAxis &axis, double value) {
+    if (axis.setting)
+        return {};
+    if (axis.numbers.empty())
+        return {{axis.name, value}};
+    std::vector<ChangedNumber> changed;
+    for (const AxisNumber &number : axis.numbers)
+        changed.push_back({number.path, number.offset + number.factor * value});
+    return changed;
 }
 
 MapAxis in_whole_numbers(MapAxis axis) {
@@ -251,6 +230,10 @@ std::string axis_title(const MapAxis &axis) {
         axis.setting ? axis.setting->setting().unit : unit_of_path(axis.name);
     if (!unit.empty())
         title.append(" (").append(unit).append(")");
+    if (!axis.numbers.empty()) { // one, or the components of one
+        const std::string &path = axis.numbers.front().path;
+        title += " by " + (axis.numbers.size() > 1 ? path.substr(0, path.rfind('.')) : path);
+    }
     return title + (axis.logarithmic ? ", logarithmic" : "");
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/dynamics/settings.h"
+#include "engine/scene/file/change.h"
 
 #include <optional>
 #include <string>
@@ -10,11 +11,19 @@
 
 namespace plumb {
 
+// A number of the scene file that follows an axis: offset + factor * the axis's value.
+struct AxisNumber {
+    std::string path;
+    double factor = 1, offset = 0;
+};
+
 struct MapAxis {
-    std::string name; // "dt", "gravity.y", "body.ball.velocity.x"
-    // Set if the name is a setting; otherwise it is a path into the scene file, or a key.
+    std::string name; // "dt", "gravity.y", "body.ball.velocity.x", "speed"
+    // Set if the name is a setting; otherwise it is a path into the scene file, or a name that
+    // named_axis resolves.
     std::optional<SettingNumber> setting;
-    std::vector<double> values; // ascending, distinct, at least two
+    std::vector<AxisNumber> numbers; // what a name that is neither stands for
+    std::vector<double> values;      // ascending, distinct, at least two
     bool logarithmic = false;
     bool whole = false; // takes only whole numbers
 };
@@ -25,9 +34,9 @@ struct MapAxis {
 // the scene file has that number, and its range, is not checked here.
 [[nodiscard]] MapAxis parse_map_axis(std::string_view text);
 
-// Expands a bare last key such as "stiffness" to the path of the one number in this scene that it
-// can mean. Throws std::invalid_argument if there is none, or several, which it names.
-[[nodiscard]] MapAxis with_whole_path(MapAxis axis, std::string_view scene_text);
+// The numbers of the scene file that the axis changes, as they are at this value; none for a
+// setting.
+[[nodiscard]] std::vector<ChangedNumber> changed_numbers(const MapAxis &axis, double value);
 
 // The axis with its values rounded to whole numbers, each once. Throws std::invalid_argument if
 // fewer than two are left.
@@ -44,7 +53,7 @@ struct MapAxis {
 // "1/120", "0.5": without the unit, for the numbers along an axis.
 [[nodiscard]] std::string value_label(const MapAxis &axis, double value);
 
-// "dt (s), logarithmic"
+// "dt (s), logarithmic"; "mass_ratio by body.ball.mass" where the name stands for other numbers.
 [[nodiscard]] std::string axis_title(const MapAxis &axis);
 
 } // namespace plumb

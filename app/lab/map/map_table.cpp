@@ -92,9 +92,9 @@ void write_map_csv(std::ostream &out, const StabilityMap &map) {
 }
 
 void print(std::ostream &out, const StabilityMap &map) {
-    out << map.scene.name << ": x: " << map.x.name << " from "
+    out << map.scene.name << ": x: " << axis_title(map.x) << ", from "
         << value_label(map.x, map.x.values[0]) << " to " << value_label(map.x, map.x.values.back())
-        << ", y: " << map.y.name << '\n';
+        << "; y: " << axis_title(map.y) << '\n';
     std::set<Failing> seen;
     std::set<std::string> missed;
     for (const MethodMap &of_method : map.methods) {

@@ -1,6 +1,7 @@
 #include "app/lab/map/stability_map.h"
 
 #include "app/lab/map/answers.h"
+#include "app/lab/map/axis_names.h"
 #include "app/lab/map/passage.h"
 #include "app/lab/map/standing.h"
 #include "app/lab/run/method_choice.h"
@@ -54,10 +55,11 @@ class Point {
   private:
     SceneFileResult parse(double x, double y) const {
         std::vector<ChangedNumber> changed = text_.changed;
-        if (!x_.setting)
-            changed.push_back({x_.name, x});
-        if (y_ != nullptr && !y_->setting)
-            changed.push_back({y_->name, y});
+        for (ChangedNumber &number : changed_numbers(x_, x))
+            changed.push_back(std::move(number));
+        if (y_ != nullptr)
+            for (ChangedNumber &number : changed_numbers(*y_, y))
+                changed.push_back(std::move(number));
         return parse_scene(text_.text, text_.path.string(), known_methods(), changed);
     }
     std::string place(double x, double y) const {
@@ -71,8 +73,9 @@ class Point {
 };
 
 // A number in the file must be whole if the scene rejects a half-integer but accepts whole values.
-MapAxis settled(const SceneText &text, const MapAxis &given, const RunOptions &base) {
-    MapAxis axis = with_whole_path(given, text.text);
+MapAxis settled(const SceneText &text, const SceneDesc &scene, const MapAxis &given,
+                const RunOptions &base) {
+    MapAxis axis = named_axis(given, text.text, scene);
     if (axis.setting)
         return axis;
     const std::string world = "world.";
@@ -87,6 +90,16 @@ MapAxis settled(const SceneText &text, const MapAxis &given, const RunOptions &b
         point.is_fine(std::floor(high)))
         return in_whole_numbers(axis);
     return axis;
+}
+
+void refuse_same(const MapAxis &x, const MapAxis &y) {
+    if (x.name == y.name)
+        throw std::invalid_argument(x.name + " is on both axes");
+    for (const ChangedNumber &along_x : changed_numbers(x, x.values.front()))
+        for (const ChangedNumber &along_y : changed_numbers(y, y.values.front()))
+            if (along_x.path == along_y.path)
+                throw std::invalid_argument(along_x.path + " is on both axes: " + x.name + " and " +
+                                            y.name);
 }
 
 // The scene's expectations that some variants along an axis lack, with the axis values; those
@@ -329,10 +342,9 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     if (options.duration && !map.scene.expects.empty())
         throw std::invalid_argument("the scene sets its own duration: it runs until the last "
                                     "window of its expectations ends");
-    map.x = settled(scene, x, options.base);
-    map.y = settled(scene, y, options.base);
-    if (map.x.name == map.y.name)
-        throw std::invalid_argument(map.x.name + " is on both axes");
+    map.x = settled(scene, map.scene, x, options.base);
+    map.y = settled(scene, map.scene, y, options.base);
+    refuse_same(map.x, map.y);
     for (const MethodInfo *method : methods_for(map.scene, options.methods, map.left_out))
         map.methods.push_back({method, {}, {}});
     for (MethodMap &of_method : map.methods) {

@@ -217,7 +217,8 @@ void axis_field(const char *id, const char *before, std::string &text, float wid
     ImGui::SameLine();
     ImGui::SetNextItemWidth(width);
     ImGui::InputText(id, &text);
-    tooltip("A setting or any number in the scene file, and its values, as for `plumb map`: "
+    tooltip("A setting, any number in the scene file or a name such as speed, and its values, as "
+            "for `plumb map`: "
             "dt=1/240..1/15:8log, substeps=1,2,4, body.ball.velocity.x=1..20:6.");
     ImGui::SameLine();
 }

@@ -82,10 +82,12 @@ RunChoice choice_of(const MethodStudy &study, double x, double y) {
         if (axis->setting) {
             set_setting(choice.settings, *axis->setting, value);
         } else {
-            std::erase_if(choice.text.changed, [name = axis->name](const ChangedNumber &number) {
-                return number.path == name;
-            });
-            choice.text.changed.push_back({axis->name, value});
+            for (const ChangedNumber &changed : changed_numbers(*axis, value)) {
+                std::erase_if(choice.text.changed, [&](const ChangedNumber &number) {
+                    return number.path == changed.path;
+                });
+                choice.text.changed.push_back(changed);
+            }
             any_changed = true;
         }
     if (any_changed) // the map ran it, so it is a valid scene

@@ -147,25 +147,44 @@ void add_components(const toml::array &array, const std::string &path,
             paths.push_back(path + "." + names[i]);
 }
 
-// Names take precedence over indices, as in `element`.
-void add_paths(const toml::table &table, const std::string &before, std::string_view wanted,
+// "ball", or "2" for the third one if it has no name: names take precedence, as in `element`.
+std::string step_to(const toml::table &table, std::size_t index) {
+    const auto *name = table.get_as<std::string>("name");
+    return name ? name->get() : std::to_string(index);
+}
+
+// `is_wanted` is asked for each key.
+template <typename IsWanted>
+void add_paths(const toml::table &table, const std::string &before, const IsWanted &is_wanted,
                std::vector<std::string> &paths) {
     for (const auto &[key, value] : table) {
         const std::string path = before + std::string(key.str());
-        if (key.str() == wanted && is_number(value))
+        const bool wanted = is_wanted(key.str());
+        if (wanted && is_number(value))
             paths.push_back(path);
         if (const toml::table *inner = value.as_table())
-            add_paths(*inner, path + ".", wanted, paths);
+            add_paths(*inner, path + ".", is_wanted, paths);
         const toml::array *array = value.as_array();
-        if (array != nullptr && key.str() == wanted)
+        if (array != nullptr && wanted)
             add_components(*array, path, paths);
         for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
-            if (const toml::table *inner = array->get(i)->as_table()) {
-                const auto *name = inner->get_as<std::string>("name");
-                const std::string which = name ? name->get() : std::to_string(i);
-                add_paths(*inner, path + "." + which + ".", wanted, paths);
-            }
+            if (const toml::table *inner = array->get(i)->as_table())
+                add_paths(*inner, path + "." + step_to(*inner, i) + ".", is_wanted, paths);
     }
+}
+
+// Two ways to give one number; a table may have only one of them.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> either_or{{
+    {"stiffness", "frequency"},
+    {"damping", "damping_ratio"},
+    {"mass", "density"},
+    {"motor_speed", "motor_speed_deg"},
+}};
+
+void erase_other_way(toml::table &table, std::string_view key) {
+    for (const auto &[one, other] : either_or)
+        if (key == one || key == other)
+            table.erase(key == one ? other : one);
 }
 
 void change(toml::table &root, const ChangedNumber &number) {
@@ -183,6 +202,7 @@ void change(toml::table &root, const ChangedNumber &number) {
             if (!path.at_end())
                 path.refuse("the file has no " + std::string(path.taken()) +
                             ", so there is no number to change; add it to the file");
+            erase_other_way(*table, key);
             put(*table, key, number.value); // the table's reader checks the key
             return;
         }
@@ -231,8 +251,33 @@ std::vector<std::string> number_paths(std::string_view text, std::string_view ke
     std::vector<SceneMessage> messages;
     if (std::optional<toml::table> root = parse_toml(text, "", messages)) {
         root->erase("camera");
-        add_paths(*root, "", key, paths);
+        add_paths(
+            *root, "", [&](std::string_view each) { return each == key; }, paths);
     }
+    return paths;
+}
+
+std::vector<std::string> number_paths(std::string_view text) {
+    std::vector<std::string> paths;
+    std::vector<SceneMessage> messages;
+    if (std::optional<toml::table> root = parse_toml(text, "", messages)) {
+        for (const std::string_view part :
+             {"camera", "world", "methods", "expect", "state", "command", "recording", "probe"})
+            root->erase(part);
+        add_paths(
+            *root, "", [](std::string_view each) { return each != "color"; }, paths);
+    }
+    return paths;
+}
+
+std::vector<std::string> table_paths(std::string_view text, std::string_view list) {
+    std::vector<std::string> paths;
+    std::vector<SceneMessage> messages;
+    const std::optional<toml::table> root = parse_toml(text, "", messages);
+    const toml::array *array = root ? root->get_as<toml::array>(list) : nullptr;
+    for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
+        if (const toml::table *table = array->get(i)->as_table())
+            paths.push_back(std::string(list) + "." + step_to(*table, i));
     return paths;
 }
 

@@ -100,51 +100,17 @@ TEST(MapAxis, LeavesPrecisionAndThreadsToCharts) {
             << complaint(text);
 }
 
-TEST(MapAxis, TakesAKeyForTheOneNumberThatHasIt) {
-    const std::string scene = R"(
-        [world]
-        seed = 3
-        [[particle]]
-        mass = 2
-        [[spring]]
-        name = "left"
-        stiffness = 100
-        [[body]]
-        name = "a.b"
-        mass = 1
-        position = [0, 1, 0]
-        velocity = [0, 0, 0]
-        repeat = { count = 4 }
-        [camera]
-        distance = 4
-    )";
-    const auto path = [&](const std::string &key) {
-        return with_whole_path(parse_map_axis(key + "=1..2"), scene).name;
-    };
-    EXPECT_EQ(path("stiffness"), "spring.left.stiffness");
-    EXPECT_EQ(path("count"), "body.a.b.repeat.count");
-    EXPECT_EQ(path("seed"), "world.seed");
-    EXPECT_EQ(path("position"), "body.a.b.position.y");
-    EXPECT_EQ(path("substeps"), "substeps");
-    EXPECT_EQ(path("body.a.b.position.y"), "body.a.b.position.y");
-    const auto complaint_of = [&](const std::string &key) -> std::string {
-        try {
-            return path(key);
-        } catch (const std::invalid_argument &error) {
-            return error.what();
-        }
-    };
-    EXPECT_NE(complaint_of("mass").find("2; give one of body.a.b.mass, particle.0.mass"),
-              std::string::npos)
-        << complaint_of("mass");
-    EXPECT_NE(complaint_of("substep").find("did you mean \"substeps\"?"), std::string::npos);
-    EXPECT_NE(complaint_of("friction").find(". A number in the scene file"), std::string::npos);
-    EXPECT_NE(
-        complaint_of("velocity")
-            .find("3; give one of body.a.b.velocity.x, body.a.b.velocity.y, body.a.b.velocity.z"),
-        std::string::npos)
-        << complaint_of("velocity");
-    EXPECT_NE(complaint_of("distance").find("material.NAME.friction"), std::string::npos);
+TEST(MapAxis, MayMoveSeveralNumbersAtOnce) {
+    MapAxis speed = parse_map_axis("speed=1..2");
+    EXPECT_EQ(changed_numbers(speed, 3).at(0).path, "speed");
+    speed.numbers = {{"body.a.velocity.x", 0.6, 0}, {"body.a.velocity.z", -0.8, 1}};
+    const std::vector<ChangedNumber> changed = changed_numbers(speed, 10);
+    ASSERT_EQ(changed.size(), 2U);
+    EXPECT_EQ(changed[0].path, "body.a.velocity.x");
+    EXPECT_EQ(changed[0].value, 6);
+    EXPECT_EQ(changed[1].value, -7);
+    EXPECT_EQ(axis_title(speed), "speed (m/s) by body.a.velocity");
+    EXPECT_TRUE(changed_numbers(parse_map_axis("dt=1/60,1/30"), 1.0 / 60).empty());
 }
 
 } // namespace
