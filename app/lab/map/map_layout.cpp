@@ -215,8 +215,7 @@ std::vector<MapLegendEntry> legend_entries(const StabilityMap &map,
                            {},
                            "",
                            {map.x.whole ? "limit between two cells, by bisection"
-                                        : "limit, by bisection to 1/" +
-                                              std::to_string(1 << limit_halvings) + " of a cell",
+                                        : "limit, by bisection to within 0.25 %",
                             {}}});
     for (const TheoryCurve &curve : theory)
         entries.push_back({Kind::theory, Failing::none, {}, "", {curve.name, {}}});

@@ -224,14 +224,14 @@ class Runner {
     // This many of the planned runs are not needed.
     void skip(int runs) { advance(static_cast<std::int64_t>(one_run) * runs); }
 
-    // Each item takes about `runs` runs.
+    // All items together take about `runs` runs.
     template <typename Item, typename Work>
-    void for_each(std::vector<Item> &items, int runs, double from, double to,
+    void for_each(std::vector<Item> &items, std::size_t runs, double from, double to,
                   const std::string &what, const Work &work) {
         from_ = from;
         to_ = to;
         what_ = map_.scene.name + ": " + what;
-        planned_ = static_cast<double>(items.size()) * runs * one_run;
+        planned_ = static_cast<double>(runs) * one_run;
         done_ = 0;
         advance(0);
         const auto part = [&](std::size_t begin, std::size_t end) {
@@ -307,10 +307,21 @@ std::vector<LimitItem> limits_to_find(StabilityMap &map, const KnownRows &known)
     return items;
 }
 
+// Whether so many halvings have brought the ends of a limit close enough.
+bool is_narrow(const MapAxis &axis, double low, double high, int halvings) {
+    constexpr double resolution = 1e-7; // of the axis
+    const double width = high - low;
+    if (axis.whole)
+        return width <= 1;
+    return halvings >= limit_halvings &&
+           (width <= limit_accuracy * std::max(std::abs(low), std::abs(high)) ||
+            width <= resolution * (axis.values.back() - axis.values.front()));
+}
+
 // Bisects the interval between a held and a failing end; false if interrupted.
 bool narrow_down(Runner &runner, const MapAxis &axis, LimitItem &item) {
     MapLimit &limit = item.limit;
-    for (int i = 0; axis.whole ? limit.high - limit.low > 1 : i < limit_halvings; ++i) {
+    for (int i = 0; !is_narrow(axis, limit.low, limit.high, i); ++i) {
         const double middle = between(axis, limit.low, limit.high);
         const std::optional<MapRun> run = runner.run(*item.map->method, middle, limit.y);
         if (!run)
@@ -326,6 +337,16 @@ bool narrow_down(Runner &runner, const MapAxis &axis, LimitItem &item) {
 }
 
 } // namespace
+
+int runs_to_limit(const MapAxis &x, double low, double high) {
+    int runs = 0;
+    for (; !is_narrow(x, low, high, runs); ++runs) {
+        const double middle = between(x, low, high);
+        // Towards 0, where it takes longest.
+        (std::abs(low) < std::abs(high) ? high : low) = middle;
+    }
+    return runs;
+}
 
 StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &y,
                        const MapOptions &options) {
@@ -376,7 +397,7 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
             }
     }
     constexpr double grid_share = 0.7; // of the time; a guess
-    runner.for_each(cells, 1, 0, grid_share, "cells", [&](const CellItem &item) {
+    runner.for_each(cells, cells.size(), 0, grid_share, "cells", [&](const CellItem &item) {
         item.map->cells[item.row * map.x.values.size() + item.column] =
             runner.run(*item.map->method, map.x.values[item.column], map.y.values[item.row]);
         if (options.changed && options.tasks == nullptr)
@@ -385,9 +406,15 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     std::vector<LimitItem> limits;
     if (!runner.stopped())
         limits = limits_to_find(map, options.known);
-    runner.for_each(limits, limit_halvings, grid_share, 1, "limits", [&](LimitItem &item) {
+    const auto runs_of = [&](const LimitItem &item) {
+        return runs_to_limit(map.x, item.limit.low, item.limit.high);
+    };
+    std::size_t runs = 0;
+    for (const LimitItem &item : limits)
+        runs += static_cast<std::size_t>(runs_of(item));
+    runner.for_each(limits, runs, grid_share, 1, "limits", [&](LimitItem &item) {
         if (item.done)
-            runner.skip(limit_halvings);
+            runner.skip(runs_of(item));
         else
             item.done = narrow_down(runner, map.x, item);
     });

@@ -65,8 +65,14 @@ struct StabilityMap {
     }
 };
 
-// Bisections of the gap between a limit's two cells; whole numbers are resolved exactly.
+// Limits are bisected until their ends are this close, as a fraction of the larger end's magnitude
+// (near 0, until they are a ten-millionth of the axis apart); whole numbers until they are
+// neighbours. On fine grids, where that takes fewer, limit_halvings times.
+inline constexpr double limit_accuracy = 0.0025;
 inline constexpr int limit_halvings = 5;
+
+// How many runs it takes at most to find the limit between two neighbouring values of the axis.
+[[nodiscard]] int runs_to_limit(const MapAxis &x, double low, double high);
 
 // Results of an earlier run of the same map, by method and place.
 struct KnownRows {
