@@ -36,9 +36,8 @@ PROBLEMS = [
             "predicts ω dt = 2 for the symplectic methods and 2√2 for Runge-Kutta 4.",
             (), "--x dt=1/480..1/15:11log --y spring.coil.frequency=1..32:6log --methods "
             "soft_step,explicit_euler,semi_implicit_euler,velocity_verlet,rk4,backward_euler", None,
-            "Explicit Euler is never stable: where it holds, energy grew less than 300-fold in 5 s. "
-            "Bounded does not mean accurate: backward Euler damps, and no dt above half a period can "
-            "resolve the oscillation.",
+            "Explicit Euler is never stable: its energy grows by exp(ω² dt t). Bounded does not mean "
+            "accurate: backward Euler damps, and no dt above half a period can resolve the oscillation.",
             lambda dt, y: 2 * math.pi * y * dt, "ω dt"),
     Problem("pendulum", "a swinging joint", "A pendulum",
             "A bob on a rod is released at 60 degrees. Are its energy, period and rod length right for "

@@ -145,7 +145,11 @@ const double *known_failing(const MethodInfo &method, const std::string &scene) 
           {"grasping", 1400},
           {"long_chain", 110},
           {"wrecking_ball", 17}}},
-        {"explicit_euler", {{"spinning_book", 220}, {"kepler_orbit", 50}, {"catenary", 2.5}}},
+        {"explicit_euler",
+         {{"spinning_book", 220},
+          {"kepler_orbit", 50},
+          {"catenary", 2.5},
+          {"spring_limit", 3e18}}}, // no spring stays bounded, at any step
         {"backward_euler", {{"kepler_orbit", 50}}},
         {"naive_spin", {{"spinning_book", 150}}}};
     const auto found = failing.find(method.name);

@@ -25,6 +25,8 @@ constexpr std::array all_failings{
     FailingInfo{Failing::fell, "fell", 'F', 0xcc79a7, "fell over, or down from where it stood"},
     FailingInfo{Failing::never_rests, "never rests", 'R', 0xf0e442, "never comes to rest"},
     FailingInfo{Failing::missed, "missed", 'M', 0xa4abb2, "missed an expectation"},
+    FailingInfo{Failing::undecided, "undecided", '?', 0xe3e8d9,
+                "undecided: by theory it grows without bound, too slowly to show in this time"},
 };
 
 bool is_about(const ExpectDesc &expect, std::string_view part) {

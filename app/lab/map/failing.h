@@ -19,7 +19,8 @@ enum class Failing {
     drift,
     fell,
     never_rests,
-    missed
+    missed,
+    undecided // held as long as it ran, but theory says that it will not for ever
 };
 
 struct FailingInfo {
@@ -30,7 +31,8 @@ struct FailingInfo {
     std::string_view meaning; // for people
 };
 
-// All of them; if a run failed in several ways, the first in this order counts.
+// All of them; if a run failed in several ways, the first in this order counts. Undecided is
+// never why_failed's answer; see grows_by_theory.
 [[nodiscard]] std::span<const FailingInfo> failings();
 [[nodiscard]] const FailingInfo &info_of(Failing failing);
 [[nodiscard]] std::optional<Failing> find_failing(std::string_view name);

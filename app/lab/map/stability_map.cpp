@@ -4,6 +4,7 @@
 #include "app/lab/map/axis_names.h"
 #include "app/lab/map/passage.h"
 #include "app/lab/map/standing.h"
+#include "app/lab/map/theory.h"
 #include "app/lab/run/method_choice.h"
 #include "engine/scene/file/change.h"
 
@@ -221,6 +222,17 @@ class Runner {
                       judged.max_penetration, judged.max_joint_drift, judged.max_energy_gain};
     }
 
+    // The same for a cell, which is undecided if it held only because it grows too slowly to show.
+    std::optional<MapRun> run_cell(const MethodInfo &method, double x, double y) {
+        std::optional<MapRun> cell = run(method, x, y);
+        if (cell && cell->failing.failing == Failing::none && cell->max_energy_gain > 0) {
+            const SceneDesc scene = point_.scene(x, y);
+            if (grows_by_theory(scene, resolve_run(scene, point_.run(method, x, y))))
+                cell->failing.failing = Failing::undecided;
+        }
+        return cell;
+    }
+
     // This many of the planned runs are not needed.
     void skip(int runs) { advance(static_cast<std::int64_t>(one_run) * runs); }
 
@@ -275,6 +287,10 @@ struct LimitItem {
     bool done = false;
 };
 
+bool is_undecided(const std::optional<MapRun> &run) {
+    return run->failing.failing == Failing::undecided;
+}
+
 bool held(const std::optional<MapRun> &run) {
     return run->failing.failing == Failing::none;
 }
@@ -297,7 +313,8 @@ std::vector<LimitItem> limits_to_find(StabilityMap &map, const KnownRows &known)
             for (std::size_t column = 1; column < map.x.values.size(); ++column) {
                 const auto &left = map.cell(of_method, column - 1, row);
                 const auto &right = map.cell(of_method, column, row);
-                if (!left || !right || held(left) == held(right))
+                if (!left || !right || held(left) == held(right) || is_undecided(left) ||
+                    is_undecided(right))
                     continue;
                 MapLimit limit{map.y.values[row], map.x.values[column - 1], map.x.values[column],
                                held(left), (held(left) ? right : left)->failing};
@@ -399,7 +416,7 @@ StabilityMap map_scene(const SceneText &scene, const MapAxis &x, const MapAxis &
     constexpr double grid_share = 0.7; // of the time; a guess
     runner.for_each(cells, cells.size(), 0, grid_share, "cells", [&](const CellItem &item) {
         item.map->cells[item.row * map.x.values.size() + item.column] =
-            runner.run(*item.map->method, map.x.values[item.column], map.y.values[item.row]);
+            runner.run_cell(*item.map->method, map.x.values[item.column], map.y.values[item.row]);
         if (options.changed && options.tasks == nullptr)
             options.changed(map);
     });

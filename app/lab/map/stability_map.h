@@ -30,7 +30,8 @@ struct MapRun {
     double max_energy_gain = 0;
 };
 
-// The limit between two neighbouring cells of a row, one that held and one that failed.
+// The limit between two neighbouring cells of a row, one that held and one that failed; none
+// beside an undecided one.
 struct MapLimit {
     double y = 0;
     double low = 0, high = 0; // x: the scene held at one and failed at the other

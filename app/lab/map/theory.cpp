@@ -250,6 +250,26 @@ std::optional<double> longest_damped_step(std::string_view method, double omega,
     return std::nullopt;
 }
 
+bool grows_by_theory(const SceneDesc &scene, const ResolvedRun &run) {
+    if (run.method->name != "explicit_euler" || scene.springs.size() != 1 ||
+        scene.springs.front().tear_strain > 0 || !scene.attractors.empty())
+        return false;
+    const SpringDesc &spring = scene.springs.front();
+    const std::optional<Oscillator> swing = lone_oscillator(scene, spring.name);
+    if (!swing)
+        return false;
+    if (swing->mass > 0) {
+        const std::optional<double> longest =
+            longest_damped_step(run.method->name, swing->omega, spring.damping / swing->mass);
+        return longest && run.settings.dt / run.settings.substeps > *longest;
+    }
+    const auto held =
+        std::ranges::find(scene.bodies, spring.a.empty() ? spring.b : spring.a, &BodyDesc::name);
+    return held != scene.bodies.end() && held->kind == BodyKind::dynamic && spring.damping == 0 &&
+           held->linear_damping == 0 && held->angular_damping == 0 &&
+           std::ranges::none_of(held->locked, [](bool locked) { return locked; });
+}
+
 namespace {
 
 struct DtAxis {

@@ -42,6 +42,12 @@ struct Oscillator {
 [[nodiscard]] std::optional<double> longest_damped_step(std::string_view method, double omega,
                                                         double rate);
 
+// Whether theory says that a run's energy grows without bound, however slowly: by explicit Euler,
+// of a scene's only spring, which never tears, between the world and a particle, if the substep is
+// above longest_damped_step (without damping: at any), or between the world and a body that nothing
+// damps or locks, if the spring is undamped. False wherever nothing is known.
+[[nodiscard]] bool grows_by_theory(const SceneDesc &scene, const ResolvedRun &run);
+
 // m: the side of the cubes, copies of the body of that name, that stand on a plane in a single
 // column and are all that moves. nullopt for any other scene.
 [[nodiscard]] std::optional<double> column_of_cubes(const SceneDesc &scene,

@@ -50,7 +50,7 @@ TEST(Failing, HasARowALetterAndAColourOfItsOwn) {
         EXPECT_EQ(&info_of(info.failing), &info);
         EXPECT_EQ(find_failing(info.name), info.failing);
     }
-    EXPECT_EQ(failings().size(), static_cast<std::size_t>(Failing::missed) + 1);
+    EXPECT_EQ(failings().size(), static_cast<std::size_t>(Failing::undecided) + 1);
     EXPECT_EQ(letters.size(), failings().size());
     EXPECT_EQ(colours.size(), failings().size());
     EXPECT_FALSE(find_failing("nonsense"));
