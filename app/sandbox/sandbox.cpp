@@ -424,7 +424,8 @@ void Sandbox::go_on_with(const RunChoice &choice) {
     if (choice.method != session_.simulation()->method().name &&
         !session_.set_method(choice.method))
         return;
-    session_.set_settings(choice.settings);
+    if (session_.set_settings(choice.settings) && choice.failure)
+        session_.note_outcome(*choice.failure);
 }
 
 void Sandbox::scale_panels(float factor) {

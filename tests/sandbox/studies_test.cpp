@@ -82,6 +82,20 @@ TEST(Studies, AMapIsMadeAndItsCellsCanBeChosen) {
     EXPECT_EQ(sandbox.session().present_bodies().back().position.y, 60);
 }
 
+// Several numbers of the file, or one under another name.
+TEST(Studies, ACellOverANameAppliesTheNumbersItStandsFor) {
+    Session session;
+    ASSERT_TRUE(session.open(scenes / "contact/struck_before_wall.toml"));
+    MapStudy study;
+    start_map(study, session, "mass_ratio=1,50", "distance=0.3,0.6");
+    ASSERT_TRUE(wait_for(study));
+    ASSERT_EQ(study.failure(), "");
+    const RunChoice choice = choice_of(*study.result(), 50, 0.3);
+    ASSERT_TRUE(choice.scene);
+    EXPECT_EQ(choice.scene->bodies.back().mass, 50); // the other one's is 1
+    EXPECT_NEAR(choice.scene->bodies.back().position.x, -0.205 - 0.3, 1e-12);
+}
+
 // Studies show and use the running scene, whatever happened to its file.
 TEST(Studies, AreOfTheSceneThatRuns) {
     const std::filesystem::path folder =

@@ -1,6 +1,7 @@
 // The scene's title, description and expectations, and whether they hold.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
+#include "app/sandbox/session/run_light.h"
 #include "engine/scene/expect.h"
 
 #include <algorithm>
@@ -122,19 +123,9 @@ void warn(const Fonts &fonts, const Colour &colour, const std::string &text) {
     ImGui::PopFont();
 }
 
-// Red when the run has failed, amber when it is outside what the scene expects.
 void lights(const PanelContext &context) {
-    const Session &session = context.session;
-    if (const std::optional<Trouble> trouble = session.trouble())
-        warn(context.fonts, theme::error, trouble->text);
-    const std::vector<ExpectDesc> &expects = session.scene().expects;
-    std::string missed;
-    for (std::size_t i = 0; i < expects.size(); ++i)
-        if (const std::optional<double> since = session.missed_since(i))
-            missed += (missed.empty() ? "Outside tolerance: " : "; ") + expects[i].name +
-                      " since " + unbroken(number(*since, "s"));
-    if (!missed.empty())
-        warn(context.fonts, theme::warning, missed + ".");
+    for (const RunLight &each : lights_of(context.session))
+        warn(context.fonts, each.is_red ? theme::error : theme::warning, each.text);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // Pause, step, step back, restart and speed.
 #include "app/sandbox/panels/panel.h"
 #include "app/sandbox/panels/widgets.h"
+#include "app/sandbox/session/run_light.h"
 
 #include <array>
 #include <cmath>
@@ -32,13 +33,9 @@ void status(const PanelContext &context) {
     const Colour colour = session.stopped()        ? theme::error
                           : context.clock.paused() ? theme::warning
                                                    : theme::good;
-    const std::optional<Trouble> trouble = session.trouble();
-    bool missed = false;
-    for (std::size_t i = 0; i < session.scene().expects.size() && !trouble && !missed; ++i)
-        missed = session.missed_since(i).has_value();
-    if (trouble || missed) {
-        light(trouble ? theme::error : theme::warning);
-        tooltip(trouble ? trouble->text : "An expectation of the scene is out of tolerance.");
+    if (const std::vector<RunLight> lights = lights_of(session); !lights.empty()) {
+        light(lights.front().is_red ? theme::error : theme::warning);
+        tooltip(lights.front().text);
         ImGui::SameLine();
     }
     ImGui::TextColored(colour, "%s", state);

@@ -17,6 +17,7 @@ bool Session::open(const SceneDesc &scene, const std::filesystem::path &path,
     if (!start(scene, options_, {}))
         return false;
     recording_.reset();
+    noted_.reset();
     path_ = path;
     text_ = std::move(text);
     return true;
@@ -27,6 +28,7 @@ bool Session::play(const Recording &recording, const std::filesystem::path &path
     if (!start(kept->scene, {}, {}))
         return false;
     recording_ = std::move(kept);
+    noted_.reset();
     text_.reset();
     replay_.emplace(*recording_);
     path_ = std::filesystem::path(path); // `path` may alias path_
@@ -76,6 +78,7 @@ bool Session::start(const SceneDesc &scene, const RunOptions &options,
         return false;
     }
     scene_ = scene;
+    started_with_ = chosen();
     troubles_.reset();
     if (simulation_->has_world())
         troubles_.emplace(scene_, *simulation_);
@@ -109,6 +112,8 @@ bool Session::step() {
         is_held = simulation_->grab().has_value();
         if (is_held) // a grab may add energy
             energy_before = simulation_->energy();
+        if (simulation_->step_count() == first_step_)
+            started_with_ = chosen();
         troubles_->begin_step(scene_, *simulation_);
         if (ghost_)
             ghost_->begin_step();
@@ -422,6 +427,33 @@ std::optional<double> Session::missed_since(std::size_t expectation) const {
 
 std::optional<Trouble> Session::trouble() const {
     return troubles_ ? troubles_->trouble() : std::nullopt;
+}
+
+Session::Choice Session::chosen() const {
+    return {&simulation_->method(), simulation_->settings()};
+}
+
+void Session::note_outcome(const std::string &failure) {
+    if (simulation_)
+        noted_ = Noted{chosen(), failure};
+}
+
+std::optional<std::string> Session::doubt() const {
+    if (!simulation_ || !simulation_->has_world())
+        return std::nullopt;
+    const Choice now = chosen();
+    const auto is_now = [&](const Choice &choice) {
+        return choice.method == now.method &&
+               GivenSettings::differences(choice.settings, now.settings).empty();
+    };
+    if (noted_ && is_now(noted_->choice))
+        return noted_->failure.empty() ? std::nullopt
+                                       : std::optional("With these settings the scene failed in "
+                                                       "the lab: " +
+                                                       noted_->failure + ".");
+    if (simulation_->step_count() == first_step_ || is_now(started_with_))
+        return std::nullopt;
+    return "Not known to hold with these settings, which are not those the run started with.";
 }
 
 void Session::disturb(std::uint64_t first_step) {

@@ -99,6 +99,12 @@ class Session {
     // Something other than stepping changed the run after its start (another method or setting, a
     // shot, a grab): the expectations then tell what happened, not what `check` would say.
     [[nodiscard]] bool disturbed() const { return disturbed_from_.has_value(); }
+    // How a whole run of this scene with the present method and settings fared elsewhere, on a map
+    // or chart: a phrase that says how it failed; empty if it held.
+    void note_outcome(const std::string &failure);
+    // Why the run may not hold as it goes on, in a sentence: its method and settings are noted to
+    // have failed, or are not those it started with and not noted to hold. nullopt if neither.
+    [[nodiscard]] std::optional<std::string> doubt() const;
 
     // Switches the method, with the scene's settings for it or else its own defaults.
     bool set_method(std::string_view name);
@@ -200,6 +206,18 @@ class Session {
     History history_; // states saved by simulation_
     std::optional<ExpectationWatch> watch_;
     std::optional<TroubleWatch> troubles_;
+    // What a run is made with.
+    struct Choice {
+        const MethodInfo *method = nullptr;
+        StepSettings settings;
+    };
+    [[nodiscard]] Choice chosen() const;
+    Choice started_with_; // in its first step
+    struct Noted {
+        Choice choice;
+        std::string failure;
+    };
+    std::optional<Noted> noted_;
     std::uint64_t first_step_ = 0;                // first step of the run
     std::optional<std::uint64_t> disturbed_from_; // states are disturbed from this step on
     std::optional<GrabView> grab_;

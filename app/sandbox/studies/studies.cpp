@@ -15,6 +15,41 @@ namespace {
 // Few, so that a first answer comes soon; the command line takes more.
 constexpr int repeats = 3;
 
+std::optional<std::string> failure_of(const ChartRun &run) {
+    switch (run.status) {
+    case ChartStatus::fine:
+        return "";
+    case ChartStatus::outside:
+        return run.worst ? "it misses \"" + run.run.outcomes[*run.worst].desc.name + "\""
+                         : "it misses an expectation";
+    case ChartStatus::diverged:
+        return "it diverged";
+    case ChartStatus::no_result:
+    case ChartStatus::unfinished:
+        break;
+    }
+    return std::nullopt;
+}
+
+// Of the map's cell at these values.
+std::optional<std::string> failure_of(const StabilityMap &map, double x, double y) {
+    const auto at = [](const MapAxis &axis, double value) {
+        return static_cast<std::size_t>(std::ranges::find(axis.values, value) -
+                                        axis.values.begin());
+    };
+    const std::size_t column = at(map.x, x), row = at(map.y, y);
+    if (column >= map.x.values.size() || row >= map.y.values.size())
+        return std::nullopt;
+    const std::optional<MapRun> &cell = map.cell(map.methods.front(), column, row);
+    if (!cell)
+        return std::nullopt;
+    const RunFailing &failing = cell->failing;
+    if (failing.failing == Failing::none)
+        return "";
+    return std::string(info_of(failing.failing).name) +
+           (failing.what.empty() ? "" : " (" + failing.what + ")");
+}
+
 template <typename Wanted>
 void give_running(GivenSettings &settings, const Simulation &simulation, const Wanted &wanted) {
     for (const SettingNumber number : setting_numbers())
@@ -71,12 +106,16 @@ void start_map(MapStudy &study, const Session &session, const std::string &x,
 }
 
 RunChoice choice_of(const ChartRun &run) {
-    return {std::string(run.resolved.method->name), run.resolved.settings, {}, {}};
+    return {std::string(run.resolved.method->name), run.resolved.settings, {}, {}, failure_of(run)};
 }
 
 RunChoice choice_of(const MethodStudy &study, double x, double y) {
     const StabilityMap &map = study.map;
-    RunChoice choice{std::string(map.methods.front().method->name), study.settings, {}, study.text};
+    RunChoice choice{std::string(map.methods.front().method->name),
+                     study.settings,
+                     {},
+                     study.text,
+                     failure_of(map, x, y)};
     bool any_changed = false;
     for (const auto &[axis, value] : {std::pair(&map.x, x), std::pair(&map.y, y)})
         if (axis->setting) {

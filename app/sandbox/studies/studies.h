@@ -35,6 +35,9 @@ struct RunChoice {
     StepSettings settings;
     std::optional<SceneDesc> scene; // restart with this scene instead of the running one
     SceneText text;                 // text of that scene
+    // How a whole run with it fared: how it failed, a phrase, or empty if it held; nullopt if that
+    // is not known.
+    std::optional<std::string> failure;
 };
 
 [[nodiscard]] RunChoice choice_of(const ChartRun &run);
