@@ -4,6 +4,7 @@
 #include "app/lab/chart/pareto.h"
 #include "app/lab/csv.h"
 #include "app/lab/engines/engine_simulation.h"
+#include "app/lab/map/answers.h"
 #include "app/lab/run/run_text.h"
 #include "app/lab/run/run_timer.h"
 #include "app/lab/timing.h"
@@ -116,10 +117,32 @@ double SceneChart::median_spread() const {
     return spreads.empty() ? 0 : median(spreads);
 }
 
+std::vector<MapAxis> axes_that_vary(const std::vector<SweepAxis> &sweep) {
+    std::vector<MapAxis> axes;
+    for (const SweepAxis &swept : sweep) {
+        MapAxis axis;
+        axis.name = setting_name(swept.setting);
+        axis.setting = swept.setting;
+        axis.values = swept.values;
+        if (varies_the_scene(axis))
+            axes.push_back(std::move(axis));
+    }
+    return axes;
+}
+
+bool is_outdated(const SceneChart &chart, const std::string &expectation) {
+    return std::ranges::find(chart.outdated, expectation) != chart.outdated.end();
+}
+
 std::vector<std::string> not_judged(const SceneChart &chart) {
     std::vector<std::string> texts;
+    if (std::string text = outdated_text(axes_that_vary(chart.sweep), chart.outdated);
+        !text.empty())
+        texts.push_back(std::move(text));
     const std::vector<ExpectDesc> expects = everything_expected(chart.scene);
     for (std::size_t i = 0; i < expects.size(); ++i) {
+        if (is_outdated(chart, expects[i].name))
+            continue;
         std::string who;
         const MethodInfo *last = nullptr;
         for (const ChartRun &run : chart.runs) {
@@ -151,10 +174,16 @@ SweepAxis default_convergence_sweep() {
     return parse_sweep("dt=1/960..1/30");
 }
 
+bool expects_nothing(const SceneChart &chart) {
+    return std::ranges::all_of(everything_expected(chart.scene), [&](const ExpectDesc &expect) {
+        return is_outdated(chart, expect.name);
+    });
+}
+
 void finish_chart(SceneChart &chart) {
     if (chart.steps_from)
         chart.measure = one_step_measure(chart.steps_from->frame, chart.steps_from->instants);
-    else if (everything_expected(chart.scene).empty())
+    else if (expects_nothing(chart))
         chart.measure =
             followed_measure(chart.scene, std::ranges::any_of(chart.runs, [](const ChartRun &run) {
                                  return run.run.had_contacts;
@@ -199,6 +228,14 @@ class Charting {
         chart_.seed = options_.seed;
         planned_ = plan_chart(scene, options_, chart_.sweep, chart_.left_out);
         chart_.planned = planned_.size();
+        const std::vector<MapAxis> axes = axes_that_vary(chart_.sweep);
+        if (options_.progress && !axes.empty())
+            options_.progress(0, scene.name + ": what is expected");
+        chart_.outdated = outdated_answers(
+            scene, axes,
+            {[&](std::span<const double>) { return scene; }, options_.base, options_.stop});
+        chart_.measure =
+            choose_measure(scene, options_.expect, options_.convergence, chart_.outdated);
     }
 
     SceneChart make() {
@@ -282,6 +319,9 @@ class Charting {
         if (next.engine != nullptr)
             drop_unmeasured(run.run.outcomes);
         judge_probes(scene_, run.resolved.precision, run.run.outcomes);
+        for (ExpectOutcome &outcome : run.run.outcomes)
+            if (is_outdated(chart_, outcome.desc.name))
+                outcome.verdict = Verdict::unseen;
         if (states_ && !run.run.divergence && !run.run.stopped) {
             std::shared_ptr<Simulation> engine; // it keeps its memory inside, not in the scene
             run.one_step =

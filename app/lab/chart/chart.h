@@ -124,6 +124,9 @@ struct SceneChart {
     double budget = 1;                   // s per simulated second
     std::uint64_t seed = 1;
     std::vector<std::string> left_out; // the reason for each method that cannot run the scene
+    // The scene's expectations that no run is judged by, as the sweep changes their answer, by
+    // name; see outdated_answers. The error is that of a scene without them.
+    std::vector<std::string> outdated;
     std::size_t planned = 0;
     int repeats = 0;
     double timed = 0; // simulated s per timing
@@ -137,7 +140,8 @@ struct SceneChart {
     [[nodiscard]] double median_spread() const; // of (greatest - least) / median over runs
 };
 
-// Which expectations do not count for which methods: ""rests" cannot be measured for Bullet, ODE".
+// Which expectations do not count, and why: ""rests" cannot be measured for Bullet, ODE"; "stated
+// for the file's own gravity.y: "height"".
 [[nodiscard]] std::vector<std::string> not_judged(const SceneChart &chart);
 
 // Runs everything once in full for the errors, then times all runs in rounds, so that a machine
@@ -152,6 +156,9 @@ struct SceneChart {
 
 // Judges all runs by the chart's measure and marks the Pareto front. Call after adding runs.
 void finish_chart(SceneChart &chart);
+
+// Whether the scene expects nothing that the chart can judge by.
+[[nodiscard]] bool expects_nothing(const SceneChart &chart);
 
 // One row per run: all settings, costs, work, every error and expectation, and its provenance.
 // `fingerprint` is from chart_fingerprint, or empty.

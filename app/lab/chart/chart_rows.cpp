@@ -117,6 +117,7 @@ SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
     chart.repeats = static_cast<int>(row.number("repeats").value_or(0));
     chart.timed = row.number("timed_s").value_or(0);
     chart.seed = static_cast<std::uint64_t>(row.number("seed").value_or(0));
+    chart.outdated = parsed_reasons(row.cell("outdated"));
     const std::string_view charted = row.cell("charted_error");
     if (const auto frame = row.number("frame_s"))
         chart.steps_from = {*frame,
@@ -125,11 +126,11 @@ SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
                             {row.number("accurate_rms_m").value_or(0),
                              row.number("accurate_worst_m").value_or(0),
                              {}}};
-    else if (everything_expected(scene).empty())
+    else if (expects_nothing(chart))
         chart.measure = followed_measure(scene, charted == "max_penetration");
     else
         chart.measure = choose_measure(scene, charted == "worst" ? std::string_view() : charted,
-                                       chart.convergence);
+                                       chart.convergence, chart.outdated);
     return chart;
 }
 
@@ -137,8 +138,8 @@ SceneChart read_head(const CsvReader &row, const SceneDesc &scene) {
 std::string head_text(const CsvReader &row) {
     std::string text;
     for (const char *column : {"scene", "sweep", "against", "clock", "budget_s_per_s", "planned",
-                               "repeats", "timed_s", "seed", "charted_error", "commit", "frame_s",
-                               "instants", "accurate_run", "accurate_rms_m"})
+                               "repeats", "timed_s", "seed", "charted_error", "outdated", "commit",
+                               "frame_s", "instants", "accurate_run", "accurate_rms_m"})
         text.append(row.cell(column)).append("\n");
     return text;
 }

@@ -78,6 +78,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
                              "error_unit",
                              "worst",
                              "not_judged",
+                             "outdated",
                              "end_s",
                              "steps",
                              "max_penetration_m",
@@ -132,6 +133,7 @@ void write_chart_csv(std::ostream &out, const SceneChart &chart, const std::stri
             .cell(error_unit(chart.measure))
             .cell(run.worst ? run.run.outcomes[*run.worst].desc.name : "")
             .cell(reasons_text(unseen_in(run.run)))
+            .cell(reasons_text(chart.outdated))
             .cell(run.run.time)
             .cell(run.run.steps)
             .cell(run.run.max_penetration)

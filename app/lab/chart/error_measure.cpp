@@ -90,27 +90,38 @@ bool is_value_at_a_time(const ExpectDesc &expect) {
 
 } // namespace
 
-ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect, bool convergence) {
+ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect, bool convergence,
+                            const std::vector<std::string> &outdated) {
     const std::vector<ExpectDesc> expects = everything_expected(scene);
+    const auto is_outdated = [&](const std::string &name) {
+        return std::ranges::find(outdated, name) != outdated.end();
+    };
     if (expect.empty()) {
-        if (expects.empty())
-            return followed_measure(scene, false);
-        std::vector<std::size_t> among;
+        std::vector<std::size_t> counting, at_a_time;
         for (std::size_t i = 0; i < expects.size(); ++i)
-            if (convergence && is_value_at_a_time(expects[i]))
-                among.push_back(i);
+            if (!is_outdated(expects[i].name)) {
+                counting.push_back(i);
+                if (convergence && is_value_at_a_time(expects[i]))
+                    at_a_time.push_back(i);
+            }
+        if (counting.empty())
+            return followed_measure(scene, false);
+        const std::vector<std::size_t> &among = at_a_time.empty() ? counting : at_a_time;
         if (among.size() == 1)
             return measure_of(expects[among.front()], among.front());
-        if (!among.empty() && among.size() < expects.size()) {
-            ErrorMeasure measure = worst_measure(among.size());
+        ErrorMeasure measure = worst_measure(among.size());
+        if (among.size() < counting.size())
             measure.explanation =
                 "the worst of the scene's " + std::to_string(among.size()) +
                 " expectations of a value at a given time, each in units of its own tolerance";
-            measure.among = std::move(among);
-            return measure;
-        }
-        return expects.size() == 1 ? measure_of(expects.front(), 0) : worst_measure(expects.size());
+        if (among.size() < expects.size())
+            measure.among = among;
+        return measure;
     }
+    if (is_outdated(std::string(expect)))
+        throw std::invalid_argument(
+            "\"" + std::string(expect) + "\" of scene " + scene.name +
+            " is stated for the file's own numbers, which the sweep changes");
     std::string names;
     for (std::size_t i = 0; i < expects.size(); ++i) {
         if (expects[i].name == expect)

@@ -30,10 +30,12 @@ struct ErrorMeasure {
 // The scene's worst expectation, in units of tolerances; if it has only one, or `expect` names one,
 // that one in its own unit; if it has none, followed_measure. For `convergence` only expectations
 // of a value at a given time count, if there are any: an extreme or a crossing, found between
-// samples, is off by a power of dt of its own, and a bound is no true value. Throws
-// std::invalid_argument if none has that name.
+// samples, is off by a power of dt of its own, and a bound is no true value. Those named in
+// `outdated` do not count, as if the scene had no such expectations. Throws std::invalid_argument
+// if none has that name, or if it is outdated.
 [[nodiscard]] ErrorMeasure choose_measure(const SceneDesc &scene, std::string_view expect,
-                                          bool convergence = false);
+                                          bool convergence = false,
+                                          const std::vector<std::string> &outdated = {});
 
 // For scenes without expectations: the error that applies to the scene.
 [[nodiscard]] ErrorMeasure followed_measure(const SceneDesc &scene, bool had_contacts);

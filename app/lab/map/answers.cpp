@@ -63,23 +63,27 @@ bool is_law(const SceneDesc &scene, const ExpectDesc &expect, const MapAxis &axi
             !brings_energy_in(scene));
 }
 
-using Place = std::pair<double, double>;
+using MapPlace = std::vector<double>; // a value for each axis
 
-// The corners of the map's part that varies the scene, and its middle.
-std::vector<Place> places_to_try(const MapAxis &x, const MapAxis &y) {
-    const auto ends = [](const MapAxis &axis) {
-        return varies_the_scene(axis) ? std::vector{axis.values.front(), axis.values.back()}
-                                      : std::vector{axis.values.front()};
-    };
-    const auto middle = [](const MapAxis &axis) {
-        return varies_the_scene(axis) ? axis.values[axis.values.size() / 2] : axis.values.front();
-    };
-    std::vector<Place> places;
-    for (const double at_x : ends(x))
-        for (const double at_y : ends(y))
-            places.emplace_back(at_x, at_y);
-    if (const Place at(middle(x), middle(y)); std::ranges::find(places, at) == places.end())
-        places.push_back(at);
+// The corners of the part that varies the scene, and its middle.
+std::vector<MapPlace> places_to_try(std::span<const MapAxis> axes) {
+    std::vector<MapPlace> places{{}};
+    MapPlace middle;
+    for (const MapAxis &axis : axes) {
+        const bool varies = varies_the_scene(axis) && axis.values.size() > 1;
+        std::vector<MapPlace> longer;
+        for (const MapPlace &place : places)
+            for (const double end : {axis.values.front(), axis.values.back()}) {
+                longer.push_back(place);
+                longer.back().push_back(end);
+                if (!varies)
+                    break;
+            }
+        places = std::move(longer);
+        middle.push_back(varies ? axis.values[axis.values.size() / 2] : axis.values.front());
+    }
+    if (std::ranges::find(places, middle) == places.end())
+        places.push_back(middle);
     return places;
 }
 
@@ -96,12 +100,12 @@ bool holds_whatever(const SceneDesc &scene, const ExpectDesc &expect, const MapA
                                            expect.relation != ExpectDesc::Relation::equals);
 }
 
-std::vector<std::string> outdated_answers(const SceneDesc &scene, const MapAxis &x,
-                                          const MapAxis &y, const AnswerOptions &options) {
+std::vector<std::string> outdated_answers(const SceneDesc &scene, std::span<const MapAxis> axes,
+                                          const AnswerOptions &options) {
     std::vector<std::string> doubtful, outdated;
     for (const ExpectDesc &expect : scene.expects)
-        if (std::ranges::any_of(std::array{&x, &y}, [&](const MapAxis *axis) {
-                return varies_the_scene(*axis) && !holds_whatever(scene, expect, *axis);
+        if (std::ranges::any_of(axes, [&](const MapAxis &axis) {
+                return varies_the_scene(axis) && !holds_whatever(scene, expect, axis);
             }))
             doubtful.push_back(expect.name);
     if (doubtful.empty())
@@ -109,17 +113,17 @@ std::vector<std::string> outdated_answers(const SceneDesc &scene, const MapAxis 
     const auto is_in = [](const std::vector<std::string> &names, const std::string &name) {
         return std::ranges::find(names, name) != names.end();
     };
-    for (const auto &[at_x, at_y] : places_to_try(x, y)) {
-        SceneDesc there = options.scene_at(at_x, at_y);
+    for (const MapPlace &at : places_to_try(axes)) {
+        SceneDesc there = options.scene_at(at);
         std::erase_if(there.expects, [&](const ExpectDesc &expect) {
             return !is_in(doubtful, expect.name) || is_in(outdated, expect.name);
         });
         if (there.expects.empty())
             continue;
         RunOptions base = options.base;
-        for (const auto &[axis, value] : {std::pair{&x, at_x}, std::pair{&y, at_y}})
-            if (is_gravity(*axis))
-                base.settings.give(*axis->setting, value);
+        for (std::size_t i = 0; i < axes.size(); ++i)
+            if (is_gravity(axes[i]))
+                base.settings.give(*axes[i].setting, at[i]);
         constexpr int substeps = 16;
         const double dt = resolve_run(there, base).settings.dt;
         const auto simulation =
@@ -134,6 +138,16 @@ std::vector<std::string> outdated_answers(const SceneDesc &scene, const MapAxis 
                 outdated.push_back(outcome.desc.name);
     }
     return outdated;
+}
+
+std::string outdated_text(std::span<const MapAxis> axes, const std::vector<std::string> &outdated) {
+    std::string along, names;
+    for (const MapAxis &axis : axes)
+        if (varies_the_scene(axis))
+            along += (along.empty() ? "" : " and ") + axis.name;
+    for (const std::string &name : outdated)
+        names += (names.empty() ? "\"" : ", \"") + name + "\"";
+    return names.empty() ? "" : "stated for the file's own " + along + ": " + names;
 }
 
 } // namespace plumb

@@ -1,10 +1,11 @@
-// Which expectations a map can judge by: those whose answer its axes do not change.
+// Which expectations a map or chart can judge by: those whose answer its axes do not change.
 #pragma once
 
 #include "app/lab/map/map_axis.h"
 #include "engine/scene/simulation.h"
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,20 +25,26 @@ namespace plumb {
                                   const MapAxis &axis);
 
 struct AnswerOptions {
-    std::function<SceneDesc(double x, double y)> scene_at; // the file's scene with those numbers
-    RunOptions base;                                       // as the map's
-    std::function<bool()> stop;                            // called often; true ends early
+    // The file's scene with those numbers, a value for each axis.
+    std::function<SceneDesc(std::span<const double> at)> scene_at;
+    RunOptions base;            // as the map's
+    std::function<bool()> stop; // called often; true ends early
 };
 
-// The names of the scene's expectations that the map must not judge by. All others hold all over
-// the map: they hold whatever it varies, or an accurate run (with 16 substeps, in double) meets
-// them at the ends of each axis that varies the scene and at their middle. So a bound is kept that
-// can be met throughout, such as a wall that holds whatever is thrown at it, and a stated answer
-// that does not depend on the number, such as a pendulum's period on its mass; not a period on its
-// length. It errs where an answer is right at three places of an axis and wrong between them, and
-// leaves out what the accurate run cannot meet either. If no axis varies the scene nothing is run.
-[[nodiscard]] std::vector<std::string> outdated_answers(const SceneDesc &scene, const MapAxis &x,
-                                                        const MapAxis &y,
+// The names of the scene's expectations that a map or chart over these axes must not judge by. All
+// others hold all over it: they hold whatever it varies, or an accurate run (with 16 substeps, in
+// double) meets them at the ends of each axis that varies the scene and at their middle. So a bound
+// is kept that can be met throughout, such as a wall that holds whatever is thrown at it, and a
+// stated answer that does not depend on the number, such as a pendulum's period on its mass; not a
+// period on its length. It errs where an answer is right at three places of an axis and wrong
+// between them, and leaves out what the accurate run cannot meet either. If no axis varies the
+// scene nothing is run.
+[[nodiscard]] std::vector<std::string> outdated_answers(const SceneDesc &scene,
+                                                        std::span<const MapAxis> axes,
                                                         const AnswerOptions &options);
+
+// "stated for the file's own gravity.y: "height", "landing""; empty if there are none.
+[[nodiscard]] std::string outdated_text(std::span<const MapAxis> axes,
+                                        const std::vector<std::string> &outdated);
 
 } // namespace plumb

@@ -9,6 +9,7 @@
 #include "engine/scene/file/change.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -147,18 +148,14 @@ bool is_outdated(const StabilityMap &map, const ExpectDesc &expect) {
 // Finds which expectations no cell can be judged by, and says so.
 void find_outdated(StabilityMap &map, const SceneText &text, const MapOptions &options) {
     const Point point(text, map.x, &map.y, options.base);
-    map.outdated = outdated_answers(
-        map.scene, map.x, map.y,
-        {[&](double x, double y) { return point.scene(x, y); }, options.base, options.stop});
+    const std::array axes{map.x, map.y};
+    map.outdated =
+        outdated_answers(map.scene, axes,
+                         {[&](std::span<const double> at) { return point.scene(at[0], at[1]); },
+                          options.base, options.stop});
     if (map.outdated.empty())
         return;
-    std::string axes, names;
-    for (const MapAxis *axis : {&map.x, &map.y})
-        if (varies_the_scene(*axis))
-            axes += (axes.empty() ? "" : " and ") + axis->name;
-    for (const std::string &name : map.outdated)
-        names += (names.empty() ? "\"" : ", \"") + name + "\"";
-    map.unjudged.push_back("not judged, as it is stated for the file's own " + axes + ": " + names);
+    map.unjudged.push_back("not judged, as it is " + outdated_text(axes, map.outdated));
     if (map.outdated.size() == map.scene.expects.size())
         map.unjudged.push_back("judged only by the limits for scenes that expect nothing");
 }
