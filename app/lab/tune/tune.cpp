@@ -1,7 +1,7 @@
 #include "app/lab/tune/tune.h"
 
 #include "app/lab/run/method_choice.h"
-#include "app/lab/timing.h"
+#include "app/lab/tune/choice.h"
 #include "app/lab/tune/plainer.h"
 #include "app/lab/tune/search.h"
 #include "app/lab/tune/starts.h"
@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <tuple>
 
 namespace plumb {
 
@@ -87,24 +86,6 @@ class Rows {
     const TuneOptions &options_;
 };
 
-bool same_kind(const ResolvedRun &a, const ResolvedRun &b) {
-    return a.method == b.method && a.precision == b.precision && a.settings.dt == b.settings.dt;
-}
-
-bool is_less_work(const TunedRun &run, const TunedRun &other) {
-    return same_kind(run.resolved, other.resolved) && run.work < other.work;
-}
-
-// Counted work decides between runs of one method, precision and dt: it has no noise.
-void erase_needless(const Tuning &tuning, std::vector<std::size_t> &choices) {
-    const std::vector<std::size_t> all = choices;
-    std::erase_if(choices, [&](std::size_t i) {
-        return std::ranges::any_of(all, [&](std::size_t other) {
-            return is_less_work(tuning.runs[other], tuning.runs[i]);
-        });
-    });
-}
-
 // Times the runs that may be the cheapest, and the scene's own to compare with.
 void time_best(const Trial &trial, const TuneOptions &options, Tuning &tuning,
                const std::vector<std::size_t> &choices, const Progress &progress) {
@@ -122,50 +103,6 @@ void time_best(const Trial &trial, const TuneOptions &options, Tuning &tuning,
     for (const std::size_t i : timed)
         runs.push_back({&trial, &tuning.runs[i]});
     time_in_turns(runs, options, progress);
-}
-
-bool both_timed(const TunedRun &a, const TunedRun &b) {
-    return !a.timings.empty() && !b.timings.empty();
-}
-
-// Of the runs of `first`'s method not always dearer than it, the one with the least work.
-std::size_t least_work(const Tuning &tuning, const std::vector<std::size_t> &choices,
-                       std::size_t first) {
-    std::size_t best = first;
-    for (const std::size_t i : choices) {
-        const TunedRun &run = tuning.runs[i], &other = tuning.runs[first];
-        if (run.resolved.method == other.resolved.method && both_timed(run, other) &&
-            !is_always_dearer(run, other) && run.work < tuning.runs[best].work)
-            best = i;
-    }
-    return best;
-}
-
-// Takes each method's cheapest run; of those that cost the same as the cheapest of all, the most
-// accurate, and on a tie the first in the list of methods.
-std::size_t cheapest(const Tuning &tuning, const std::vector<std::size_t> &choices) {
-    const auto cost = [&](std::size_t i) {
-        const TunedRun &run = tuning.runs[i];
-        return std::tuple(run.timings.empty(), run.cost);
-    };
-    const std::size_t least = *std::ranges::min_element(choices, {}, cost);
-    std::optional<std::size_t> best;
-    for (const MethodInfo &method : method_infos()) {
-        std::vector<std::size_t> own = choices;
-        std::erase_if(own,
-                      [&](std::size_t i) { return tuning.runs[i].resolved.method != &method; });
-        if (own.empty())
-            continue;
-        const std::size_t first = *std::ranges::min_element(own, {}, cost);
-        const TunedRun &run = tuning.runs[first], &other = tuning.runs[least];
-        if (first != least &&
-            (!both_timed(run, other) || median_ratio(run.timings, other.timings) > same_cost))
-            continue;
-        const std::size_t found = least_work(tuning, own, first);
-        if (!best || tuning.runs[found].error < tuning.runs[*best].error)
-            best = found;
-    }
-    return best.value_or(least);
 }
 
 // Runs the chosen settings with twice the substeps, and times it along with all timed runs.
@@ -267,7 +204,7 @@ Tuning tune_scene(const SceneText &text, const TuneOptions &options) {
         to = timing;
         if (!stopped())
             time_best(trial, options, tuning, choices, progress);
-        tuning.chosen = cheapest(tuning, choices);
+        tuning.chosen = cheapest_choice(tuning, choices);
     }
     // More substeps may even be cheaper: a stiffer scene comes to rest, and sleeps, earlier.
     while (tuning.chosen && !rows.is_given("substeps") && !stopped()) {

@@ -80,8 +80,8 @@ struct Tuning {
     [[nodiscard]] bool found() const { return chosen && !(budget && runs[*chosen].cost > *budget); }
 };
 
-// A run that is not dearer by this factor in every round counts as costing the same, and the
-// counted work decides. Between two methods the median is compared, and the error decides.
+// A run that is not dearer by this factor in every round counts as costing the same; then the
+// counted work decides and, between two methods, the error. See choice.h.
 inline constexpr double same_cost = 1.03;
 // The most substeps tried.
 inline constexpr int most_substeps = 1024;
