@@ -85,6 +85,8 @@ const std::vector<Case> &cases() {
             {"stack_contacts_bounds", "stacking/ten_box_stack", 10, contacts},
             {"cradle_joints_velocities", "joints/newtons_cradle", 15, joints},
             {"chain", "joints/heavy_chain", 20, {}},
+            {"torn_cloth", "cloth/torn_cloth", 60, {}},
+            {"tablecloth", "cloth/tablecloth", 90, {}},
             {"raycasts", "geometry/raycasts", 0, {}},
             {"manifolds", "geometry/manifolds", 0, {}},
             {"gjk_epa", "geometry/gjk_epa", 0, {}},
