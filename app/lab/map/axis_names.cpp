@@ -88,16 +88,17 @@ struct KeyPlace {
 
 // The paths of that key in those of the list's tables that give it, one way or another.
 std::vector<std::string> given_in(const Asked &asked, const KeyPlace &place) {
+    std::vector<std::string> given = number_paths(asked.text, place.key);
+    if (!place.other_way.empty())
+        for (std::string &path : number_paths(asked.text, place.other_way))
+            given.push_back(std::move(path));
     std::vector<std::string> paths;
     for (const std::string &table : table_paths(asked.text, place.list))
-        for (const std::string_view key : {place.key, place.other_way}) {
-            const std::string path = table + "." + std::string(key);
-            const std::vector<std::string> given = number_paths(asked.text, key);
-            if (key.empty() || std::ranges::find(given, path) == given.end())
-                continue;
+        if (std::ranges::any_of(std::array{place.key, place.other_way}, [&](std::string_view key) {
+                return !key.empty() &&
+                       std::ranges::find(given, table + "." + std::string(key)) != given.end();
+            }))
             paths.push_back(table + "." + std::string(place.key));
-            break;
-        }
     return paths;
 }
 
