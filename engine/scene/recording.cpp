@@ -39,7 +39,7 @@ void check_readable(const Command &command, const std::vector<MaterialDesc> &mat
         for (ColliderDesc &collider : add->body.colliders) {
             if (!is_complete(collider.shape))
                 throw std::invalid_argument("a shape of \"" + add->body.name + "\" has no points");
-            forget_source(collider.shape); // reading must not look for a file
+            forget_file(collider.shape); // reading must not look for it
         }
     }
     const RecordingResult read = parse_recording(write_recording(alone), "command");

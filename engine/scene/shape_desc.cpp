@@ -21,15 +21,18 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-struct ForgetSource {
+struct ForgetFile {
     void operator()(SphereDesc &) const {}
     void operator()(BoxDesc &) const {}
     void operator()(CapsuleDesc &) const {}
     void operator()(CylinderDesc &) const {}
     void operator()(HullDesc &h) const { h.file.reset(); }
     void operator()(PlaneDesc &) const {}
-    void operator()(MeshDesc &m) const { m.source = std::monostate{}; }
-    void operator()(HeightFieldDesc &f) const { f.hills.reset(); }
+    void operator()(MeshDesc &m) const {
+        if (file_of(m) != nullptr)
+            m.source = std::monostate{};
+    }
+    void operator()(HeightFieldDesc &) const {}
 };
 
 struct IsComplete {
@@ -124,8 +127,8 @@ struct BoundsOf {
 
 } // namespace
 
-void forget_source(ShapeDesc &shape) {
-    std::visit(ForgetSource{}, shape);
+void forget_file(ShapeDesc &shape) {
+    std::visit(ForgetFile{}, shape);
 }
 
 bool is_complete(const ShapeDesc &shape) {

@@ -113,8 +113,8 @@ template <typename... Kinds> const ShapeFile *shape_file(const std::variant<Kind
         shape);
 }
 
-// Forgets where its numbers came from: it is written with them inline.
-void forget_source(ShapeDesc &shape);
+// Forgets the file that its numbers came from: it is written with them inline.
+void forget_file(ShapeDesc &shape);
 
 // Whether the points, triangles or heights that its kind needs are there.
 bool is_complete(const ShapeDesc &shape);

@@ -162,8 +162,7 @@ template <> struct Kind<MeshDesc> {
             "triangles: as given, counter-clockwise seen from the front; or those of a Wavefront "
             "OBJ file, times `scale`; or a model with these `half_extents`. Bodies collide with "
             "its front side only, with both `sides`, or with the solid that a closed mesh "
-            "encloses, "
-            "which pushes out what is inside. At most 100,000 triangles",
+            "encloses, which pushes out what is inside. At most 100,000 triangles",
         .moves = Moves::never};
     static void fields(MeshDesc &m, auto &visitor) {
         visitor.either(

@@ -97,6 +97,29 @@ TEST_P(ParticleContacts, ComeToRestOnEveryShape) {
     }
 }
 
+// Inside solid ground they come up and rest on it; below a one-sided one they fall.
+TEST_P(ParticleContacts, ComeOutOfSolidGround) {
+    HeightField level;
+    level.rows = level.columns = 9;
+    level.spacing = Real(0.5);
+    level.origin = narrow(V{-2, 0, -2});
+    level.heights.assign(81, Real(0));
+    for (const Sides sides : {Sides::front, Sides::solid}) {
+        World world(GetParam(), settings_for(GetParam()));
+        BodyDef def;
+        def.kind = BodyKind::static_body;
+        def.colliders.emplace_back().surface =
+            std::make_shared<const TriangleSurface>(level, sides);
+        world.add_body(with_material(def, 0.5, 0));
+        world.add_particle(grain_at(V{0.1, -0.2, 0.15}));
+        run(world, 240);
+        if (sides == Sides::front)
+            EXPECT_LT(particle_position(world, 0).y, -10);
+        else
+            EXPECT_NEAR(particle_position(world, 0).y, particle_radius, 2e-4);
+    }
+}
+
 // At 100 m/s, 1.7 m a step, against 1 cm walls: head-on and at an angle, boxes and triangles, and
 // walls moving the other way.
 TEST_P(ParticleContacts, FastOnesDoNotPassAThinWall) {

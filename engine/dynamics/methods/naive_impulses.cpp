@@ -9,9 +9,10 @@
 // Only contacts that overlap at the start of the step count. The book takes the lesser of two
 // bodies' restitutions; here a pair's restitution, like free spin, is as in all other methods.
 //
-// Joints are made of the same two parts: impulses from scratch in each pass, and linear projection,
-// which also turns bodies back where rows are angular. The book has none between bodies, only rods
-// between particles (chapter 16, "Distance joint"), which are corrected in the same way.
+// Joints are made of the same two parts: impulses that start from zero in each substep (limits and
+// motors bound their sum), and linear projection, which also turns bodies back where rows are
+// angular. The book has none between bodies, only rods between particles (chapter 16, "Distance
+// joint"), which are corrected in the same way.
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/method.h"
 

@@ -1,6 +1,7 @@
 // A chart over gravity judges by what holds at any gravity.
 #include "app/lab/chart/chart_rows.h"
 #include "tests/lab/csv_reader.h"
+#include "tests/lab/falling_ball.h"
 
 #include "engine/scene/scene_file.h"
 
@@ -17,23 +18,10 @@ namespace {
 
 // A fall, whose end is a matter of gravity, above a floor that nothing may sink into.
 SceneDesc fall_onto_floor(const std::string &more) {
-    const SceneFileResult read = parse_scene(R"(
+    const SceneFileResult read = parse_scene(std::string(falling_ball) + R"(
 [[body]]
 name = "floor"
 shape = "plane"
-[[body]]
-name = "ball"
-shape = "sphere"
-radius = 0.5
-position = [0, 10, 0]
-[[expect]]
-name = "height"
-quantity = "position.y"
-body = "ball"
-to = 1
-equals = 5.095
-tolerance = 0.01
-source = "s = g t^2 / 2"
 )" + more,
                                              "fall.toml", {"rk4", "tgs_soft"});
     EXPECT_TRUE(read.ok());

@@ -1,4 +1,5 @@
 #include "app/lab/map/answers.h"
+#include "tests/lab/falling_ball.h"
 
 #include "app/lab/map/stability_map.h"
 #include "tests/lab/csv_reader.h"
@@ -109,22 +110,7 @@ source = "Coulomb"
 
 // By s = g t^2 / 2 the ball is elsewhere under another gravity, and just as far down at any mass.
 TEST(MapAnswers, AreLeftOutOfAMapThatMakesThemWrong) {
-    const SceneText one_fall{"scene.toml", R"(
-[[body]]
-name = "ball"
-shape = "sphere"
-radius = 0.5
-mass = 1
-position = [0, 10, 0]
-[[expect]]
-name = "height"
-quantity = "position.y"
-body = "ball"
-to = 1
-equals = 5.095
-tolerance = 0.01
-source = "s = g t^2 / 2"
-)"};
+    const SceneText one_fall{"scene.toml", falling_ball};
     MapOptions options;
     options.methods = {"rk4"};
     const MapAxis dt = parse_map_axis("dt=1/60,1/30");

@@ -1,5 +1,6 @@
 // Maps on grids small enough to know what the result must be.
 #include "app/lab/map/stability_map.h"
+#include "tests/lab/falling_ball.h"
 
 #include "app/lab/map/map_resume.h"
 #include "app/lab/map/theory.h"
@@ -46,26 +47,6 @@ mass = 10
 material = "steel"
 position = [-0.5, 0, 0]
 velocity = [20, 0, 0]
-)";
-
-// Falls from rest for a second: 5.095 m by s = g t^2 / 2, whatever the step.
-constexpr const char *falling_ball = R"(
-[world]
-dt = "1/60"
-[[body]]
-name = "ball"
-shape = "sphere"
-radius = 0.5
-position = [0, 10, 0]
-velocity = [0, 0, 0]
-[[expect]]
-name = "height"
-quantity = "position.y"
-body = "ball"
-to = 1
-equals = 5.095
-tolerance = 0.01
-source = "s = g t^2 / 2"
 )";
 
 StabilityMap map_of(const char *text, const char *x, const char *y,

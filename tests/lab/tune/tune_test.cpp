@@ -1,4 +1,5 @@
 // The cheapest settings for scenes with closed-form errors, and for some that ship.
+#include "tests/lab/falling_ball.h"
 #include "tests/lab/tune/printed.h"
 
 #include "app/lab/tune/starts.h"
@@ -17,26 +18,13 @@ namespace plumb {
 namespace {
 
 // Semi-implicit Euler falls g h t / 2 too far in t = 1 s, with h the substep.
-constexpr const char *falling_box = R"(
+const std::string falling_box = std::string(R"(
 [world]
 dt = "1/60"
 method = "semi_implicit_euler"
 precision = "double"
 substeps = 40
-[[body]]
-name = "ball"
-shape = "sphere"
-radius = 0.5
-position = [0, 10, 0]
-[[expect]]
-name = "height"
-quantity = "position.y"
-body = "ball"
-to = 1
-equals = 5.095
-tolerance = 0.01
-source = "s = g t^2 / 2"
-)";
+)") + falling_ball;
 
 double fall_error(int substeps, double dt = 1.0 / 60) {
     return 9.81 * (dt / substeps) / 2 / 0.01; // of its tolerance
