@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 // All other scenes run at what `plumb tune` found. A new scene must too, or say here why not.
 const std::map<std::string, std::string> &not_tuned() {
-    static const std::string cloth = "cloth", particles = "springs between many particles";
+    static const std::string cloth = "cloth";
     static const std::map<std::string, std::string> why{
         {"book_cloth", cloth},
         {"cloth_over_sphere", cloth},
@@ -29,8 +29,6 @@ const std::map<std::string, std::string> &not_tuned() {
         {"hammock", cloth},
         {"hanging_cloth", cloth},
         {"trampoline", cloth},
-        {"catenary", particles},
-        {"soft_rope", particles},
         {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
         {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};
     return why;
