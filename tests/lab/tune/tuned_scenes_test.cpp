@@ -26,9 +26,6 @@ const std::map<std::string, std::string> &not_tuned() {
         {"book_cloth", cloth},
         {"cloth_over_sphere", cloth},
         {"flag", cloth},
-        {"hammock", cloth},
-        {"hanging_cloth", cloth},
-        {"trampoline", cloth},
         {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
         {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};
     return why;
