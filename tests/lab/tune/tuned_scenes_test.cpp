@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::string> &not_tuned() {
     static const std::string cloth = "cloth";
     static const std::map<std::string, std::string> why{
-        {"cloth_over_sphere", cloth},
         {"flag", cloth},
         {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
         {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};
