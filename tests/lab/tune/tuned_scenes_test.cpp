@@ -21,9 +21,7 @@ namespace fs = std::filesystem;
 
 // All other scenes run at what `plumb tune` found. A new scene must too, or say here why not.
 const std::map<std::string, std::string> &not_tuned() {
-    static const std::string cloth = "cloth";
     static const std::map<std::string, std::string> why{
-        {"flag", cloth},
         {"heavy_chain", "with the four substeps that it needs, its links come visibly apart"},
         {"struck_before_wall", "the three substeps that hold it miss at other speeds and steps"}};
     return why;
