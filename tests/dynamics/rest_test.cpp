@@ -197,6 +197,49 @@ TEST(Rest, APyramidComesToRest) {
     }
 }
 
+// Beyond base 40 the budget affords too few substeps for such loads. No part may sway ever more.
+TEST(Rest, ALargePyramidCalmsDown) {
+    World world = pyramid_of(60, settings_for("soft_step"));
+    run(world, 60 * 20);
+    const Measures m = world.measure();
+    EXPECT_LT(m.kinetic_energy, 1e-7 * m.potential_energy);
+}
+
+// Balls in the corners of a tetrahedron, `layers` high, each of the radius 1; the last is the top.
+World pile_of_balls(int layers, double friction) {
+    World world("soft_step", settings_for("soft_step"));
+    world.add_body(ground(friction, 0));
+    for (int k = 0; k < layers; ++k)
+        for (int i = 0; i < layers - k; ++i)
+            for (int j = 0; j < layers - k - i; ++j)
+                world.add_body(
+                    with_material(dynamic_body(Sphere{{}, 1}, 1,
+                                               V{2 * i + j + k, 1 + k * std::sqrt(8.0 / 3),
+                                                 std::sqrt(3.0) * j + k / std::sqrt(3.0)}),
+                                  friction, 0));
+    return world;
+}
+
+// Four balls need a friction of tan(a / 2) = sqrt(3) - sqrt(2) = 0.318, where a is the angle
+// between the vertical and the line from a lower ball to the top one (sin a = 1 / sqrt(3)). Begun
+// with loads far too large, larger piles burst.
+TEST(Rest, PilesOfBallsStand) {
+    struct Pile {
+        int layers;
+        double friction;
+        bool stands;
+    };
+    for (const Pile &pile : {Pile{2, 0.31, false}, Pile{2, 0.33, true}, Pile{3, 0.7, true},
+                             Pile{4, 1.0, true}, Pile{5, 1.5, true}}) {
+        World world = pile_of_balls(pile.layers, pile.friction);
+        const auto top = static_cast<std::uint32_t>(world.bodies().size() - 1);
+        const double before = height_of(world, top);
+        run(world, 60 * 3);
+        EXPECT_EQ(before - height_of(world, top) < 0.05, pile.stands)
+            << pile.layers << " layers, friction " << pile.friction;
+    }
+}
+
 // When some points of a contact slide before others hold, the latter must carry more than
 // friction's first sweep knew.
 TEST(Rest, WhatFrictionHoldsDoesNotCreepDownASlope) {

@@ -67,15 +67,15 @@ TEST(Sleep, TallStacksAndPyramidsComeToRest) {
     for (const int boxes : {5, 10, 15, 20, 25, 40, 60}) {
         World world = floor_world();
         add_stack(world, boxes, 0);
-        EXPECT_TRUE(run_until_all_sleep(world, boxes > 20 ? 60 : 20)) << boxes;
+        EXPECT_TRUE(run_until_all_sleep(world, boxes > 40 ? 60 : 10)) << boxes;
         EXPECT_LT(world.measure().max_penetration, world.settings().substep_tolerance) << boxes;
     }
-    for (const int base : {10, 20, 25, 30}) {
+    for (const int base : {10, 20, 25, 30, 40}) {
         World world = floor_world();
         for (int row = 0; row < base; ++row)
             for (int i = 0; i < base - row; ++i)
                 add_box(world, V{1.05 * (i - 0.5 * (base - row - 1)), 0.5 + row, 0});
-        EXPECT_TRUE(run_until_all_sleep(world, base > 25 ? 20 : 6)) << base;
+        EXPECT_TRUE(run_until_all_sleep(world, base > 30 ? 20 : 6)) << base;
     }
 }
 

@@ -234,10 +234,14 @@ Real remembered_share(const ContactBlock &block, std::size_t lane) {
     return sum > most ? most / sum : Real(1);
 }
 
+Real share_relaxed_again(const StepContext &context) {
+    return context.active.pace.is_balanced ? relaxed_again : relaxed_again_unbalanced;
+}
+
 // The same as in the kernels between substeps (warm_start_impl).
-Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane, Real kept) {
+Vec3 next_impulse(const ContactBlock::Point &point, std::size_t lane, Real kept, Real again) {
     Vec3 impulse = get(point.impulse, lane);
-    const Real relaxed = impulse.x - point.remembered.x.lanes[lane];
+    const Real relaxed = again * (impulse.x - point.remembered.x.lanes[lane]);
     impulse *= kept;
     const Real most = relaxed_share * impulse.x;
     impulse.x += std::max(std::min(relaxed, most), -most);
@@ -600,8 +604,9 @@ void warm_start_contact_columns(StepContext &context, Real share, bool remember_
     if (context.scratch.schedule.blocks.empty())
         return;
     const BodyReals bodies = reals_of(context.bodies);
+    const Real again = share_relaxed_again(context);
     for_colours(context, [&](std::span<ContactBlock> blocks) {
-        kernels::warm_start(blocks, bodies, share, remember_first);
+        kernels::warm_start(blocks, bodies, share, remember_first, again);
     });
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }
@@ -635,6 +640,7 @@ bool any_is_corrected(const StepContext &context, Real speed) {
 }
 
 void store_contact_columns(StepContext &context) {
+    const Real again = share_relaxed_again(context);
     for_blocks(context, [&](std::span<ContactBlock> blocks) {
         for (const ContactBlock &block : blocks)
             for (std::size_t lane = 0; lane < block.used; ++lane) {
@@ -642,7 +648,7 @@ void store_contact_columns(StepContext &context) {
                 contact.is_struck = block.struck.lanes[lane] > Real(0);
                 const Real kept = remembered_share(block, lane);
                 for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k)
-                    contact.impulses[k] = next_impulse(block.points[k], lane, kept);
+                    contact.impulses[k] = next_impulse(block.points[k], lane, kept, again);
             }
     });
 }

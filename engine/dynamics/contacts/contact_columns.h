@@ -13,8 +13,13 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// How much of the relaxation pass's change is remembered on top, at most, as a share of the
-// contact's load.
+// What the relaxation pass adds to a load is missing in both halves of a substep, and was found in
+// the second half alone, so the next substep begins with twice as much of it. Without that a tall
+// stack, whose loads one pass does not balance, sways for minutes. Where an island gets far fewer
+// substeps than it wants, with half of that: the whole would feed waves in a large pyramid. But no
+// more of it than a share of the load: an impact is not a load of the next substep.
+inline constexpr Real relaxed_again = 1;
+inline constexpr Real relaxed_again_unbalanced = Real(0.5);
 inline constexpr Real relaxed_share = Real(1) / Real(16);
 // An impact is not a load: warm starting the next substep with it would push just as hard although
 // nothing hits any more, and launch whatever rests on top. So where bodies close fast
@@ -143,8 +148,9 @@ void store_contact_columns(StepContext &context);
 namespace kernels {
 // Computes the masses from the rest of the blocks.
 void finish(std::span<ContactBlock> blocks);
+// `again`: how much of the last relaxation pass's change is added to what is remembered.
 void warm_start(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
-                bool remember_first);
+                bool remember_first, Real again);
 // `any_far`: some body has turned so far that separations need more than the second order.
 void solve(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
            const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far);

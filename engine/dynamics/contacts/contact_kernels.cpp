@@ -197,12 +197,8 @@ HWY_INLINE void reload(ColumnsSymmetric &to, const BodyReals &bodies, const Inde
     store(third.y, to.yz, lane);
 }
 
-// What the relaxation pass adds to a load is missing in both halves of a substep, and was found in
-// the second half alone, so the next substep begins with twice as much of it (ContactBlock::Point).
-// Without that a tall stack, whose loads one pass does not balance, sways for minutes. But no more
-// of it than a share of the load: an impact is not a load of the next substep.
-void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
-                     bool remember_first) {
+void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share, bool remember_first,
+                     Real again) {
     for (std::size_t lane = 0; lane < block.used; lane += hn::Lanes(tag)) {
         if (block.inertia_turns) {
             reload(block.inv_inertia_a, bodies, block.body_a, lane);
@@ -229,7 +225,8 @@ void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share,
             ContactBlock::Point &point = block.points[k];
             Vector before = load(point.impulse, lane);
             if (remember_first) {
-                const Lanes relaxed = hn::Sub(before.x, load(point.remembered.x, lane));
+                const Lanes relaxed =
+                    hn::Mul(all(again), hn::Sub(before.x, load(point.remembered.x, lane)));
                 before = times(kept, before);
                 const Lanes most = hn::Mul(all(relaxed_share), before.x);
                 before.x = hn::Add(before.x, max(min(relaxed, most), hn::Neg(most)));
@@ -588,9 +585,9 @@ void finish_blocks(std::span<ContactBlock> blocks) {
         finish_block_impl(block);
 }
 void warm_start_blocks(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
-                       bool remember_first) {
+                       bool remember_first, Real again) {
     for (ContactBlock &block : blocks)
-        warm_start_impl(block, bodies, share, remember_first);
+        warm_start_impl(block, bodies, share, remember_first, again);
 }
 void solve_blocks(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
                   const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far) {
@@ -615,8 +612,8 @@ void finish(std::span<ContactBlock> blocks) {
     HWY_DYNAMIC_DISPATCH(finish_blocks)(blocks);
 }
 void warm_start(std::span<ContactBlock> blocks, const BodyReals &bodies, Real share,
-                bool remember_first) {
-    HWY_DYNAMIC_DISPATCH(warm_start_blocks)(blocks, bodies, share, remember_first);
+                bool remember_first, Real again) {
+    HWY_DYNAMIC_DISPATCH(warm_start_blocks)(blocks, bodies, share, remember_first, again);
 }
 void solve(std::span<ContactBlock> blocks, std::span<const StartArms> start_arms,
            const BodyReals &bodies, const ContactBias &bias, Real inv_h, bool any_far) {

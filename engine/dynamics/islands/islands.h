@@ -34,9 +34,12 @@ struct IslandPace {
     int substeps = 0;
     // Whether passes take a contact's points first to last and last to first in turns.
     bool alternates = true;
+    // Whether it takes about as many substeps as it wants; the budget may be too small for that.
+    bool is_balanced = true;
     // How many passes over the constraints, and relaxation passes, each substep takes on top of the
     // settings' own.
     int more_passes = 0;
+    int more_relaxing = 0;  // how many more relaxation passes alone
     bool is_joined = false; // has joints
     bool operator==(const IslandPace &) const = default;
 };

@@ -47,7 +47,7 @@ RelaxingPasses relaxing_passes(const StepContext &context, Real struck_speed) {
     constexpr int in_a_crowd = 8;
     constexpr Real changed = Real(0.2), changed_much = Real(20); // of struck_speed
     const StepSettings &settings = context.settings;
-    const int usual = holding_passes(context);
+    const int usual = holding_passes(context) + context.active.pace.more_relaxing;
     if (context.active.pace.is_joined || !anything_is_struck(context))
         return {usual, usual};
     const auto affordable =
