@@ -29,6 +29,7 @@ struct FoundManifold {
     Motion b;
     Moment moment = Moment::start;
     bool is_turning = false;
+    Real hollow = Real(0); // Contact::hollow
 };
 
 // Three parts: the model (what only an edit changes), the state (everything that survives a step),
@@ -254,6 +255,9 @@ class World {
     bool is_crowded(std::uint32_t body) const;
     bool rolls_over_the_other(const Contact &contact) const;
     Rolling rolling_of(const Contact &contact) const;
+    // Lets a contact follow the hollow that its solid slides or rolls through (hollow_contact.h).
+    void follow_hollow(const Candidate &candidate, std::uint32_t triangle,
+                       FoundManifold &found) const;
     bool needs_contacts() const;
     bool is_asked(std::uint32_t body) const;
     bool meets_nothing(const Collider &collider) const;

@@ -17,6 +17,8 @@ namespace {
 // Faces whose normals differ by less than this (rad) count as coplanar: a ridge that flat lifts a
 // one-metre body by less than the contact feature margin.
 constexpr Real flat_angle = Real(1e-3);
+// The same for hollows, which lift nothing: what rounding may leave between flat faces.
+constexpr Real level_angle = Real(1e-5);
 
 Vec3 normal_or_zero(const Triangle &t) {
     const Vec3 normal = glm::cross(t.b - t.a, t.c - t.a);
@@ -142,8 +144,12 @@ void TriangleSurface::link(const std::vector<std::array<std::uint32_t, 3>> &corn
                 // At a ridge, the neighbour's far corner is below the face's plane.
                 const Vec3 &far = corner(u, static_cast<int>((q.edge + 2) % 3));
                 const bool is_below = glm::dot(n, far - corner(t, static_cast<int>(p.edge))) < 0;
-                const bool is_bent =
-                    glm::length(glm::cross(n, m)) > flat_angle || glm::dot(n, m) < Real(0);
+                const Real bend = glm::length(glm::cross(n, m));
+                const bool is_bent = bend > flat_angle || glm::dot(n, m) < Real(0);
+                if (!is_below && (is_bent || bend > level_angle)) {
+                    outer_edges_[p.triangle] |= static_cast<std::uint8_t>(8U << p.edge);
+                    outer_edges_[q.triangle] |= static_cast<std::uint8_t>(8U << q.edge);
+                }
                 const bool is_ridge = is_below && is_bent;
                 // A surface that is solid on both sides has ridges on both.
                 if (!(is_ridge || (sides_ == Sides::both && is_bent))) {

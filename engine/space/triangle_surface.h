@@ -41,8 +41,17 @@ class TriangleSurface {
     bool is_outer_edge(std::uint32_t triangle, int edge) const {
         return (outer_edges_[triangle] >> edge & 1U) != 0;
     }
+    // Whether the surface turns up beyond the edge, if only a little.
+    bool is_hollow_edge(std::uint32_t triangle, int edge) const {
+        return (outer_edges_[triangle] >> (3 + edge) & 1U) != 0;
+    }
     // The unit normal of the triangle beyond an edge; the triangle's own at a border.
     Vec3 normal_beyond(std::uint32_t triangle, int edge) const;
+    // The triangle beyond an edge; none at a border.
+    std::optional<std::uint32_t> triangle_beyond(std::uint32_t triangle, int edge) const {
+        const std::uint32_t other = neighbors_[triangle][static_cast<std::size_t>(edge)];
+        return other == none ? std::nullopt : std::optional(other);
+    }
 
     // Calls visit(index) for every triangle whose bounds touch the box, in ascending order.
     template <typename Visit>
@@ -73,7 +82,7 @@ class TriangleSurface {
     std::variant<MeshTree, HeightField> source_;
     Sides sides_;
     Aabb bounds_;
-    std::vector<std::uint8_t> outer_edges_; // three bits per triangle
+    std::vector<std::uint8_t> outer_edges_; // three bits per triangle, then three for hollow edges
     static constexpr std::uint32_t none = UINT32_MAX;
     std::vector<std::array<std::uint32_t, 3>> neighbors_; // the triangle beyond each edge, or none
     std::uint64_t content_hash_ = 0;

@@ -145,20 +145,6 @@ Real World::acting_side(const ContactKey &key) const {
 
 namespace {
 
-// The part of a surface's distance along a normal that rolling does not change: the radius of a
-// ball or capsule. For a cylinder on its side, or on a rim up to 53 degrees from that, it is the
-// distance from its axis along the normal. The rest of the way to the middle then lies on the axis,
-// and rolling does not move it; otherwise a leaning coin would sink in as it rolls, be pushed out,
-// and gain energy.
-Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal) {
-    const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
-    if (cylinder == nullptr || collider.surface)
-        return collider.rounding;
-    const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
-    return std::abs(sine) <= least_rim_sine ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
-                                            : Real(0);
-}
-
 // Needs the contact's origin.
 void set_rounding(Contact &contact, const Model &model) {
     const ContactOrigin &origin = contact.origin;
@@ -220,6 +206,14 @@ Vec3 Contact::line_between_cores(const Motion &a, const Motion &b) const {
 }
 
 Quat Contact::turn(const Quat &rotation_a, const Quat &rotation_b, const Vec3 &line) const {
+    if (hollow > Real(0)) { // the line goes to the middle of the hollow, against the normal
+        const Real length = glm::length(line);
+        const Real along = -glm::dot(line, manifold.normal);
+        if (!(along > Real(0.5) * length))
+            return identity_rotation;
+        const Vec3 across = glm::cross(line, manifold.normal);
+        return glm::normalize(Quat(length + along, across.x, across.y, across.z));
+    }
     if (!(rounding_a > Real(0)) || !(rounding_b > Real(0)))
         return turns_with_b ? rotation_b * glm::conjugate(origin.rotation_b)
                             : rotation_a * glm::conjugate(origin.rotation_a);
@@ -333,12 +327,18 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     contact.is_turning = found.is_turning;
     contact.origin = origin_of(contact.manifold.normal, found.a, found.b);
     set_rounding(contact, *model_);
+    if (found.hollow > Real(0)) {
+        contact.hollow = found.hollow;
+        const bool solid_first = !model_->colliders[contact.collider_a].surface;
+        (solid_first ? contact.rounding_b : contact.rounding_a) =
+            -(found.hollow + (solid_first ? contact.rounding_a : contact.rounding_b));
+    }
     contact.is_new = before == nullptr;
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         set_anchor(contact, index, found.a, found.b);
     }
-    if (!contact.is_turning)
+    if (!contact.is_turning && !(contact.hollow > Real(0)))
         contact.rolling = rolling_of(contact);
     contact.turns_with_b = contact.is_turning
                                ? model_->bodies[contact.key.a].kind == BodyKind::dynamic
@@ -567,6 +567,8 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                     lead_rims(there, solid, half_turn, found.manifold);
             }
             found.is_turning = is_turning;
+            if (leads)
+                follow_hollow(candidate, triangle, found);
             drop_inner_edges(candidate, triangle, found);
             ContactKey key = candidate.key;
             key.triangle = triangle;

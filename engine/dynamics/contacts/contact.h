@@ -92,14 +92,20 @@ struct Contact {
     // the normal and along the two vectors of tangent_basis(normal).
     std::array<Vec3, 4> impulses{};
 
-    bool turns() const { return is_turning || is_braced || rolling == Rolling::on_face; }
+    // Radius of the arc that the solid's core points follow in a hollow of a surface (m), around
+    // the surface's core points: its own rounding is that and the solid's, below 0. 0: no arc.
+    Real hollow = Real(0);
+
+    bool turns() const {
+        return is_turning || is_braced || rolling == Rolling::on_face || hollow > Real(0);
+    }
     // Between two round surfaces, one of which rolls or slides over the other.
     bool goes_round_the_other() const {
         return rolling == Rolling::on_face && rounding_a > Real(0) && rounding_b > Real(0);
     }
     // How far its normal has turned since it was found, with the bodies at these rotations: with
-    // one of them, or, between two round surfaces, with the line between their cores. `line`: from
-    // a's cores to b's, the sum over all points.
+    // one of them, or, between two round surfaces or in a hollow, with the line between their
+    // cores. `line`: from a's cores to b's, the sum over all points.
     Quat turn(const Quat &rotation_a, const Quat &rotation_b, const Vec3 &line) const;
     Vec3 line_between_cores(const Motion &a, const Motion &b) const;
 

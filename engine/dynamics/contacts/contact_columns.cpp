@@ -442,10 +442,23 @@ void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
 
 // Friction turns a rider on a turntable all the time. With the arms from the start of the step it
 // would be turned all at once, in the first substep, and friction cannot hold that. The load of a
-// braced contact is no rider: ahead of its bodies it would be a couple.
+// braced contact is no rider: ahead of its bodies it would be a couple. In a hollow both halves of
+// a substep push across the chord between its ends: along it gravity does the work that the way up
+// takes, and what is lost from chord to chord is what facets of that length would take. With the
+// normal of the substep's end in its second half, a swing would lose energy at the rate
+// omega^2 h / 4.
 void turn_contact_columns(StepContext &context, Real t) {
+    const auto in_hollows = [&](const ContactBlock &block) {
+        unsigned lanes = 0;
+        for (unsigned left = block.turning; left != 0; left &= left - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+            if (context.contacts[block.contacts[lane]].hollow > Real(0))
+                lanes |= 1U << lane;
+        }
+        return lanes;
+    };
     turn_lanes(context, t, [&](const ContactBlock &block) -> unsigned {
-        return t == Real(0) ? block.turning : block.turning & ~unsigned{block.braced};
+        return block.turning & ~(t == Real(0) ? in_hollows(block) : unsigned{block.braced});
     });
 }
 

@@ -88,6 +88,15 @@ bool has_rim(const Collider &a, const Collider &b) {
     return std::holds_alternative<Cylinder>(a.shape) || std::holds_alternative<Cylinder>(b.shape);
 }
 
+Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal) {
+    const auto *cylinder = std::get_if<Cylinder>(&collider.shape);
+    if (cylinder == nullptr || collider.surface)
+        return collider.rounding;
+    const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
+    return std::abs(sine) <= least_rim_sine ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
+                                            : Real(0);
+}
+
 Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const Vec3 &out,
                   const Vec3 &half_turn) {
     const std::optional<Rim> rim = rim_along(local, glm::conjugate(now) * out);

@@ -14,6 +14,13 @@ bool has_rim(const Collider &a, const Collider &b);
 // that the cylinder counts as round there (Contact::rounding_a).
 inline constexpr Real least_rim_sine = Real(0.8);
 
+// The part of a surface's distance along a normal that rolling does not change: the radius of a
+// ball or capsule. For a cylinder on its side, or on a rim up to 53 degrees from that, it is the
+// distance from its axis along the normal. The rest of the way to the middle then lies on the axis,
+// and rolling does not move it; otherwise a leaning coin would sink in as it rolls, be pushed out,
+// and gain energy.
+Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &normal);
+
 // How much lower the rim will be in the middle of a step than at the point that was lowest at
 // rotation `before` (m). `now`: the solid's rotation; `half_turn`: how far it turns against the
 // other body in half of the step (rad); `out`: a unit normal away from the solid. 0 without a rim:
