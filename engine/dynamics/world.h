@@ -283,6 +283,10 @@ class World {
                       std::vector<Contact> &out) const;
     Vec3 half_turn_of(const Candidate &candidate) const;
     bool misses_corner(const Candidate &candidate, const Manifold &manifold) const;
+    std::optional<Vec3> load_on(const Candidate &candidate, const Vec3 &normal,
+                                const Vec3 &at) const;
+    std::optional<Vec3> load_off_centre(const Candidate &candidate, const Manifold &manifold) const;
+    bool stands_wider(const Candidate &candidate, const Manifold &manifold) const;
     bool rolls_off(const Candidate &candidate, const ContactOrigin &origin) const;
     void add_contact(const Candidate &candidate, std::uint32_t triangle,
                      const ContactMemory *before, const FoundManifold &found,

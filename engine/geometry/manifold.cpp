@@ -21,4 +21,18 @@ Manifold collide(const Shape &a, const Shape &b, Real margin, const Vec3 &guess)
         a, b);
 }
 
+Manifold collide_under(const Shape &a, const Shape &b, Real margin, const Vec3 &guess,
+                       const Vec3 &load) {
+    return std::visit(
+        [&]<typename A, typename B>(const A &first, const B &second) {
+            if constexpr (CollidesUnderLoad<A, B>)
+                return unchecked::collide_under(first, second, margin, guess, load);
+            else if constexpr (CollidesUnderLoad<B, A>)
+                return mirrored(unchecked::collide_under(second, first, margin, -guess, load));
+            else
+                return collide(first, second, margin, guess);
+        },
+        a, b);
+}
+
 } // namespace plumb::inline PLUMB_PRECISION

@@ -58,6 +58,10 @@ inline Manifold collide(const HalfSpace &, const HalfSpace &, Real) {
     return {}; // a dynamic body is never a half-space
 }
 
+// For the pairs in CollidesUnderLoad; as below.
+template <typename A, typename B>
+Manifold collide_under(const A &a, const B &b, Real margin, const Vec3 &guess, const Vec3 &load);
+
 } // namespace unchecked
 
 // The same contact seen from the other shape.
@@ -70,6 +74,11 @@ template <typename A, typename B>
 concept CollidesInOrder = requires(const A &a, const B &b) {
     unchecked::collide(a, b, Real(0));
 };
+// Cylinders and hulls with whatever has faces, in the order of `collide`.
+template <typename A, typename B>
+concept CollidesUnderLoad = CollidesInOrder<A, B> &&
+    (std::same_as<A, Cylinder> || std::same_as<A, ConvexHull> ||
+     (std::same_as<A, Box> && (std::same_as<B, Cylinder> || std::same_as<B, ConvexHull>)));
 template <typename A, typename B>
 concept CollidesFromGuess = requires(const A &a, const B &b) {
     unchecked::collide(a, b, Real(0), Vec3{Real(0)});
@@ -130,5 +139,18 @@ requires Collidable<A, B> Manifold collide(const A &a, const B &b, Real margin,
         return mirrored(unchecked::collide(b, a, margin));
 }
 Manifold collide(const Shape &a, const Shape &b, Real margin, const Vec3 &guess = Vec3{Real(0)});
+
+// The same, but of the points of a wide contact keeps those four that leave the most room around
+// `load`: the place (world, m) where one body presses on the other, as far as it is known. Usually
+// the four span the largest area; but of a round face that is a square, whose sides are 30 % nearer
+// to the middle than the rim. There is a point of a cylinder's rim 8 degrees either side of the
+// load, and of a face with more than 16 corners the two nearest to it. The deepest point may be
+// missing, so this is for bodies that stand flat.
+Manifold collide_under(const Shape &a, const Shape &b, Real margin, const Vec3 &guess,
+                       const Vec3 &load);
+
+// How far inside the polygon of a manifold's points a place is, seen along the normal: its distance
+// from the nearest side (m), negative outside; -infinity if they span no area.
+Real room_around(const Manifold &manifold, const Vec3 &place);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -165,6 +165,87 @@ Feature feature_of(const HullCore &hull, const Vec3 &direction) {
     return result;
 }
 
+// The same for a load at `load`: with those corners of a round or many-cornered face that are
+// nearest to the load along its outline. Their names go by their place from the load, so that their
+// impulses stay with them as it moves.
+template <typename Core>
+Feature feature_under(const Core &core, const Vec3 &direction, const Vec3 & /*load*/) {
+    return feature_of(core, direction);
+}
+
+Feature feature_under(const CylinderCore &cylinder, const Vec3 &direction, const Vec3 &load) {
+    // Of 8 degrees: the chord between the two points is within 1 % of the rim, and wide enough to
+    // stand on.
+    constexpr Real sine = Real(0.1391731);
+    constexpr Real cosine = Real(0.9902681);
+    constexpr Real central = Real(0.1); // of the radius
+    const Feature octagon = feature_of(cylinder, direction);
+    if (!octagon.is_face())
+        return octagon;
+    const Vec3 &middle = octagon.number == 2 ? cylinder.b : cylinder.a;
+    const Vec3 off = load - middle;
+    const Vec3 across = off - glm::dot(off, octagon.normal) * octagon.normal;
+    const Real distance = glm::length(across);
+    const Real side = cylinder.side;
+    if (!(distance > central * side))
+        return octagon;
+    const Vec3 u = across / distance;
+    const Vec3 v = glm::cross(octagon.normal, u);
+    const auto corner = [&](int i) { return octagon.corners[index(i % octagon.count)] - middle; };
+    Feature result;
+    result.normal = octagon.normal;
+    result.number = octagon.number + 2;
+    result.add(middle + side * (cosine * u - sine * v));
+    result.add(middle + side * (cosine * u + sine * v));
+    // The octagon's corners from there on, but for one between the two.
+    const auto is_after = [&](int i) {
+        return glm::dot(corner(i), cosine * v - sine * u) > Real(0);
+    };
+    int first = 0;
+    while (!is_after(first) || is_after(first + octagon.count - 1))
+        ++first;
+    for (int i = first; i < first + octagon.count; ++i)
+        if (glm::dot(corner(i), u) < cosine * side)
+            result.add(middle + corner(i));
+    return result;
+}
+
+Feature feature_under(const HullCore &hull, const Vec3 &direction, const Vec3 &load) {
+    Feature result = feature_of(hull, direction);
+    const HullMesh &mesh = *hull.mesh;
+    const HullMesh::Face &face = mesh.faces[result.number];
+    if (face.count <= corner_limit)
+        return result;
+    const auto corner = [&](std::uint32_t i) {
+        const std::uint32_t vertex = mesh.vertex_indices[face.first + i % face.count];
+        return hull.position + hull.rotation * mesh.vertices[vertex];
+    };
+    Vec3 middle{Real(0)};
+    for (int i = 0; i < result.count; ++i)
+        middle += result.corners[index(i)] / static_cast<Real>(result.count);
+    // The side over which the way from the middle to the load leaves the face.
+    std::uint32_t first = 0;
+    Real most = Real(0);
+    for (std::uint32_t i = 0; i < face.count; ++i) {
+        const Vec3 at = corner(i);
+        const Vec3 outward = glm::cross(corner(i + 1) - at, result.normal);
+        const Real reach = glm::dot(at - middle, outward);
+        const Real way = glm::dot(load - middle, outward);
+        if (reach > Real(0) && way > most * reach) {
+            most = way / reach;
+            first = i;
+        }
+    }
+    constexpr std::uint32_t others = corner_limit - 2;
+    result.number |= 0x200U;
+    result.count = 0;
+    result.add(corner(first));
+    result.add(corner(first + 1));
+    for (std::uint32_t i = 0; i < others; ++i)
+        result.add(corner(first + 2 + i * (face.count - 2) / others));
+    return result;
+}
+
 // A contact point before reduction to four.
 struct Candidate {
     Vec3 position{Real(0)};
@@ -235,63 +316,141 @@ Polygon clipped(const Polygon &in, std::uint32_t plane, const Vec3 &at, const Ve
     return out;
 }
 
-// Keeps the deepest point and the three that span the largest area with it, seen along `normal`.
-void add_best_four(Manifold &manifold, const Candidates &all, const Vec3 &origin) {
-    const Vec3 &normal = manifold.normal;
-    std::array<int, 4> kept{};
-    int kept_count = 0;
+// Which of the candidates a manifold keeps.
+struct Kept {
+    std::array<int, 4> points{};
+    int count = 0;
+};
+
+// The deepest point and the three that span the largest area with it, seen along `normal`.
+Kept best_four(const Candidates &all, const Vec3 &normal) {
+    Kept kept;
     if (all.count <= 4) {
-        for (; kept_count < all.count; ++kept_count)
-            kept[index(kept_count)] = kept_count;
-    } else {
-        // A later point replaces an earlier one only if clearly better, so that equally good points
-        // do not alternate.
-        constexpr Real clearly = Real(1.01);
-        std::array<bool, index(2 * corner_limit + 1)> is_taken{};
-        const auto keep = [&](int i) {
-            kept[index(kept_count++)] = i;
-            is_taken[index(i)] = true;
+        for (; kept.count < all.count; ++kept.count)
+            kept.points[index(kept.count)] = kept.count;
+        return kept;
+    }
+    // A later point replaces an earlier one only if clearly better, so that equally good points do
+    // not alternate.
+    constexpr Real clearly = Real(1.01);
+    std::array<bool, index(2 * corner_limit + 1)> is_taken{};
+    const auto keep = [&](int i) {
+        kept.points[index(kept.count++)] = i;
+        is_taken[index(i)] = true;
+    };
+    const auto keep_most = [&](const auto &score) {
+        int best = -1;
+        Real most = Real(0);
+        for (int i = 0; i < all.count; ++i) {
+            if (is_taken[index(i)])
+                continue;
+            const Real value = score(all.points[index(i)].position);
+            if (best < 0 || value > most * clearly) {
+                best = i;
+                most = value;
+            }
+        }
+        keep(best);
+    };
+    const Real deepest = all.deepest();
+    int first = 0;
+    while (all.points[index(first)].separation > deepest + Real(0.1) * feature_tolerance)
+        ++first;
+    keep(first);
+    const Vec3 p = all.points[index(first)].position;
+    keep_most([&](const Vec3 &v) {
+        const Vec3 flat = glm::cross(v - p, normal);
+        return glm::dot(flat, flat);
+    });
+    const Vec3 q = all.points[index(kept.points[1])].position;
+    keep_most([&](const Vec3 &v) { return std::abs(glm::dot(glm::cross(q - p, v - p), normal)); });
+    const Vec3 r = all.points[index(kept.points[2])].position;
+    const Real turn = glm::dot(glm::cross(q - p, r - p), normal) < Real(0) ? Real(-1) : Real(1);
+    // The fourth adds the most area outside the triangle, beyond one of its sides.
+    keep_most([&](const Vec3 &v) {
+        const auto beyond = [&](const Vec3 &from, const Vec3 &to) {
+            return -turn * glm::dot(glm::cross(to - from, v - from), normal);
         };
-        const auto keep_most = [&](const auto &score) {
-            int best = -1;
+        return std::max({beyond(p, q), beyond(q, r), beyond(r, p), Real(0)});
+    });
+    std::sort(kept.points.begin(), kept.points.end());
+    return kept;
+}
+
+// How far `place` is inside the polygon that the points span, seen along `normal`: its distance
+// from the nearest side; negative outside. The points come in any order.
+template <typename At>
+Real room_between(int count, const At &at, const Vec3 &normal, const Vec3 &place) {
+    constexpr Real none = std::numeric_limits<Real>::infinity();
+    Real room = none;
+    for (int i = 0; i < count; ++i)
+        for (int j = 0; j < i; ++j) {
+            // It is a side if all others are on the same side of it.
+            const Vec3 across = glm::cross(at(j) - at(i), normal);
+            const Real length = glm::length(across);
+            Real least = Real(0);
             Real most = Real(0);
+            for (int k = 0; k < count; ++k) {
+                const Real off = k == i || k == j ? Real(0) : glm::dot(at(k) - at(i), across);
+                least = std::min(least, off);
+                most = std::max(most, off);
+            }
+            if (!(length > Real(0)) || (least < Real(0)) == (most > Real(0)))
+                continue;
+            const Real off = glm::dot(place - at(i), across) / length;
+            room = std::min(room, most > Real(0) ? off : -off);
+        }
+    return room < none ? room : -none;
+}
+
+// The candidates that leave the most room around the load: from the best four, one exchange after
+// another.
+Kept best_under(const Candidates &all, const Vec3 &normal, const Vec3 &load) {
+    constexpr Real clearly = Real(1e-4); // of their distance
+    constexpr int most_exchanges = 8;
+    Kept kept = best_four(all, normal);
+    if (all.count <= 4)
+        return kept;
+    const auto room_of = [&](const Kept &some) {
+        const auto at = [&](int k) -> const Vec3 & {
+            return all.points[index(some.points[index(k)])].position;
+        };
+        return room_between(some.count, at, normal, load);
+    };
+    const Vec3 &first = all.points[index(kept.points[0])].position;
+    Real size = Real(0);
+    for (const int i : kept.points)
+        size = std::max(size, glm::distance(all.points[index(i)].position, first));
+    Real room = room_of(kept);
+    for (int exchange = 0; exchange < most_exchanges; ++exchange) {
+        Kept best = kept;
+        Real most = room + clearly * size;
+        for (std::size_t k = 0; k < kept.points.size(); ++k)
             for (int i = 0; i < all.count; ++i) {
-                if (is_taken[index(i)])
+                if (std::ranges::find(kept.points, i) != kept.points.end())
                     continue;
-                const Real value = score(all.points[index(i)].position);
-                if (best < 0 || value > most * clearly) {
-                    best = i;
-                    most = value;
+                Kept tried = kept;
+                tried.points[k] = i;
+                if (const Real left = room_of(tried); left > most) {
+                    most = left;
+                    best = tried;
                 }
             }
-            keep(best);
-        };
-        const Real deepest = all.deepest();
-        int first = 0;
-        while (all.points[index(first)].separation > deepest + Real(0.1) * feature_tolerance)
-            ++first;
-        keep(first);
-        const Vec3 p = all.points[index(first)].position;
-        keep_most([&](const Vec3 &v) {
-            const Vec3 flat = glm::cross(v - p, normal);
-            return glm::dot(flat, flat);
-        });
-        const Vec3 q = all.points[index(kept[1])].position;
-        keep_most(
-            [&](const Vec3 &v) { return std::abs(glm::dot(glm::cross(q - p, v - p), normal)); });
-        const Vec3 r = all.points[index(kept[2])].position;
-        const Real turn = glm::dot(glm::cross(q - p, r - p), normal) < Real(0) ? Real(-1) : Real(1);
-        // The fourth adds the most area outside the triangle, beyond one of its sides.
-        keep_most([&](const Vec3 &v) {
-            const auto beyond = [&](const Vec3 &from, const Vec3 &to) {
-                return -turn * glm::dot(glm::cross(to - from, v - from), normal);
-            };
-            return std::max({beyond(p, q), beyond(q, r), beyond(r, p), Real(0)});
-        });
-        std::sort(kept.begin(), kept.end());
+        if (best.points == kept.points)
+            break;
+        kept = best;
+        room = most;
     }
-    for (int i = 0; i < kept_count; ++i) {
-        const Candidate &point = all.points[index(kept[index(i)])];
+    std::ranges::sort(kept.points);
+    return kept;
+}
+
+// `load`: where one shape presses on the other, or null.
+void add_best(Manifold &manifold, const Candidates &all, const Vec3 &origin, const Vec3 *load) {
+    const Kept kept =
+        load == nullptr ? best_four(all, manifold.normal) : best_under(all, manifold.normal, *load);
+    for (int i = 0; i < kept.count; ++i) {
+        const Candidate &point = all.points[index(kept.points[index(i)])];
         add_point(manifold, origin + point.position, point.separation, point.feature);
     }
 }
@@ -396,9 +555,10 @@ Proximity proximity_near(const A &a, const B &b, Real margin, const Vec3 &guess)
     return proximity(CorePair(a, b), margin, guess);
 }
 
+// `load`: where one presses on the other, or null.
 template <typename A, typename B>
 Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
-                        const Vec3 &guess = Vec3{Real(0)}) {
+                        const Vec3 &guess = Vec3{Real(0)}, const Vec3 *load = nullptr) {
     const Vec3 origin = place_of(shape_a);
     const auto a = core_of(shape_a, origin);
     const auto b = core_of(shape_b, origin);
@@ -407,11 +567,16 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     if (found.is_beyond || found.separation > margin)
         return manifold;
 
-    const Feature on_a = feature_of(a, found.normal);
-    const Feature on_b = feature_of(b, -found.normal);
+    const Vec3 place = load == nullptr ? Vec3{Real(0)} : *load - origin;
+    const auto feature_at = [&](const auto &core, const Vec3 &direction) {
+        return load == nullptr ? feature_of(core, direction)
+                               : feature_under(core, direction, place);
+    };
+    const Feature on_a = feature_at(a, found.normal);
+    const Feature on_b = feature_at(b, -found.normal);
     const auto accept = [&](const Candidates &contacts, const Vec3 &normal) {
         manifold.normal = normal;
-        add_best_four(manifold, contacts, origin);
+        add_best(manifold, contacts, origin, load == nullptr ? nullptr : &place);
         return manifold;
     };
 
@@ -425,7 +590,7 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
         on_b.is_face() ? glm::dot(a.support(-on_b.normal) - on_b.corners[0], on_b.normal) - a.radius
                        : none;
     const auto with_face = [&](const Feature &reference, const auto &incident_core, bool is_b) {
-        const Feature incident = feature_of(incident_core, -reference.normal);
+        const Feature incident = feature_at(incident_core, -reference.normal);
         const std::uint32_t feature = pair_name(reference, incident, is_b);
         Candidates contacts = over_face(reference, incident, incident_core.radius, margin, feature);
         // The deepest point of a rim may be between the corners.
@@ -466,9 +631,10 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     return accept(one, found.normal);
 }
 
-// The half-space's plane acts as a face without sides.
+// The half-space's plane acts as a face without sides. `load`: as above.
 template <typename A>
-Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real margin) {
+Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real margin,
+                            const Vec3 *load = nullptr) {
     const Vec3 origin = place_of(shape);
     const auto core = core_of(shape, origin);
     const Real offset = half_space.offset - glm::dot(half_space.normal, origin);
@@ -479,7 +645,9 @@ Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real ma
         if (separation <= margin)
             contacts.add(p - half_space.normal * (Real(0.5) * separation), separation, feature);
     };
-    const Feature lowest = feature_of(core, -half_space.normal);
+    const Vec3 place = load == nullptr ? Vec3{Real(0)} : *load - origin;
+    const Feature lowest = load == nullptr ? feature_of(core, -half_space.normal)
+                                           : feature_under(core, -half_space.normal, place);
     for (int i = 0; i < lowest.count; ++i)
         add(lowest.corners[index(i)],
             pair_name(lowest, Feature{}, false) | static_cast<std::uint32_t>(i));
@@ -490,7 +658,7 @@ Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real ma
     if (contacts.count == 0)
         return manifold;
     manifold.normal = -half_space.normal;
-    add_best_four(manifold, contacts, origin);
+    add_best(manifold, contacts, origin, load == nullptr ? nullptr : &place);
     return manifold;
 }
 
@@ -553,6 +721,35 @@ Manifold collide(const Triangle &a, const HalfSpace &b, Real margin) {
     return collide_half_space(a, b, margin);
 }
 
+template <typename A, typename B>
+Manifold collide_under(const A &a, const B &b, Real margin, const Vec3 &guess, const Vec3 &load) {
+    if constexpr (std::same_as<B, HalfSpace>)
+        return collide_half_space(a, b, margin, &load);
+    else
+        return collide_convex(a, b, margin, guess, &load);
+}
+template Manifold collide_under(const Box &, const Cylinder &, Real, const Vec3 &, const Vec3 &);
+template Manifold collide_under(const Box &, const ConvexHull &, Real, const Vec3 &, const Vec3 &);
+template Manifold collide_under(const Cylinder &, const Cylinder &, Real, const Vec3 &,
+                                const Vec3 &);
+template Manifold collide_under(const Cylinder &, const ConvexHull &, Real, const Vec3 &,
+                                const Vec3 &);
+template Manifold collide_under(const Cylinder &, const Triangle &, Real, const Vec3 &,
+                                const Vec3 &);
+template Manifold collide_under(const Cylinder &, const HalfSpace &, Real, const Vec3 &,
+                                const Vec3 &);
+template Manifold collide_under(const ConvexHull &, const ConvexHull &, Real, const Vec3 &,
+                                const Vec3 &);
+template Manifold collide_under(const ConvexHull &, const Triangle &, Real, const Vec3 &,
+                                const Vec3 &);
+template Manifold collide_under(const ConvexHull &, const HalfSpace &, Real, const Vec3 &,
+                                const Vec3 &);
+
 } // namespace unchecked
+
+Real room_around(const Manifold &manifold, const Vec3 &place) {
+    const auto at = [&](int k) -> const Vec3 & { return manifold.points[index(k)].position; };
+    return room_between(manifold.count, at, manifold.normal, place);
+}
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -445,7 +445,8 @@ bool World::keep_contact(const Candidate &candidate, const ContactMemory *before
             motion_a.position + core_a + (contact.rounding_a + Real(0.5) * to.separation) * normal;
     }
     contact.rolling = rolling_of(contact);
-    if (contact.rolling != Rolling::on_face && !misses_corner(candidate, contact.manifold))
+    if (contact.rolling != Rolling::on_face && !misses_corner(candidate, contact.manifold) &&
+        !stands_wider(candidate, contact.manifold))
         return true;
     out.pop_back();
     return false;
@@ -510,6 +511,9 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         const Vec3 guess = before == nullptr ? Vec3{Real(0)} : before->origin.normal;
         FoundManifold found{plumb::collide(scratch_.placed[i], scratch_.placed[j], margin, guess),
                             motion_a, motion_b};
+        if (const std::optional<Vec3> load = load_off_centre(candidate, found.manifold))
+            found.manifold = collide_under(scratch_.placed[i], scratch_.placed[j], margin,
+                                           found.manifold.normal, *load);
         if (touches(found.manifold)) {
             if (leads) {
                 const Vec3 half_turn = half_turn_of(candidate);
@@ -556,6 +560,12 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                                 motion_a, motion_b};
             if (!solid_first)
                 found.manifold.normal = -found.manifold.normal;
+            if (const std::optional<Vec3> load = load_off_centre(candidate, found.manifold)) {
+                found.manifold =
+                    plumb::collide(solid, *surface.surface, pose, triangle, margin, &*load);
+                if (!solid_first)
+                    found.manifold.normal = -found.manifold.normal;
+            }
             if (is_predicted && !touches(found.manifold))
                 found = predicted_manifold(candidate, found.manifold.normal, triangle);
             else if (leads && has_rim(a, b) && touches(found.manifold)) {

@@ -77,6 +77,11 @@ Vec3 on_solid(const ManifoldPoint &point, const Vec3 &out) {
     return point.position - (Real(0.5) * point.separation) * out;
 }
 
+// Whether it has faces on which the four points of a contact leave long arcs.
+bool has_wide_face(const ConvexHull &hull) {
+    return hull.mesh->most_corners > 6;
+}
+
 // The normal once the solid has turned, in the solid's present frame.
 Vec3 seen_after(const Vec3 &normal, const Vec3 &turn) {
     return turned(identity_rotation, -turn, Real(1)) * normal;
@@ -95,6 +100,14 @@ Real rounding_along(const Collider &collider, const Quat &rotation, const Vec3 &
     const Real sine = glm::dot(rotation * glm::normalize(cylinder->b - cylinder->a), normal);
     return std::abs(sine) <= least_rim_sine ? cylinder->radius / std::sqrt(Real(1) - sine * sine)
                                             : Real(0);
+}
+
+bool is_wide(const Collider &collider) {
+    if (collider.surface)
+        return false;
+    const auto *hull = std::get_if<ConvexHull>(&collider.shape);
+    return hull != nullptr ? has_wide_face(*hull)
+                           : std::holds_alternative<Cylinder>(collider.shape);
 }
 
 Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const Vec3 &out,
@@ -139,11 +152,6 @@ void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &o
 namespace {
 
 constexpr std::uint32_t next_corner_feature = 0xFFFE0000U; // and its number
-
-// Whether it has faces on which the four points of a contact leave long arcs.
-bool has_wide_face(const ConvexHull &hull) {
-    return hull.mesh->most_corners > 6;
-}
 
 struct Corner {
     std::uint32_t vertex;

@@ -10,6 +10,10 @@ namespace plumb::inline PLUMB_PRECISION {
 // Whether one of two colliders is a cylinder.
 bool has_rim(const Collider &a, const Collider &b);
 
+// Whether a solid has faces on which the four points of a contact leave long arcs: a cylinder, or a
+// hull with faces of more than six corners.
+bool is_wide(const Collider &collider);
+
 // Sine of the least angle between a cylinder's side and a plane at which it stands on a rim; below
 // that the cylinder counts as round there (Contact::rounding_a).
 inline constexpr Real least_rim_sine = Real(0.8);

@@ -36,11 +36,16 @@ Vec3 farthest(const Shape &solid, const Vec3 &direction) {
         solid);
 }
 
-Manifold collide_triangle(const Shape &solid, const Triangle &triangle, Real margin) {
+Manifold collide_triangle(const Shape &solid, const Triangle &triangle, Real margin,
+                          const Vec3 *load) {
     return std::visit(
         [&]<typename Solid>(const Solid &shape) -> Manifold {
             if constexpr (std::same_as<Solid, HalfSpace>)
                 return {};
+            else if constexpr (CollidesUnderLoad<Solid, Triangle>)
+                return load == nullptr ? unchecked::collide(shape, triangle, margin)
+                                       : unchecked::collide_under(shape, triangle, margin,
+                                                                  Vec3{Real(0)}, *load);
             else
                 return unchecked::collide(shape, triangle, margin);
         },
@@ -122,7 +127,7 @@ bool is_behind(const Aabb &solid, const Triangle &triangle) {
 }
 
 Manifold collide(const Shape &solid, const TriangleSurface &surface, const Transform &pose,
-                 std::uint32_t index, Real margin) {
+                 std::uint32_t index, Real margin, const Vec3 *load) {
     if (std::holds_alternative<HalfSpace>(solid))
         return {};
     const Triangle local = surface.triangle(index);
@@ -139,7 +144,7 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
     const bool from_behind = is_behind(box, placed_one);
     if (from_behind && surface.sides() != Sides::both)
         return {};
-    Manifold manifold = collide_triangle(solid, placed_one, margin);
+    Manifold manifold = collide_triangle(solid, placed_one, margin, load);
     if (manifold.count == 0)
         return manifold;
     const Vec3 out = -manifold.normal;

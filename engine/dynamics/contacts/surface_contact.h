@@ -17,9 +17,10 @@ bool is_behind(const Aabb &solid, const Triangle &triangle);
 // concave, or leans beyond the neighbour's normal at a ridge, the normal is the face's, so that
 // nothing stumbles as it slides or rolls over a seam (Ericson, Real-Time Collision Detection, 2005,
 // section 5.1.5, has the Voronoi regions that this decides by). A solid that has come down on a
-// ridge is held there by the face's normal, even if its deepest point lies beyond.
+// ridge is held there by the face's normal, even if its deepest point lies beyond. `load`: as for
+// collide_under; null: unknown.
 Manifold collide(const Shape &solid, const TriangleSurface &surface, const Transform &pose,
-                 std::uint32_t index, Real margin);
+                 std::uint32_t index, Real margin, const Vec3 *load = nullptr);
 
 // The contact of a solid whose middle is inside a surface that is solid: at the nearest place on
 // that surface, as deep as the solid's farthest point is behind it. None for any other solid.
