@@ -75,15 +75,15 @@ std::pair<Bearing, Real> bearing_limit(JointConstraint &joint) {
     return {load > Real(0) ? Bearing::lower : Bearing::upper, load};
 }
 
-// A motor is solved with its group while it has force to spare and its speed. Until then contacts
+// A motor is solved with its group while it has force to nearly and its speed. Until then contacts
 // come after it: what it starts or drives against would else be run into.
 bool is_motor_held(StepContext &context, JointConstraint &joint, Real share) {
     if (joint.motor == 0)
         return false;
-    constexpr Real spare = Real(0.999); // a motor at its greatest force stays there
+    constexpr Real nearly = Real(0.999); // a motor at its greatest force stays there
     const JointConstraint &motor = motor_of(joint);
     const Real impulse = joint.bearing == Bearing::motor ? joint.impulse.z : motor.impulse.x;
-    return std::abs(impulse) < spare * greatest_motor_impulse(context, motor, share) &&
+    return std::abs(impulse) < nearly * greatest_motor_impulse(context, motor, share) &&
            is_at_speed(context, motor);
 }
 
