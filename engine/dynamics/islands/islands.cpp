@@ -234,11 +234,10 @@ void World::share_budget() {
 }
 
 // With one pass slow sways grow in tall and thin piles, which would never sleep, or even fall. Slow
-// islands take more until they have been at rest for long enough to sleep, as long as their
-// constraints and substeps are within the budget: small ones another pass of each sort, as thin
-// things need, larger ones two more relaxation passes. Those damp a long sway almost three times
-// as much; one more of each sort, at the same cost, only a third more (the eigenvalues of a
-// substep's map, for a stack of 20).
+// islands take more until they have been at rest for long enough to sleep, as long as the budget
+// affords it: small ones another pass of each sort, as thin things need, larger ones two more
+// relaxation passes. Those damp a long sway almost three times as much; one more of each sort, at
+// the same cost, only a third more (the eigenvalues of a substep's map, for a stack of 20).
 void World::settle_slow_islands() {
     Scratch &s = scratch_;
     const auto may_settle = [](const Islands::Needs &needs) {
@@ -259,7 +258,7 @@ void World::settle_slow_islands() {
         if (!may_settle(needs) || s.paces[i].rested >= enough)
             continue;
         if (is_small(needs))
-            needs.pace.more_passes = work_of_small <= settings_.substep_budget ? 1 : 0;
+            needs.pace.more_passes = 2 * work_of_small <= settings_.substep_budget ? 1 : 0;
         else
             needs.pace.more_relaxing = work <= settings_.substep_budget ? 2 : 0;
     }
