@@ -30,9 +30,9 @@ const std::map<std::string, std::string> &not_tuned() {
 // Their islands choose their own substeps, as grabbed or thrown-in bodies may need them, although
 // one number for all would be less work.
 const std::set<std::string> &keep_own_substeps() {
-    static const std::set<std::string> names{
-        "bounce_half", "slide_to_roll", "slope_slides",     "rope",  "long_chain", "compounds",
-        "terrain",     "pyramid",       "twenty_box_stack", "welded"};
+    static const std::set<std::string> names{"bounce_half", "slide_to_roll",    "slope_slides",
+                                             "rope",        "long_chain",       "compounds",
+                                             "terrain",     "twenty_box_stack", "welded"};
     return names;
 }
 
