@@ -75,7 +75,7 @@ std::pair<Bearing, Real> bearing_limit(JointConstraint &joint) {
     return {load > Real(0) ? Bearing::lower : Bearing::upper, load};
 }
 
-// A motor is solved with its group while it has force to nearly and its speed. Until then contacts
+// A motor is solved with its group while it has force to spare and its speed. Until then contacts
 // come after it: what it starts or drives against would else be run into.
 bool is_motor_held(StepContext &context, JointConstraint &joint, Real share) {
     if (joint.motor == 0)
