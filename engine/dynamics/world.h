@@ -283,6 +283,7 @@ class World {
                       std::vector<Contact> &out) const;
     Vec3 half_turn_of(const Candidate &candidate) const;
     bool misses_corner(const Candidate &candidate, const Manifold &manifold) const;
+    bool stands_on_wide_face(const Candidate &candidate, const Manifold &manifold) const;
     std::optional<Vec3> load_on(const Candidate &candidate, const Vec3 &normal,
                                 const Vec3 &at) const;
     std::optional<Vec3> load_off_centre(const Candidate &candidate, const Manifold &manifold) const;

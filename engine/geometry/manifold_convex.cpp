@@ -1,6 +1,7 @@
 // Contacts of cylinders, convex hulls and triangles with every solid.
 #include "engine/geometry/epa.h"
 #include "engine/geometry/face_gap.h"
+#include "engine/geometry/kept_points.h"
 #include "engine/geometry/manifold_pairs.h"
 #include "engine/math/basis.h"
 
@@ -246,28 +247,6 @@ Feature feature_under(const HullCore &hull, const Vec3 &direction, const Vec3 &l
     return result;
 }
 
-// A contact point before reduction to four.
-struct Candidate {
-    Vec3 position{Real(0)};
-    Real separation = Real(0);
-    std::uint32_t feature = 0;
-};
-struct Candidates {
-    std::array<Candidate, index(2 * corner_limit + 1)> points;
-    int count = 0;
-
-    void add(const Vec3 &position, Real separation, std::uint32_t feature) {
-        if (count < 2 * corner_limit + 1)
-            points[index(count++)] = {position, separation, feature};
-    }
-    Real deepest() const {
-        Real least = std::numeric_limits<Real>::infinity();
-        for (int i = 0; i < count; ++i)
-            least = std::min(least, points[index(i)].separation);
-        return least;
-    }
-};
-
 // A corner of the polygon being clipped: `name` as above, `side` labels the side from here to the
 // next corner: a side of the incident face, or 16 + the clip plane that made it.
 struct ClipCorner {
@@ -316,141 +295,13 @@ Polygon clipped(const Polygon &in, std::uint32_t plane, const Vec3 &at, const Ve
     return out;
 }
 
-// Which of the candidates a manifold keeps.
-struct Kept {
-    std::array<int, 4> points{};
-    int count = 0;
-};
-
-// The deepest point and the three that span the largest area with it, seen along `normal`.
-Kept best_four(const Candidates &all, const Vec3 &normal) {
-    Kept kept;
-    if (all.count <= 4) {
-        for (; kept.count < all.count; ++kept.count)
-            kept.points[index(kept.count)] = kept.count;
-        return kept;
-    }
-    // A later point replaces an earlier one only if clearly better, so that equally good points do
-    // not alternate.
-    constexpr Real clearly = Real(1.01);
-    std::array<bool, index(2 * corner_limit + 1)> is_taken{};
-    const auto keep = [&](int i) {
-        kept.points[index(kept.count++)] = i;
-        is_taken[index(i)] = true;
-    };
-    const auto keep_most = [&](const auto &score) {
-        int best = -1;
-        Real most = Real(0);
-        for (int i = 0; i < all.count; ++i) {
-            if (is_taken[index(i)])
-                continue;
-            const Real value = score(all.points[index(i)].position);
-            if (best < 0 || value > most * clearly) {
-                best = i;
-                most = value;
-            }
-        }
-        keep(best);
-    };
-    const Real deepest = all.deepest();
-    int first = 0;
-    while (all.points[index(first)].separation > deepest + Real(0.1) * feature_tolerance)
-        ++first;
-    keep(first);
-    const Vec3 p = all.points[index(first)].position;
-    keep_most([&](const Vec3 &v) {
-        const Vec3 flat = glm::cross(v - p, normal);
-        return glm::dot(flat, flat);
-    });
-    const Vec3 q = all.points[index(kept.points[1])].position;
-    keep_most([&](const Vec3 &v) { return std::abs(glm::dot(glm::cross(q - p, v - p), normal)); });
-    const Vec3 r = all.points[index(kept.points[2])].position;
-    const Real turn = glm::dot(glm::cross(q - p, r - p), normal) < Real(0) ? Real(-1) : Real(1);
-    // The fourth adds the most area outside the triangle, beyond one of its sides.
-    keep_most([&](const Vec3 &v) {
-        const auto beyond = [&](const Vec3 &from, const Vec3 &to) {
-            return -turn * glm::dot(glm::cross(to - from, v - from), normal);
-        };
-        return std::max({beyond(p, q), beyond(q, r), beyond(r, p), Real(0)});
-    });
-    std::sort(kept.points.begin(), kept.points.end());
-    return kept;
-}
-
-// How far `place` is inside the polygon that the points span, seen along `normal`: its distance
-// from the nearest side; negative outside. The points come in any order.
-template <typename At>
-Real room_between(int count, const At &at, const Vec3 &normal, const Vec3 &place) {
-    constexpr Real none = std::numeric_limits<Real>::infinity();
-    Real room = none;
-    for (int i = 0; i < count; ++i)
-        for (int j = 0; j < i; ++j) {
-            // It is a side if all others are on the same side of it.
-            const Vec3 across = glm::cross(at(j) - at(i), normal);
-            const Real length = glm::length(across);
-            Real least = Real(0);
-            Real most = Real(0);
-            for (int k = 0; k < count; ++k) {
-                const Real off = k == i || k == j ? Real(0) : glm::dot(at(k) - at(i), across);
-                least = std::min(least, off);
-                most = std::max(most, off);
-            }
-            if (!(length > Real(0)) || (least < Real(0)) == (most > Real(0)))
-                continue;
-            const Real off = glm::dot(place - at(i), across) / length;
-            room = std::min(room, most > Real(0) ? off : -off);
-        }
-    return room < none ? room : -none;
-}
-
-// The candidates that leave the most room around the load: from the best four, one exchange after
-// another.
-Kept best_under(const Candidates &all, const Vec3 &normal, const Vec3 &load) {
-    constexpr Real clearly = Real(1e-4); // of their distance
-    constexpr int most_exchanges = 8;
-    Kept kept = best_four(all, normal);
-    if (all.count <= 4)
-        return kept;
-    const auto room_of = [&](const Kept &some) {
-        const auto at = [&](int k) -> const Vec3 & {
-            return all.points[index(some.points[index(k)])].position;
-        };
-        return room_between(some.count, at, normal, load);
-    };
-    const Vec3 &first = all.points[index(kept.points[0])].position;
-    Real size = Real(0);
-    for (const int i : kept.points)
-        size = std::max(size, glm::distance(all.points[index(i)].position, first));
-    Real room = room_of(kept);
-    for (int exchange = 0; exchange < most_exchanges; ++exchange) {
-        Kept best = kept;
-        Real most = room + clearly * size;
-        for (std::size_t k = 0; k < kept.points.size(); ++k)
-            for (int i = 0; i < all.count; ++i) {
-                if (std::ranges::find(kept.points, i) != kept.points.end())
-                    continue;
-                Kept tried = kept;
-                tried.points[k] = i;
-                if (const Real left = room_of(tried); left > most) {
-                    most = left;
-                    best = tried;
-                }
-            }
-        if (best.points == kept.points)
-            break;
-        kept = best;
-        room = most;
-    }
-    std::ranges::sort(kept.points);
-    return kept;
-}
-
 // `load`: where one shape presses on the other, or null.
-void add_best(Manifold &manifold, const Candidates &all, const Vec3 &origin, const Vec3 *load) {
-    const Kept kept =
+void add_best(Manifold &manifold, const CandidatePoints &all, const Vec3 &origin,
+              const Vec3 *load) {
+    const KeptPoints kept =
         load == nullptr ? best_four(all, manifold.normal) : best_under(all, manifold.normal, *load);
     for (int i = 0; i < kept.count; ++i) {
-        const Candidate &point = all.points[index(kept.points[index(i)])];
+        const CandidatePoint &point = all.points[index(kept.points[index(i)])];
         add_point(manifold, origin + point.position, point.separation, point.feature);
     }
 }
@@ -461,8 +312,8 @@ std::uint32_t pair_name(const Feature &reference, const Feature &incident, bool 
 }
 
 // Contact points of the incident feature (rounded by `radius`) over the reference face.
-Candidates over_face(const Feature &reference, const Feature &incident, Real radius, Real margin,
-                     std::uint32_t feature) {
+CandidatePoints over_face(const Feature &reference, const Feature &incident, Real radius,
+                          Real margin, std::uint32_t feature) {
     Polygon polygon;
     for (int i = 0; i < incident.count; ++i)
         polygon.add({incident.corners[index(i)], static_cast<std::uint32_t>(i),
@@ -475,7 +326,7 @@ Candidates over_face(const Feature &reference, const Feature &incident, Real rad
         if (length > Real(0))
             polygon = clipped(polygon, static_cast<std::uint32_t>(i), at, outward / length);
     }
-    Candidates result;
+    CandidatePoints result;
     for (int i = 0; i < polygon.count; ++i) {
         const ClipCorner &corner = polygon.corners[index(i)];
         const Real height = glm::dot(corner.position - reference.corners[0], reference.normal);
@@ -496,12 +347,12 @@ template <typename Core> Real roundness(const Core &core) {
 
 // Two parallel sides: the ends of their overlap. `thinner` is the smaller of their roundnesses: if
 // the lines are offset sideways by e, a point midway is off a surface by (e / 2)^2 / (2 thinner).
-Candidates along_sides(const Feature &a, Real radius_a, const Feature &b, Real radius_b,
-                       const Vec3 &normal, Real thinner, Real margin, std::uint32_t feature) {
+CandidatePoints along_sides(const Feature &a, Real radius_a, const Feature &b, Real radius_b,
+                            const Vec3 &normal, Real thinner, Real margin, std::uint32_t feature) {
     // As for capsules (manifold_round.cpp): at this sine, sides one metre long are 2 cm apart at
     // the far end.
     constexpr Real parallel_sine = Real(0.02);
-    Candidates result;
+    CandidatePoints result;
     const Vec3 along_a = a.corners[1] - a.corners[0];
     const Vec3 along_b = b.corners[1] - b.corners[0];
     const Real squared_a = glm::dot(along_a, along_a);
@@ -574,7 +425,7 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     };
     const Feature on_a = feature_at(a, found.normal);
     const Feature on_b = feature_at(b, -found.normal);
-    const auto accept = [&](const Candidates &contacts, const Vec3 &normal) {
+    const auto accept = [&](const CandidatePoints &contacts, const Vec3 &normal) {
         manifold.normal = normal;
         add_best(manifold, contacts, origin, load == nullptr ? nullptr : &place);
         return manifold;
@@ -592,7 +443,8 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     const auto with_face = [&](const Feature &reference, const auto &incident_core, bool is_b) {
         const Feature incident = feature_at(incident_core, -reference.normal);
         const std::uint32_t feature = pair_name(reference, incident, is_b);
-        Candidates contacts = over_face(reference, incident, incident_core.radius, margin, feature);
+        CandidatePoints contacts =
+            over_face(reference, incident, incident_core.radius, margin, feature);
         // The deepest point of a rim may be between the corners.
         if (contacts.deepest() > found.separation + Real(0.1) * feature_tolerance) {
             const Vec3 support = incident_core.support(-reference.normal);
@@ -605,7 +457,7 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
         return contacts;
     };
     // Reject a face that the closest or deepest point is not over, however good its plane.
-    const auto is_there = [&](const Candidates &contacts) {
+    const auto is_there = [&](const CandidatePoints &contacts) {
         return contacts.deepest() <= found.separation + Real(2) * feature_tolerance;
     };
     const bool use_a = above_a >= found.separation - feature_tolerance;
@@ -614,19 +466,21 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     for (const bool is_b : {b_first, !b_first}) {
         if (!(is_b ? use_b : use_a))
             continue;
-        const Candidates contacts = is_b ? with_face(on_b, a, true) : with_face(on_a, b, false);
+        const CandidatePoints contacts =
+            is_b ? with_face(on_b, a, true) : with_face(on_a, b, false);
         if (is_there(contacts))
             return accept(contacts, is_b ? -on_b.normal : on_a.normal);
     }
 
     const std::uint32_t feature = pair_name(on_a, on_b, false);
     if (on_a.count == 2 && on_b.count == 2) {
-        const Candidates sides = along_sides(on_a, a.radius, on_b, b.radius, found.normal,
-                                             std::min(roundness(a), roundness(b)), margin, feature);
+        const CandidatePoints sides =
+            along_sides(on_a, a.radius, on_b, b.radius, found.normal,
+                        std::min(roundness(a), roundness(b)), margin, feature);
         if (sides.count == 2 && sides.deepest() <= found.separation + feature_tolerance)
             return accept(sides, found.normal);
     }
-    Candidates one;
+    CandidatePoints one;
     one.add(Real(0.5) * (found.on_a + found.on_b), found.separation, feature | name_closest);
     return accept(one, found.normal);
 }
@@ -639,7 +493,7 @@ Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real ma
     const auto core = core_of(shape, origin);
     const Real offset = half_space.offset - glm::dot(half_space.normal, origin);
     const auto height = [&](const Vec3 &p) { return glm::dot(half_space.normal, p) - offset; };
-    Candidates contacts;
+    CandidatePoints contacts;
     const auto add = [&](const Vec3 &p, std::uint32_t feature) {
         const Real separation = height(p);
         if (separation <= margin)
@@ -746,10 +600,5 @@ template Manifold collide_under(const ConvexHull &, const HalfSpace &, Real, con
                                 const Vec3 &);
 
 } // namespace unchecked
-
-Real room_around(const Manifold &manifold, const Vec3 &place) {
-    const auto at = [&](int k) -> const Vec3 & { return manifold.points[index(k)].position; };
-    return room_between(manifold.count, at, manifold.normal, place);
-}
 
 } // namespace plumb::inline PLUMB_PRECISION

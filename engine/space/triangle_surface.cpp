@@ -127,7 +127,7 @@ void TriangleSurface::link(const std::vector<std::array<std::uint32_t, 3>> &corn
     std::ranges::sort(uses, {}, [](const EdgeUse &use) {
         return std::tuple(use.from, use.to, use.triangle, use.edge);
     });
-    outer_edges_.assign(corners.size(), 7);
+    edge_bits_.assign(corners.size(), 7);
     neighbors_.assign(corners.size(), {none, none, none});
     for (std::size_t i = 0; i < uses.size();) {
         std::size_t end = i + 1;
@@ -147,14 +147,14 @@ void TriangleSurface::link(const std::vector<std::array<std::uint32_t, 3>> &corn
                 const Real bend = glm::length(glm::cross(n, m));
                 const bool is_bent = bend > flat_angle || glm::dot(n, m) < Real(0);
                 if (!is_below && (is_bent || bend > level_angle)) {
-                    outer_edges_[p.triangle] |= static_cast<std::uint8_t>(8U << p.edge);
-                    outer_edges_[q.triangle] |= static_cast<std::uint8_t>(8U << q.edge);
+                    edge_bits_[p.triangle] |= static_cast<std::uint8_t>(8U << p.edge);
+                    edge_bits_[q.triangle] |= static_cast<std::uint8_t>(8U << q.edge);
                 }
                 const bool is_ridge = is_below && is_bent;
                 // A surface that is solid on both sides has ridges on both.
                 if (!(is_ridge || (sides_ == Sides::both && is_bent))) {
-                    outer_edges_[p.triangle] &= static_cast<std::uint8_t>(~(1U << p.edge));
-                    outer_edges_[q.triangle] &= static_cast<std::uint8_t>(~(1U << q.edge));
+                    edge_bits_[p.triangle] &= static_cast<std::uint8_t>(~(1U << p.edge));
+                    edge_bits_[q.triangle] &= static_cast<std::uint8_t>(~(1U << q.edge));
                 }
             }
         }

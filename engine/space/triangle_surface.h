@@ -29,7 +29,7 @@ class TriangleSurface {
     Sides sides() const { return sides_; }
     const std::variant<MeshTree, HeightField> &source() const { return source_; }
     const Aabb &bounds() const { return bounds_; }
-    std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(outer_edges_.size()); }
+    std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(edge_bits_.size()); }
     Triangle triangle(std::uint32_t index) const;
     // Whether the point is inside; false unless the surface is solid.
     bool encloses(const Vec3 &point) const;
@@ -39,11 +39,11 @@ class TriangleSurface {
     // ridge. At other edges, flat or concave, nothing can rest on the edge alone: a shape that
     // touches the edge touches a face at the same time.
     bool is_outer_edge(std::uint32_t triangle, int edge) const {
-        return (outer_edges_[triangle] >> edge & 1U) != 0;
+        return (edge_bits_[triangle] >> edge & 1U) != 0;
     }
     // Whether the surface turns up beyond the edge, if only a little.
     bool is_hollow_edge(std::uint32_t triangle, int edge) const {
-        return (outer_edges_[triangle] >> (3 + edge) & 1U) != 0;
+        return (edge_bits_[triangle] >> (3 + edge) & 1U) != 0;
     }
     // The unit normal of the triangle beyond an edge; the triangle's own at a border.
     Vec3 normal_beyond(std::uint32_t triangle, int edge) const;
@@ -82,7 +82,8 @@ class TriangleSurface {
     std::variant<MeshTree, HeightField> source_;
     Sides sides_;
     Aabb bounds_;
-    std::vector<std::uint8_t> outer_edges_; // three bits per triangle, then three for hollow edges
+    std::vector<std::uint8_t>
+        edge_bits_; // per triangle three for outer edges, then three for hollow ones
     static constexpr std::uint32_t none = UINT32_MAX;
     std::vector<std::array<std::uint32_t, 3>> neighbors_; // the triangle beyond each edge, or none
     std::uint64_t content_hash_ = 0;

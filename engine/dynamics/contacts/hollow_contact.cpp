@@ -3,8 +3,8 @@
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/bodies/solid.h"
 #include "engine/dynamics/contacts/rolling_contact.h"
+#include "engine/dynamics/contacts/triangle_face.h"
 #include "engine/dynamics/world.h"
-#include "engine/geometry/triangle.h"
 
 #include <algorithm>
 #include <array>
@@ -18,34 +18,16 @@ namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
 
-struct Face {
+struct Face : TriangleFace {
     std::uint32_t index = 0;
-    std::array<Vec3, 3> corners{};
-    Vec3 normal{Real(0)}; // unit
-    Real size = Real(0);
-
-    // How far a point is beyond an edge, in the face's plane (m).
-    Real beyond(const Vec3 &point, std::size_t edge) const {
-        const Vec3 &from = corners[edge];
-        const Vec3 along = corners[(edge + 1) % 3] - from;
-        return glm::dot(glm::cross(along, normal), point - from) / glm::length(along);
-    }
-    Real height(const Vec3 &point) const { return glm::dot(normal, point - corners[0]); }
 };
 
 std::optional<Face> face_of(const TriangleSurface &surface,
                             const std::optional<std::uint32_t> &index) {
     if (!index)
         return std::nullopt;
-    const Triangle triangle = surface.triangle(*index);
-    const Vec3 cross = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
-    const Real doubled_area = glm::length(cross);
-    if (!(doubled_area > Real(0)))
-        return std::nullopt;
-    return Face{*index,
-                {triangle.a, triangle.b, triangle.c},
-                cross / doubled_area,
-                std::sqrt(doubled_area)};
+    const std::optional<TriangleFace> face = face_of(surface.triangle(*index));
+    return face ? std::optional(Face{*face, *index}) : std::nullopt;
 }
 
 // The edge that a point is farthest beyond, if any.

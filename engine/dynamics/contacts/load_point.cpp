@@ -41,20 +41,13 @@ bool is_flat(const Manifold &manifold, Real size) {
 // Whether the faces slide, turn or rock on each other faster than `slow` (m/s). Then the points
 // stand for the friction of the whole face and must not all be on one side of it, and a body that
 // rolls on its rim needs the deepest point.
-bool moves(const Manifold &manifold, Real size, const Motion &a, const Motion &b, Real slow) {
+bool slides_or_rocks(const Manifold &manifold, Real size, const Motion &a, const Motion &b,
+                     Real slow) {
     const Vec3 &at = manifold.points[0].position;
     const Vec3 velocity = (b.velocity + glm::cross(b.angular_velocity, at - b.position)) -
                           (a.velocity + glm::cross(a.angular_velocity, at - a.position));
     const Real turning = glm::length(b.angular_velocity - a.angular_velocity);
     return !(glm::length(glm::cross(velocity, manifold.normal)) + turning * size <= slow);
-}
-
-// Whether two bodies stand on each other, flat and at rest, on a face of which four points are too
-// few.
-bool stands_on_wide_face(const Manifold &manifold, Real size, const Collider &on_a, const Motion &a,
-                         const Collider &on_b, const Motion &b, Real slow) {
-    return manifold.count > 2 && (is_wide(on_a) || is_wide(on_b)) && is_flat(manifold, size) &&
-           !moves(manifold, size, a, b, slow);
 }
 
 // Half of what gravity adds in a step (m/s).
@@ -63,6 +56,18 @@ Real slow_for(const StepSettings &settings) {
 }
 
 } // namespace
+
+// Whether two bodies stand on each other, flat and at rest, on a face of which four points are too
+// few.
+bool World::stands_on_wide_face(const Candidate &candidate, const Manifold &manifold) const {
+    if (manifold.count <= 2 || !(is_wide(model_->colliders[candidate.collider_a]) ||
+                                 is_wide(model_->colliders[candidate.collider_b])))
+        return false;
+    const Real size = size_of(manifold);
+    return is_flat(manifold, size) &&
+           !slides_or_rocks(manifold, size, state_.motions[candidate.key.a],
+                            state_.motions[candidate.key.b], slow_for(settings_));
+}
 
 // Where the two bodies of a contact through `at` press on each other: in line with the centre of
 // mass of the upper one, which does not tremble as impulses do. None if the impulses of the last
@@ -111,12 +116,9 @@ std::optional<Vec3> World::load_on(const Candidate &candidate, const Vec3 &norma
 std::optional<Vec3> World::load_off_centre(const Candidate &candidate,
                                            const Manifold &manifold) const {
     constexpr Real central = Real(0.15); // of the width
-    const Real size = size_of(manifold);
-    if (!stands_on_wide_face(manifold, size, model_->colliders[candidate.collider_a],
-                             state_.motions[candidate.key.a],
-                             model_->colliders[candidate.collider_b],
-                             state_.motions[candidate.key.b], slow_for(settings_)))
+    if (!stands_on_wide_face(candidate, manifold))
         return std::nullopt;
+    const Real size = size_of(manifold);
     const Vec3 &normal = manifold.normal;
     const std::optional<Vec3> load = load_on(candidate, normal, manifold.points[0].position);
     if (!load || room_around(manifold, *load) >= roomy * size)
@@ -135,23 +137,19 @@ std::optional<Vec3> World::load_off_centre(const Candidate &candidate,
 // of the two faces would leave it clearly more room.
 bool World::stands_wider(const Candidate &candidate, const Manifold &manifold) const {
     constexpr Real clearly = Real(0.03); // of the width
-    const std::uint32_t i = candidate.collider_a;
-    const std::uint32_t j = candidate.collider_b;
-    const Real size = size_of(manifold);
-    if (!stands_on_wide_face(manifold, size, model_->colliders[candidate.collider_a],
-                             state_.motions[candidate.key.a],
-                             model_->colliders[candidate.collider_b],
-                             state_.motions[candidate.key.b], slow_for(settings_)))
+    if (!stands_on_wide_face(candidate, manifold))
         return false;
     const std::optional<Vec3> load =
         load_on(candidate, manifold.normal, manifold.points[0].position);
     if (!load)
         return false;
     const Real room = room_around(manifold, *load);
-    return room < tight * size &&
-           room_around(collide_under(scratch_.placed[i], scratch_.placed[j], candidate.margin,
-                                     manifold.normal, *load),
-                       *load) > room + clearly * moving_width(candidate);
+    if (!(room < tight * size_of(manifold)))
+        return false;
+    const Manifold other =
+        collide_under(scratch_.placed[candidate.collider_a], scratch_.placed[candidate.collider_b],
+                      candidate.margin, manifold.normal, *load);
+    return room_around(other, *load) > room + clearly * moving_width(candidate);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

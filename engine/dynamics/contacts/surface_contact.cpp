@@ -1,5 +1,7 @@
 #include "engine/dynamics/contacts/surface_contact.h"
 
+#include "engine/dynamics/contacts/triangle_face.h"
+
 #include "engine/geometry/aabb.h"
 #include "engine/geometry/raycast.h"
 #include "engine/geometry/support.h"
@@ -52,36 +54,23 @@ Manifold collide_triangle(const Shape &solid, const Triangle &triangle, Real mar
         solid);
 }
 
-struct PlacedTriangle {
-    std::array<Vec3, 3> corners{};
-    Vec3 face{Real(0)}; // unit
-    Real size = Real(0);
-
-    // How far a point is beyond an edge, in the triangle's plane.
-    Real beyond(const Vec3 &point, std::size_t edge) const {
-        const Vec3 &from = corners[edge];
-        const Vec3 along = corners[(edge + 1) % 3] - from;
-        return glm::dot(glm::cross(along, face), point - from) / glm::length(along);
-    }
-};
-
 // Whether the surface allows a contact at `point` whose normal leans to `out`: over a border, or
 // over a ridge by no more than the face beyond it.
 bool may_lean(const TriangleSurface &surface, const Transform &pose, std::uint32_t index,
-              const PlacedTriangle &triangle, const Vec3 &point, const Vec3 &out) {
+              const TriangleFace &triangle, const Vec3 &point, const Vec3 &out) {
     const Real near = Real(1e-3) * triangle.size;
     for (std::size_t edge = 0; edge < 3; ++edge) {
         const int number = static_cast<int>(edge);
         if (std::abs(triangle.beyond(point, edge)) > near || !surface.is_outer_edge(index, number))
             continue;
         const Vec3 along = triangle.corners[(edge + 1) % 3] - triangle.corners[edge];
-        const Vec3 outward = glm::cross(along, triangle.face);
+        const Vec3 outward = glm::cross(along, triangle.normal);
         if (glm::dot(outward, out) < Real(0))
             continue; // leans to the inside of this edge
         const Vec3 beyond = to_world_vector(pose, surface.normal_beyond(index, number));
-        const Real bend = glm::dot(beyond, triangle.face);
+        const Real bend = glm::dot(beyond, triangle.normal);
         const bool is_border = bend >= Real(1) - Real(1e-6);
-        if (is_border || std::abs(glm::dot(out, triangle.face)) >= bend - Real(1e-3))
+        if (is_border || std::abs(glm::dot(out, triangle.normal)) >= bend - Real(1e-3))
             return true;
     }
     return false;
@@ -132,14 +121,10 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
         return {};
     const Triangle local = surface.triangle(index);
     const Triangle placed_one = placed(local, pose);
-    PlacedTriangle triangle{{placed_one.a, placed_one.b, placed_one.c}};
-    const Vec3 cross = glm::cross(placed_one.b - placed_one.a, placed_one.c - placed_one.a);
-    const Real doubled_area = glm::length(cross);
-    if (!(doubled_area > Real(0)))
+    const std::optional<TriangleFace> face_or_none = face_of(placed_one);
+    if (!face_or_none)
         return {};
-    triangle.face = cross / doubled_area;
-    triangle.size = std::sqrt(doubled_area);
-
+    const TriangleFace &triangle = *face_or_none;
     const Aabb box = bounds(solid);
     const bool from_behind = is_behind(box, placed_one);
     if (from_behind && surface.sides() != Sides::both)
@@ -148,7 +133,7 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
     if (manifold.count == 0)
         return manifold;
     const Vec3 out = -manifold.normal;
-    const Vec3 face = from_behind ? -triangle.face : triangle.face;
+    const Vec3 face = from_behind ? -triangle.normal : triangle.normal;
     const Real lean = glm::dot(out, face);
     if (lean >= Real(1) - Real(1e-6))
         return manifold;
@@ -172,7 +157,7 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
                 is_over = false;
             } else {
                 const Vec3 other = to_world_vector(pose, surface.normal_beyond(index, number));
-                if (!is_in_hollow(glm::dot(other, triangle.face), -separation, beyond))
+                if (!is_in_hollow(glm::dot(other, triangle.normal), -separation, beyond))
                     return {};
             }
         }
