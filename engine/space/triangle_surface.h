@@ -46,7 +46,7 @@ class TriangleSurface {
         return (edge_bits_[triangle] >> (3 + edge) & 1U) != 0;
     }
     // The unit normal of the triangle beyond an edge; the triangle's own at a border.
-    Vec3 normal_beyond(std::uint32_t triangle, int edge) const;
+    Vec3 normal_beyond(std::uint32_t index, int edge) const;
     // The triangle beyond an edge; none at a border.
     std::optional<std::uint32_t> triangle_beyond(std::uint32_t triangle, int edge) const {
         const std::uint32_t other = neighbors_[triangle][static_cast<std::size_t>(edge)];
