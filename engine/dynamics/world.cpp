@@ -400,8 +400,10 @@ JointId World::add_joint(const JointDef &def) {
     into_mass_frame(a, joint.anchor_a_local, joint.frame_a_local);
     into_mass_frame(b, joint.anchor_b_local, joint.frame_b_local);
     for (const std::uint32_t body : {a, b})
-        if (body != Joint::world)
+        if (body != Joint::world) {
+            ++model.bodies[body].joint_count;
             wake(body);
+        }
     ++model.alive_joints;
     model.joined.add(joint, slot, model.bodies.size());
     return {slot, joint.generation};
@@ -412,8 +414,10 @@ void World::remove_joint(JointId id) {
     Model &model = edit();
     Joint &joint = model.joints[id.index];
     for (const std::uint32_t body : {joint.a, joint.b})
-        if (body != Joint::world)
+        if (body != Joint::world) {
+            --model.bodies[body].joint_count;
             wake(body);
+        }
     model.joined.remove(model.joints, id.index);
     const std::uint32_t next_generation = joint.generation + 1;
     joint = Joint{};

@@ -30,6 +30,9 @@ struct FoundManifold {
     Moment moment = Moment::start;
     bool is_turning = false;
     Real hollow = Real(0); // Contact::hollow
+    // The feature of the point that runs round the body's rim.
+    std::optional<std::uint32_t> on_rim_a = std::nullopt;
+    std::optional<std::uint32_t> on_rim_b = std::nullopt;
 };
 
 // Three parts: the model (what only an edit changes), the state (everything that survives a step),
@@ -255,6 +258,8 @@ class World {
     bool is_crowded(std::uint32_t body) const;
     bool rolls_over_the_other(const Contact &contact) const;
     Rolling rolling_of(const Contact &contact) const;
+    bool rolls_freely(std::uint32_t body) const;
+    void follow_rim(const FoundManifold &found, Contact &contact) const;
     // Lets a contact follow the hollow that its solid slides or rolls through (hollow_contact.h).
     void follow_hollow(const Candidate &candidate, std::uint32_t triangle,
                        FoundManifold &found) const;

@@ -3,6 +3,8 @@
 #include "tests/dynamics/worlds.h"
 #include "tests/trials.h"
 
+#include <type_traits>
+
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
@@ -175,20 +177,74 @@ double gain_of_roller(const BodyDef &roller, const StepSettings &settings, doubl
 // It rolls in a circle; only friction may slow it down. Slow coins turn fastest: with lever arms
 // frozen for the step they gained twice their energy.
 TEST(Rolling, ALeaningCoinRollsWithoutGainingEnergy) {
+    // Rounding heats it, now that nothing brakes it any more.
+    const double most = std::is_same_v<Real, float> ? 2e-4 : 1e-4;
     const StepSettings settings = settings_for("soft_step");
     for (const double radius : {0.01, 0.1})
         for (const double froude : {0.4, 0.7, 1.0, 2.0, 4.0}) {
             for (const double lean : {0.15, 0.3, 0.5})
                 EXPECT_LE(
                     gain_of_roller(leaning_roller(radius, 0.2, lean, froude), settings, 0.5, 0, 6),
-                    1e-4)
+                    most)
                     << radius << ", " << froude << ", " << lean;
             EXPECT_LE(
                 gain_of_roller(leaning_roller(radius, 0.2, 0.2, froude), settings, 0.9, 0, 10),
-                1e-4)
+                most)
                 << radius << ", " << froude;
         }
 }
+// A thin disc that leans by `lean` from upright and rolls round a circle of `circle` radii without
+// slipping, at the rate at which gravity turns its angular momentum (Goldstein 2002, section 5.7;
+// a disc without thickness, so this one wobbles a little).
+BodyDef circling_disc(double radius, double lean, double circle) {
+    const double half = 0.02 * radius;
+    const double sine = std::sin(lean), cosine = std::cos(lean);
+    const double middle = circle * radius - radius * sine; // the centre's distance from the axis
+    const double across = 0.25 * radius * radius + half * half / 3;
+    const double about = 0.5 * radius * radius;    // its own axis
+    const double spin = -(middle / radius + sine); // of the rate of turning round the circle
+    const double turned = about * (sine + spin) * cosine - across * cosine * sine;
+    const double rate = std::sqrt(radius * sine * gravity / (radius * cosine * middle - turned));
+    const V axis{cosine, sine, 0}; // up and away from the circle's middle
+    const V up{-sine, cosine, 0};  // from the lowest point to the centre
+    const V from_contact = radius * up + half * axis;
+    const V angular = rate * V{0, 1, 0} + rate * spin * axis;
+    BodyDef disc =
+        dynamic_body(Cylinder{narrow(V{0, -half, 0}), narrow(V{0, half, 0}), Real(radius)}, 1,
+                     V{circle * radius, 0, 0} + from_contact, glm::cross(angular, from_contact));
+    disc.pose.rotation = narrow(glm::angleAxis(std::acos(axis.y), V{0, 0, -1}));
+    disc.angular_velocity = narrow(angular);
+    return disc;
+}
+
+// Flat on the floor or nearly upright, it goes on: its contact point runs round the rim by up to
+// two radians in a step. Standing on one point in each step, it fell flat if it leaned by 45
+// degrees.
+TEST(Rolling, DiscsRollRoundInCirclesAtAnyLean) {
+    for (const double radius : {0.02, 0.1, 0.5})
+        for (const double circle : {1.5, 4.0})
+            for (const double lean : {0.4, 0.7, 0.776, 0.79, 0.9, 1.1, 1.3, 1.45}) {
+                World world("soft_step", settings_for("soft_step"));
+                world.add_body(ground(9, 0));
+                const BodyId id =
+                    world.add_body(with_material(circling_disc(radius, lean, circle), 9, 0));
+                const double begun = world.energy();
+                const double rate = glm::length(velocity_of(world, id)) / (circle * radius);
+                const int steps = static_cast<int>(60 * 4 * pi / rate); // twice round
+                double most = lean, least = lean;
+                for (int step = 0; step < steps; ++step) {
+                    world.step(nullptr);
+                    const V axis = wide(motion_of(world, id).rotation) * V{0, 1, 0};
+                    const double now = std::asin(std::abs(axis.y));
+                    most = std::max(most, now);
+                    least = std::min(least, now);
+                }
+                EXPECT_NEAR(world.energy() / begun, 1, 2e-3)
+                    << radius << ", " << lean << ", " << circle;
+                EXPECT_LT(most - least, 0.2) << radius << ", " << lean << ", " << circle;
+            }
+}
+
 TEST(Rolling, LeaningRollersOfAnySortGainNoEnergy) {
     Random random(5);
     for (int trial = 0; trial < trials(100); ++trial) {
@@ -277,6 +333,37 @@ TEST(Rolling, WhatIsHeavyOnOneSideSwingsNoWider) {
                 }
 }
 
+// It swings on for as long: after 20 swings it has what it had after the first, which settles it
+// into its contact.
+TEST(Rolling, WhatIsHeavyOnOneSideSwingsOn) {
+    for (const double radius : {0.05, 0.3, 1.0})
+        for (const double low : {0.1, 0.3, 0.6}) // of the radius
+            for (const double angle : {0.1, 0.5, 1.5})
+                for (const bool is_ball : {true, false}) {
+                    World world("soft_step", settings_for("soft_step"));
+                    world.add_body(ground(1, 0));
+                    const Shape shape =
+                        is_ball ? Shape{ball(radius)}
+                                : Shape{Cylinder{narrow(V{0, 0, -radius}), narrow(V{0, 0, radius}),
+                                                 Real(radius)}};
+                    const double inertia = 0.4 * radius * radius;
+                    BodyDef tumbler = dynamic_body(shape, 1, V{0, radius, 0});
+                    tumbler.center_of_mass = narrow(V{0, -low * radius, 0});
+                    tumbler.inertia = narrow(V{inertia});
+                    tumbler.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
+                    world.add_body(with_material(tumbler, 1, 0));
+                    const double arm = (1 - low) * radius;
+                    const double period =
+                        2 * pi * std::sqrt((inertia + arm * arm) / (gravity * low * radius));
+                    run(world, static_cast<int>(60 * period));
+                    const double lowest = gravity * (1 - low) * radius;
+                    const double first = world.energy() - lowest;
+                    run(world, static_cast<int>(60 * 19 * period));
+                    EXPECT_NEAR((world.energy() - lowest) / first, 1, 0.02)
+                        << radius << ", " << low << ", " << angle << ", " << is_ball;
+                }
+}
+
 // A plank rocking on a barrel: stable while it is thinner than the barrel's diameter.
 TEST(Rolling, APlankOnABarrelSwingsNoWider) {
     for (const double radius : {0.3, 1.0, 5.0})
@@ -298,6 +385,29 @@ TEST(Rolling, APlankOnABarrelSwingsNoWider) {
                 EXPECT_LE(gain_of(world, 10), 1e-4 * swing)
                     << radius << ", " << angle << ", " << friction;
             }
+}
+
+// On a wide barrel it lost three quarters of its energy in a minute: it left the barrel a little in
+// each step.
+TEST(Rolling, APlankOnABarrelSwingsOn) {
+    for (const double radius : {1.0, 5.0})
+        for (const double angle : {0.05, 0.2}) {
+            const double half = 0.05;
+            World world("soft_step", settings_for("soft_step"));
+            world.add_body(with_material(
+                static_body(Cylinder{narrow(V{0, 0, -1}), narrow(V{0, 0, 1}), Real(radius)}), 0.8,
+                0));
+            const V out{-std::sin(angle), std::cos(angle), 0};
+            const V along{std::cos(angle), std::sin(angle), 0};
+            BodyDef plank = dynamic_body(block(V{1.5, half, 0.3}), 1,
+                                         (radius + half) * out + radius * angle * along);
+            plank.pose.rotation = narrow(glm::angleAxis(angle, V{0, 0, 1}));
+            world.add_body(with_material(plank, 0.8, 0));
+            const double swing = gravity * (radius - half) * 0.5 * angle * angle;
+            const double begun = world.energy();
+            run(world, 1800);
+            EXPECT_NEAR(world.energy(), begun, 0.01 * swing) << radius << ", " << angle;
+        }
 }
 
 // A ring hanging in another ring swings with a weight.

@@ -66,22 +66,32 @@ ContactOrigin origin_of(const Vec3 &normal, const Motion &a, const Motion &b) {
     return {normal, b.position - a.position, a.rotation, b.rotation};
 }
 
-bool touches(const Manifold &manifold) {
+bool touches(const Manifold &manifold, Real within = Real(0)) {
     for (int k = 0; k < manifold.count; ++k)
-        if (manifold.points[static_cast<std::size_t>(k)].separation <= Real(0))
+        if (manifold.points[static_cast<std::size_t>(k)].separation <= within)
             return true;
     return false;
 }
+// What rolls on a rim may be a hair above the other body between two steps (m).
+constexpr Real rolling_gap = Real(2e-4);
 
 // A body that rolls on a rim stands where it will in the middle of the step; `half_turn`: of a
-// against b.
-void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn,
-               Manifold &manifold) {
-    const Vec3 normal = manifold.normal;
-    if (const Shape *solid = std::get_if<Shape>(&a))
-        lead_along_rim(manifold, *solid, b, normal, half_turn);
-    if (const Shape *solid = std::get_if<Shape>(&b))
-        lead_along_rim(manifold, *solid, a, -normal, -half_turn);
+// against b. `follows_a`, `follows_b`: whether its point may then follow the rim. Not on triangles:
+// where it runs over their edges bodies that tumble down hills would gain more than otherwise.
+void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn, bool follows_a,
+               bool follows_b, FoundManifold &found) {
+    const auto lead = [&](const StaticPiece &piece, const StaticPiece &other, const Vec3 &out,
+                          const Vec3 &turn, bool follows) -> std::optional<std::uint32_t> {
+        const Shape *solid = std::get_if<Shape>(&piece);
+        if (solid == nullptr)
+            return std::nullopt;
+        const auto point = lead_along_rim(found.manifold, *solid, other, out, turn,
+                                          follows ? followed_rim_sine : least_rim_sine);
+        return follows ? point : std::nullopt;
+    };
+    const Vec3 normal = found.manifold.normal;
+    found.on_rim_a = lead(a, b, normal, half_turn, follows_a);
+    found.on_rim_b = lead(b, a, -normal, -half_turn, follows_b);
 }
 
 // The corners for the middle of the step and for its end.
@@ -190,11 +200,13 @@ void World::set_anchor(Contact &contact, std::size_t k, const Motion &a, const M
     anchor.arm_b += side * half * normal;
 }
 
-// Whether the body's island takes the fewest substeps and asks for more: it is too large for its
-// budget.
+// Whether the body's island takes the fewest substeps or the most and asks for clearly more: it is
+// too large for its budget, or its loads for any. Slightly fewer it gets whenever it speeds up.
 bool World::is_crowded(std::uint32_t body) const {
     const Pace &pace = state_.paces[body]; // no substeps: none are chosen
-    return pace.substeps == settings_.substeps && pace.wanted > pace.substeps;
+    const bool is_bounded =
+        pace.substeps == settings_.substeps || pace.substeps == settings_.max_substeps;
+    return is_bounded && 4 * pace.wanted > 5 * pace.substeps;
 }
 
 Vec3 Contact::line_between_cores(const Motion &a, const Motion &b) const {
@@ -267,25 +279,28 @@ bool World::rolls_over_the_other(const Contact &contact) const {
            !is_along(contact.collider_b, b.rotation);
 }
 
+// Whether its contacts may follow it as it rolls. In a crowd that costs more than it is worth.
+bool World::rolls_freely(std::uint32_t body) const {
+    return model_->bodies[body].kind == BodyKind::dynamic && !is_crowded(body);
+}
+
 // A coin that leans, a ball with a heavy side, a plank on a barrel: with arms and normal held for
-// the step they would be driven apart along the tangents and swing ever wider. In a crowd that
-// costs more than it is worth.
+// the step they would be driven apart along the tangents and swing ever wider.
 Rolling World::rolling_of(const Contact &contact) const {
-    constexpr Real much = Real(0.1); // of an arm, in a step: too far to predict
+    // Of an arm: in a step, what does not count; in a substep, what is too far to predict.
+    constexpr Real least = Real(1e-5), much = Real(0.05);
     const bool is_a = contact.rounding_a > Real(0);
     const bool is_b = contact.rounding_b > Real(0);
-    const auto is_alone = [&](std::uint32_t body) {
-        return model_->bodies[body].kind == BodyKind::dynamic && !is_crowded(body);
-    };
     if ((!is_a && !is_b) || !method_->info.looks_ahead ||
-        (!is_alone(contact.key.a) && !is_alone(contact.key.b)))
+        (!rolls_freely(contact.key.a) && !rolls_freely(contact.key.b)))
         return Rolling::straight;
     if (is_a && is_b && rolls_over_the_other(contact))
         return Rolling::on_face;
     // Frictionless bodies that hit in space and slide past each other do not roll, nor do those
     // that bounce off a wall.
     if (contact.friction == Real(0) &&
-        (contact.restitution > Real(0) || (is_alone(contact.key.a) && is_alone(contact.key.b))))
+        (contact.restitution > Real(0) ||
+         (rolls_freely(contact.key.a) && rolls_freely(contact.key.b))))
         return Rolling::straight;
     const auto goes_round = [&](bool rolls, std::uint32_t collider) {
         return rolls && model_->colliders[collider].extent > Real(0);
@@ -299,14 +314,30 @@ Rolling World::rolling_of(const Contact &contact) const {
     const std::uint32_t round = is_a ? contact.key.a : contact.key.b;
     const std::uint32_t flat = is_a ? contact.key.b : contact.key.a;
     const auto dt = static_cast<Real>(settings_.dt);
-    if (is_alone(flat) && glm::length(state_.motions[flat].angular_velocity) * dt > rolling_far)
+    if (rolls_freely(flat) && glm::length(state_.motions[flat].angular_velocity) * dt > rolling_far)
         return Rolling::on_face;
     const Motion &motion = state_.motions[round];
-    if (!is_alone(round) || otherwise == Rolling::straight)
+    if (!rolls_freely(round) || otherwise == Rolling::straight)
         return otherwise;
     const Vec3 turn = dt * (glm::conjugate(motion.rotation) * motion.angular_velocity);
     const Real way = contact.way_round(is_a, turn);
-    return way > rolling_far && way < much ? Rolling::on_face : otherwise;
+    // What arms held for the step take from a limb that rocks slowly brings a figure to rest.
+    const Real far = model_->bodies[round].joint_count > 0 ? rolling_far : least;
+    return way > far && way < much * static_cast<Real>(substeps_of(round)) ? Rolling::on_face
+                                                                           : otherwise;
+}
+
+// A cylinder that stands on its rim alone is not round there: its point follows the rim.
+void World::follow_rim(const FoundManifold &found, Contact &contact) const {
+    if (found.on_rim_a.has_value() == found.on_rim_b.has_value())
+        return;
+    const bool is_a = found.on_rim_a.has_value();
+    const Shape &shape = model_->colliders[is_a ? contact.collider_a : contact.collider_b].shape;
+    contact.rim_point =
+        plumb::follow_rim(contact.manifold, is_a ? *found.on_rim_a : *found.on_rim_b,
+                          std::get<Cylinder>(shape).radius);
+    if (contact.rim_point >= 0)
+        (is_a ? contact.rounding_a : contact.rounding_b) = Real(0);
 }
 
 Real World::separation_now(const Contact &contact, std::size_t k) const {
@@ -327,6 +358,7 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     contact.is_turning = found.is_turning;
     contact.origin = origin_of(contact.manifold.normal, found.a, found.b);
     set_rounding(contact, *model_);
+    follow_rim(found, contact);
     if (found.hollow > Real(0)) {
         contact.hollow = found.hollow;
         const bool solid_first = !model_->colliders[contact.collider_a].surface;
@@ -338,9 +370,12 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
         const auto index = static_cast<std::size_t>(k);
         set_anchor(contact, index, found.a, found.b);
     }
-    if (!contact.is_turning && !(contact.hollow > Real(0)))
+    if (contact.rim_point >= 0)
+        contact.rolling = Rolling::on_face;
+    else if (!contact.is_turning && !(contact.hollow > Real(0)))
         contact.rolling = rolling_of(contact);
-    contact.turns_with_b = contact.is_turning
+    contact.turns_with_b = contact.rim_point >= 0 ? found.on_rim_a.has_value()
+                           : contact.is_turning
                                ? model_->bodies[contact.key.a].kind == BodyKind::dynamic
                                : contact.rounding_a > Real(0);
     for (int k = 0; k < contact.manifold.count; ++k) {
@@ -514,11 +549,12 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         if (const std::optional<Vec3> load = load_off_centre(candidate, found.manifold))
             found.manifold = collide_under(scratch_.placed[i], scratch_.placed[j], margin,
                                            found.manifold.normal, *load);
-        if (touches(found.manifold)) {
+        if (touches(found.manifold, has_rim(a, b) ? rolling_gap : Real(0))) {
             if (leads) {
                 const Vec3 half_turn = half_turn_of(candidate);
                 if (has_rim(a, b))
-                    lead_rims(scratch_.placed[i], scratch_.placed[j], half_turn, found.manifold);
+                    lead_rims(scratch_.placed[i], scratch_.placed[j], half_turn,
+                              rolls_freely(a.body), rolls_freely(b.body), found);
                 add_next_corners(scratch_.placed[i], scratch_.placed[j], half_turn, found.manifold);
             }
             if (is_predicted)
@@ -566,15 +602,15 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                 if (!solid_first)
                     found.manifold.normal = -found.manifold.normal;
             }
-            if (is_predicted && !touches(found.manifold))
+            if (is_predicted && !touches(found.manifold, has_rim(a, b) ? rolling_gap : Real(0)))
                 found = predicted_manifold(candidate, found.manifold.normal, triangle);
-            else if (leads && has_rim(a, b) && touches(found.manifold)) {
+            else if (leads && has_rim(a, b) && touches(found.manifold, rolling_gap)) {
                 const Triangle there = placed(surface.surface->triangle(triangle), pose);
                 const Vec3 half_turn = half_turn_of(candidate);
                 if (solid_first)
-                    lead_rims(solid, there, half_turn, found.manifold);
+                    lead_rims(solid, there, half_turn, false, false, found);
                 else
-                    lead_rims(there, solid, half_turn, found.manifold);
+                    lead_rims(there, solid, half_turn, false, false, found);
             }
             found.is_turning = is_turning;
             if (leads)

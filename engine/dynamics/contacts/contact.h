@@ -82,6 +82,8 @@ struct Contact {
     bool is_braced = false;        // acts at one place on both bodies and turns (bracing.h)
     Rolling rolling = Rolling::straight;
     bool turns_with_b = false; // if it turns; else with a
+    // Which point runs round a rim: of a if it turns with b, else of b. Below 0: none.
+    int rim_point = -1;
     Manifold manifold;
     ContactOrigin origin;
     // Radius of a surface that rolls: of a ball or capsule, or of a cylinder on its side (m).

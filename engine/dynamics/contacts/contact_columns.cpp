@@ -3,11 +3,13 @@
 #include "engine/dynamics/colours.h"
 #include "engine/dynamics/contacts/approach.h"
 #include "engine/dynamics/contacts/friction_patch.h"
+#include "engine/dynamics/contacts/rolling_contact.h"
 #include "engine/dynamics/islands/bracing.h"
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -173,6 +175,25 @@ void set_start_separation(const StepContext &context, ContactBlock &block, std::
         (block.rounding_a.lanes[lane] + block.rounding_b.lanes[lane]);
 }
 
+// Where a point of a body was at the start of the step, as seen from the centre of mass; `arm`:
+// where it is at `rotation`.
+Vec3 arm_at_start(const StepContext &context, std::uint32_t body, const Quat &rotation,
+                  const Vec3 &arm) {
+    return context.starts[body].rotation * (glm::conjugate(rotation) * arm);
+}
+
+// The core of a point that runs round a rim: the lowest point of the rim along the normal, from the
+// centre of mass. None where the body lies flat on its side.
+std::optional<Vec3> core_on_rim(const StepContext &context, const Contact &contact,
+                                const Quat &rotation, const Vec3 &normal) {
+    const bool of_a = contact.turns_with_b;
+    const Collider &collider =
+        context.model.colliders[of_a ? contact.collider_a : contact.collider_b];
+    const std::optional<Vec3> lowest =
+        lowest_on_rim(collider.shape, glm::conjugate(rotation) * (of_a ? normal : -normal));
+    return lowest ? std::optional(rotation * *lowest) : std::nullopt;
+}
+
 // Normal, tangents and arms of one contact as they are t seconds from now, and its separation along
 // that normal at the start of the step; the bodies' motion since then is added to it.
 void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
@@ -193,6 +214,23 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
     const Vec3 n = turn * contact.manifold.normal;
     set(block.normal, lane, n);
     set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
+    StartArms &start_arms = context.scratch.schedule.start_arms[block.ahead];
+    const auto start_a = [&](const Vec3 &core) {
+        return arm_at_start(context, contact.key.a, a.rotation, core);
+    };
+    const auto start_b = [&](const Vec3 &core) {
+        return arm_at_start(context, contact.key.b, b.rotation, core);
+    };
+    const bool goes_on_face = contact.rolling == Rolling::on_face;
+    if (contact.rim_point >= 0) {
+        const auto k = static_cast<std::size_t>(contact.rim_point);
+        const bool of_a = contact.turns_with_b;
+        if (const auto core = core_on_rim(context, contact, of_a ? a.rotation : b.rotation, n)) {
+            (of_a ? cores_a : cores_b)[k] = *core;
+            set(of_a ? start_arms.points[k].core_a : start_arms.points[k].core_b, lane,
+                of_a ? start_a(*core) : start_b(*core));
+        }
+    }
     const bool a_moves = is_dynamic(context, contact.key.a);
     const bool b_moves = is_dynamic(context, contact.key.b);
     const Real side = static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
@@ -207,11 +245,19 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
                 half_way(between + (arm_b - arm_a), arm_a, arm_b, contacts_meet_within);
             arm_a += shift;
             arm_b -= shift;
-        } else if (contact.rolling == Rolling::on_face &&
-                   contact.turns_with_b) { // the rolling body takes the point along
-            arm_b = arm_a - between;
-        } else if (contact.rolling == Rolling::on_face) {
-            arm_a = arm_b + between;
+        } else if (goes_on_face) { // the rolling body takes the point along
+            if (contact.turns_with_b)
+                arm_b = arm_a - between;
+            else
+                arm_a = arm_b + between;
+            // Also on a face, whose plane is the same at any of its points: with one that is left
+            // behind while the face turns, a plank would float off the barrel it rocks on.
+            if (contact.turns_with_b && contact.rounding_b == Real(0))
+                set(start_arms.points[k].core_b, lane,
+                    start_b(arm_b + glm::dot(on_b - arm_b, n) * n));
+            if (!contact.turns_with_b && contact.rounding_a == Real(0))
+                set(start_arms.points[k].core_a, lane,
+                    start_a(arm_a + glm::dot(on_a - arm_a, n) * n));
         }
         set(block.points[k].r_a, lane, arm_a);
         set(block.points[k].r_b, lane, arm_b);
@@ -351,8 +397,7 @@ void find_again(StepContext &context, ContactBlock &block, std::size_t lane) {
     set(block.points[0].r_b, lane, arm_b);
     const Real half = Real(0.5) * found.points[0].separation;
     const auto at_start = [&](std::uint32_t body, const Vec3 &core) {
-        return context.starts[body].rotation *
-               (glm::conjugate(context.bodies[body].rotation) * core);
+        return arm_at_start(context, body, context.bodies[body].rotation, core);
     };
     StartArms::Point &cores = context.scratch.schedule.start_arms[block.ahead].points[0];
     set(cores.core_a, lane, at_start(contact.key.a, arm_a - (half + contact.rounding_a) * n));
@@ -442,23 +487,10 @@ void rearm_lane(StepContext &context, ContactBlock &block, std::size_t lane) {
 
 // Friction turns a rider on a turntable all the time. With the arms from the start of the step it
 // would be turned all at once, in the first substep, and friction cannot hold that. The load of a
-// braced contact is no rider: ahead of its bodies it would be a couple. In a hollow both halves of
-// a substep push across the chord between its ends: along it gravity does the work that the way up
-// takes, and what is lost from chord to chord is what facets of that length would take. With the
-// normal of the substep's end in its second half, a swing would lose energy at the rate
-// omega^2 h / 4.
+// braced contact is no rider: ahead of its bodies it would be a couple.
 void turn_contact_columns(StepContext &context, Real t) {
-    const auto in_hollows = [&](const ContactBlock &block) {
-        unsigned lanes = 0;
-        for (unsigned left = block.turning; left != 0; left &= left - 1) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-            if (context.contacts[block.contacts[lane]].hollow > Real(0))
-                lanes |= 1U << lane;
-        }
-        return lanes;
-    };
     turn_lanes(context, t, [&](const ContactBlock &block) -> unsigned {
-        return block.turning & ~(t == Real(0) ? in_hollows(block) : unsigned{block.braced});
+        return block.turning & ~(t == Real(0) ? 0U : unsigned{block.braced});
     });
 }
 
@@ -610,7 +642,7 @@ void prepare_contact_columns(StepContext &context) {
                 if (block.ahead != ContactBlock::none)
                     fill_start_arms(context, block, schedule.start_arms[block.ahead]);
         });
-    turn_lanes(context, Real(0), [](const ContactBlock &block) { return block.braced; });
+    turn_contact_columns(context, Real(0));
 }
 
 void warm_start_contact_columns(StepContext &context, Real share, bool remember_first) {

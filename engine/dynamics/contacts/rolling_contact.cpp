@@ -1,6 +1,7 @@
 #include "engine/dynamics/contacts/rolling_contact.h"
 
 #include "engine/dynamics/bodies/motion.h"
+#include "engine/dynamics/contacts/contact.h"
 #include "engine/geometry/hull_queries.h"
 
 #include <algorithm>
@@ -32,13 +33,13 @@ struct Rim {
     }
 };
 
-std::optional<Rim> rim_along(const Shape &solid, const Vec3 &along) {
+std::optional<Rim> rim_along(const Shape &solid, const Vec3 &along, Real least = least_rim_sine) {
     const auto *cylinder = std::get_if<Cylinder>(&solid);
     if (cylinder == nullptr)
         return std::nullopt;
     const Vec3 axis = glm::normalize(cylinder->b - cylinder->a);
     const Real sine = glm::dot(axis, along);
-    if (!(std::abs(sine) > least_rim_sine))
+    if (!(std::abs(sine) > least))
         return std::nullopt;
     return sine > Real(0) ? Rim{cylinder->b, axis, cylinder->radius}
                           : Rim{cylinder->a, -axis, cylinder->radius};
@@ -125,11 +126,12 @@ Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const
     return Real(0.5) * rim->radius * ahead.slope * glm::dot(apart, apart);
 }
 
-void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &other,
-                    const Vec3 &out, const Vec3 &half_turn) {
-    const std::optional<Rim> rim = rim_along(solid, out);
+std::optional<std::uint32_t> lead_along_rim(Manifold &manifold, const Shape &solid,
+                                            const StaticPiece &other, const Vec3 &out,
+                                            const Vec3 &half_turn, Real least_sine) {
+    const std::optional<Rim> rim = rim_along(solid, out, least_sine);
     if (!rim || manifold.count == 0)
-        return;
+        return std::nullopt;
     ManifoldPoint &deepest = deepest_of(manifold);
     const Vec3 at = on_solid(deepest, out);
     const Lean lean = lean_of(rim->axis, out);
@@ -139,14 +141,42 @@ void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &o
     constexpr Real beside = Real(0.4);
     if (!rim->has(at) || !is_alone(manifold, deepest) ||
         glm::distance(at, rim->middle + rim->radius * lean.way) > beside * rim->radius ||
-        glm::dot(apart, apart) > Real(1))
-        return;
+        glm::dot(apart, apart) > Real(1) ||
+        !(glm::dot(rim->axis, seen_after(out, Real(2) * half_turn)) > Real(0.5) * least_sine))
+        return std::nullopt;
     const Vec3 leading = rim->middle + rim->radius * ahead.way;
     const Real separation = deepest.separation + glm::dot(at - leading, out);
     if (distance_to(other, leading + separation * out) > off)
-        return;
+        return std::nullopt;
     deepest.separation = separation;
     deepest.position = leading + (Real(0.5) * separation) * out;
+    const Vec3 last =
+        rim->middle + rim->radius * lean_of(rim->axis, seen_after(out, Real(2) * half_turn)).way;
+    if (!(glm::dot(apart, apart) > rolling_far * rolling_far) ||
+        distance_to(other, last + (separation + glm::dot(leading - last, out)) * out) > off)
+        return std::nullopt;
+    return deepest.feature;
+}
+
+int follow_rim(Manifold &manifold, std::uint32_t feature, Real radius) {
+    const std::span points = points_of(manifold);
+    const auto followed = std::ranges::find(points, feature, &ManifoldPoint::feature);
+    if (followed == points.end())
+        return -1;
+    const ManifoldPoint point = *followed;
+    const auto others = std::ranges::remove_if(points, [&](const ManifoldPoint &other) {
+        return glm::distance(other.position, point.position) < radius;
+    });
+    manifold.count = static_cast<int>(points.size() - others.size()) + 1;
+    manifold.points[static_cast<std::size_t>(manifold.count - 1)] = point;
+    return manifold.count - 1;
+}
+
+std::optional<Vec3> lowest_on_rim(const Shape &solid, const Vec3 &out) {
+    const std::optional<Rim> rim = rim_along(solid, out, Real(0));
+    if (!rim)
+        return std::nullopt;
+    return rim->middle + rim->radius * lean_of(rim->axis, out).way;
 }
 
 namespace {

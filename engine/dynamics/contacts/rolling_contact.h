@@ -5,6 +5,8 @@
 #include "engine/dynamics/bodies/body.h"
 #include "engine/dynamics/contacts/inner_edges.h"
 
+#include <optional>
+
 namespace plumb::inline PLUMB_PRECISION {
 
 // Whether one of two colliders is a cylinder.
@@ -16,7 +18,9 @@ bool is_wide(const Collider &collider);
 
 // Sine of the least angle between a cylinder's side and a plane at which it stands on a rim; below
 // that the cylinder counts as round there (Contact::rounding_a).
-inline constexpr Real least_rim_sine = Real(0.8);
+inline constexpr Real least_rim_sine = Real(0.7);
+// The same for a cylinder whose point follows the rim through the substeps.
+inline constexpr Real followed_rim_sine = Real(0.1);
 
 // The part of a surface's distance along a normal that rolling does not change: the radius of a
 // ball or capsule. For a cylinder on its side, or on a rim up to 53 degrees from that, it is the
@@ -36,10 +40,18 @@ Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const
 // of the solid's turn against the other in the step: `half_turn` (rad). A point that is lowest at
 // the start of the step would act as a pivot: the solid would come down as it tips over it, be
 // pushed up where the rim has dipped below, and gain energy. About a point that is lowest in the
-// middle it goes up as far as down. Only if the solid stands on that point alone and the other body
-// is below the new place, too.
-void lead_along_rim(Manifold &manifold, const Shape &solid, const StaticPiece &other,
-                    const Vec3 &out, const Vec3 &half_turn);
+// middle it goes up as far as down. Only if the solid stands on that point alone, at `least_sine`
+// or more, and the other body is below the new place, too. Returns the point's feature if it moves
+// and the other body is below it until the end of the step: then it can be followed.
+std::optional<std::uint32_t> lead_along_rim(Manifold &manifold, const Shape &solid,
+                                            const StaticPiece &other, const Vec3 &out,
+                                            const Vec3 &half_turn, Real least_sine);
+
+// Leaves out the points of a manifold within `radius` of the one with the feature, which stands for
+// them as it runs round the rim. Returns its index; below 0 if there is none.
+int follow_rim(Manifold &manifold, std::uint32_t feature, Real radius);
+// The lowest point of the rim that the solid stands on; none where it stands on no rim.
+std::optional<Vec3> lowest_on_rim(const Shape &solid, const Vec3 &out);
 
 // How much lower a hull will be, after `turn` against the other body, than at any of a manifold's
 // points (m). 0 for hulls whose faces have six corners at most, and where it stands on more than
