@@ -164,10 +164,10 @@ int follow_rim(Manifold &manifold, std::uint32_t feature, Real radius) {
     if (followed == points.end())
         return -1;
     const ManifoldPoint point = *followed;
-    const auto others = std::ranges::remove_if(points, [&](const ManifoldPoint &other) {
+    const auto end = std::remove_if(points.begin(), points.end(), [&](const ManifoldPoint &other) {
         return glm::distance(other.position, point.position) < radius;
     });
-    manifold.count = static_cast<int>(points.size() - others.size()) + 1;
+    manifold.count = static_cast<int>(end - points.begin()) + 1;
     manifold.points[static_cast<std::size_t>(manifold.count - 1)] = point;
     return manifold.count - 1;
 }
