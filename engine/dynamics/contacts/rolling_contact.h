@@ -23,7 +23,7 @@ inline constexpr Real least_rim_sine = Real(0.7);
 inline constexpr Real followed_rim_sine = Real(0.1);
 
 // The part of a surface's distance along a normal that rolling does not change: the radius of a
-// ball or capsule. For a cylinder on its side, or on a rim up to 53 degrees from that, it is the
+// ball or capsule. For a cylinder on its side, or on a rim up to 44 degrees from that, it is the
 // distance from its axis along the normal. The rest of the way to the middle then lies on the axis,
 // and rolling does not move it; otherwise a leaning coin would sink in as it rolls, be pushed out,
 // and gain energy.
