@@ -56,9 +56,9 @@ struct ContactOrigin {
 enum class Moment { start, touch };
 
 // How a contact point moves while a round body rolls. straight: arms and normal stay as they were.
-// on_face: it follows the face of a turning body, or a core that goes around its body's middle, on
-// a body that is not round, or the line between two round surfaces. round: only the arms change,
-// once the step shows that they do.
+// on_face: in each substep it follows the face of a turning body, a core that goes around its
+// body's middle on a body that is not round, the line between two round surfaces, or the lowest
+// point of a rim. round: only the arms change, once the step shows that they do.
 enum class Rolling : std::uint8_t { straight, on_face, round };
 
 // How far the core of a rolling body, or the face it rolls on, must go around in a step to count,

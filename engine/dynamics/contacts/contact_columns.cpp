@@ -182,61 +182,75 @@ Vec3 arm_at_start(const StepContext &context, std::uint32_t body, const Quat &ro
     return context.starts[body].rotation * (glm::conjugate(rotation) * arm);
 }
 
-// The core of a point that runs round a rim: the lowest point of the rim along the normal, from the
-// centre of mass. None where the body lies flat on its side.
-std::optional<Vec3> core_on_rim(const StepContext &context, const Contact &contact,
-                                const Quat &rotation, const Vec3 &normal) {
+// A contact some time from now.
+struct TurnedContact {
+    Motion a, b;
+    Vec3 between{Real(0)};         // from a's centre of mass to b's
+    std::array<Vec3, 4> cores_a{}; // from these
+    std::array<Vec3, 4> cores_b{};
+    Quat turn = identity_rotation; // of the normal since it was found
+    Vec3 normal{Real(0)};
+};
+TurnedContact turned_contact(const StepContext &context, const Contact &contact, Real t) {
+    TurnedContact turned;
+    turned.a = ahead(context.bodies[contact.key.a], t);
+    turned.b = ahead(context.bodies[contact.key.b], t);
+    turned.between = turned.b.position - turned.a.position;
+    Vec3 line{Real(0)};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        turned.cores_a[k] = turned.a.rotation * contact.anchors[k].core_a;
+        turned.cores_b[k] = turned.b.rotation * contact.anchors[k].core_b;
+        line += turned.between + (turned.cores_b[k] - turned.cores_a[k]);
+    }
+    turned.turn = contact.turn(turned.a.rotation, turned.b.rotation, line);
+    turned.normal = turned.turn * contact.manifold.normal;
+    return turned;
+}
+
+// Makes another point of a body the one whose distance is a contact point's separation.
+void set_core(StepContext &context, const ContactBlock &block, std::size_t lane, std::size_t k,
+              bool of_a, const TurnedContact &turned, const Vec3 &core) {
+    const ContactKey &key = context.contacts[block.contacts[lane]].key;
+    StartArms::Point &point = context.scratch.schedule.start_arms[block.ahead].points[k];
+    set(of_a ? point.core_a : point.core_b, lane,
+        arm_at_start(context, of_a ? key.a : key.b, (of_a ? turned.a : turned.b).rotation, core));
+}
+
+// Moves the point that runs round a rim to where the rim is lowest.
+void move_round_rim(StepContext &context, const ContactBlock &block, std::size_t lane,
+                    TurnedContact &turned) {
+    const Contact &contact = context.contacts[block.contacts[lane]];
+    const auto k = static_cast<std::size_t>(contact.rim_point);
     const bool of_a = contact.turns_with_b;
     const Collider &collider =
         context.model.colliders[of_a ? contact.collider_a : contact.collider_b];
-    const std::optional<Vec3> lowest =
-        lowest_on_rim(collider.shape, glm::conjugate(rotation) * (of_a ? normal : -normal));
-    return lowest ? std::optional(rotation * *lowest) : std::nullopt;
+    const Quat &rotation = (of_a ? turned.a : turned.b).rotation;
+    const std::optional<Vec3> lowest = lowest_on_rim(
+        collider.shape, glm::conjugate(rotation) * (of_a ? turned.normal : -turned.normal));
+    if (!lowest)
+        return; // it lies on its side
+    const Vec3 core = rotation * *lowest;
+    (of_a ? turned.cores_a : turned.cores_b)[k] = core;
+    set_core(context, block, lane, k, of_a, turned, core);
 }
 
 // Normal, tangents and arms of one contact as they are t seconds from now, and its separation along
 // that normal at the start of the step; the bodies' motion since then is added to it.
 void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real t) {
     const Contact &contact = context.contacts[block.contacts[lane]];
-    const Motion a = ahead(context.bodies[contact.key.a], t);
-    const Motion b = ahead(context.bodies[contact.key.b], t);
-    const Vec3 between = b.position - a.position;
-    const auto points = static_cast<std::size_t>(contact.manifold.count);
-    std::array<Vec3, 4> cores_a{};
-    std::array<Vec3, 4> cores_b{};
-    Vec3 line{Real(0)};
-    for (std::size_t k = 0; k < points; ++k) {
-        cores_a[k] = a.rotation * contact.anchors[k].core_a;
-        cores_b[k] = b.rotation * contact.anchors[k].core_b;
-        line += between + (cores_b[k] - cores_a[k]);
-    }
-    const Quat turn = contact.turn(a.rotation, b.rotation, line);
-    const Vec3 n = turn * contact.manifold.normal;
+    TurnedContact turned = turned_contact(context, contact, t);
+    const Vec3 &n = turned.normal;
+    const Vec3 &between = turned.between;
     set(block.normal, lane, n);
-    set(block.t1, lane, turn * tangent_basis(contact.manifold.normal).t1);
-    StartArms &start_arms = context.scratch.schedule.start_arms[block.ahead];
-    const auto start_a = [&](const Vec3 &core) {
-        return arm_at_start(context, contact.key.a, a.rotation, core);
-    };
-    const auto start_b = [&](const Vec3 &core) {
-        return arm_at_start(context, contact.key.b, b.rotation, core);
-    };
-    const bool goes_on_face = contact.rolling == Rolling::on_face;
-    if (contact.rim_point >= 0) {
-        const auto k = static_cast<std::size_t>(contact.rim_point);
-        const bool of_a = contact.turns_with_b;
-        if (const auto core = core_on_rim(context, contact, of_a ? a.rotation : b.rotation, n)) {
-            (of_a ? cores_a : cores_b)[k] = *core;
-            set(of_a ? start_arms.points[k].core_a : start_arms.points[k].core_b, lane,
-                of_a ? start_a(*core) : start_b(*core));
-        }
-    }
+    set(block.t1, lane, turned.turn * tangent_basis(contact.manifold.normal).t1);
+    if (contact.rim_point >= 0)
+        move_round_rim(context, block, lane, turned);
     const bool a_moves = is_dynamic(context, contact.key.a);
     const bool b_moves = is_dynamic(context, contact.key.b);
     const Real side = static_cast<Real>((b_moves ? 1 : 0) - (a_moves ? 1 : 0));
-    for (std::size_t k = 0; k < points; ++k) {
-        const Vec3 on_a = cores_a[k] + block.rounding_a.lanes[lane] * n;
-        const Vec3 on_b = cores_b[k] - block.rounding_b.lanes[lane] * n;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(contact.manifold.count); ++k) {
+        const Vec3 on_a = turned.cores_a[k] + block.rounding_a.lanes[lane] * n;
+        const Vec3 on_b = turned.cores_b[k] - block.rounding_b.lanes[lane] * n;
         const Vec3 half = Real(0.5) * glm::dot(between + (on_b - on_a), n) * n;
         Vec3 arm_a = on_a + (Real(1) + side) * half;
         Vec3 arm_b = on_b - (Real(1) - side) * half;
@@ -245,19 +259,17 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
                 half_way(between + (arm_b - arm_a), arm_a, arm_b, contacts_meet_within);
             arm_a += shift;
             arm_b -= shift;
-        } else if (goes_on_face) { // the rolling body takes the point along
-            if (contact.turns_with_b)
-                arm_b = arm_a - between;
-            else
-                arm_a = arm_b + between;
-            // Also on a face, whose plane is the same at any of its points: with one that is left
-            // behind while the face turns, a plank would float off the barrel it rocks on.
-            if (contact.turns_with_b && contact.rounding_b == Real(0))
-                set(start_arms.points[k].core_b, lane,
-                    start_b(arm_b + glm::dot(on_b - arm_b, n) * n));
-            if (!contact.turns_with_b && contact.rounding_a == Real(0))
-                set(start_arms.points[k].core_a, lane,
-                    start_a(arm_a + glm::dot(on_a - arm_a, n) * n));
+        } else if (contact.rolling == Rolling::on_face) {
+            // The rolling body takes the point along, also on the other's face, whose plane is the
+            // same at any of its points: with one that is left behind while the face turns, a plank
+            // would float off the barrel it rocks on.
+            const bool is_face_of_a = !contact.turns_with_b;
+            Vec3 &arm = is_face_of_a ? arm_a : arm_b;
+            arm = is_face_of_a ? arm_b + between : arm_a - between;
+            const Vec3 &on = is_face_of_a ? on_a : on_b;
+            if ((is_face_of_a ? contact.rounding_a : contact.rounding_b) == Real(0))
+                set_core(context, block, lane, k, is_face_of_a, turned,
+                         arm + glm::dot(on - arm, n) * n);
         }
         set(block.points[k].r_a, lane, arm_a);
         set(block.points[k].r_b, lane, arm_b);
