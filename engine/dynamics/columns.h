@@ -30,6 +30,14 @@ inline Vec3 get(const Columns3 &columns, std::size_t lane) {
 struct ColumnsSymmetric {
     Column xx, yy, zz, xy, xz, yz;
 };
+inline void set(ColumnsSymmetric &columns, std::size_t lane, const Mat3 &m) {
+    columns.xx.lanes[lane] = m[0][0];
+    columns.yy.lanes[lane] = m[1][1];
+    columns.zz.lanes[lane] = m[2][2];
+    columns.xy.lanes[lane] = m[1][0];
+    columns.xz.lanes[lane] = m[2][0];
+    columns.yz.lanes[lane] = m[2][1];
+}
 // Where each lane's body or particle starts, in Reals from the start of its array.
 struct alignas(64) IndexColumn {
     using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;

@@ -82,8 +82,8 @@ class TriangleSurface {
     std::variant<MeshTree, HeightField> source_;
     Sides sides_;
     Aabb bounds_;
-    std::vector<std::uint8_t>
-        edge_bits_; // per triangle three for outer edges, then three for hollow ones
+    // Per triangle three bits for outer edges, then three for hollow ones.
+    std::vector<std::uint8_t> edge_bits_;
     static constexpr std::uint32_t none = UINT32_MAX;
     std::vector<std::array<std::uint32_t, 3>> neighbors_; // the triangle beyond each edge, or none
     std::uint64_t content_hash_ = 0;

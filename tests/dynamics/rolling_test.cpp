@@ -193,6 +193,7 @@ TEST(Rolling, ALeaningCoinRollsWithoutGainingEnergy) {
                 << radius << ", " << froude;
         }
 }
+
 // A thin disc that leans by `lean` from upright and rolls round a circle of `circle` radii without
 // slipping, at the rate at which gravity turns its angular momentum (Goldstein 2002, section 5.7;
 // a disc without thickness, so this one wobbles a little).

@@ -121,7 +121,7 @@ struct Body {
     bool has_torque = false;
     Real linear_damping = Real(0);
     Real angular_damping = Real(0);
-    std::uint32_t joint_count = 0;
+    std::uint32_t joint_count = 0; // of alive joints that hold it
 };
 
 // How a body moves: the world's state, one per body in the same order.

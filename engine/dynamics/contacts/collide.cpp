@@ -66,7 +66,7 @@ ContactOrigin origin_of(const Vec3 &normal, const Motion &a, const Motion &b) {
     return {normal, b.position - a.position, a.rotation, b.rotation};
 }
 
-bool touches(const Manifold &manifold, Real within = Real(0)) {
+bool touches(const Manifold &manifold, Real within) {
     for (int k = 0; k < manifold.count; ++k)
         if (manifold.points[static_cast<std::size_t>(k)].separation <= within)
             return true;
@@ -77,7 +77,7 @@ constexpr Real rolling_gap = Real(2e-4);
 
 // A body that rolls on a rim stands where it will in the middle of the step; `half_turn`: of a
 // against b. `follows_a`, `follows_b`: whether its point may then follow the rim. Not on triangles:
-// where it runs over their edges bodies that tumble down hills would gain more than otherwise.
+// where it runs over their edges, more of what tumbles down hills would gain energy.
 void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn, bool follows_a,
                bool follows_b, FoundManifold &found) {
     const auto lead = [&](const StaticPiece &piece, const StaticPiece &other, const Vec3 &out,
@@ -201,7 +201,7 @@ void World::set_anchor(Contact &contact, std::size_t k, const Motion &a, const M
 }
 
 // Whether the body's island takes the fewest substeps or the most and asks for clearly more: it is
-// too large for its budget, or its loads for any. Slightly fewer it gets whenever it speeds up.
+// too large for its budget, or its loads for any. It gets slightly fewer whenever it speeds up.
 bool World::is_crowded(std::uint32_t body) const {
     const Pace &pace = state_.paces[body]; // no substeps: none are chosen
     const bool is_bounded =
@@ -321,7 +321,8 @@ Rolling World::rolling_of(const Contact &contact) const {
         return otherwise;
     const Vec3 turn = dt * (glm::conjugate(motion.rotation) * motion.angular_velocity);
     const Real way = contact.way_round(is_a, turn);
-    // What arms held for the step take from a limb that rocks slowly brings a figure to rest.
+    // Arms held for the step brake limbs that rock slowly: otherwise a figure on its back would
+    // roll its legs for ever, as nothing in the model resists rolling.
     const Real far = model_->bodies[round].joint_count > 0 ? rolling_far : least;
     return way > far && way < much * static_cast<Real>(substeps_of(round)) ? Rolling::on_face
                                                                            : otherwise;
@@ -539,6 +540,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                               way_of(candidate) > predicted_from(a, b);
     const bool is_turning = is_turned(candidate);
     const bool leads = method_->info.looks_ahead && !is_turning;
+    const Real gap = has_rim(a, b) ? rolling_gap : Real(0);
     if (!a.surface && !b.surface) {
         const ContactMemory *before = find_memory(state_, candidate.key);
         if (!is_turning && keeps_contacts() && keep_contact(candidate, before, out))
@@ -549,7 +551,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         if (const std::optional<Vec3> load = load_off_centre(candidate, found.manifold))
             found.manifold = collide_under(scratch_.placed[i], scratch_.placed[j], margin,
                                            found.manifold.normal, *load);
-        if (touches(found.manifold, has_rim(a, b) ? rolling_gap : Real(0))) {
+        if (touches(found.manifold, gap)) {
             if (leads) {
                 const Vec3 half_turn = half_turn_of(candidate);
                 if (has_rim(a, b))
@@ -602,9 +604,9 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                 if (!solid_first)
                     found.manifold.normal = -found.manifold.normal;
             }
-            if (is_predicted && !touches(found.manifold, has_rim(a, b) ? rolling_gap : Real(0)))
+            if (is_predicted && !touches(found.manifold, gap))
                 found = predicted_manifold(candidate, found.manifold.normal, triangle);
-            else if (leads && has_rim(a, b) && touches(found.manifold, rolling_gap)) {
+            else if (leads && has_rim(a, b) && touches(found.manifold, gap)) {
                 const Triangle there = placed(surface.surface->triangle(triangle), pose);
                 const Vec3 half_turn = half_turn_of(candidate);
                 if (solid_first)

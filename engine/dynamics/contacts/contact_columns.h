@@ -122,6 +122,18 @@ struct ContactSchedule {
 };
 
 void prepare_contact_columns(StepContext &context);
+// Sets all of a block's start arms to the contacts' own cores.
+void fill_start_arms(const StepContext &context, const ContactBlock &block, StartArms &arms);
+// Like remember_contacts, warm_start_contacts, solve_contacts and store_contacts.
+void warm_start_contact_columns(StepContext &context, Real share, bool remember_first);
+void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
+// Whether any contact was struck in this substep that is not pressed.
+bool anything_is_struck(const StepContext &context);
+// Whether the last pass changed the speed of any contact point by more than this (m/s).
+bool any_is_corrected(const StepContext &context, Real speed);
+void store_contact_columns(StepContext &context);
+
+// Within a step (turning_columns.cpp).
 // Moves the normals and arms of contacts that turn with their bodies to where they are t seconds
 // from now; those of braced contacts only for t = 0.
 void turn_contact_columns(StepContext &context, Real t);
@@ -135,14 +147,6 @@ void recall_borne(StepContext &context);
 // Takes over the points where impacts have met (ContactConstraint): bodies that separate there, but
 // still approach elsewhere, would be stopped for good by the passes.
 void meet_contact_columns(StepContext &context);
-// Like remember_contacts, warm_start_contacts, solve_contacts and store_contacts.
-void warm_start_contact_columns(StepContext &context, Real share, bool remember_first);
-void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
-// Whether any contact was struck in this substep that is not pressed.
-bool anything_is_struck(const StepContext &context);
-// Whether the last pass changed the speed of any contact point by more than this (m/s).
-bool any_is_corrected(const StepContext &context, Real speed);
-void store_contact_columns(StepContext &context);
 
 // Compiled for each instruction set (contact_kernels.cpp).
 namespace kernels {

@@ -36,9 +36,12 @@ Real coupling(const SolverBody &a, const SolverBody &b, const ContactPointConstr
 
 } // namespace
 
+bool is_dynamic(const StepContext &context, std::uint32_t body) {
+    return context.model.bodies[body].kind == BodyKind::dynamic;
+}
+
 bool are_both_dynamic(const StepContext &context, const Contact &contact) {
-    return context.model.bodies[contact.key.a].kind == BodyKind::dynamic &&
-           context.model.bodies[contact.key.b].kind == BodyKind::dynamic;
+    return is_dynamic(context, contact.key.a) && is_dynamic(context, contact.key.b);
 }
 
 bool are_balls(const StepContext &context, const Contact &contact) {

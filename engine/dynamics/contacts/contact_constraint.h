@@ -67,7 +67,8 @@ struct ContactBias {
     Softness on_static{};
 };
 
-// Whether both bodies are dynamic; and whether both colliders are balls.
+// Whether a body, or both of a contact's, are dynamic; and whether both colliders are balls.
+bool is_dynamic(const StepContext &context, std::uint32_t body);
 bool are_both_dynamic(const StepContext &context, const Contact &contact);
 bool are_balls(const StepContext &context, const Contact &contact);
 // touch_nothing_else: whether two dynamic bodies touch each other and nothing else, and no joint or
