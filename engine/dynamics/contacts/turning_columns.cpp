@@ -116,14 +116,15 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
             arm_a += shift;
             arm_b -= shift;
         } else if (contact.rolling == Rolling::on_face) {
-            // The rolling body takes the point along, also on the other's face, whose plane is the
-            // same at any of its points: with one that is left behind while the face turns, a plank
-            // would float off the barrel it rocks on.
+            // The rolling body takes the point along, also on the other's face if that turns, whose
+            // plane is the same at any of its points: with one that is left behind, a plank would
+            // float off the barrel it rocks on.
             const bool is_face_of_a = !contact.turns_with_b;
             Vec3 &arm = is_face_of_a ? arm_a : arm_b;
             arm = is_face_of_a ? arm_b + between : arm_a - between;
             const Vec3 &on = is_face_of_a ? on_a : on_b;
-            if ((is_face_of_a ? contact.rounding_a : contact.rounding_b) == Real(0))
+            if ((is_face_of_a ? contact.rounding_a : contact.rounding_b) == Real(0) &&
+                (is_face_of_a ? a_moves : b_moves))
                 set_core(context, block, lane, k, is_face_of_a, turned,
                          arm + glm::dot(on - arm, n) * n);
         }
