@@ -228,11 +228,10 @@ void World::load_bodies() {
 // which ask for far more than the least substeps. What rolls on corners is struck all the time,
 // too.
 bool World::is_pressed(const ContactKey &key) const {
-    constexpr int far_more = 8;
     const auto is_struck = [&](std::uint32_t body) {
         const Pace &pace = state_.paces[body];
         return model_->bodies[body].kind != BodyKind::dynamic ||
-               (pace.wanted >= far_more * settings_.substeps &&
+               (pace.wanted >= far_more_substeps * settings_.substeps &&
                 pace.struck * settings_.dt >= pressed_after);
     };
     return is_struck(key.a) && is_struck(key.b);

@@ -200,22 +200,31 @@ TEST(Standing, ARopeDoesNotStretchUnderAFullCage) {
     }
 }
 
-// The floor, between the balls and two beams, is thrown about at first.
+// The floor, between the balls and two beams, is thrown about at first. Fast pushing of balls that
+// had sunk into it kept it so, and they sank right through: at 90 and 120 Hz about half of the
+// time.
 TEST(Standing, HeavyBallsStayInALightBox) {
-    for (const double ball_mass : {20.0, 50.0, 100.0})
-        for (const double rate : {30.0, 60.0}) {
-            StepSettings settings = settings_for("soft_step");
-            settings.dt = 1 / rate;
-            World world("soft_step", settings);
-            BodyId cage;
-            std::vector<BodyId> balls;
-            add_full_cage(world, ball_mass, cage, balls);
-            for (const double side : {-0.4, 0.4})
-                world.add_body(static_body(block({0.05, 0.1, 0.6}), {side, 1.38, 0}));
-            run(world, static_cast<int>(8 * rate));
-            for (const BodyId one : balls)
-                EXPECT_GT(position_of(world, one).y, 1.5) << ball_mass << " kg, " << rate << " Hz";
-        }
+    for (const auto &[ball_mass, rate] : {std::pair(20.0, 30.0),
+                                          {20.0, 60.0},
+                                          {50.0, 30.0},
+                                          {50.0, 60.0},
+                                          {100.0, 30.0},
+                                          {100.0, 60.0},
+                                          {20.0, 90.0},
+                                          {20.0, 120.0},
+                                          {70.0, 120.0}}) {
+        StepSettings settings = settings_for("soft_step");
+        settings.dt = 1 / rate;
+        World world("soft_step", settings);
+        BodyId cage;
+        std::vector<BodyId> balls;
+        add_full_cage(world, ball_mass, cage, balls);
+        for (const double side : {-0.4, 0.4})
+            world.add_body(static_body(block({0.05, 0.1, 0.6}), {side, 1.38, 0}));
+        run(world, static_cast<int>(8 * rate));
+        for (const BodyId one : balls)
+            EXPECT_GT(position_of(world, one).y, 1.5) << ball_mass << " kg, " << rate << " Hz";
+    }
 }
 
 } // namespace

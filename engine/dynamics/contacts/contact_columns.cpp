@@ -147,7 +147,7 @@ Real remembered_share(const ContactBlock &block, std::size_t lane) {
 }
 
 Real share_relaxed_again(const StepContext &context) {
-    return context.active.pace.is_balanced ? relaxed_again : relaxed_again_unbalanced;
+    return context.active.pace.remembers_all ? relaxed_again : relaxed_again_unbalanced;
 }
 
 // The same as in the kernels between substeps (warm_start_impl).

@@ -29,18 +29,23 @@ struct Pace {
 // adds in a 60th of a second, or in a step if that is longer.
 double rest_speed(double pull, double dt);
 
+// Islands that take so many times the least substeps carry far more than single weights.
+inline constexpr int far_more_substeps = 8;
+
 // How an island is stepped.
 struct IslandPace {
     int substeps = 0;
     // Whether passes take a contact's points first to last and last to first in turns.
     bool alternates = true;
-    // Whether it takes about as many substeps as it wants; the budget may be too small for that.
-    bool is_balanced = true;
+    // Whether all that the relaxation pass adds to a load is remembered (relaxed_again), or half.
+    bool remembers_all = true;
     // How many passes over the constraints, and relaxation passes, each substep takes on top of the
     // settings' own.
     int more_passes = 0;
     int more_relaxing = 0;  // how many more relaxation passes alone
     bool is_joined = false; // has joints
+    // Whether heavier bodies strike a light one all the time (calm_push).
+    bool is_shaken = false;
     bool operator==(const IslandPace &) const = default;
 };
 
@@ -71,6 +76,7 @@ struct Islands : DisjointSets {
         int before = 0; // the most substeps that any of its bodies took in the last step
         bool rests = true;
         bool is_slow = true;
+        bool is_shaken = false;  // see IslandPace
         bool touches = false;    // has contacts
         bool is_joined = false;  // has joints
         bool was_let_go = false; // any of its joints was, see JointGroup

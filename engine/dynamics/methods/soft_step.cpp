@@ -90,6 +90,13 @@ void advance_soft_step(StepContext &context) {
 
     const ParticlePush particle_push{contact_bias.softness.bias_rate, contact_bias.push_velocity};
 
+    // A light floor under heavy balls that have sunk into it would be pushed down as fast as deep
+    // contacts push, hit the beams beneath as if it had fallen on them, and forget its loads
+    // (remembered_blow): the balls would sink right through.
+    constexpr Real calm_push = Real(0.5); // m/s
+    if (context.active.pace.is_shaken)
+        contact_bias.push_velocity = std::min(contact_bias.push_velocity, calm_push);
+
     ContactBias relax_bias;
     relax_bias.loaded_only = true;
     // Twice as stiff against immovable bodies: the ground carries everything that stands on it
