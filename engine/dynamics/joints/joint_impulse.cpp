@@ -235,11 +235,18 @@ namespace {
 
 // K of several rows as it was when the bodies were joined with their frames aligned, turned with a.
 // With the present K a spring's stiffness would turn with both bodies and feed energy into what
-// swings on it.
+// swings on it. That of a turn is turned half way with b: only then, where it is not the same about
+// all axes, is its torque the slope of an energy, to second order in the angle.
 Mat3 matrix_as_joined(StepContext &context, const JointConstraint &joint) {
     const Joint &of = context.model.joints[joint.joint];
     const RowBlock &rows = joint.rows;
-    const Quat &rotation_a = context.body(joint.a).rotation;
+    Quat rotation_a = context.body(joint.a).rotation;
+    if (rows.kind == RowKind::angular && rows.count == 3) {
+        const Quat seen_by_b =
+            context.body(joint.b).rotation * of.frame_b_local * glm::conjugate(of.frame_a_local);
+        rotation_a = glm::normalize(
+            rotation_a + (glm::dot(rotation_a, seen_by_b) < Real(0) ? -seen_by_b : seen_by_b));
+    }
     std::array<SolverBody, 2> ends;
     const auto put = [&](SolverBody &end, std::uint32_t index, const Quat &rotation) {
         if (index == Joint::world || !(context.model.bodies[index].mass > Real(0)))
