@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <type_traits>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -24,14 +25,22 @@ Quat cayley(const Vec3 &spin, Real h) {
 }
 
 // Rotates `v` by a quaternion that round-off has left not quite unit, in double precision, so that
-// a round trip keeps the vector's length up to unbiased rounding. Otherwise free spin gains or
-// loses energy with every substep.
+// a round trip keeps the vector's length up to unbiased rounding. Otherwise whatever spins or rolls
+// gains or loses energy with every substep.
 Vec3 turned_to_rounding(const Quat &rotation, const Vec3 &v) {
     const glm::dquat q{rotation};
     const glm::dvec3 axis{q.x, q.y, q.z};
     const glm::dvec3 wide{v};
     const glm::dvec3 aside = glm::cross(axis, wide);
     return Vec3{wide + 2.0 / glm::dot(q, q) * (q.w * aside + glm::cross(axis, aside))};
+}
+
+// The second half of such a round trip. In double what is gained or lost is too little to matter.
+Vec3 turned_back(const Quat &rotation, const Vec3 &v) {
+    if constexpr (std::is_same_v<Real, double>)
+        return rotated(rotation, v);
+    else
+        return turned_to_rounding(rotation, v);
 }
 
 } // namespace
@@ -278,8 +287,8 @@ inline FreeFlight begin_driven(SolverBody &motion, const Body &body, const Drive
             flight.start_spin =
                 turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
             turn_freely(flight, body, angular, h, gyroscopic_iterations);
-            motion.angular_velocity =
-                rotated(motion.rotation, kick == Kick::around ? flight.mean_spin : flight.end_spin);
+            motion.angular_velocity = turned_back(
+                motion.rotation, kick == Kick::around ? flight.mean_spin : flight.end_spin);
         } else if (body.angular_damping > Real(0)) {
             flight.late_spin = kick == Kick::around
                                    ? (angular.kept - angular.mean_kept) * motion.angular_velocity
@@ -353,7 +362,7 @@ void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, Fr
         flight.start_spin += rotated(glm::conjugate(motion.rotation),
                                      motion.angular_velocity - flight.angular_velocity);
         turn_freely(flight, body, damped(body.angular_damping, h), h, gyroscopic_iterations);
-        motion.angular_velocity = rotated(motion.rotation, flight.mean_spin);
+        motion.angular_velocity = turned_back(motion.rotation, flight.mean_spin);
         // Joints and contacts hold where the velocity leads.
         flight.turns_by_mean = held_by.springs && !held_by.joints && !flight.loaded;
     }
@@ -558,10 +567,11 @@ void kick(StepContext &context, const Vec3 &gravity, Real h) {
         motion.velocity =
             damped(body.linear_damping, h).kept * motion.velocity + h * pull_on(body, gravity);
         if (has_gyroscopic_spin(body)) {
-            const Vec3 spin = rotated(glm::conjugate(motion.rotation), motion.angular_velocity);
-            motion.angular_velocity =
-                rotated(motion.rotation, gyroscopic_spin(body.inertia, spin, h,
-                                                         context.settings.gyroscopic_iterations));
+            const Vec3 spin =
+                turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
+            const Vec3 end =
+                gyroscopic_spin(body.inertia, spin, h, context.settings.gyroscopic_iterations);
+            motion.angular_velocity = turned_back(motion.rotation, end);
         }
         motion.angular_velocity *= damped(body.angular_damping, h).kept;
         twist(motion, body, h);
