@@ -275,7 +275,7 @@ TEST(Rolling, ALeaningCoinGainsNoEnergyAtOtherStepsEither) {
 }
 
 // Known failing: thrown coins that spin by up to a radian per step land on parts of the rim without
-// contact points. Measured: 2 of 200 gain more than a twentieth, at worst 0.42.
+// contact points. Measured: 1 or 2 of 200 gain more than a twentieth, at worst 0.13.
 TEST(Rolling, ThrownCoinsHardlyGainEnergy) {
     Random random(5);
     const int tried = trials(200);
@@ -299,7 +299,7 @@ TEST(Rolling, ThrownCoinsHardlyGainEnergy) {
             least = std::min(least, world.energy());
             gain = std::max(gain, world.energy() - least);
         }
-        EXPECT_LE(gain, 0.45 * scale) << trial;
+        EXPECT_LE(gain, 0.2 * scale) << trial;
         gained += gain > 0.05 * scale ? 1 : 0;
     }
     // With only four points on the rim: one in fifteen, by up to 1.2.
