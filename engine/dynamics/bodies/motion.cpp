@@ -567,11 +567,10 @@ void kick(StepContext &context, const Vec3 &gravity, Real h) {
         motion.velocity =
             damped(body.linear_damping, h).kept * motion.velocity + h * pull_on(body, gravity);
         if (has_gyroscopic_spin(body)) {
-            const Vec3 spin =
-                turned_to_rounding(glm::conjugate(motion.rotation), motion.angular_velocity);
-            const Vec3 end =
-                gyroscopic_spin(body.inertia, spin, h, context.settings.gyroscopic_iterations);
-            motion.angular_velocity = turned_back(motion.rotation, end);
+            const Vec3 spin = rotated(glm::conjugate(motion.rotation), motion.angular_velocity);
+            motion.angular_velocity =
+                rotated(motion.rotation, gyroscopic_spin(body.inertia, spin, h,
+                                                         context.settings.gyroscopic_iterations));
         }
         motion.angular_velocity *= damped(body.angular_damping, h).kept;
         twist(motion, body, h);
