@@ -16,8 +16,9 @@ namespace plumb::inline PLUMB_PRECISION {
 // What the relaxation pass adds to a load is missing in both halves of a substep, and was found in
 // the second half alone, so the next substep begins with twice as much of it. Without that a tall
 // stack, whose loads one pass does not balance, sways for minutes. Where an island gets far fewer
-// substeps than it wants, with half of that: the whole would feed waves in a large pyramid. But no
-// more of it than a share of the load: an impact is not a load of the next substep.
+// substeps than it wants, with half of that (IslandPace::remembers_all): the whole would feed waves
+// in a large pyramid. But no more of it than a share of the load: an impact is not a load of the
+// next substep.
 inline constexpr Real relaxed_again = 1;
 inline constexpr Real relaxed_again_unbalanced = Real(0.5);
 inline constexpr Real relaxed_share = Real(1) / Real(16);
