@@ -258,6 +258,9 @@ class World {
     bool is_crowded(std::uint32_t body) const;
     bool rolls_over_the_other(const Contact &contact) const;
     Rolling rolling_of(const Contact &contact) const;
+    bool tips(const Contact &contact, bool is_a) const;
+    bool rides(const Contact &contact) const;
+    std::optional<bool> turns_over_b(const Contact &contact) const;
     bool rolls_freely(std::uint32_t body) const;
     void follow_rim(const FoundManifold &found, Contact &contact) const;
     // Lets a contact follow the hollow that its solid slides or rolls through (hollow_contact.h).

@@ -227,5 +227,69 @@ TEST(SoftStepTurntable, ItsRiderStays) {
     }
 }
 
+// Also where the table is a body on a hinge, with or without a motor, and no matter how slowly it
+// turns: a rider that left along the tangent in each step would wander off within minutes.
+TEST(SoftStepTurntable, ItsRiderStaysOnATableOnAHinge) {
+    constexpr double half = 0.03; // thickness of the rider
+    for (const bool is_driven : {false, true})
+        for (const double mass : {20.0, 1e4})
+            for (const double spin : {0.05, 0.5, 2.0, 3.5})
+                for (const double share : {0.5, 0.9}) {
+                    const double friction = spin * spin / gravity / share;
+                    World world("soft_step", settings_for("soft_step"));
+                    BodyDef table = with_material(dynamic_body(block(V{1.5, 0.1, 1.5}), mass, V{0}),
+                                                  friction, 0);
+                    table.angular_velocity = narrow(V{0, spin, 0});
+                    JointDef axle;
+                    axle.type = JointType::hinge;
+                    axle.b = world.add_body(table);
+                    axle.frame_a_local = axle.frame_b_local =
+                        narrow(glm::angleAxis(pi / 2, V{0, 0, 1}));
+                    if (is_driven)
+                        axle.motor = JointMotor{Real(spin), Real(1e6)};
+                    world.add_joint(axle);
+                    BodyDef rider = dynamic_body(block(V{0.1, half, 0.1}), 2, V{1, 0.1 + half, 0},
+                                                 V{0, 0, -spin});
+                    rider.angular_velocity = narrow(V{0, spin, 0});
+                    const BodyId id = world.add_body(with_material(rider, friction, 0));
+                    const double energy = world.measure().kinetic_energy;
+                    run(world, 1200);
+                    const V at = glm::inverse(wide(motion_of(world, axle.b).rotation)) *
+                                 position_of(world, id);
+                    EXPECT_LT(glm::distance(at, V{1, 0.1 + half, 0}), 5e-4)
+                        << is_driven << ", " << mass << " kg, " << spin << " rad/s, " << share;
+                    EXPECT_NEAR(world.measure().kinetic_energy / energy, 1, 2e-3);
+                }
+}
+
+// A box on a swing that hangs from a hinge on two rods of 2 m: nothing slides, nothing is lost.
+TEST(SoftStepTurntable, ASwingWithARiderSwingsOn) {
+    for (const double angle : {0.05, 0.1, 0.3, 0.6})
+        for (const double mass : {1.0, 20.0}) {
+            constexpr double length = 2, seat = 20; // kg
+            World world("soft_step", settings_for("soft_step"));
+            const glm::dquat tilt = glm::angleAxis(angle, V{0, 0, 1});
+            BodyDef def = dynamic_body(block(V{0.5, 0.05, 0.5}), seat, tilt * V{0, -length, 0});
+            def.pose.rotation = narrow(tilt);
+            JointDef hinge;
+            hinge.type = JointType::hinge;
+            hinge.b = world.add_body(with_material(def, 1, 0));
+            hinge.anchor_b_local = narrow(V{0, length, 0});
+            hinge.frame_a_local = hinge.frame_b_local = narrow(glm::angleAxis(-pi / 2, V{0, 1, 0}));
+            world.add_joint(hinge);
+            BodyDef rider =
+                dynamic_body(block(V{0.1, 0.1, 0.1}), mass, tilt * V{0, -(length - 0.15), 0});
+            rider.pose.rotation = narrow(tilt);
+            const BodyId id = world.add_body(with_material(rider, 1, 0));
+            const double lowest = -gravity * (seat * length + mass * (length - 0.15));
+            const double begun = world.energy() - lowest;
+            run(world, 1800);
+            EXPECT_NEAR((world.energy() - lowest) / begun, 1, 0.004) << angle << ", " << mass;
+            const V at = glm::inverse(wide(motion_of(world, hinge.b).rotation)) *
+                         (position_of(world, id) - position_of(world, hinge.b));
+            EXPECT_LT(glm::distance(at, V{0, 0.15, 0}), 5e-4) << angle << ", " << mass;
+        }
+}
+
 } // namespace
 } // namespace plumb::inline PLUMB_PRECISION

@@ -284,6 +284,65 @@ bool World::rolls_freely(std::uint32_t body) const {
     return model_->bodies[body].kind == BodyKind::dynamic && !is_crowded(body);
 }
 
+// Whether a body turns on a corner or an edge over one that does not turn: the arms turn with it.
+// Held for the step, they would lag behind by half of it, and whatever rocks would lose two or
+// three times the energy that its impacts take.
+bool World::tips(const Contact &contact, bool is_a) const {
+    // In a step, what does not count and what passes over several corners; in a substep, what is
+    // too far to predict.
+    constexpr Real least = Real(1e-5), several = Real(0.1), much = Real(0.05);
+    const auto turn = [&](std::uint32_t body) {
+        return static_cast<Real>(settings_.dt) * glm::length(state_.motions[body].angular_velocity);
+    };
+    const std::uint32_t body = is_a ? contact.key.a : contact.key.b;
+    const std::uint32_t other = is_a ? contact.key.b : contact.key.a;
+    const Real far = model_->bodies[body].joint_count > 0 ? rolling_far : least;
+    if (contact.is_new || !rolls_freely(body) || !(turn(body) > std::max(far, turn(other))) ||
+        turn(other) > rolling_far)
+        return false;
+    const Real most = much * static_cast<Real>(substeps_of(body));
+    const bool has_many_corners =
+        is_wide(model_->colliders[is_a ? contact.collider_a : contact.collider_b]);
+    if (!(turn(body) < (has_many_corners ? std::min(several, most) : most)))
+        return false;
+    const auto loaded = std::ranges::count_if(
+        contact.impulses, [](const Vec3 &impulse) { return impulse.x > Real(0); });
+    return loaded == 1 || loaded == 2;
+}
+
+// Whether two bodies turn together, or about the normal. With arms and normal held for the step,
+// whatever rides on a turntable would leave along the tangent, and a swing with a box on it would
+// lose its energy.
+bool World::rides(const Contact &contact) const {
+    constexpr Real far = Real(1e-3); // rad in a step: stacks sway more slowly
+    const Motion &a = state_.motions[contact.key.a];
+    const Motion &b = state_.motions[contact.key.b];
+    const Vec3 &normal = contact.manifold.normal;
+    const auto dt = static_cast<Real>(settings_.dt);
+    if (!rolls_freely(contact.key.a) || !rolls_freely(contact.key.b) ||
+        dt * glm::length(glm::cross(normal, b.angular_velocity - a.angular_velocity)) > rolling_far)
+        return false;
+    const auto spins = [&](const Motion &motion) {
+        return dt * std::abs(glm::dot(motion.angular_velocity, normal)) > rolling_far;
+    };
+    const auto goes_round = [&](const Motion &motion) {
+        return dt * glm::length(motion.angular_velocity) > far;
+    };
+    return spins(a) || spins(b) || goes_round(a) || goes_round(b);
+}
+
+// Of a contact between two bodies that are not round there: whether its arms turn, and whether its
+// normal then turns with b.
+std::optional<bool> World::turns_over_b(const Contact &contact) const {
+    if (tips(contact, true))
+        return true;
+    if (tips(contact, false))
+        return false;
+    if (!rides(contact))
+        return std::nullopt;
+    return model_->bodies[contact.key.a].mass <= model_->bodies[contact.key.b].mass;
+}
+
 // A coin that leans, a ball with a heavy side, a plank on a barrel: with arms and normal held for
 // the step they would be driven apart along the tangents and swing ever wider.
 Rolling World::rolling_of(const Contact &contact) const {
@@ -291,9 +350,11 @@ Rolling World::rolling_of(const Contact &contact) const {
     constexpr Real least = Real(1e-5), much = Real(0.05);
     const bool is_a = contact.rounding_a > Real(0);
     const bool is_b = contact.rounding_b > Real(0);
-    if ((!is_a && !is_b) || !method_->info.looks_ahead ||
+    if (!method_->info.looks_ahead ||
         (!rolls_freely(contact.key.a) && !rolls_freely(contact.key.b)))
         return Rolling::straight;
+    if (!is_a && !is_b)
+        return turns_over_b(contact) ? Rolling::on_face : Rolling::straight;
     if (is_a && is_b && rolls_over_the_other(contact))
         return Rolling::on_face;
     // Frictionless bodies that hit in space and slide past each other do not roll, nor do those
@@ -371,22 +432,24 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
         const auto index = static_cast<std::size_t>(k);
         set_anchor(contact, index, found.a, found.b);
     }
+    if (!contact.is_new)
+        carry_over(std::span(state_.points).subspan(before->first_point, before->point_count),
+                   contact);
     if (contact.rim_point >= 0)
         contact.rolling = Rolling::on_face;
     else if (!contact.is_turning && !(contact.hollow > Real(0)))
         contact.rolling = rolling_of(contact);
+    const bool is_round = contact.rounding_a > Real(0) || contact.rounding_b > Real(0);
     contact.turns_with_b = contact.rim_point >= 0 ? found.on_rim_a.has_value()
                            : contact.is_turning
                                ? model_->bodies[contact.key.a].kind == BodyKind::dynamic
-                               : contact.rounding_a > Real(0);
+                           : is_round ? contact.rounding_a > Real(0)
+                                      : turns_over_b(contact).value_or(false);
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
         if (found.moment != Moment::start || contact.turns())
             contact.manifold.points[index].separation = separation_now(contact, index);
     }
-    if (!contact.is_new)
-        carry_over(std::span(state_.points).subspan(before->first_point, before->point_count),
-                   contact);
 }
 
 // A step that is tried again begins as before, with the impulses that the last step left.
