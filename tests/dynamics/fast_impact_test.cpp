@@ -262,6 +262,44 @@ TEST(SoftStepTurntable, ItsRiderStaysOnATableOnAHinge) {
                 }
 }
 
+// A ball that rolls on a turntable goes in a circle, 2/7 as fast as the table turns: Weckesser
+// 1997, "A ball rolling on a freely spinning turntable".
+TEST(SoftStepTurntable, BallsRollInCircles) {
+    constexpr double radius = 0.1;
+    for (const bool is_kinematic : {false, true})
+        for (const double spin : {1, 3, 6, 12}) {
+            World world("soft_step", settings_for("soft_step"));
+            const Box plate = block(V{10, 0.1, 10});
+            BodyDef table = is_kinematic ? static_body(plate, V{0, -0.1, 0})
+                                         : dynamic_body(plate, 1e6, V{0, -0.1, 0});
+            table.kind = is_kinematic ? BodyKind::kinematic : BodyKind::dynamic;
+            table.angular_velocity = narrow(V{0, spin, 0});
+            JointDef axle;
+            axle.type = JointType::hinge;
+            axle.b = world.add_body(with_material(table, 1, 0));
+            axle.anchor_a_local = narrow(V{0, -0.1, 0});
+            axle.frame_a_local = axle.frame_b_local = narrow(glm::angleAxis(pi / 2, V{0, 0, 1}));
+            if (!is_kinematic)
+                world.add_joint(axle);
+            const V from{0.5, radius, 0}, velocity{0.3, 0, 0.2}, up{0, 1, 0};
+            BodyDef rolls = dynamic_body(ball(radius), 1, from, velocity);
+            const V beneath =
+                glm::cross(V{0, spin, 0}, from) - velocity; // of the table, to the ball
+            rolls.angular_velocity = narrow(V{-beneath.z, 0, beneath.x} / radius);
+            const BodyId id = world.add_body(with_material(rolls, 1, 0));
+            const double rate = 2.0 / 7.0 * spin;
+            const V middle = from + glm::cross(up, velocity) / rate;
+            double worst = 0;
+            for (int i = 0; i < 600; ++i) {
+                world.step(nullptr);
+                const V expected =
+                    middle + glm::angleAxis(rate * world.time(), up) * (from - middle);
+                worst = std::max(worst, glm::distance(position_of(world, id), expected));
+            }
+            EXPECT_LT(worst, is_kinematic ? 4e-3 : 0.012) << is_kinematic << ", " << spin;
+        }
+}
+
 // A box on a swing that hangs from a hinge on two rods of 2 m: nothing slides, nothing is lost.
 TEST(SoftStepTurntable, ASwingWithARiderSwingsOn) {
     for (const double angle : {0.05, 0.1, 0.3, 0.6})

@@ -375,7 +375,8 @@ Rolling World::rolling_of(const Contact &contact) const {
     const std::uint32_t round = is_a ? contact.key.a : contact.key.b;
     const std::uint32_t flat = is_a ? contact.key.b : contact.key.a;
     const auto dt = static_cast<Real>(settings_.dt);
-    if (rolls_freely(flat) && glm::length(state_.motions[flat].angular_velocity) * dt > rolling_far)
+    const bool may_turn = rolls_freely(flat) || model_->bodies[flat].kind == BodyKind::kinematic;
+    if (may_turn && glm::length(state_.motions[flat].angular_velocity) * dt > rolling_far)
         return Rolling::on_face;
     const Motion &motion = state_.motions[round];
     if (!rolls_freely(round) || otherwise == Rolling::straight)

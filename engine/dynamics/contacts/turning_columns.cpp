@@ -115,7 +115,7 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
                 half_way(between + (arm_b - arm_a), arm_a, arm_b, contacts_meet_within);
             arm_a += shift;
             arm_b -= shift;
-        } else if (contact.rolling == Rolling::on_face) {
+        } else if (contact.rolling == Rolling::on_face || contact.is_turning) {
             // The rolling body takes the point along, also on the other's face if that turns, whose
             // plane is the same at any of its points: with one that is left behind, a plank would
             // float off the barrel it rocks on.
