@@ -270,7 +270,7 @@ TEST_P(Scene, IsTheSameWithTwoThreads) {
         options.method = method.name;
         const auto alone = Simulation::create(scene, options, nullptr);
         const auto shared = Simulation::create(scene, options, &two);
-        for (int s = 0; s < 100; ++s) {
+        for (int s = 0; s < std::max(40, trials(100)); ++s) {
             alone->step();
             shared->step();
         }

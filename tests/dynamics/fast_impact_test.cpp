@@ -233,7 +233,7 @@ TEST(SoftStepTurntable, ItsRiderStaysOnATableOnAHinge) {
     constexpr double half = 0.03; // thickness of the rider
     for (const bool is_driven : {false, true})
         for (const double mass : {20.0, 1e4})
-            for (const double spin : {0.05, 0.5, 2.0, 3.5})
+            for (const double spin : {0.2, 2.0, 3.5})
                 for (const double share : {0.5, 0.9}) {
                     const double friction = spin * spin / gravity / share;
                     World world("soft_step", settings_for("soft_step"));
@@ -253,7 +253,7 @@ TEST(SoftStepTurntable, ItsRiderStaysOnATableOnAHinge) {
                     rider.angular_velocity = narrow(V{0, spin, 0});
                     const BodyId id = world.add_body(with_material(rider, friction, 0));
                     const double energy = world.measure().kinetic_energy;
-                    run(world, 1200);
+                    run(world, 600);
                     const V at = glm::inverse(wide(motion_of(world, axle.b).rotation)) *
                                  position_of(world, id);
                     EXPECT_LT(glm::distance(at, V{1, 0.1 + half, 0}), 5e-4)

@@ -55,10 +55,11 @@ struct ContactOrigin {
 // start: of the step. touch: where the bodies will meet.
 enum class Moment { start, touch };
 
-// How a contact point moves while a round body rolls. straight: arms and normal stay as they were.
-// on_face: in each substep it follows the face of a turning body, a core that goes around its
-// body's middle on a body that is not round, the line between two round surfaces, or the lowest
-// point of a rim. round: only the arms change, once the step shows that they do.
+// How a contact point moves while a body rolls, tips, or rides on another. straight: arms and
+// normal stay as they were. on_face: in each substep it follows the face of a turning body, the
+// corners on which a body tips, a core that goes around its body's middle on a body that is not
+// round, the line between two round surfaces, or the lowest point of a rim. round: only the arms
+// change, once the step shows that they do.
 enum class Rolling : std::uint8_t { straight, on_face, round };
 
 // How far the core of a rolling body, or the face it rolls on, must go around in a step to count,

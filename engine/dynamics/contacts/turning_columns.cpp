@@ -116,9 +116,9 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
             arm_a += shift;
             arm_b -= shift;
         } else if (contact.rolling == Rolling::on_face || contact.is_turning) {
-            // The rolling body takes the point along, also on the other's face if that turns, whose
+            // What rolls, tips or rides takes the point along, also on the other's face, whose
             // plane is the same at any of its points: with one that is left behind, a plank would
-            // float off the barrel it rocks on.
+            // float off the barrel it rocks on, and a ball on a turntable would be slowed.
             const bool is_face_of_a = !contact.turns_with_b;
             Vec3 &arm = is_face_of_a ? arm_a : arm_b;
             arm = is_face_of_a ? arm_b + between : arm_a - between;
