@@ -106,6 +106,32 @@ TEST(Rocking, OnASlabBlocksLoseEnergyOnlyInImpacts) {
     EXPECT_NEAR(energy.before_next / energy.after, 1, 2e-3);
 }
 
+// An edge that comes down over another triangle than the one the block stands on is stopped there,
+// and not pushed out of it.
+TEST(Rocking, BlocksOnAHeightFieldGainNothing) {
+    for (const double height : {0.1, 0.5, 2.0})
+        for (const double slenderness : {3, 5, 8})
+            for (const double share : {0.4, 0.7}) {
+                const Block block{height, slenderness};
+                World world("soft_step", settings_for("soft_step"));
+                constexpr int side = 17;
+                HeightField flat;
+                flat.origin = narrow(V{-3.03, 0, -3.07});
+                flat.spacing = Real(0.37);
+                flat.columns = flat.rows = side;
+                flat.heights.assign(std::size_t{side} * side, Real(0));
+                BodyDef field;
+                field.kind = BodyKind::static_body;
+                field.colliders.emplace_back().surface =
+                    std::make_shared<const TriangleSurface>(flat, Sides::front);
+                world.add_body(with_material(field, 2, 0));
+                world.add_body(tilted(block, share * block.critical_angle(), 2));
+                const double begun = world.energy() - block.energy_at_rest();
+                EXPECT_LT(regained_energy(world, 600), 0.03 * begun)
+                    << height << " m, " << slenderness << ", " << share;
+            }
+}
+
 // However short the steps are.
 TEST(Rocking, WhatFallsOverItsEdgeKeepsItsEnergy) {
     for (const double rate : {30, 60, 240, 1920}) {

@@ -85,6 +85,25 @@ bool is_in_hollow(Real bend, Real depth, Real beyond) {
                                   rounding * depth * std::sqrt(std::max(Real(1) - bend, Real(0)));
 }
 
+// A manifold's points with the triangle's own normal: their heights above its plane. What lies
+// nearly flat over an inner edge comes to rest on both triangles.
+Manifold flattened(const Manifold &manifold, const Vec3 &face, const Vec3 &corner, Real margin) {
+    constexpr Real nearly_flat = Real(0.98); // cosine
+    Manifold result;
+    result.normal = -face;
+    if (manifold.count < 3 || !(-glm::dot(manifold.normal, face) > nearly_flat))
+        return result;
+    for (int k = 0; k < manifold.count; ++k) {
+        const ManifoldPoint &point = manifold.points[static_cast<std::size_t>(k)];
+        const Vec3 on_solid = point.position - (Real(0.5) * point.separation) * manifold.normal;
+        const Real height = glm::dot(face, on_solid - corner);
+        if (height <= margin)
+            result.points[static_cast<std::size_t>(result.count++)] = {
+                on_solid - (Real(0.5) * height) * face, height, point.feature};
+    }
+    return result;
+}
+
 } // namespace
 
 Manifold collide_inside(const Shape &solid, const TriangleSurface &surface, const Transform &pose) {
@@ -157,8 +176,11 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
                 is_over = false;
             } else {
                 const Vec3 other = to_world_vector(pose, surface.normal_beyond(index, number));
-                if (!is_in_hollow(glm::dot(other, triangle.normal), -separation, beyond))
-                    return {};
+                const Real bend = glm::dot(other, triangle.normal);
+                if (!is_in_hollow(bend, -separation, beyond))
+                    return bend >= Real(1) - Real(1e-6)
+                               ? flattened(manifold, face, placed_one.a, margin)
+                               : Manifold{};
             }
         }
     if (!is_over) {
@@ -170,8 +192,13 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
         separation = inside->t_enter - depth;
         deepest = on_ridge + separation * face;
     }
-    Manifold result;
-    result.normal = -face;
+    Manifold result = flattened(manifold, face, placed_one.a, margin);
+    const auto is_deepest = [&](const ManifoldPoint &point) {
+        return point.separation <= separation + Real(1e-5) * triangle.size;
+    };
+    if (is_over &&
+        std::any_of(result.points.begin(), result.points.begin() + result.count, is_deepest))
+        return result;
     result.count = 1;
     result.points[0] = {deepest - Real(0.5) * separation * face, separation, deepest_point_feature};
     return result;
