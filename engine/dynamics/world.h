@@ -261,6 +261,8 @@ class World {
     bool tips(const Contact &contact, bool is_a) const;
     bool rides(const Contact &contact) const;
     std::optional<bool> turns_over_b(const Contact &contact) const;
+    // Its rolling and the body it then turns with.
+    void choose_rolling(Contact &contact) const;
     bool rolls_freely(std::uint32_t body) const;
     void follow_rim(const FoundManifold &found, Contact &contact) const;
     // Lets a contact follow the hollow that its solid slides or rolls through (hollow_contact.h).

@@ -14,7 +14,8 @@ struct Block {
 
     double critical_angle() const { return std::atan(1 / slenderness); }
     double energy_at_rest() const { return gravity * height / 2; } // of 1 kg
-    // What an impact leaves of the energy: Housner, eq. 8, with I = 4/3 m R^2.
+    // What an impact leaves of the energy, with I = 4/3 m R^2 about the edge: (1 - m R^2 / I (1 -
+    // cos 2 alpha))^2.
     double left_by_impact() const {
         const double sine = std::sin(critical_angle());
         return std::pow(1 - 1.5 * sine * sine, 2);

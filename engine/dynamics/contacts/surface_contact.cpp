@@ -11,12 +11,16 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <span>
 
 #include <glm/geometric.hpp>
 
 namespace plumb::inline PLUMB_PRECISION {
 
 namespace {
+
+// Cosine of an angle below which two faces lie in a plane.
+constexpr Real in_plane = Real(1) - Real(1e-6);
 
 // The solid's deepest point against a face, when the contact is with the face alone.
 constexpr std::uint32_t deepest_point_feature = 0xFFFFFFFFU;
@@ -69,7 +73,7 @@ bool may_lean(const TriangleSurface &surface, const Transform &pose, std::uint32
             continue; // leans to the inside of this edge
         const Vec3 beyond = to_world_vector(pose, surface.normal_beyond(index, number));
         const Real bend = glm::dot(beyond, triangle.normal);
-        const bool is_border = bend >= Real(1) - Real(1e-6);
+        const bool is_border = bend >= in_plane;
         if (is_border || std::abs(glm::dot(out, triangle.normal)) >= bend - Real(1e-3))
             return true;
     }
@@ -154,7 +158,7 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
     const Vec3 out = -manifold.normal;
     const Vec3 face = from_behind ? -triangle.normal : triangle.normal;
     const Real lean = glm::dot(out, face);
-    if (lean >= Real(1) - Real(1e-6))
+    if (lean >= in_plane)
         return manifold;
     if (lean > Real(0)) {
         if (may_lean(surface, pose, index, triangle, manifold.points[0].position, out))
@@ -178,9 +182,8 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
                 const Vec3 other = to_world_vector(pose, surface.normal_beyond(index, number));
                 const Real bend = glm::dot(other, triangle.normal);
                 if (!is_in_hollow(bend, -separation, beyond))
-                    return bend >= Real(1) - Real(1e-6)
-                               ? flattened(manifold, face, placed_one.a, margin)
-                               : Manifold{};
+                    return bend >= in_plane ? flattened(manifold, face, placed_one.a, margin)
+                                            : Manifold{};
             }
         }
     if (!is_over) {
@@ -193,11 +196,10 @@ Manifold collide(const Shape &solid, const TriangleSurface &surface, const Trans
         deepest = on_ridge + separation * face;
     }
     Manifold result = flattened(manifold, face, placed_one.a, margin);
-    const auto is_deepest = [&](const ManifoldPoint &point) {
-        return point.separation <= separation + Real(1e-5) * triangle.size;
-    };
-    if (is_over &&
-        std::any_of(result.points.begin(), result.points.begin() + result.count, is_deepest))
+    const std::span points = std::span(result.points).first(static_cast<std::size_t>(result.count));
+    if (is_over && std::ranges::any_of(points, [&](const ManifoldPoint &point) {
+            return point.separation <= separation + Real(1e-5) * triangle.size;
+        }))
         return result;
     result.count = 1;
     result.points[0] = {deepest - Real(0.5) * separation * face, separation, deepest_point_feature};
