@@ -92,7 +92,8 @@ Manifold World::present_manifold(const Contact &contact) const {
                               surface_pose(b, state_.motions[contact.key.b]), contact.key.triangle,
                               Real(0));
     return plumb::collide(place(contact.collider_a, contact.key.a),
-                          place(contact.collider_b, contact.key.b), Real(0));
+                          place(contact.collider_b, contact.key.b), Real(0),
+                          contact.manifold.normal);
 }
 
 Measures World::measure() const {

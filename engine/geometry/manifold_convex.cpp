@@ -1,6 +1,6 @@
 // Contacts of cylinders, convex hulls and triangles with every solid.
 #include "engine/geometry/epa.h"
-#include "engine/geometry/face_gap.h"
+#include "engine/geometry/edge_gap.h"
 #include "engine/geometry/kept_points.h"
 #include "engine/geometry/manifold_pairs.h"
 #include "engine/math/basis.h"
@@ -400,7 +400,7 @@ Proximity proximity_near(const A &a, const B &b, Real margin, const Vec3 &guess)
     if constexpr (HaveFaceGap<A, B>) {
         const Vec3 towards = guess == Vec3{Real(0)} ? b.middle() - a.middle() : guess;
         if (towards != Vec3{Real(0)})
-            if (const std::optional<Proximity> known = face_gap(a, b, towards, margin))
+            if (const std::optional<Proximity> known = feature_gap(a, b, towards, margin))
                 return *known;
     }
     return proximity(CorePair(a, b), margin, guess);

@@ -1,7 +1,7 @@
 #include "engine/geometry/manifold.h"
 
+#include "engine/geometry/edge_gap.h"
 #include "engine/geometry/epa.h"
-#include "engine/geometry/face_gap.h"
 #include "tests/geometry/convex_oracle.h"
 #include "tests/trials.h"
 
@@ -135,7 +135,7 @@ TEST(ManifoldConvex, KeepsTheContract) {
 }
 
 // With a guess near the right normal or anywhere, the contract is the same. With the right one, a
-// face decides one case in four.
+// face decides one case in five, and a face or an edge of each more than half.
 TEST(ManifoldConvex, KeepsTheContractWithAGuess) {
     std::uint64_t seed = 450;
     const auto check = [&]<typename A, typename B>() {
@@ -143,6 +143,7 @@ TEST(ManifoldConvex, KeepsTheContractWithAGuess) {
         int wrong = 0;
         int with_contact = 0;
         int by_a_face = 0;
+        int by_features = 0;
         const int trial_count = trials(1'000'000 / 14);
         for (int i = 0; i < trial_count; ++i) {
             const Pair<A, B> pair = near_pair<A, B>(random);
@@ -152,11 +153,10 @@ TEST(ManifoldConvex, KeepsTheContractWithAGuess) {
                 guess = V{without.normal} + 0.05 * guess;
                 const Vec3 origin = place_of(pair.a);
                 ++with_contact;
-                by_a_face += face_gap(core_of(pair.a, origin), core_of(pair.b, origin), Vec3{guess},
-                                      Real(margin))
-                                     .has_value()
-                                 ? 1
-                                 : 0;
+                const auto a = core_of(pair.a, origin);
+                const auto b = core_of(pair.b, origin);
+                by_a_face += face_gap(a, b, Vec3{guess}, Real(margin)).has_value() ? 1 : 0;
+                by_features += feature_gap(a, b, Vec3{guess}, Real(margin)).has_value() ? 1 : 0;
             }
             const Manifold m = collide(Shape{pair.a}, Shape{pair.b}, Real(margin), Vec3{guess});
             const std::string text = complaint(pair, signed_distance_of(pair), m);
@@ -165,6 +165,8 @@ TEST(ManifoldConvex, KeepsTheContractWithAGuess) {
         }
         EXPECT_EQ(wrong, 0) << "of " << trial_count << ", seed " << seed;
         EXPECT_GT(by_a_face, with_contact / 5);
+        EXPECT_GT(by_features, with_contact / 2);
+        std::cout << "of " << with_contact << ": " << by_a_face << ", " << by_features << '\n';
     };
     check.operator()<Box, ConvexHull>();
     check.operator()<ConvexHull, Box>();

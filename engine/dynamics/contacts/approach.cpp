@@ -2,7 +2,7 @@
 
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/bodies/solid.h"
-#include "engine/geometry/face_gap.h"
+#include "engine/geometry/edge_gap.h"
 #include "engine/geometry/gjk.h"
 #include "engine/geometry/half_space.h"
 #include "engine/geometry/hull_queries.h"
@@ -30,7 +30,7 @@ template <typename A, typename B> ClosestPoints closest(const A &a, const B &b, 
         if constexpr (HaveFaceGap<decltype(core_a), decltype(core_b)>)
             if (guess != Vec3{Real(0)}) {
                 const auto known =
-                    face_gap(core_a, core_b, guess, std::numeric_limits<Real>::infinity());
+                    feature_gap(core_a, core_b, guess, std::numeric_limits<Real>::infinity());
                 if (known && known->separation > Real(0))
                     return {known->separation, origin + known->on_a, origin + known->on_b,
                             known->normal};
