@@ -1,6 +1,6 @@
 // Contacts of cylinders, convex hulls and triangles with every solid.
-#include "engine/geometry/epa.h"
 #include "engine/geometry/edge_gap.h"
+#include "engine/geometry/epa.h"
 #include "engine/geometry/kept_points.h"
 #include "engine/geometry/manifold_pairs.h"
 #include "engine/math/basis.h"
