@@ -34,6 +34,7 @@ using wide::HWY_NAMESPACE::minus;
 using wide::HWY_NAMESPACE::plus;
 using wide::HWY_NAMESPACE::times;
 constexpr Tag tag{};
+using Mask = hn::Mask<Tag>;
 
 struct Symmetric {
     Lanes xx, yy, zz, xy, xz, yz;
@@ -41,6 +42,38 @@ struct Symmetric {
 
 HWY_INLINE Lanes all(Real x) {
     return hn::Set(tag, x);
+}
+
+HWY_INLINE Vector zeros() {
+    return {hn::Zero(tag), hn::Zero(tag), hn::Zero(tag)};
+}
+
+HWY_INLINE Vector choose(Mask which, const Vector &yes, const Vector &no) {
+    return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y),
+            hn::IfThenElse(which, yes.z, no.z)};
+}
+
+// As bits, lane by lane within the block.
+HWY_INLINE unsigned bits_of(Mask mask, std::size_t lane) {
+    if (hn::AllFalse(tag, mask))
+        return 0;
+    HWY_ALIGN Real ones[column_lanes];
+    hn::Store(hn::IfThenElseZero(mask, all(Real(1))), tag, ones);
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < hn::Lanes(tag); ++k)
+        bits |= ones[k] != Real(0) ? 1U << (lane + k) : 0U;
+    return bits;
+}
+
+// The reverse.
+HWY_INLINE Mask lanes_of(unsigned bits, std::size_t lane) {
+    static constexpr IndexColumn powers{{1 << 0, 1 << 1, 1 << 2, 1 << 3, 1 << 4, 1 << 5, 1 << 6,
+                                         1 << 7, 1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13,
+                                         1 << 14, 1 << 15}};
+    constexpr IndexTag index_tag{};
+    const auto all_bits = hn::Set(index_tag, static_cast<IndexColumn::Index>(bits));
+    const auto power = hn::Load(index_tag, powers.lanes + lane);
+    return hn::RebindMask(tag, hn::Eq(hn::And(all_bits, power), power));
 }
 
 HWY_INLINE Lanes load(const Column &from, std::size_t lane) {

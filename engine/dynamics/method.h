@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/task_pool.h"
+#include "engine/dynamics/bodies/flight_columns.h"
 #include "engine/dynamics/bodies/motion.h"
 #include "engine/dynamics/contacts/contact_columns.h"
 #include "engine/dynamics/contacts/contact_constraint.h"
@@ -42,6 +43,7 @@ struct SolverScratch {
     std::vector<GeometricStiffness> stiffness;   // per body, from the last substep's impulses
     std::vector<std::uint8_t> changed;           // per body: what follow_loads changed
     std::vector<FreeFlight> flights;             // one per moving body
+    std::vector<FlightBlock> flight_blocks;      // the same in columns
     std::vector<RoundedOff> rounded_off;         // one per body
     std::vector<std::array<Vec3, 2>> velocities; // per moving body, saved for pseudo velocities
     std::vector<Vec3> joint_impulses;            // saved for pseudo velocities

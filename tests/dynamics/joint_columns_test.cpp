@@ -1,72 +1,20 @@
 // Ball joints in columns match the functions for single joints bit for bit, in the same order.
 #include "engine/dynamics/joints/joint_columns.h"
 
-#include "engine/dynamics/method.h"
-#include "tests/dynamics/worlds.h"
+#include "tests/dynamics/solver_view.h"
 
 namespace plumb::inline PLUMB_PRECISION {
 namespace {
 
 using namespace trial;
 
-// A method's view of a world's bodies and joints.
-struct Solved {
-    StepSettings settings;
-    std::vector<SolverBody> bodies;
-    std::vector<JointMemory> joints;
-    IslandGroup group;
-    Grab grab;
-    SolverBody world_frame;
-    JointSystem joint_system;
-    SolverScratch scratch;
-    StepReport report;
-    std::vector<Impact> impacts;
-    StepContext context;
-
-    Solved(const World &world, Random random)
-        : settings(world.settings()), joints(world.state().joints), context{world.model(),
-                                                                            settings,
-                                                                            {},
-                                                                            world.state().motions,
-                                                                            group,
-                                                                            {},
-                                                                            joints,
-                                                                            grab,
-                                                                            world_frame,
-                                                                            scratch,
-                                                                            report,
-                                                                            impacts,
-                                                                            {},
-                                                                            {},
-                                                                            {},
-                                                                            {},
-                                                                            {},
-                                                                            {}} {
-        scratch.joint_system = &joint_system;
-        for (std::uint32_t i = 0; i < world.bodies().size(); ++i) {
-            const Body &body = world.bodies()[i];
-            SolverBody &out = bodies.emplace_back();
-            static_cast<Motion &>(out) = world.motions()[i];
-            if (body.kind == BodyKind::static_body)
-                continue;
-            group.moving.push_back(i);
-            if (body.kind != BodyKind::dynamic)
-                continue;
-            out.inv_mass = Vec3{Real(1) / body.mass};
-            out.inv_inertia = solver_inverse_inertia(body, out.rotation);
-            for (int axis = 0; axis < 3; ++axis)
-                if (body.locked[static_cast<std::size_t>(axis)]) {
-                    out.inv_mass[axis] = Real(0);
-                    out.has_locked_translation = true;
-                }
-        }
+struct Solved : SolverView {
+    Solved(const World &world, Random random) : SolverView(world) {
         for (std::uint32_t i = 0; i < joints.size(); ++i) {
             group.joints.push_back(i);
             for (std::size_t row = 0; row < 3; ++row)
                 joints[i].impulses[row] = Real(random.next_in(-1, 1));
         }
-        context.bodies = bodies;
-        scratch.rounded_off.resize(bodies.size());
         context.joints = joints;
     }
 

@@ -1,6 +1,7 @@
 #include "engine/dynamics/bodies/motion.h"
 
 #include "engine/core/check.h"
+#include "engine/dynamics/bodies/drive.h"
 #include "engine/dynamics/method.h"
 
 #include <array>
@@ -205,64 +206,6 @@ bool has_gyroscopic_spin(const Body &body) {
 
 namespace {
 
-// v' = g - c v over h, in closed form: how much of v is left at the end and in the mean over h, and
-// how much g adds to each (with c h -> 0: 1, 1, h / 2 and h).
-struct Damped {
-    Real kept = Real(1);        // e^(-c h)
-    Real mean_kept = Real(1);   // (1 - e^(-c h)) / (c h)
-    Real gained = Real(0);      // times g: at the end
-    Real mean_gained = Real(0); // times g: mean
-};
-
-Damped strongly_damped(Real rate, Real h) {
-    const double x = static_cast<double>(rate) * static_cast<double>(h);
-    const double lost = -std::expm1(-x);
-    const double mean = lost / x;
-    // (1 - mean) / x by its series for small x, where the difference would cancel.
-    const double rest = x > 1e-3 ? (1.0 - mean) / x : 0.5 - x / 6.0 + x * x / 24.0;
-    return {static_cast<Real>(1.0 - lost), static_cast<Real>(mean),
-            static_cast<Real>(mean * static_cast<double>(h)),
-            static_cast<Real>(rest * static_cast<double>(h))};
-}
-
-// Most bodies have no damping.
-inline Damped damped(Real rate, Real h) {
-    return rate == Real(0) ? Damped{Real(1), Real(1), h, Real(0.5) * h} : strongly_damped(rate, h);
-}
-
-// What moves a body on which nothing else acts, the same in each substep of a step. The mean
-// velocity is `mean_kept` times the initial one plus `mean_gain`; by the end `late_kept` and
-// `late_gain` are added.
-struct Drive {
-    Real mean_kept = Real(1);
-    Real late_kept = Real(0);
-    Vec3 mean_gain{Real(0)}; // m/s, by gravity
-    Vec3 late_gain{Real(0)};
-    Vec3 gain{Real(0)}; // the whole gain
-    Real kept = Real(1);
-    Damped angular;
-    bool is_dynamic = false;
-    bool is_gyroscopic = false;
-};
-
-inline Drive drive_of(const Body &body, const Vec3 &gravity, Real h) {
-    Drive drive;
-    if (body.kind != BodyKind::dynamic)
-        return drive;
-    const Vec3 pull = pull_on(body, gravity);
-    const Damped linear = damped(body.linear_damping, h);
-    drive.mean_kept = linear.mean_kept;
-    drive.late_kept = linear.kept - linear.mean_kept;
-    drive.kept = linear.kept;
-    drive.mean_gain = linear.mean_gained * pull;
-    drive.late_gain = (linear.gained - linear.mean_gained) * pull;
-    drive.gain = linear.gained * pull;
-    drive.angular = damped(body.angular_damping, h);
-    drive.is_dynamic = true;
-    drive.is_gyroscopic = has_gyroscopic_spin(body);
-    return drive;
-}
-
 // Mean and end of a torque-free, damped turn that begins with flight.start_spin.
 void turn_freely(FreeFlight &flight, const Body &body, const Damped &angular, Real h,
                  int gyroscopic_iterations) {
@@ -332,6 +275,12 @@ inline void move_along(SolverBody &motion, RoundedOff &rounded_off, const Body &
         motion.inv_inertia = solver_inverse_inertia(body, motion.rotation);
 }
 
+void note_freedom(FreeFlight &flight, const SolverBody &motion) {
+    flight.free =
+        motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
+    flight.turns_by_mean = flight.free;
+}
+
 // Whether a turn (rad) is far enough for the timing of impulses within the substep to matter; saves
 // the work for bodies that barely turn.
 bool turns_far(const Vec3 &spin, Real h) {
@@ -339,11 +288,7 @@ bool turns_far(const Vec3 &spin, Real h) {
     return glm::dot(spin, spin) * (h * h) > far * far;
 }
 
-// What holds a body besides contacts.
-struct HeldBy {
-    bool joints = false;
-    bool springs = false;
-};
+} // namespace
 
 // Between the two half kicks the gyroscopic torque is that of the spin that the solver left
 // (`kick`): the first half of its impulses comes before the torque-free turn, as in RATTLE, and the
@@ -352,12 +297,10 @@ struct HeldBy {
 // spinning on a floor gains energy without end. Impacts are excluded: they act in an instant, and
 // half of one there would be just as wrong.
 void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
-               Real h, Kick kick, int gyroscopic_iterations, HeldBy held_by) {
-    flight.free =
-        motion.velocity == flight.velocity && motion.angular_velocity == flight.angular_velocity;
-    flight.turns_by_mean = flight.free;
+               Real h, int gyroscopic_iterations, HeldBy held_by) {
+    note_freedom(flight, motion);
     const bool is_gyroscopic = body.kind == BodyKind::dynamic && has_gyroscopic_spin(body);
-    if (is_gyroscopic && !flight.free && kick == Kick::around &&
+    if (is_gyroscopic && !flight.free &&
         (held_by.joints || held_by.springs || (flight.loaded && turns_far(flight.start_spin, h)))) {
         flight.start_spin += rotated(glm::conjugate(motion.rotation),
                                      motion.angular_velocity - flight.angular_velocity);
@@ -369,11 +312,11 @@ void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, Fr
     move_along(motion, rounded_off, body, flight, h, is_gyroscopic);
 }
 
-} // namespace
-
 void move(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
           Real h) {
-    move_held(motion, rounded_off, body, flight, h, Kick::before, 0, {});
+    note_freedom(flight, motion);
+    move_along(motion, rounded_off, body, flight, h,
+               body.kind == BodyKind::dynamic && has_gyroscopic_spin(body));
 }
 
 namespace {
@@ -411,54 +354,45 @@ void twist_bodies(StepContext &context, Real h) {
 
 } // namespace
 
-void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick) {
+void attract_and_twist(StepContext &context, Real h) {
+    attract_bodies(context, h);
+    twist_bodies(context, h);
+}
+
+void begin_flights(StepContext &context, const Vec3 &gravity, Real h) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
-    const Real before = kick == Kick::around ? Real(0.5) * h : h;
-    attract_bodies(context, before);
-    twist_bodies(context, before);
+    attract_and_twist(context, h);
     flights.resize(context.moving().size());
     const auto begin_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t body = context.moving()[i];
             flights[i] = begin_flight(context.bodies[body], context.model.bodies[body], gravity, h,
-                                      kick, context.settings.gyroscopic_iterations);
+                                      Kick::before, context.settings.gyroscopic_iterations);
         }
     };
     for_parts(context.tasks, flights.size(), bodies_a_part, begin_part);
     context.report.body_passes += flights.size();
 }
 
-void note_lasting_loads(StepContext &context) {
-    std::vector<FreeFlight> &flights = context.scratch.flights;
-    for (std::size_t i = 0; i < flights.size(); ++i)
-        flights[i].loaded =
-            context.bodies[context.moving()[i]].angular_velocity != flights[i].angular_velocity;
+void track_turn(SolverBody &motion, const Motion &start) {
+    if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts
+        motion.turned = rotation_vector(motion.rotation * glm::conjugate(start.rotation));
 }
 
-void end_flights(StepContext &context, Real h, Kick kick) {
+void end_flights(StepContext &context, Real h) {
     std::vector<FreeFlight> &flights = context.scratch.flights;
-    const std::vector<GeometricStiffness> &stiffness = context.scratch.stiffness;
     const auto end_part = [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t body = context.moving()[i];
-            SolverBody &motion = context.bodies[body];
-            move_held(motion, context.scratch.rounded_off[body], context.model.bodies[body],
-                      flights[i], h, kick, context.settings.gyroscopic_iterations,
-                      {.joints = !stiffness.empty() && stiffness[body].most > Real(0),
-                       .springs = context.active.has_particles &&
-                                  context.scratch.spring_rates[body].x > Real(0)});
-            if (has_turned_far(motion.turned)) // a sum of turns about changing axes drifts
-                motion.turned = rotation_vector(motion.rotation *
-                                                glm::conjugate(context.starts[body].rotation));
-            end_flight(motion, context.model.bodies[body], flights[i], kick);
+            const std::uint32_t index = context.moving()[i];
+            SolverBody &motion = context.bodies[index];
+            const Body &body = context.model.bodies[index];
+            move(motion, context.scratch.rounded_off[index], body, flights[i], h);
+            track_turn(motion, context.starts[index]);
+            end_flight(motion, body, flights[i], Kick::before);
         }
     };
     for_parts(context.tasks, flights.size(), bodies_a_part, end_part);
     context.report.body_passes += flights.size();
-    if (kick == Kick::around) {
-        attract_bodies(context, Real(0.5) * h);
-        twist_bodies(context, Real(0.5) * h);
-    }
 }
 
 namespace {

@@ -130,22 +130,33 @@ struct FreeFlight {
     // Set by move: the pose turns by the Cayley map of mean_spin, which keeps the world angular
     // momentum together with end_spin.
     bool turns_by_mean = false;
-    bool loaded = false; // turned by impulses that it also had before (note_lasting_loads)
+    bool loaded = false; // turned by impulses that it also had before (flight_columns.h)
 };
 
 FreeFlight begin_flight(SolverBody &motion, const Body &body, const Vec3 &gravity, Real h,
                         Kick kick, int gyroscopic_iterations);
+// Along the velocities that the solver left. With Kick::around: move_held, which also redoes the
+// torque-free turn of a body that is held.
 void move(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
           Real h);
+// What holds a body besides contacts.
+struct HeldBy {
+    bool joints = false;
+    bool springs = false;
+};
+void move_held(SolverBody &motion, RoundedOff &rounded_off, const Body &body, FreeFlight &flight,
+               Real h, int gyroscopic_iterations, HeldBy held_by);
+// Recomputes motion.turned from the poses where it has turned too far to be a sum of turns.
+void track_turn(SolverBody &motion, const Motion &start);
 void end_flight(SolverBody &motion, const Body &body, const FreeFlight &flight, Kick kick);
 
-// The same for all moving bodies, with the flights kept in the context. Attractors and constant
-// torques act on the velocities beforehand or, around the move, half before and half after it.
+// Adds h seconds of the attractors' pull and of the bodies' own torques to all velocities.
 struct StepContext;
-void begin_flights(StepContext &context, const Vec3 &gravity, Real h, Kick kick);
-// After warm starting: notes which bodies that turned.
-void note_lasting_loads(StepContext &context);
-void end_flights(StepContext &context, Real h, Kick kick); // moves them, then ends the flights
+void attract_and_twist(StepContext &context, Real h);
+// The flights of all moving bodies with Kick::before, kept in the context. Those with Kick::around
+// are in columns (flight_columns.h).
+void begin_flights(StepContext &context, const Vec3 &gravity, Real h);
+void end_flights(StepContext &context, Real h); // moves them, then ends the flights
 // All substeps of bodies that nothing holds or touches; in one go where their flight has a closed
 // form.
 void fly_freely(StepContext &context, const Vec3 &gravity);

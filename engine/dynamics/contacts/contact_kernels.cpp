@@ -22,7 +22,6 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
-using Mask = hn::Mask<decltype(tag)>;
 constexpr int most_sweeps = 8;
 constexpr int most_friction_passes = 4;
 // A contact of one or two points whose last sweep changed no normal impulse by more than this share
@@ -97,15 +96,6 @@ HWY_INLINE Turns turns(const Vector &r_a, const Vector &r_b, const Vector &u) {
     return {cross(r_a, u), cross(r_b, u)};
 }
 
-HWY_INLINE Vector nowhere() {
-    const Lanes zero = hn::Zero(tag);
-    return {zero, zero, zero};
-}
-HWY_INLINE Vector choose(Mask which, const Vector &yes, const Vector &no) {
-    return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y),
-            hn::IfThenElse(which, yes.z, no.z)};
-}
-
 // Where friction acts (ContactBlock::spread): at the contact points, drawn in toward the centre of
 // pressure of the remembered impulses.
 struct Patch {
@@ -123,12 +113,12 @@ struct Patch {
 HWY_INLINE Patch patch_of(const ContactBlock &block, std::size_t lane) {
     const Lanes zero = hn::Zero(tag);
     const Lanes one = all(Real(1));
-    Patch patch{block.spins, one, nowhere(), nowhere()};
+    Patch patch{block.spins, one, zeros(), zeros()};
     if (!patch.is_spread)
         return patch;
     Lanes sum = zero;
-    Vector sum_a = nowhere();
-    Vector sum_b = nowhere();
+    Vector sum_a = zeros();
+    Vector sum_b = zeros();
     for (int k = 0; k < block.points_used; ++k) {
         const ContactBlock::Point &point = block.points[k];
         const Lanes borne = load(point.remembered.x, lane);
@@ -257,7 +247,7 @@ void warm_start_impl(ContactBlock &block, const BodyReals &bodies, Real share, b
             // sign of a zero).
             const auto spins = hn::Lt(patch.spread, all(Real(1)));
             pair.apply(choose(spins, normal, whole), r_a, r_b);
-            pair.apply(choose(spins, plus(along_1, along_2), nowhere()), patch.arm_a(r_a),
+            pair.apply(choose(spins, plus(along_1, along_2), zeros()), patch.arm_a(r_a),
                        patch.arm_b(r_b));
         }
         store_pair(pair, block, bodies, lane);

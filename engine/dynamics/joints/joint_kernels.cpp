@@ -25,7 +25,6 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace columns::HWY_NAMESPACE; // NOLINT(google-build-using-namespace)
-using Mask = hn::Mask<decltype(tag)>;
 
 struct Matrix {
     Vector x, y, z; // columns
@@ -42,15 +41,6 @@ HWY_INLINE Vector product(const Matrix &m, const Vector &v) {
     return plus(plus(times(v.x, m.x), times(v.y, m.y)), times(v.z, m.z));
 }
 
-HWY_INLINE Vector choose(Mask mask, const Vector &yes, const Vector &no) {
-    return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
-            hn::IfThenElse(mask, yes.z, no.z)};
-}
-
-HWY_INLINE Vector zeros() {
-    return {hn::Zero(tag), hn::Zero(tag), hn::Zero(tag)};
-}
-
 HWY_INLINE Mask is_body(const JointBlock::End &end, std::size_t lane) {
     return hn::Gt(load(end.is_body, lane), hn::Zero(tag));
 }
@@ -59,18 +49,6 @@ HWY_INLINE Mask is_body(const JointBlock::End &end, std::size_t lane) {
 HWY_INLINE Vector gather_end(const JointBlock::End &end, const BodyReals &bodies, int offset,
                              std::size_t lane) {
     return choose(is_body(end, lane), gather_rows(bodies.bodies, offset, end.body, lane), zeros());
-}
-
-// As bits, lane by lane within the block.
-HWY_INLINE unsigned bits_of(Mask mask, std::size_t lane) {
-    if (hn::AllFalse(tag, mask))
-        return 0;
-    HWY_ALIGN Real ones[column_lanes];
-    hn::Store(hn::IfThenElseZero(mask, all(Real(1))), tag, ones);
-    unsigned bits = 0;
-    for (std::size_t k = 0; k < hn::Lanes(tag); ++k)
-        bits |= ones[k] != Real(0) ? 1U << (lane + k) : 0U;
-    return bits;
 }
 
 struct Velocity {

@@ -12,7 +12,7 @@
 // loops, as long as the substep can follow them, and once more after their bodies' contacts.
 // Resting bodies keep their contacts as found (kept_travel); bodies that move fast for their size
 // are collided where they will be (looks_ahead). All contacts are solved in columns.
-#include "engine/dynamics/bodies/motion.h"
+#include "engine/dynamics/bodies/flight_columns.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/method.h"
 
@@ -124,6 +124,7 @@ void advance_soft_step(StepContext &context) {
                             .force_share = Real(0.5)};
     const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip, .loaded_only = true};
 
+    prepare_flight_columns(context, gravity, h);
     find_partners(context);
     prepare_contact_columns(context);
     prepare_contacts(context, Prepare::striking); // for their impacts
@@ -145,7 +146,7 @@ void advance_soft_step(StepContext &context) {
             weigh_changed_joints(context);
         resolve_impacts(context, h);
         meet_contact_columns(context);
-        begin_flights(context, gravity, h, Kick::around);
+        begin_flight_columns(context, gravity, h);
         remember_joints(context);
         warm_start_joints(context, Real(0.5), Springs::midpoint);
         warm_start_contact_columns(context, Real(0.5), true);
@@ -170,7 +171,7 @@ void advance_soft_step(StepContext &context) {
         // Contacts give way, joints solved together do not: jointed bodies would be pulled apart by
         // whatever they rest on, and never come to rest.
         hold_touched_groups(context, holding);
-        end_flights(context, h, Kick::around);
+        end_flight_columns(context, h);
         if (has_particles)
             drift_particles(context, h);
         take_back_pushes(context);

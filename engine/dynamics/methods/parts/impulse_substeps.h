@@ -95,13 +95,13 @@ inline std::vector<SettingGroup> read_by_impulses() {
 // solver.
 inline void begin_motion(StepContext &context, const Vec3 &gravity, Real h) {
     if (context.settings.closed_form_flight != 0)
-        begin_flights(context, gravity, h, Kick::before);
+        begin_flights(context, gravity, h);
     else
         kick(context, gravity, h);
 }
 inline void end_motion(StepContext &context, Real h) {
     if (context.settings.closed_form_flight != 0)
-        end_flights(context, h, Kick::before);
+        end_flights(context, h);
     else
         drift(context, h);
 }
