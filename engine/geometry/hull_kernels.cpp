@@ -10,6 +10,8 @@
 #include <limits>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/geometry/hull_kernels.cpp"
@@ -112,6 +114,36 @@ std::size_t farthest_face(const Plane *planes, std::size_t count, const Vec3 &di
     return farthest(planes, count, direction);
 }
 
+// The least and greatest coordinates of the vertices along three axes.
+Aabb extent(const Vec3 *vertices, std::size_t count, const Mat3 &axes) {
+    const std::size_t lanes = hn::Lanes(tag);
+    Aabb out;
+    if (count < lanes) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3 at = vertices[i] * axes;
+            out.min = glm::min(out.min, at);
+            out.max = glm::max(out.max, at);
+        }
+        return out;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 &direction = axes[axis];
+        const Vector along{hn::Set(tag, direction.x), hn::Set(tag, direction.y),
+                           hn::Set(tag, direction.z)};
+        Lanes least = hn::Set(tag, std::numeric_limits<Real>::infinity());
+        Lanes greatest = hn::Neg(least);
+        for (std::size_t i = 0; i < count; i += lanes) {
+            const Lanes at =
+                wide::HWY_NAMESPACE::dot(load(&vertices[std::min(i, count - lanes)]), along);
+            least = hn::Min(least, at);
+            greatest = hn::Max(greatest, at);
+        }
+        out.min[axis] = hn::GetLane(hn::MinOfLanes(tag, least));
+        out.max[axis] = hn::GetLane(hn::MaxOfLanes(tag, greatest));
+    }
+    return out;
+}
+
 bool any_above(const Plane *planes, std::size_t count, std::size_t but, const Vec3 &point,
                Real height) {
     const std::size_t lanes = hn::Lanes(tag);
@@ -145,6 +177,7 @@ namespace kernels {
 
 HWY_EXPORT(farthest_vertex);
 HWY_EXPORT(farthest_face);
+HWY_EXPORT(extent);
 HWY_EXPORT(any_above);
 
 namespace {
@@ -159,9 +192,20 @@ bool any_face_below(const HullMesh &mesh, std::size_t but, const Vec3 &point, Re
     return HWY_DYNAMIC_DISPATCH(any_above)(mesh.planes.data(), mesh.planes.size(), but, point,
                                            height);
 }
+Aabb extent_along(const HullMesh &mesh, const Mat3 &axes) {
+    return HWY_DYNAMIC_DISPATCH(extent)(mesh.vertices.data(), mesh.vertices.size(), axes);
+}
 } // namespace
 
 } // namespace kernels
+
+Aabb bounds(const ConvexHull &hull) {
+    check_valid(hull);
+    // The world's axes in the mesh's frame.
+    const Mat3 axes = glm::transpose(glm::mat3_cast(hull.rotation));
+    const Aabb around = kernels::extent_along(*hull.mesh, axes);
+    return {hull.position + around.min, hull.position + around.max};
+}
 
 std::uint32_t support_vertex(const HullMesh &mesh, const Vec3 &direction) {
     PLUMB_DEBUG_CHECK(is_finite(direction), "direction must be finite, got " << Printed{direction});

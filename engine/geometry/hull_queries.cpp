@@ -272,18 +272,6 @@ void check_valid(const ConvexHull &hull) {
                     << hull.rotation.z << ')');
 }
 
-Aabb bounds(const ConvexHull &hull) {
-    check_valid(hull);
-    const MeshFrame frame(hull);
-    Aabb box;
-    for (const Vec3 &vertex : hull.mesh->vertices) {
-        const Vec3 p = frame.world_point(vertex);
-        box.min = glm::min(box.min, p);
-        box.max = glm::max(box.max, p);
-    }
-    return box;
-}
-
 Index support_vertex(const HullMesh &mesh, const Vec3 &direction, Index start) {
     PLUMB_DEBUG_CHECK(is_finite(direction), "direction must be finite, got " << Printed{direction});
     PLUMB_DEBUG_CHECK(start < mesh.vertices.size(), "start must be one of " << mesh.vertices.size()

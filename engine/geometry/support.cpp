@@ -70,7 +70,9 @@ CylinderCore core_of(const Cylinder &cylinder, const Vec3 &origin) {
 }
 
 HullCore core_of(const ConvexHull &hull, const Vec3 &origin) {
-    check_valid(hull);
+    if (!(hull.mesh != nullptr && !hull.mesh->vertices.empty() && has_finite_sum(hull.position) &&
+          is_unit(glm::dot(hull.rotation, hull.rotation)))) [[unlikely]]
+        check_valid(hull);
     return {hull.mesh, hull.position - origin, glm::mat3_cast(hull.rotation)};
 }
 
