@@ -120,6 +120,7 @@ struct ContactSchedule {
     std::vector<std::uint32_t> place_of;        // per contact, index in `contacts`
     std::vector<std::uint64_t> colours_of_body; // bit c: the body has a contact of colour c
     std::vector<std::uint32_t> bucket_sizes;
+    std::vector<std::uint8_t> turned_far; // per body: see rearm_contact_columns
 };
 
 void prepare_contact_columns(StepContext &context);

@@ -187,6 +187,25 @@ bool has_other_arms(const StepContext &context, const Contact &contact) {
            (has_other_arms(context, contact, true) || has_other_arms(context, contact, false));
 }
 
+// Notes which bodies have turned far, so that the contacts of all others need not be looked into;
+// returns whether any has.
+bool note_far_turns(StepContext &context) {
+    std::vector<std::uint8_t> &turned = context.scratch.schedule.turned_far;
+    turned.resize(context.bodies.size());
+    bool any = false;
+    for (const std::uint32_t body : context.moving()) {
+        const bool is_far = has_other_arms(context, body, false);
+        turned[body] = is_far ? 1 : 0;
+        any = any || is_far;
+    }
+    return any;
+}
+bool is_between_far_turns(const StepContext &context, const ContactBlock &block, std::size_t lane) {
+    const ContactEnds &ends = context.ends[block.contacts[lane]];
+    const std::vector<std::uint8_t> &turned = context.scratch.schedule.turned_far;
+    return (turned[ends.a] | turned[ends.b]) != 0;
+}
+
 // A point's arms on both bodies at the present poses: on the surface of the one that has turned.
 struct Arms {
     Vec3 a;
@@ -333,8 +352,7 @@ void rearm_contact_columns(StepContext &context) {
     if (context.scratch.schedule.blocks.empty())
         return;
     ContactSchedule &schedule = context.scratch.schedule;
-    const bool any_far = std::ranges::any_of(
-        context.moving(), [&](std::uint32_t body) { return has_other_arms(context, body, false); });
+    const bool any_far = note_far_turns(context);
     const bool any_round = std::ranges::any_of(
         schedule.blocks, [](const ContactBlock &block) { return block.round != 0; });
     const bool any_again = std::ranges::any_of(
@@ -346,13 +364,15 @@ void rearm_contact_columns(StepContext &context) {
     for_blocks(context.tasks, std::span(context.scratch.schedule.blocks),
                [&](std::span<ContactBlock> blocks) {
                    for (ContactBlock &block : blocks) {
+                       unsigned may = block.round;
+                       for (std::size_t lane = 0; any_far && lane < block.used; ++lane)
+                           may |= is_between_far_turns(context, block, lane) ? 1U << lane : 0U;
                        unsigned lanes = block.rearmed;
-                       for (std::size_t lane = 0;
-                            (any_far || block.round != 0) && lane < block.used; ++lane)
-                           if ((block.found_again >> lane & 1U) == 0 &&
-                               (any_far || (block.round >> lane & 1U) != 0) &&
-                               has_other_arms(context, context.contacts[block.contacts[lane]]))
+                       for (may &= ~unsigned{block.found_again}; may != 0; may &= may - 1) {
+                           const auto lane = static_cast<std::size_t>(std::countr_zero(may));
+                           if (has_other_arms(context, context.contacts[block.contacts[lane]]))
                                lanes |= 1U << lane;
+                       }
                        block.rearmed = static_cast<std::uint16_t>(lanes);
                    }
                });
