@@ -50,6 +50,8 @@ void collect(TaskPool *tasks, std::size_t count, std::size_t grain, FoundParts<T
     for_counted_parts(tasks, count, grain,
                       [&](std::size_t begin, std::size_t end, std::size_t part) {
                           scratch.parts[part].clear();
+                          // One each: else a heap that trembles would allocate now and then.
+                          scratch.parts[part].reserve(end - begin);
                           find(begin, end, part, scratch.parts[part]);
                       });
     scratch.starts.assign(1, 0);

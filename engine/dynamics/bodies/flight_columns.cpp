@@ -3,6 +3,7 @@
 #include "engine/dynamics/bodies/drive.h"
 #include "engine/dynamics/method.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -113,7 +114,6 @@ template <typename Use> void for_flights(StepContext &context, const Use &use) {
         for (std::size_t i = begin; i < end; ++i)
             use(blocks[i], i);
     });
-    context.report.body_passes += context.moving().size();
 }
 
 } // namespace
@@ -151,6 +151,7 @@ void begin_flight_columns(StepContext &context, const Vec3 &gravity, Real h) {
                                     Kick::around, iterations));
         });
     });
+    context.report.body_passes += context.moving().size();
 }
 
 void note_lasting_loads(StepContext &context) {
@@ -187,6 +188,7 @@ void end_flight_columns(StepContext &context, Real h) {
             end_flight(motion, body, flight, Kick::around);
         });
     });
+    context.report.body_passes += context.moving().size();
     attract_and_twist(context, Real(0.5) * h);
 }
 

@@ -15,32 +15,33 @@ struct StepContext;
 
 // 16 moving bodies. In masks bit k is lane k's.
 struct FlightBlock {
-    std::size_t used = 0;          // number of lanes; the others repeat the first body
-    IndexColumn body;              // offset in BodyReals
-    IndexColumn rounded_off;       // offset in the array of RoundedOff, in Reals
+    std::size_t used = 0; // number of lanes; the others repeat the first body
+    // The same in each substep of a step.
     std::uint16_t in_lanes = 0;    // those that the kernels advance: dynamic, nothing locked
     std::uint16_t gyroscopic = 0;  // of these: has_gyroscopic_spin
-    std::uint16_t spin_damped = 0; // of these
+    std::uint16_t spin_damped = 0; // has angular damping
+    // In a substep.
+    std::uint16_t loaded = 0;  // see FreeFlight
+    std::uint16_t jointed = 0; // see HeldBy
+    std::uint16_t sprung = 0;
+    // Lanes that the last kernel did not advance: in these round-off, or a large turn, needs more
+    // care than is worth having there.
+    std::uint16_t left = 0;
+    std::uint16_t far = 0; // has_turned_far
 
+    IndexColumn body;        // offset in BodyReals
+    IndexColumn rounded_off; // offset in the array of RoundedOff, in Reals
     // The same in each substep of a step. In the mean over a substep, and as much more at its end:
     // times the velocity, plus a gain.
     Column mean_kept, late_kept;
     Columns3 mean_gain, late_gain;
     Column spin_kept, mean_spin_kept; // of the angular velocity, by its damping
     Columns3 inertia, inv_inertia;
-    Column like_axis; // about this axis two equal moments are: 0, 1, 2; 3: none
+    Column like_axis; // the axis about which two equal moments are: 0, 1, 2; 3: none
     Column likeness;  // ((h / 2) (I_across - I_along)) / I_across for that axis
-
     // See FreeFlight.
     Columns3 velocity, angular_velocity, mean_velocity, late_velocity;
     Columns3 start_spin, mean_spin, end_spin, late_spin;
-    std::uint16_t loaded = 0;
-    std::uint16_t jointed = 0, sprung = 0; // held by a joint's force, by springs to particles
-
-    // Lanes that the last kernel did not advance: in these round-off, or a large turn, needs more
-    // care than is worth having there.
-    std::uint16_t left = 0;
-    std::uint16_t far = 0; // has_turned_far
 };
 
 // For a step's substeps of h seconds each.

@@ -2,6 +2,8 @@
 // itself. Each lane sees the operations of the functions in motion.cpp that its comments name.
 #include "engine/dynamics/bodies/flight_columns.h"
 
+#include <cstddef>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/dynamics/bodies/flight_kernels.cpp"
 // Vectors of unknown size cannot be members.
