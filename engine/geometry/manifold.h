@@ -39,7 +39,7 @@ Manifold collide(const Box &a, const Cylinder &b, Real margin);
 Manifold collide(const Box &a, const ConvexHull &b, Real margin, const Vec3 &guess = Vec3{Real(0)});
 Manifold collide(const Box &a, const Triangle &b, Real margin);
 Manifold collide(const Box &a, const HalfSpace &b, Real margin);
-Manifold collide(const Capsule &a, const Capsule &b, Real margin);
+Manifold collide(const Capsule &one, const Capsule &two, Real margin);
 Manifold collide(const Capsule &a, const Cylinder &b, Real margin);
 Manifold collide(const Capsule &a, const ConvexHull &b, Real margin);
 Manifold collide(const Capsule &a, const Triangle &b, Real margin);
