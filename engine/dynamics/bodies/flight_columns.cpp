@@ -33,8 +33,8 @@ unsigned alone(const FlightBlock &block) {
     return used & (~unsigned{block.in_lanes} | block.left);
 }
 
-// About which axis gyroscopic_spin turns a body with two equal moments; 3: none.
-int like_axis_of(const Vec3 &inertia) {
+// The axis across which both moments are equal, the first if there are several; 3: none.
+int symmetry_axis_of(const Vec3 &inertia) {
     for (int k = 0; k < 3; ++k)
         if (inertia[(k + 1) % 3] == inertia[(k + 2) % 3])
             return k;
@@ -55,11 +55,11 @@ void fill_lane(FlightBlock &block, std::size_t lane, const Body &body, const Dri
     block.mean_spin_kept.lanes[lane] = drive.angular.mean_kept;
     set(block.inertia, lane, body.inertia);
     set(block.inv_inertia, lane, body.inv_inertia);
-    const int axis = like_axis_of(body.inertia);
-    block.like_axis.lanes[lane] = static_cast<Real>(axis);
+    const int axis = symmetry_axis_of(body.inertia);
+    block.symmetry_axis.lanes[lane] = static_cast<Real>(axis);
     const Real across = body.inertia[(axis + 1) % 3];
     const Real along = body.inertia[axis % 3];
-    block.likeness.lanes[lane] =
+    block.precession.lanes[lane] =
         axis < 3 && across > Real(0) ? Real(0.5) * h * (across - along) / across : Real(0);
 }
 

@@ -37,8 +37,10 @@ struct FlightBlock {
     Columns3 mean_gain, late_gain;
     Column spin_kept, mean_spin_kept; // of the angular velocity, by its damping
     Columns3 inertia, inv_inertia;
-    Column like_axis; // the axis about which two equal moments are: 0, 1, 2; 3: none
-    Column likeness;  // ((h / 2) (I_across - I_along)) / I_across for that axis
+    Column symmetry_axis; // the axis across which both moments are equal: 0, 1, 2; 3: none
+    // (h / 2) (I_across - I_along) / I_across: times the spin about that axis, half the angle by
+    // which the rest of the spin turns about it.
+    Column precession;
     // See FreeFlight.
     Columns3 velocity, angular_velocity, mean_velocity, late_velocity;
     Columns3 start_spin, mean_spin, end_spin, late_spin;

@@ -151,7 +151,7 @@ struct FreeSpin {
 
 // symmetric_spin, about each lane's axis.
 HWY_INLINE Vector symmetric_spin(const FlightBlock &block, const Vector &spin, std::size_t lane) {
-    const Lanes axis = load(block.like_axis, lane);
+    const Lanes axis = load(block.symmetry_axis, lane);
     const Mask about_x = hn::Eq(axis, all(Real(0)));
     const Mask about_y = hn::Eq(axis, all(Real(1)));
     const auto pick = [&](Lanes x, Lanes y, Lanes z) HWY_ATTR {
@@ -160,7 +160,7 @@ HWY_INLINE Vector symmetric_spin(const FlightBlock &block, const Vector &spin, s
     const Lanes i = pick(spin.y, spin.z, spin.x);
     const Lanes j = pick(spin.z, spin.x, spin.y);
     const Lanes k = pick(spin.x, spin.y, spin.z);
-    const Lanes c = hn::Mul(load(block.likeness, lane), k);
+    const Lanes c = hn::Mul(load(block.precession, lane), k);
     const Lanes turn = hn::Div(hn::Mul(all(Real(2)), c), hn::Add(all(Real(1)), hn::Mul(c, c)));
     const Lanes end_i = hn::Add(i, hn::Mul(turn, hn::Sub(j, hn::Mul(c, i))));
     const Lanes end_j = hn::Sub(j, hn::Mul(turn, hn::Add(i, hn::Mul(c, j))));
@@ -206,7 +206,7 @@ HWY_INLINE FreeSpin turn_freely(const FlightBlock &block, const Vector &start, R
                                 int iterations, Mask which, std::size_t lane) {
     FreeSpin out;
     out.is_lost = hn::FirstN(tag, 0);
-    const Mask is_symmetric = hn::And(which, hn::Lt(load(block.like_axis, lane), all(Real(3))));
+    const Mask is_symmetric = hn::And(which, hn::Lt(load(block.symmetry_axis, lane), all(Real(3))));
     const Mask is_general = hn::AndNot(is_symmetric, which);
     Vector undamped = start;
     if (!hn::AllFalse(tag, is_general))
