@@ -142,7 +142,7 @@ TEST(EdgeGap, IsTheDistanceOrDepth) {
               << found_count[2] << '\n';
     EXPECT_GT(found_count[0], trial_count / 12);
     EXPECT_GT(found_count[1], trial_count / 6);
-    EXPECT_GT(found_count[2], trial_count / 100);
+    EXPECT_GT(found_count[2], trial_count / 400);
 }
 
 } // namespace
