@@ -59,34 +59,32 @@ struct Crossing {
     Vec3 on_a{Real(0)};
     Vec3 on_b{Real(0)};
     Vec3 normal{Real(0)};
-    bool is_inside = false; // of both edges: else at an end of one
+    bool is_inside = false; // of both edges, which are not nearly parallel
 };
 
 std::optional<Crossing> crossing(const CoreEdge &a, const CoreEdge &b, const Vec3 &guess,
                                  Real rounding) {
     constexpr Real parallel_sine = Real(0.01);
-    const Vec3 offset = b.start - a.start;
+    const SegmentPair closest = closest_between_segments(a.start, a.along, b.start, b.along);
+    const auto is_within = [](Real share) { return share > Real(0) && share < Real(1); };
     const Vec3 cross = glm::cross(a.along, b.along);
     const Real squared = glm::dot(cross, cross);
-    if (squared >
-        parallel_sine * parallel_sine * glm::dot(a.along, a.along) * glm::dot(b.along, b.along)) {
-        // As in closest_between_segments.
-        const Real s = glm::dot(glm::cross(offset, b.along), cross) / squared;
-        const Real t = glm::dot(glm::cross(offset, a.along), cross) / squared;
-        if (s >= Real(0) && s <= Real(1) && t >= Real(0) && t <= Real(1)) {
-            const Real length = std::sqrt(squared);
-            const Real side = glm::dot(cross, guess) < Real(0) ? -length : length;
-            return Crossing{a.start + s * a.along, b.start + t * b.along, cross / side, true};
-        }
+    Crossing found{a.start + closest.s * a.along, b.start + closest.t * b.along};
+    found.is_inside = is_within(closest.s) && is_within(closest.t) &&
+                      squared > parallel_sine * parallel_sine * glm::dot(a.along, a.along) *
+                                    glm::dot(b.along, b.along);
+    if (found.is_inside) {
+        const Real length = std::sqrt(squared);
+        found.normal = cross / (glm::dot(cross, guess) < Real(0) ? -length : length);
+        return found;
     }
-    const SegmentPair ends = closest_between_segments(a.start, a.along, b.start, b.along);
     // Of shorter ways the direction is mostly rounding.
     constexpr Real roundings = Real(1e4);
-    const Real distance = std::sqrt(ends.squared_distance);
+    const Real distance = std::sqrt(closest.squared_distance);
     if (!(distance > roundings * rounding))
         return std::nullopt;
-    return Crossing{a.start + ends.s * a.along, b.start + ends.t * b.along,
-                    ends.difference / distance, false};
+    found.normal = closest.difference / distance;
+    return found;
 }
 
 // Whether the sides of the pyramid on the parallelogram that the edges span in the Minkowski
