@@ -19,7 +19,7 @@ template <class T> struct FoundParts {
 inline std::size_t part_count(const TaskPool *tasks, std::size_t count, std::size_t grain) {
     if (tasks == nullptr || tasks->threads() == 1)
         return 1;
-    grain = tasks->grain(grain);
+    grain = tasks->grain(count, grain);
     return std::max<std::size_t>((count + grain - 1) / grain, 1);
 }
 
@@ -30,7 +30,7 @@ void for_counted_parts(TaskPool *tasks, std::size_t count, std::size_t grain, Bo
         body(std::size_t{0}, count, std::size_t{0});
         return;
     }
-    grain = tasks->grain(grain);
+    grain = tasks->grain(count, grain);
     tasks->for_parts(count, grain,
                      [&](std::size_t begin, std::size_t end) { body(begin, end, begin / grain); });
 }

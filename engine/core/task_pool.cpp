@@ -15,6 +15,7 @@ namespace {
 
 constexpr unsigned part_bits = 20;
 constexpr std::uint64_t part_mask = (std::uint64_t{1} << part_bits) - 1;
+static_assert(TaskPool::most_parts == part_mask);
 
 std::uint64_t next_of(std::uint64_t share) {
     return share & part_mask;
@@ -67,7 +68,6 @@ void TaskPool::run(Loop loop) {
         loop.call(loop.body, 0, loop.count);
         return;
     }
-    constexpr std::size_t most_parts = part_mask;
     loop.grain = std::max(loop.grain, (loop.count + most_parts - 1) / most_parts);
     const std::size_t parts = (loop.count + loop.grain - 1) / loop.grain;
     body_.store(loop.body, std::memory_order_relaxed);

@@ -21,6 +21,7 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
   public:
     // `single` makes every part one item: slow, for finding races.
     enum class Parts { large, single };
+    static constexpr std::size_t most_parts = (std::size_t{1} << 20) - 1; // of a loop
     explicit TaskPool(int threads, Parts parts = Parts::large); // 1 to 1024
     ~TaskPool();
     TaskPool(const TaskPool &) = delete;
@@ -37,8 +38,10 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
         return std::max(least, (count + parts - 1) / parts);
     }
 
-    // For other loops: as given.
-    std::size_t grain(std::size_t given) const { return parts_ == Parts::single ? 1 : given; }
+    // For other loops: as given, unless that makes too many parts.
+    std::size_t grain(std::size_t count, std::size_t given) const {
+        return std::max(parts_ == Parts::single ? 1 : given, (count + most_parts - 1) / most_parts);
+    }
 
     // Calls body(begin, end) for parts of [0, count) of at most `grain` items, or once for
     // everything if there is only one thread; returns when all parts are done. Parts begin at

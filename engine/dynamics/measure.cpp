@@ -81,16 +81,18 @@ Manifold World::present_manifold(const Contact &contact) const {
         const Motion &motion = state_.motions[body];
         return placed(model_->colliders[collider].shape, mass_pose(motion));
     };
+    const auto against = [&](const Shape &solid, const Collider &surface, std::uint32_t body) {
+        const Transform pose = surface_pose(surface, state_.motions[body]);
+        return contact.key.triangle == ContactKey::inside
+                   ? collide_inside(solid, *surface.surface, pose)
+                   : plumb::collide(solid, *surface.surface, pose, contact.key.triangle, Real(0));
+    };
     const Collider &a = model_->colliders[contact.collider_a];
     const Collider &b = model_->colliders[contact.collider_b];
     if (a.surface)
-        return plumb::collide(place(contact.collider_b, contact.key.b), *a.surface,
-                              surface_pose(a, state_.motions[contact.key.a]), contact.key.triangle,
-                              Real(0));
+        return against(place(contact.collider_b, contact.key.b), a, contact.key.a);
     if (b.surface)
-        return plumb::collide(place(contact.collider_a, contact.key.a), *b.surface,
-                              surface_pose(b, state_.motions[contact.key.b]), contact.key.triangle,
-                              Real(0));
+        return against(place(contact.collider_a, contact.key.a), b, contact.key.b);
     return plumb::collide(place(contact.collider_a, contact.key.a),
                           place(contact.collider_b, contact.key.b), Real(0),
                           contact.manifold.normal);

@@ -39,7 +39,7 @@ struct SolverScratch {
     std::vector<std::uint32_t> first_blocks; // per active joint and the grab: index into `joints`
     JointSchedule joint_schedule;
     JointSystem *joint_system = nullptr;         // of the group being advanced
-    std::vector<Vec3> sides;                     // right-hand sides of its equations, one per place
+    std::vector<WideVec3> sides;                 // right-hand sides of its equations, one per place
     std::vector<GeometricStiffness> stiffness;   // per body, from the last substep's impulses
     std::vector<std::uint8_t> changed;           // per body: what follow_loads changed
     std::vector<FreeFlight> flights;             // one per moving body

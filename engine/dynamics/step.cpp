@@ -192,6 +192,7 @@ void World::load_body(std::size_t i) {
         return;
     out.inv_mass = Vec3{Real(1) / body.mass};
     out.inv_inertia = solver_inverse_inertia(body, out.rotation);
+    out.has_locks = body.has_locks;
     for (std::size_t axis = 0; axis < 3 && body.has_locks; ++axis)
         if (body.locked[axis]) {
             out.inv_mass[static_cast<int>(axis)] = Real(0);

@@ -33,8 +33,7 @@ void check_velocity(const Vec3 &velocity, const Vec3 &angular_velocity) {
 void check_collider(const ColliderDef &collider) {
     if (!collider.surface)
         check_valid(collider.shape);
-    PLUMB_CHECK(collider.material.friction >= 0 && std::isfinite(collider.material.friction),
-                "friction must not be negative, got " << collider.material.friction);
+    check_not_negative("friction", collider.material.friction);
     PLUMB_CHECK(collider.material.restitution >= 0 && collider.material.restitution <= 1,
                 "restitution must be 0 to 1, got " << collider.material.restitution);
     PLUMB_CHECK(collider.filter.layer < 32, "layer must be 0 to 31, got " << collider.filter.layer);
@@ -353,9 +352,11 @@ JointId World::add_joint(const JointDef &def) {
                      def.min_length <= def.max_length),
                 "a distance joint's length must be positive, got " << def.min_length << " to "
                                                                    << def.max_length);
-    check_not_negative("frequency", def.frequency);
-    check_not_negative("damping_ratio", def.damping_ratio);
-    check_not_negative("break_force", def.break_force);
+    check_not_negative("a joint's frequency", def.frequency);
+    check_not_negative("a joint's damping_ratio", def.damping_ratio);
+    check_not_negative("a joint's break_force", def.break_force);
+    PLUMB_CHECK(std::ranges::all_of(def.memory.impulses, [](Real i) { return std::isfinite(i); }),
+                "a joint's remembered impulses must be finite");
     if (def.limits)
         PLUMB_CHECK(std::isfinite(def.limits->lower) && std::isfinite(def.limits->upper) &&
                         def.limits->lower <= def.limits->upper,
@@ -518,7 +519,8 @@ void World::release() {
 void World::set_pace(BodyId id, const Pace &pace) {
     PLUMB_CHECK(is_alive(id), "body " << id.index << " is not alive");
     state_.paces[id.index] = pace;
-    if (pace.is_asleep() && !sleeps())
+    const bool may_sleep = sleeps() && bodies()[id.index].kind == BodyKind::dynamic;
+    if (pace.is_asleep() && !may_sleep)
         state_.paces[id.index].rested = 0;
 }
 
@@ -558,6 +560,12 @@ void World::remember_contact(const ContactKey &key, const ContactOrigin &origin,
                 "a saved contact refers to a body that is not alive");
     PLUMB_CHECK(!points.empty() && points.size() <= 4,
                 "a contact has 1 to 4 points, got " << points.size());
+    const auto is_finite_memory = [](const PointMemory &point) {
+        return is_finite(point.impulse) && is_finite(point.core_a) && is_finite(point.core_b);
+    };
+    PLUMB_CHECK(std::ranges::all_of(points, is_finite_memory) && is_finite(origin.normal) &&
+                    is_finite(origin.offset),
+                "a saved contact's impulses and places must be finite");
     const ContactMemory memory{key, static_cast<std::uint32_t>(state_.points.size()),
                                static_cast<std::uint32_t>(points.size()), origin};
     state_.points.insert(state_.points.end(), points.begin(), points.end());

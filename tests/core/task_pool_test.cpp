@@ -58,8 +58,8 @@ TEST(TaskPool, FreeThreadsHelpOthers) {
 TEST(TaskPool, LoopsOfOneItemAPartToLookForRacesWith) {
     TaskPool tasks(3, TaskPool::Parts::single);
     EXPECT_EQ(tasks.equal_grain(1000, 64), 1U);
-    EXPECT_EQ(tasks.grain(64), 1U);
-    EXPECT_EQ(TaskPool(3).grain(64), 64U);
+    EXPECT_EQ(tasks.grain(1000, 64), 1U);
+    EXPECT_EQ(TaskPool(3).grain(1000, 64), 64U);
     EXPECT_EQ(TaskPool(3).equal_grain(1000, 64), 84U); // 12 parts
     EXPECT_EQ(TaskPool(3).equal_grain(100, 64), 64U);
 }

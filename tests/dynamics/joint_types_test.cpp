@@ -347,6 +347,32 @@ TEST_P(JointTypes, BreakWhenTheyBearTooMuch) {
     }
 }
 
+// A rope that gets taut early in a step bears most then, and nothing any more at the step's end.
+TEST_P(JointTypes, BreakByTheirGreatestLoadWithinAStep) {
+    StepSettings settings = weightless(settings_for(GetParam()));
+    settings.substeps = 8;
+    settings.max_substeps = 1;
+    constexpr double speed = 3;
+    for (const double strength : {0.0, 0.3}) {
+        World world(GetParam(), settings);
+        JointDef def;
+        def.type = JointType::distance;
+        BodyDef tied = dynamic_body(ball(0.1), 2, V{1 - speed * 0.3 / 60, 0, 0});
+        tied.velocity = narrow(V{speed, 0, 0});
+        def.b = world.add_body(tied);
+        def.min_length = Real(0);
+        def.max_length = Real(1);
+        def.break_force = Real(strength * 2 * speed * 60 * 8);
+        const JointId joint = world.add_joint(def);
+        run(world, 1);
+        EXPECT_EQ(world.state().joints[joint.index].broken, strength > 0);
+        if (strength == 0) {
+            EXPECT_LT(glm::length(wide(world.joint_load(joint.index).force)),
+                      0.1 * 2 * speed * 60 * 8);
+        }
+    }
+}
+
 TEST_P(JointTypes, TellTheirLoad) {
     World world(GetParam(), settings_for(GetParam()));
     JointDef def;

@@ -396,6 +396,49 @@ TEST(Sleep, IsSaved) {
     }
 }
 
+// What hangs on a spring from a body that is removed falls.
+TEST(Sleep, WhatHangsOnASpringWakesWhenItsHookIsRemoved) {
+    for (const bool moves : {false, true}) {
+        World world("soft_step", settings_for("soft_step"));
+        BodyDef hook = static_body(ball(0.1), V{0, 3, 0});
+        hook.kind = moves ? BodyKind::kinematic : BodyKind::static_body;
+        SpringDef spring;
+        spring.a = {SpringEnd::Kind::body, world.add_body(hook).index, {}};
+        const BodyId hung = add_box(world, V{0, 2, 0});
+        spring.b = {SpringEnd::Kind::body, hung.index, narrow(V{0, 0.5, 0})};
+        spring.rest_length = Real(0.3);
+        spring.stiffness = Real(100);
+        spring.damping = Real(15);
+        world.add_spring(spring);
+        ASSERT_TRUE(run_until_all_sleep(world, 20));
+        const double before = position_of(world, hung).y;
+        world.remove_body(world.body_id(spring.a.index));
+        run(world, 60);
+        EXPECT_NEAR(position_of(world, hung).y, before - gravity / 2, 0.02);
+    }
+}
+
+// A body that went elsewhere while it was alone, and slept there, is found there by what comes.
+TEST(Sleep, WhatMovedWhileItWasAloneIsMetWhereItIs) {
+    World world("soft_step", settings_for("soft_step"));
+    JointDef rail;
+    rail.type = JointType::slider;
+    BodyDef def = dynamic_body(block(V{0.5}), 1, V{0});
+    def.linear_damping = Real(3);
+    rail.b = world.add_body(def);
+    world.add_joint(rail);
+    const BodyId other = world.add_body(dynamic_body(ball(0.1), 1, V{0, 0, 5})); // falls for ever
+    run(world, 60);
+    ASSERT_TRUE(sleeps(world, rail.b));
+    world.remove_body(other);
+    world.apply_impulse(rail.b, narrow(V{15, 0, 0}), Vec3{Real(0)});
+    ASSERT_TRUE(run_until_all_sleep(world, 20));
+    EXPECT_NEAR(position_of(world, rail.b).x, 5, 0.1);
+    const BodyId fallen = world.add_body(dynamic_body(ball(0.2), 1, V{5, 1, 0}));
+    run(world, 120);
+    EXPECT_NEAR(position_of(world, fallen).y, 0.7, 1e-3);
+}
+
 // A body driven by a motor does not sleep, however slow it is.
 TEST(Sleep, AMotorKeepsAwake) {
     World world("soft_step", settings_for("soft_step"));

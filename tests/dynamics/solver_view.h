@@ -51,6 +51,7 @@ struct SolverView {
                 continue;
             out.inv_mass = Vec3{Real(1) / body.mass};
             out.inv_inertia = solver_inverse_inertia(body, out.rotation);
+            out.has_locks = body.has_locks;
             for (int axis = 0; axis < 3; ++axis)
                 if (body.locked[static_cast<std::size_t>(axis)]) {
                     out.inv_mass[axis] = Real(0);

@@ -326,8 +326,12 @@ TEST(Surface, WhatIsInsideASolidMeshIsPushedOut) {
                 };
                 const double left = half - reach();
                 int steps = 0;
-                for (; steps < 90 && reach() < half; ++steps)
+                for (; steps < 90 && reach() < half; ++steps) {
                     run(world, 1);
+                    if (sides == Sides::solid && is_cube && is_ball && reach() < half) {
+                        EXPECT_NEAR(world.measure().max_penetration, half + 0.05 - reach(), 1e-5);
+                    }
+                }
                 if (sides == Sides::front) {
                     EXPECT_LT(glm::distance(position_of(world, id), from), 1e-3) << "it is held";
                     continue;

@@ -120,7 +120,7 @@ TEST(World, MisuseIsNamedWithItsValue) {
             [&](BodyDef &d) { d.angular_velocity.z = std::numeric_limits<Real>::infinity(); });
     refused("unit length, got 2", [&](BodyDef &d) { d.pose.rotation.w = Real(2); });
     refused("rotation must have unit length", [&](BodyDef &d) { d.pose.rotation.x = Real(nan); });
-    refused("friction must not be negative, got -0.25",
+    refused("friction must be finite and not negative, got -0.25",
             [&](BodyDef &d) { d.colliders.front().material.friction = Real(-0.25); });
     refused("restitution must be 0 to 1, got 1.5",
             [&](BodyDef &d) { d.colliders.front().material.restitution = Real(1.5); });

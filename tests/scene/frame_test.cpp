@@ -46,6 +46,28 @@ std::unique_ptr<Simulation> three_balls() {
 
 } // namespace
 
+// A joint that moves nothing bears nothing, and can be read like any other.
+TEST(Frame, HoldsAJointOfAStaticBodyToTheWorld) {
+    for (const bool is_a : {true, false}) {
+        SceneDesc scene;
+        BodyDesc floor;
+        floor.name = "floor";
+        floor.kind = BodyKind::static_body;
+        floor.colliders.emplace_back().shape = BoxDesc{{5, 0.5, 5}};
+        scene.bodies.push_back(floor);
+        JointDesc joint;
+        joint.name = "link";
+        joint.type = JointType::ball;
+        (is_a ? joint.body_a : joint.body_b) = "floor";
+        scene.joints.push_back(joint);
+        const std::unique_ptr<Simulation> simulation = Simulation::create(scene, {}, nullptr);
+        simulation->step();
+        const Frame frame = simulation->read({.joints = true});
+        ASSERT_EQ(frame.joints.size(), 1u);
+        EXPECT_EQ(frame.joints[0].force, glm::dvec3{0});
+    }
+}
+
 TEST(Frame, HoldsWhatIsAskedFor) {
     const auto simulation = three_balls();
     bool has_bounced = false;

@@ -154,6 +154,7 @@ struct alignas(64) SolverBody : Motion {
     Vec3 moved{Real(0)};       // since the step began (m)
     Vec3 turned{Real(0)};      // since the step began, as a rotation vector (rad, world)
     bool has_locked_translation = false;
+    bool has_locks = false; // of translation or rotation
 
     // `impulse` (N s) acts at `r` from the centre of mass, all in world axes.
     void apply_impulse(const Vec3 &impulse, const Vec3 &r) {

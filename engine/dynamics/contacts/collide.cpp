@@ -439,7 +439,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
         if (!solid_first)
             inside.manifold.normal = -inside.manifold.normal;
         ContactKey key = candidate.key;
-        key.triangle = 0; // for all of the surface
+        key.triangle = ContactKey::inside;
         add_contact(candidate, key.triangle, find_memory(state_, key), inside, out);
         return;
     }

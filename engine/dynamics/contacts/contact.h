@@ -14,9 +14,10 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 // Names a contact for as long as it lasts: bodies a < b, which collider of each, and which triangle
-// when one of them is a surface.
+// when one of them is a surface, or `inside` while the other is inside that.
 struct ContactKey {
     static constexpr std::uint32_t no_triangle = UINT32_MAX;
+    static constexpr std::uint32_t inside = UINT32_MAX - 1;
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     std::uint16_t child_a = 0;

@@ -109,8 +109,12 @@ bool World::meets_nothing(const Collider &collider) const {
 bool World::place_collider(std::uint32_t i) const {
     Scratch &s = scratch_;
     const Collider &collider = model_->colliders[i];
-    if (collider.body == no_body || !is_asked(collider.body) || meets_nothing(collider))
+    if (collider.body == no_body || !is_asked(collider.body))
         return false;
+    if (meets_nothing(collider)) { // for now; it may move meanwhile
+        s.stays[i] = 0;
+        return false;
+    }
     const bool is_still = s.still[collider.body] != 0;
     if (is_still && s.stays[i] != 0 && s.leaves[i] != DynamicTree::none)
         return false;
@@ -279,6 +283,8 @@ void World::find_pairs() const {
     if (!needs_contacts()) {
         if (needs_particle_contacts())
             place_colliders();
+        else
+            std::ranges::fill(s.stays, std::uint8_t{0}); // they move without being placed
         return;
     }
     if (place_colliders())

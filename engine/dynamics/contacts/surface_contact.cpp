@@ -25,7 +25,7 @@ constexpr Real in_plane = Real(1) - Real(1e-6);
 // The solid's deepest point against a face, when the contact is with the face alone.
 constexpr std::uint32_t deepest_point_feature = 0xFFFFFFFFU;
 // The same, of a solid that is inside.
-constexpr std::uint32_t inside_feature = 0xFFFFFFFDU;
+constexpr std::uint32_t inside_feature = 0xFFFFFFFCU;
 
 // The solid's farthest point along a unit direction.
 Vec3 farthest(const Shape &solid, const Vec3 &direction) {

@@ -75,7 +75,7 @@ void note_moment_needs(Scratch &s, const StepSettings &settings, int substeps) {
             const JointConstraint &joint = s.solver.joints[system.block(place)];
             if (joint.rows.kind != RowKind::angular)
                 continue;
-            Vec3 turned = system.softening(place) * joint.impulse;
+            Vec3 turned = (system.softening(place) * WideVec3(joint.impulse)).narrow();
             if (joint.bearing == Bearing::motor) // does not give way
                 turned.z = Real(0);
             const double turn = h * static_cast<double>(glm::length(turned));

@@ -138,6 +138,8 @@ std::uint32_t World::island_body(std::uint32_t a, std::uint32_t b) const {
     const auto is = [&](std::uint32_t body, BodyKind kind) {
         return body != Joint::world && model_->bodies[body].kind == kind;
     };
+    if (b == Joint::world)
+        return a;
     const bool is_b = is(b, BodyKind::dynamic) && !is(a, BodyKind::dynamic);
     return is_b || is(a, BodyKind::static_body) || a == Joint::world ? b : a;
 }

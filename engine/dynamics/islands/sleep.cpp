@@ -105,7 +105,7 @@ bool World::wake_touched(const std::vector<Contact> &contacts) {
     return true;
 }
 
-// Between steps: wakes a body, and the bodies that touch it or are jointed to it.
+// Between steps: wakes a body, and the bodies that touch it or hang on it by a joint or spring.
 void World::wake(std::uint32_t body) {
     scratch_.contacts_are_current = false;
     if (std::ranges::none_of(state_.paces, &Pace::is_asleep))
@@ -120,6 +120,13 @@ void World::wake(std::uint32_t body) {
         for (const auto &[one, other] : {std::pair{joint.a, joint.b}, std::pair{joint.b, joint.a}})
             if (joint.alive && one == body && other != Joint::world)
                 marked[other] = 1;
+    const auto is_body = [](const SpringEnd &end) { return end.kind == SpringEnd::Kind::body; };
+    for (std::size_t i = 0; i < model_->springs.size(); ++i) {
+        const auto &[a, b] = std::pair{model_->springs[i].a, model_->springs[i].b};
+        if (state_.torn[i] == 0 && is_body(a) && is_body(b) &&
+            (a.index == body || b.index == body))
+            marked[a.index] = marked[b.index] = 1;
+    }
     wake_marked(state_.paces);
 }
 

@@ -195,9 +195,9 @@ bool release_bearings(StepContext &context, JointGroup &group, const JointPass &
     });
 }
 
-bool open_bearings(StepContext &context, JointGroup &group, std::span<const Vec3> sides) {
+bool open_bearings(StepContext &context, JointGroup &group, std::span<const WideVec3> sides) {
     return change_bearings(context, group, [&](JointConstraint &joint, std::uint32_t place) {
-        const Real impulse = joint.impulse.z + sides[place - group.first].z;
+        const Real impulse = joint.impulse.z + sides[place - group.first][2];
         if (!is_beyond(context, joint, impulse, Real(1)))
             return false;
         set_bearing(joint, Bearing::none);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/dynamics/joints/joint_constraint.h"
+#include "engine/dynamics/joints/wide_matrix.h"
 
 #include <span>
 
@@ -32,7 +33,7 @@ bool choose_bearings(StepContext &context, const JointGroup &group, Real share);
 bool release_bearings(StepContext &context, JointGroup &group, const JointPass &pass);
 // Opens limits that an impact, whose response is in the right-hand sides, would make pull by more
 // than they carried in the last substep, and motors that would need too much force.
-bool open_bearings(StepContext &context, JointGroup &group, std::span<const Vec3> sides);
+bool open_bearings(StepContext &context, JointGroup &group, std::span<const WideVec3> sides);
 // Releases motors that contacts have thrown off their speed.
 bool release_thrown_motors(StepContext &context, JointGroup &group);
 

@@ -122,7 +122,7 @@ template <typename Due> void factor_groups(StepContext &context, Due &&is_due) {
         for (JointGroup &group : groups.subspan(begin, end - begin)) {
             group.is_factored = group.is_held;
             if (group.is_held && is_due(group))
-                system.factor(context, group, held_compliance);
+                system.factor(context, group);
         }
     });
 }
@@ -354,9 +354,9 @@ void solve_joints(StepContext &context, const JointPass &pass) {
     context.report.constraint_passes += context.scratch.joints.size();
 }
 
-void note_joint_loads(StepContext &context) {
+void note_joint_loads(StepContext &context, Real scale) {
     for (JointConstraint &joint : context.scratch.joints) {
-        Vec3 load = joint.impulse + joint.struck;
+        Vec3 load = scale * joint.impulse + joint.struck;
         if (joint.bearing == Bearing::motor) // breaks nothing
             load.z = Real(0);
         joint.greatest = std::max(joint.greatest, glm::length(load));

@@ -122,8 +122,9 @@ void repeat_springs(StepContext &context);
 void solve_joints(StepContext &context, const JointPass &pass);
 // A single joint.
 void solve_joint(StepContext &context, JointConstraint &joint, const JointPass &pass);
-// Ends a substep: notes the joints' impulses, which may be too much for them.
-void note_joint_loads(StepContext &context);
+// Ends a substep: notes the joints' impulses, which may be too much for them. `scale` makes
+// impulses (N s) of what the method accumulates in their place.
+void note_joint_loads(StepContext &context, Real scale = Real(1));
 // Stores the accumulated impulses for the next step, and breaks joints that were overloaded in any
 // substep.
 void store_joints(StepContext &context);

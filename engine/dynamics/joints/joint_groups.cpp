@@ -21,7 +21,7 @@ constexpr Real motors_solved_to = Real(1e-8);
 constexpr Real mesh_solved_to = Real(5e-2);
 
 // A group's own right-hand sides among those of all groups.
-std::span<Vec3> sides_of(StepContext &context, const JointGroup &group) {
+std::span<WideVec3> sides_of(StepContext &context, const JointGroup &group) {
     return std::span(context.scratch.sides).subspan(group.first, group.last - group.first);
 }
 
@@ -40,13 +40,25 @@ Vec3 held_bias(const JointConstraint &joint, const JointPass &pass) {
     return bias;
 }
 
+// How fast the rows' errors grow, beyond the speed that a motor's row should have.
+WideVec3 closing_velocity(StepContext &context, const JointConstraint &joint,
+                          const JointPass &pass) {
+    const SolverBody &a = context.body(joint.a);
+    const SolverBody &b = context.body(joint.b);
+    if (joint.rows.kind == RowKind::point)
+        return wide_point_velocity(joint.rows, a, b, pass);
+    Vec3 v = axial_velocity(joint.rows, a, b, pass);
+    v.z -= joint.rows.speed;
+    return WideVec3(v);
+}
+
 // Solves all rows of a group together. Where bodies turn far within the substep the ends of their
 // arms move along circles, and take a few Newton steps to meet. Returns whether they do. In a mesh
 // nearly is enough, as long as the steps bring them closer: Gauss-Seidel would let it fall apart,
 // and the next substep takes the rest back.
 bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = *context.scratch.joint_system;
-    const std::span<Vec3> sides = sides_of(context, group);
+    const std::span<WideVec3> sides = sides_of(context, group);
     // Far more than needed when a body turns a radian within the substep.
     constexpr int most_steps = 8;
     Real before = std::numeric_limits<Real>::infinity();
@@ -55,14 +67,12 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
         bool is_exact = true;
         for (std::uint32_t place = group.first; place < group.last; ++place) {
             const JointConstraint &joint = context.scratch.joints[system.block(place)];
-            Vec3 side =
-                row_velocity(joint.rows, context.body(joint.a), context.body(joint.b), pass);
-            side.z -= joint.rows.speed;
+            WideVec3 side = closing_velocity(context, joint, pass);
             if (pass.held_share > Real(0))
-                side += joint.closing + system.softening(place) * joint.impulse;
+                side += WideVec3(joint.closing) + system.softening(place) * WideVec3(joint.impulse);
             sides[place - group.first] = -side;
-            const Vec3 share = (pass.h / joint.size) * side;
-            const Real squared = glm::dot(share, share);
+            const WideVec3 share = (pass.h / joint.size) * side;
+            const Real squared = dot(share, share);
             if (!std::isnan(worst) && !(squared <= worst))
                 worst = squared;
             if (joint.bearing == Bearing::motor)
@@ -79,7 +89,7 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
         system.solve(group, sides);
         for (std::uint32_t place = group.first; place < group.last; ++place) {
             JointConstraint &joint = context.scratch.joints[system.block(place)];
-            const Vec3 &change = sides[place - group.first];
+            const Vec3 change = sides[place - group.first].narrow();
             joint.impulse += change;
             apply(context, joint, change);
         }
@@ -93,7 +103,7 @@ bool solve_rows(StepContext &context, const JointGroup &group, const JointPass &
 Real find_answer(StepContext &context, const JointConstraint &joint, const JointGroup &group,
                  const Vec3 &impulse) {
     const JointSystem &system = *context.scratch.joint_system;
-    const std::span<Vec3> sides = sides_of(context, group);
+    const std::span<WideVec3> sides = sides_of(context, group);
     const auto struck = [&](std::uint32_t body) {
         SolverBody motion = context.body(body);
         motion.velocity = motion.angular_velocity = Vec3{Real(0)};
@@ -115,11 +125,11 @@ Real find_answer(StepContext &context, const JointConstraint &joint, const Joint
         return row_velocity(other.rows, after(other.a), after(other.b), JointPass{});
     };
     for (std::uint32_t place = group.first; place < group.last; ++place)
-        sides[place - group.first] = -effect(place);
+        sides[place - group.first] = WideVec3(-effect(place));
     system.solve(group, sides);
     Real sum = Real(0);
     for (std::uint32_t place = group.first; place < group.last; ++place)
-        sum -= glm::dot(effect(place), sides[place - group.first]);
+        sum -= glm::dot(effect(place), sides[place - group.first].narrow());
     return sum;
 }
 
@@ -151,7 +161,7 @@ bool hangs_on_changed_group(StepContext &context, const JointConstraint &joint) 
 } // namespace
 
 void factor_again(StepContext &context, JointGroup &group) {
-    context.scratch.joint_system->factor(context, group, held_compliance);
+    context.scratch.joint_system->factor(context, group);
     group.has_changed = true;
 }
 
@@ -179,11 +189,11 @@ Real unturned_share(StepContext &context, const JointConstraint &joint, Real h) 
 // rest of the bias is corrected, by the push and not by the load.
 void push(StepContext &context, const JointGroup &group, const JointPass &pass) {
     const JointSystem &system = *context.scratch.joint_system;
-    const std::span<Vec3> sides = sides_of(context, group);
+    const std::span<WideVec3> sides = sides_of(context, group);
     bool any = false;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
-        const Vec3 given_way = system.softening(place) * joint.impulse;
+        const Vec3 given_way = (system.softening(place) * WideVec3(joint.impulse)).narrow();
         const Vec3 bias = held_bias(joint, pass);
         const Real share = unturned_share(context, joint, pass.h);
         Vec3 side = share * pass.push_share * (bias + given_way);
@@ -195,7 +205,7 @@ void push(StepContext &context, const JointGroup &group, const JointPass &pass) 
             joint.closing.z = -given_way.z;
             side.z = Real(0);
         }
-        sides[place - group.first] = -side;
+        sides[place - group.first] = WideVec3(-side);
         const Real most = solved_to * joint.size / pass.h;
         any = any || glm::dot(side, side) > most * most;
     }
@@ -204,7 +214,7 @@ void push(StepContext &context, const JointGroup &group, const JointPass &pass) 
     system.solve(group, sides);
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
-        joint.push = sides[place - group.first];
+        joint.push = sides[place - group.first].narrow();
         if (is_limit(joint.bearing))
             joint.push.z = Real(0);
         joint.impulse += joint.push;
@@ -312,12 +322,13 @@ void weigh_again(StepContext &context) {
 void answer(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
     for_held_groups(context, joint, [&](const JointGroup &group) {
         find_answer(context, joint, group, impulse);
-        const std::span<const Vec3> sides = sides_of(context, group);
+        const std::span<const WideVec3> sides = sides_of(context, group);
         for (std::uint32_t place = group.first; place < group.last; ++place) {
             JointConstraint &other =
                 context.scratch.joints[context.scratch.joint_system->block(place)];
-            other.impulse += sides[place - group.first];
-            apply(context, other, sides[place - group.first]);
+            const Vec3 change = sides[place - group.first].narrow();
+            other.impulse += change;
+            apply(context, other, change);
         }
     });
 }
@@ -329,21 +340,19 @@ void answer_impact(StepContext &context, std::uint32_t group) {
     JointGroup &all = system.groups()[group];
     if (!all.is_held)
         return;
-    const std::span<Vec3> sides = sides_of(context, all);
+    const std::span<WideVec3> sides = sides_of(context, all);
     do {
         for (std::uint32_t place = all.first; place < all.last; ++place) {
             const JointConstraint &joint = context.scratch.joints[system.block(place)];
-            Vec3 &side = sides[place - all.first];
-            side = -row_velocity(joint.rows, context.body(joint.a), context.body(joint.b),
-                                 JointPass{});
-            side.z += joint.rows.speed;
+            sides[place - all.first] = -closing_velocity(context, joint, JointPass{});
         }
         system.solve(all, sides);
     } while (open_bearings(context, all, sides));
     for (std::uint32_t place = all.first; place < all.last; ++place) {
         JointConstraint &joint = context.scratch.joints[system.block(place)];
-        apply(context, joint, sides[place - all.first]);
-        joint.struck += sides[place - all.first];
+        const Vec3 change = sides[place - all.first].narrow();
+        apply(context, joint, change);
+        joint.struck += change;
     }
 }
 

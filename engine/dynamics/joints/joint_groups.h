@@ -12,9 +12,6 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 inline constexpr std::size_t groups_a_part = 1; // per thread
-// Compliance of joints solved in groups, as a share of their own blocks' K: enough to solve
-// redundant joints, too little to see.
-inline constexpr Real held_compliance = Real(1e-3);
 
 // Factors a group again after its active limits or motors changed.
 void factor_again(StepContext &context, JointGroup &group);

@@ -43,19 +43,36 @@ Real row_coupling(const RowBlock &rows, const SolverBody &a, const SolverBody &b
            glm::dot(b.inv_inertia * glm::cross(rows.r_b, u), glm::cross(rows.r_b, v));
 }
 
+// The sum of the principal minors of order two: of the products of two eigenvalues each.
+double sum_of_minors(const glm::dmat3 &k) {
+    return k[0][0] * k[1][1] - k[1][0] * k[0][1] + k[1][1] * k[2][2] - k[2][1] * k[1][2] +
+           k[2][2] * k[0][0] - k[0][2] * k[2][0];
+}
+
+// Whether the least eigenvalue is less than some `least` of the mean; then it is between a third
+// and the whole of determinant / sum_of_minors.
+bool is_flatter_than(double least, const glm::dmat3 &k, double size) {
+    return !(glm::determinant(k) > least * size * sum_of_minors(k));
+}
+
+// Whether both bodies, as far as they move, have locked axes.
+bool may_be_locked(const SolverBody &a, const SolverBody &b) {
+    const auto is_free = [](const SolverBody &body) {
+        return !body.has_locks && body.inv_mass.x > Real(0);
+    };
+    return !is_free(a) && !is_free(b);
+}
+
 // The inverse of a symmetric positive semidefinite matrix; 0 for 0.
-Mat3 inverse_of(Mat3 k) {
+Mat3 inverse_of(const Mat3 &k, bool may_be_locked) {
     const Real trace = k[0][0] + k[1][1] + k[2][2];
     if (!(trace > Real(0)))
         return Mat3{Real(0)};
-    constexpr Real small = Real(1e-6);
-    if (trace > small && trace < Real(1) / small)
-        return glm::inverse(k + locked_compliance(k));
-    // The determinant of a very heavy body's K would underflow. Scale by a power of two, which does
-    // not round.
-    const Real scale = std::exp2(static_cast<Real>(-std::ilogb(trace)));
-    k *= scale;
-    return scale * glm::inverse(k + locked_compliance(k));
+    // Scaled by a power of two, which does not round: the determinant of a very heavy body's K
+    // would underflow.
+    const double scale = std::exp2(-std::ilogb(trace));
+    const glm::dmat3 scaled = scale * glm::dmat3(k);
+    return Mat3(scale * glm::inverse(may_be_locked ? scaled + locked_compliance(scaled) : scaled));
 }
 
 Softness spring_softness(const RowBlock &rows, const JointPass &pass) {
@@ -90,15 +107,16 @@ Real limit_change(const JointConstraint &joint, Real speed, const Softness &soft
 
 } // namespace
 
-Mat3 locked_compliance(const Mat3 &k) {
-    const Real size = (k[0][0] + k[1][1] + k[2][2]) / Real(3);
-    const Real least = Real(64) * std::numeric_limits<Real>::epsilon();
-    if (!(size > Real(0)) || glm::determinant(k) > least * size * size * size)
-        return Mat3{Real(0)};
+glm::dmat3 locked_compliance(const glm::dmat3 &k) {
+    const double size = (k[0][0] + k[1][1] + k[2][2]) / 3;
+    constexpr double rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    if (!(size > 0) || !is_flatter_than(rounding, k, size))
+        return glm::dmat3{0.0};
     // Close to 1 along immovable directions, close to 0 along all others.
-    constexpr Real small = Real(1e-4);
-    const Mat3 locked = small * glm::inverse(k / size + Mat3{small});
-    return (Real(1e3) * size) * (locked * locked);
+    constexpr double small = 16 * rounding;
+    const glm::dmat3 locked = small * glm::inverse(k / size + glm::dmat3{small});
+    constexpr double stiff = 1e3; // times the others
+    return (stiff * size) * (locked * locked);
 }
 
 namespace {
@@ -119,7 +137,7 @@ Mat3 matrix_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
 
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
     if (rows.kind == RowKind::point)
-        return inverse_of(point_matrix(a, b, rows.r_a, rows.r_b));
+        return inverse_of(point_matrix(a, b, rows.r_a, rows.r_b), may_be_locked(a, b));
     if (rows.count == 1) {
         const Real k = rows.kind == RowKind::linear
                            ? inverse_effective_mass(a, b, rows.r_a, rows.r_b, rows.axes[0])
@@ -131,27 +149,45 @@ Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
     const Mat3 k = matrix_of(rows, a, b);
     Mat3 mass{Real(0)};
     if (rows.count == 2) {
-        const Real determinant = k[0][0] * k[1][1] - k[1][0] * k[0][1];
-        const Real size = Real(0.5) * (k[0][0] + k[1][1]);
-        if (determinant > Real(1e-6) * size * size) {
-            mass[0][0] = k[1][1] / determinant;
-            mass[1][1] = k[0][0] / determinant;
-            mass[1][0] = mass[0][1] = -k[1][0] / determinant;
+        const glm::dmat3 fine(k); // of a slender rod's, single precision would leave little
+        const double determinant = fine[0][0] * fine[1][1] - fine[1][0] * fine[0][1];
+        const double size = 0.5 * (fine[0][0] + fine[1][1]);
+        if (determinant > 1e-6 * size * size) {
+            mass[0][0] = static_cast<Real>(fine[1][1] / determinant);
+            mass[1][1] = static_cast<Real>(fine[0][0] / determinant);
+            mass[1][0] = mass[0][1] = static_cast<Real>(-fine[1][0] / determinant);
         } else {
             for (int i = 0; i < 2; ++i)
                 mass[i][i] = k[i][i] > Real(0) ? Real(1) / (k[0][0] + k[1][1]) : Real(0);
         }
     } else {
-        mass = inverse_of(k);
+        mass = inverse_of(k, may_be_locked(a, b));
     }
     return mass;
 }
 
+namespace {
+
+// The two factors of a chord for a turn whose square is small: sin(x) / x and (1 - cos(x)) / x^2.
+struct ChordSeries {
+    Real along;
+    Real inward;
+};
+ChordSeries chord_series(Real squared) {
+    using Pair [[gnu::vector_size(2 * sizeof(Real))]] = Real;
+    const Pair square = {squared, squared};
+    const Pair sum =
+        Pair{Real(1), Real(0.5)} - square / Pair{Real(6), Real(24)} *
+                                       (Pair{Real(1), Real(1)} - square / Pair{Real(20), Real(30)});
+    return {sum[0], sum[1]};
+}
+
+} // namespace
+
 // The chord of its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
 Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
     const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);
-    Real along = Real(1) - squared / Real(6) * (Real(1) - squared / Real(20));
-    Real inward = Real(0.5) - squared / Real(24) * (Real(1) - squared / Real(30));
+    auto [along, inward] = chord_series(squared);
     if (squared > Real(0.04)) { // the series' next terms show
         const Real angle = std::sqrt(squared);
         along = std::sin(angle) / angle;
@@ -159,6 +195,34 @@ Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
     }
     const Vec3 turning = glm::cross(angular_velocity, r);
     return along * turning + (inward * h) * glm::cross(angular_velocity, turning);
+}
+
+namespace {
+
+// chord_velocity.
+WideVec3 wide_chord_velocity(const WideVec3 &angular_velocity, const WideVec3 &r, Real h) {
+    const Real squared = h * h * dot(angular_velocity, angular_velocity);
+    if (squared > Real(0.04))
+        return WideVec3(chord_velocity(angular_velocity.narrow(), r.narrow(), h));
+    const auto [along, inward] = chord_series(squared);
+    const WideVec3 turning = cross(angular_velocity, r);
+    return along * turning + (inward * h) * cross(angular_velocity, turning);
+}
+
+} // namespace
+
+WideVec3 wide_point_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                             const JointPass &pass) {
+    const WideVec3 velocity_a = WideVec3::followed(a.velocity);
+    const WideVec3 velocity_b = WideVec3::followed(b.velocity);
+    const WideVec3 turning_a = WideVec3::followed(a.angular_velocity);
+    const WideVec3 turning_b = WideVec3::followed(b.angular_velocity);
+    const WideVec3 r_a = WideVec3::followed(rows.r_a);
+    const WideVec3 r_b = WideVec3::followed(rows.r_b);
+    if (!pass.at_the_end)
+        return (velocity_b + cross(turning_b, r_b)) - (velocity_a + cross(turning_a, r_a));
+    return (velocity_b - velocity_a) + (wide_chord_velocity(turning_b, r_b, pass.h) -
+                                        wide_chord_velocity(turning_a, r_a, pass.h));
 }
 
 Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
@@ -219,11 +283,22 @@ Vec3 half_bend(const RowBlock &rows, const SolverBody &a, const SolverBody &b, R
 
 void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
     const RowBlock &rows = joint.rows;
-    const Vec3 along = world_impulse(rows, impulse);
+    const WideVec3 along(world_impulse(rows, impulse));
+    const auto act = [&](SolverBody &body, const WideVec3 &way, const Vec3 &arm) {
+        const bool is_linear = rows.kind != RowKind::angular;
+        const WideVec3 turn = is_linear ? cross(WideVec3::followed(arm), way) : way;
+        const WideVec3 turning =
+            WideVec3::followed(body.angular_velocity) + WideMat3::followed(body.inv_inertia) * turn;
+        if (is_linear)
+            body.velocity =
+                (WideVec3::followed(body.velocity) + WideVec3::followed(body.inv_mass) * way)
+                    .narrow();
+        body.angular_velocity = turning.narrow();
+    };
     if (joint.moves_a)
-        apply(context.bodies[joint.a], rows, rows.r_a, -along);
+        act(context.bodies[joint.a], -along, rows.r_a);
     if (joint.moves_b)
-        apply(context.bodies[joint.b], rows, rows.r_b, along);
+        act(context.bodies[joint.b], along, rows.r_b);
 }
 
 Vec3 pushed(const Vec3 &bias, Real most) {
@@ -299,12 +374,13 @@ Softness spring_softness(const StepContext &context, const JointConstraint &join
 Vec3 spring_change(StepContext &context, const JointConstraint &joint, const Vec3 &wanted,
                    const Softness &softness) {
     const Real stiffness = softness.mass_scale / softness.impulse_scale; // a2 of make_soft
+    const SolverBody &a = context.body(joint.a);
+    const SolverBody &b = context.body(joint.b);
     const Mat3 joined = matrix_as_joined(context, joint);
-    Mat3 k =
-        stiffness * matrix_of(joint.rows, context.body(joint.a), context.body(joint.b)) + joined;
+    Mat3 k = stiffness * matrix_of(joint.rows, a, b) + joined;
     if (joint.rows.count == 2)
         k[2][2] = k[1][1]; // of no row
-    return -inverse_of(k) * (stiffness * wanted + joined * joint.impulse);
+    return -inverse_of(k, may_be_locked(a, b)) * (stiffness * wanted + joined * joint.impulse);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "engine/dynamics/bodies/body.h"
 #include "engine/dynamics/joints/joint_constraint.h"
+#include "engine/dynamics/joints/wide_matrix.h"
 
 #include <glm/geometric.hpp>
 
@@ -10,8 +11,8 @@ namespace plumb::inline PLUMB_PRECISION {
 
 // What to add to K, symmetric positive semidefinite, so that next to no impulse acts along a
 // direction in which nothing can move (a locked axis): it would pull in vain, ever harder. 0 where
-// there is no such direction.
-Mat3 locked_compliance(const Mat3 &k);
+// there is no such direction. Only K of bodies that all have locked axes can need it.
+glm::dmat3 locked_compliance(const glm::dmat3 &k);
 // K^-1 of the rows; 0 where nothing can move.
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b);
 // The mean velocity over h of the end of a turning arm that starts at r.
@@ -24,6 +25,9 @@ inline Vec3 point_velocity(const RowBlock &rows, const SolverBody &a, const Solv
     return (b.velocity - a.velocity) + (chord_velocity(b.angular_velocity, rows.r_b, pass.h) -
                                         chord_velocity(a.angular_velocity, rows.r_a, pass.h));
 }
+// The same with the same bits, computed three numbers at once.
+WideVec3 wide_point_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                             const JointPass &pass);
 // The same for rows along or about axes.
 Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
                     const JointPass &pass);

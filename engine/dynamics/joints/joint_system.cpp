@@ -37,6 +37,14 @@ bool is_rigid(const JointConstraint &joint) {
            !joint.is_spring() && (joint.moves_a || joint.moves_b);
 }
 
+// Whether both bodies, as far as they move, have locked axes.
+bool may_be_locked(const StepContext &context, const JointConstraint &joint) {
+    const auto is_free = [&](bool moves, std::uint32_t body) {
+        return moves && !context.model.bodies[body].has_locks;
+    };
+    return !is_free(joint.moves_a, joint.a) && !is_free(joint.moves_b, joint.b);
+}
+
 } // namespace
 
 void JointSystem::arrange(StepContext &context) {
@@ -45,6 +53,7 @@ void JointSystem::arrange(StepContext &context) {
         group.is_factored = group.is_touched = group.was_torn = group.was_let_go =
             group.has_changed = false;
     note_touched(context);
+    note_stiff(context);
 }
 
 void JointSystem::note_touched(const StepContext &context) {
@@ -62,15 +71,52 @@ void JointSystem::note_touched(const StepContext &context) {
         note(contact.body);
 }
 
+// A point-like bob on a long arm, or a slender rod: what holds it is the small difference of large
+// numbers.
+void JointSystem::note_stiff(StepContext &context) {
+    constexpr Real many = Real(100);
+    const auto is_stiff = [&](const JointConstraint &joint, std::uint32_t index, const Vec3 &arm) {
+        const SolverBody &body = context.body(index);
+        const Mat3 &inverse = body.inv_inertia;
+        const Real trace = inverse[0][0] + inverse[1][1] + inverse[2][2];
+        if (joint.rows.kind != RowKind::angular) // of K for a point, less the translation's share
+            return trace * glm::dot(arm, arm) - glm::dot(arm, inverse * arm) >
+                   many * std::max({body.inv_mass.x, body.inv_mass.y, body.inv_mass.z});
+        const Vec3 &inertia = context.model.bodies[index].inertia;
+        return std::max({inertia.x, inertia.y, inertia.z}) >
+               many * std::min({inertia.x, inertia.y, inertia.z});
+    };
+    for (JointGroup &group : groups_) {
+        group.is_stiff = false;
+        for (std::uint32_t place = group.first; place < group.last && !group.is_stiff; ++place) {
+            const JointConstraint &joint = context.scratch.joints[order_[place]];
+            group.is_stiff = (joint.moves_a && is_stiff(joint, joint.a, joint.rows.r_a)) ||
+                             (joint.moves_b && is_stiff(joint, joint.b, joint.rows.r_b));
+        }
+        if (group.is_stiff)
+            fine_factors_.resize(order_.size(), rows_.size());
+    }
+}
+
+template <typename Number>
+void JointSystem::Factors<Number>::resize(std::size_t places, std::size_t entries) {
+    effects.resize(places);
+    diagonal.resize(places);
+    sides.resize(places);
+    lower.resize(entries);
+}
+
 void JointSystem::find_order(StepContext &context) {
     std::vector<JointConstraint> &joints = context.scratch.joints;
     const auto is_dynamic = [&](std::uint32_t body) {
         return body != Joint::world && context.model.bodies[body].kind == BodyKind::dynamic;
     };
+    // What the arrangement depends on: the bodies, and whether the rows are angles.
     const auto key_of = [&](const JointConstraint &joint) {
         const std::uint64_t a = is_dynamic(joint.a) ? joint.a : Joint::world;
         const std::uint64_t b = is_dynamic(joint.b) ? joint.b : Joint::world;
-        return is_rigid(joint) ? a << 32 | b : ~std::uint64_t{0};
+        const std::uint64_t is_angular = joint.rows.kind == RowKind::angular ? 1 : 0;
+        return is_rigid(joint) ? is_angular << 63 | (a & 0x7FFFFFFFU) << 32 | b : ~std::uint64_t{0};
     };
     is_arranged_ = true;
     if (!key_.empty() && key_.front() == context.bodies.size() &&
@@ -149,10 +195,8 @@ void JointSystem::find_order(StepContext &context) {
                     group_of_body_[body] = static_cast<std::uint32_t>(groups_.size() - 1);
     }
     context.scratch.sides.resize(std::max(context.scratch.sides.size(), order_.size()));
-    effects_.resize(order_.size());
     softening_.resize(order_.size());
-    diagonal_.resize(order_.size());
-    lower_.resize(rows_.size());
+    factors_.resize(order_.size(), rows_.size());
 }
 
 // Orders one group by minimum degree and finds its fill-in; returns false, with nothing done, when
@@ -222,8 +266,9 @@ bool JointSystem::eliminate(const std::vector<std::uint32_t> &members, std::size
     return true;
 }
 
+template <typename Number>
 void JointSystem::find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
-                              Effect &out) {
+                              Effect<Number> &out) {
     out.body = is_b ? joint.b : joint.a;
     if (out.body == Joint::world)
         return;
@@ -231,113 +276,154 @@ void JointSystem::find_effect(StepContext &context, const JointConstraint &joint
     const SolverBody &body = context.bodies[out.body];
     out.is_linear = rows.kind != RowKind::angular;
     out.is_point = rows.kind == RowKind::point;
-    out.sign = is_b ? Real(1) : Real(-1);
-    out.arm = is_b ? rows.r_b : rows.r_a;
-    out.inv_mass = body.inv_mass;
+    out.sign = is_b ? Number(1) : Number(-1);
+    out.arm = out.sign * WideVector<Number>(WideVec3(is_b ? rows.r_b : rows.r_a));
+    out.inv_mass = WideVector<Number>(WideVec3::followed(body.inv_mass));
+    const WideMatrix<Number> inverse(WideMat3::followed(body.inv_inertia));
     if (out.is_point) {
-        const Mat3 &inverse = body.inv_inertia;
-        const Vec3 arm = out.sign * out.arm;
-        out.turned = {arm.z * inverse[1] - arm.y * inverse[2],
-                      arm.x * inverse[2] - arm.z * inverse[0],
-                      arm.y * inverse[0] - arm.x * inverse[1]};
+        const WideVector<Number> &arm = out.arm;
+        out.turned = {arm[2] * inverse[1] - arm[1] * inverse[2],
+                      arm[0] * inverse[2] - arm[2] * inverse[0],
+                      arm[1] * inverse[0] - arm[0] * inverse[1]};
         return;
     }
-    out.linear = out.angular = out.moved = Mat3{Real(0)};
+    out.linear = out.angular = out.moved = WideMatrix<Number>{};
     for (int i = 0; i < rows.count; ++i) {
-        const Vec3 axis = out.sign * rows.axes[static_cast<std::size_t>(i)];
-        out.angular[i] = out.is_linear ? glm::cross(out.arm, axis) : axis;
+        const WideVector<Number> axis(WideVec3(rows.axes[static_cast<std::size_t>(i)]));
+        out.angular[i] = out.is_linear ? cross(out.arm, axis) : out.sign * axis;
         if (out.is_linear) {
-            out.linear[i] = axis;
-            out.moved[i] = out.inv_mass * axis;
+            out.linear[i] = out.sign * axis;
+            out.moved[i] = out.inv_mass * out.linear[i];
         }
     }
-    out.turned = body.inv_inertia * out.angular;
+    for (int i = 0; i < 3; ++i)
+        out.turned[i] = inverse * out.angular[i];
 }
 
 // u^T M^-1 v for one body; `u` gives the rows of the result.
-void JointSystem::add_coupling(const Effect &u, const Effect &v, Mat3 &sum) {
-    if (u.is_point) // the transpose of a cross product's matrix is its negative
-        for (int i = 0; i < 3; ++i)
-            sum[i] += u.sign * glm::cross(v.turned[i], u.arm);
-    else
-        sum += glm::transpose(u.angular) * v.turned;
+template <typename Number>
+void JointSystem::add_coupling(const Effect<Number> &u, const Effect<Number> &v,
+                               WideMatrix<Number> &sum) {
+    for (int i = 0; i < 3; ++i)
+        // The transpose of a cross product's matrix is its negative.
+        sum[i] += u.is_point ? cross(v.turned[i], u.arm) : u.angular.transposed_times(v.turned[i]);
     if (!u.is_linear || !v.is_linear)
         return;
-    if (u.is_point && v.is_point)
+    if (u.is_point && v.is_point) {
+        sum.add_diagonal(((u.sign * v.sign) * u.inv_mass).narrow());
+    } else if (v.is_point) {
+        const WideMatrix<Number> moved = u.moved.transposed();
         for (int i = 0; i < 3; ++i)
-            sum[i][i] += (u.sign * v.sign) * u.inv_mass[i];
-    else if (v.is_point)
+            sum[i] += v.sign * moved[i];
+    } else if (u.is_point) {
         for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                sum[i][j] += v.sign * u.moved[j][i];
-    else if (u.is_point)
-        sum += u.sign * v.moved;
-    else
-        sum += glm::transpose(u.linear) * v.moved;
+            sum[i] += u.sign * v.moved[i];
+    } else {
+        for (int i = 0; i < 3; ++i)
+            sum[i] += u.linear.transposed_times(v.moved[i]);
+    }
 }
 
-void JointSystem::factor(StepContext &context, const JointGroup &group, Real compliance) {
+template <typename Number>
+void JointSystem::factor(StepContext &context, const JointGroup &group, Number compliance,
+                         Number rounding, Factors<Number> &into) {
     const std::vector<JointConstraint> &joints = context.scratch.joints;
+    auto &[effects, diagonal, lower, sides] = into;
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         const JointConstraint &joint = joints[order_[place]];
-        find_effect(context, joint, false, effects_[place][0]);
-        find_effect(context, joint, true, effects_[place][1]);
+        find_effect(context, joint, false, effects[place][0]);
+        find_effect(context, joint, true, effects[place][1]);
     }
     for (std::uint32_t place = group.first; place < group.last; ++place) {
         const int count = joints[order_[place]].rows.count;
-        Mat3 own{Real(0)};
-        for (const Effect &effect : effects_[place])
+        WideMatrix<Number> own;
+        for (const Effect<Number> &effect : effects[place])
             if (effect.body != Joint::world)
                 add_coupling(effect, effect, own);
-        const Real size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Real>(count);
-        Mat3 all = own;
+        const Number size = (own[0][0] + own[1][1] + own[2][2]) / static_cast<Number>(count);
+        auto all = own.narrow();
         for (int i = count; i < 3; ++i)
             all[i][i] = size;
-        softening_[place] = compliance * own + locked_compliance(all);
-        for (int i = 0; i < count; ++i)
-            softening_[place][i][i] += Real(1e-5) * size; // for rounding
-        own += softening_[place];
-        for (int i = 0; i < 3; ++i) // rows that are not there
-            if (i >= count || !(size > Real(0)))
-                own[i][i] += Real(1);
-        diagonal_[place] = WideMat3(own);
+        typename WideVector<Number>::Narrow for_rounding{Number(0)};
+        typename WideVector<Number>::Narrow missing{Number(1)}; // rows that are not there
+        for (int i = 0; i < count; ++i) {
+            for_rounding[i] = rounding * size;
+            if (size > Number(0))
+                missing[i] = Number(0);
+        }
+        WideMatrix<Number> softening;
+        if (may_be_locked(context, joints[order_[place]]))
+            softening = WideMatrix<Number>(WideMatrix<double>(locked_compliance(glm::dmat3(all))));
+        for (int i = 0; i < 3; ++i)
+            softening[i] += compliance * own[i];
+        softening.add_diagonal(for_rounding);
+        softening_[place] = WideMat3(softening);
+        own += softening;
+        own.add_diagonal(missing);
+        diagonal[place] = own;
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i) {
-            Mat3 coupling{Real(0)};
-            for (const Effect &u : effects_[rows_[i]])
-                for (const Effect &v : effects_[place])
+            WideMatrix<Number> &coupling = lower[i];
+            coupling = WideMatrix<Number>{};
+            for (const Effect<Number> &u : effects[rows_[i]])
+                for (const Effect<Number> &v : effects[place])
                     if (u.body == v.body && u.body != Joint::world)
                         add_coupling(u, v, coupling);
-            lower_[i] = WideMat3(coupling);
         }
     }
     for (std::uint32_t place = group.first; place < group.last; ++place) {
-        const WideMat3 inverse(glm::inverse(diagonal_[place].narrow()));
-        diagonal_[place] = inverse;
+        const WideMatrix<Number> inverse(glm::inverse(diagonal[place].narrow()));
+        diagonal[place] = inverse;
         const std::uint32_t end = column_start_[place + 1];
         const std::uint32_t *target = targets_.data() + target_start_[place];
         for (std::uint32_t i = column_start_[place]; i < end; ++i) {
             // Row i of L; the rows after it are still K's.
-            WideMat3 row;
-            row.add_product(lower_[i], inverse.narrow());
-            const Mat3 across = -glm::transpose(row.narrow());
+            WideMatrix<Number> row;
+            row.add_product(lower[i], inverse);
+            const WideMatrix<Number> across = -row.transposed();
             for (std::uint32_t j = i; j < end; ++j, ++target)
-                ((*target & on_diagonal) != 0 ? diagonal_[*target & ~on_diagonal] : lower_[*target])
-                    .add_product(lower_[j], across);
-            lower_[i] = row;
+                ((*target & on_diagonal) != 0 ? diagonal[*target & ~on_diagonal] : lower[*target])
+                    .add_product(lower[j], across);
+            lower[i] = row;
         }
     }
 }
 
-void JointSystem::solve(const JointGroup &group, std::span<Vec3> sides) const {
+void JointSystem::factor(StepContext &context, const JointGroup &group) {
+    constexpr Real rounding = Real(1e-5); // of K, as a share of its trace
+    constexpr double fine_rounding = 1e-10;
+    if (group.is_stiff)
+        factor(context, group, stiff_compliance, fine_rounding, fine_factors_);
+    else
+        factor(context, group, held_compliance, rounding, factors_);
+}
+
+template <typename Number>
+void JointSystem::solve(const JointGroup &group, const Factors<Number> &factors,
+                        std::span<WideVector<Number>> sides) const {
     for (std::uint32_t place = group.first; place < group.last; ++place) {
-        Vec3 &own = sides[place - group.first];
+        WideVector<Number> &own = sides[place - group.first];
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
-            sides[rows_[i] - group.first] -= lower_[i] * own;
-        own = diagonal_[place] * own;
+            sides[rows_[i] - group.first] -= factors.lower[i] * own;
+        own = factors.diagonal[place] * own;
     }
     for (std::uint32_t place = group.last; place-- > group.first;)
         for (std::uint32_t i = column_start_[place]; i < column_start_[place + 1]; ++i)
-            sides[place - group.first] -= sides[rows_[i] - group.first] * lower_[i];
+            sides[place - group.first] -=
+                factors.lower[i].transposed_times(sides[rows_[i] - group.first]);
+}
+
+void JointSystem::solve(const JointGroup &group, std::span<WideVec3> sides) const {
+    if (!group.is_stiff) {
+        solve(group, factors_, sides);
+        return;
+    }
+    const std::span fine =
+        std::span(fine_factors_.sides).subspan(group.first, group.last - group.first);
+    for (std::size_t i = 0; i < fine.size(); ++i)
+        fine[i] = WideVector<double>(sides[i]);
+    solve(group, fine_factors_, fine);
+    for (std::size_t i = 0; i < fine.size(); ++i)
+        sides[i] = WideVec3(fine[i]);
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -16,7 +16,8 @@ struct StepContext;
 
 // Blocks first..last - 1 in the system's elimination order. `is_held`: solved together in this
 // substep, not left to Gauss-Seidel. `is_mesh`: has many loops, as nets and frames do.
-// `is_touched`: contacts act on its bodies. In this step:
+// `is_touched`: contacts act on its bodies. `is_stiff`: some of its bodies turn so much more easily
+// than they move that the group is factored in double precision. In this step:
 // `is_factored`: it was factored when its joints were last refreshed; `was_torn`: torn joints
 // kept it from being held; `was_let_go`: it was let go before that, or torn between two substeps.
 // `has_changed`: it was let go, or its active limits changed, since the masses of motors
@@ -28,6 +29,7 @@ struct JointGroup {
     bool is_mesh = false;
     bool is_factored = false;
     bool is_touched = false;
+    bool is_stiff = false;
     bool was_torn = false;
     bool was_let_go = false;
     bool has_changed = false;
@@ -59,36 +61,60 @@ class JointSystem {
     // The constraint at a position in the elimination order.
     std::uint32_t block(std::uint32_t place) const { return order_[place]; }
 
-    // At the present poses and inertias. Adds `compliance` times a block's own K to it, so that
-    // redundant joints can be solved.
-    void factor(StepContext &context, const JointGroup &group, Real compliance);
+    // Compliance of the joints, as a share of their own blocks' K: enough to solve redundant joints,
+    // too little to see.
+    static constexpr Real held_compliance = Real(1e-3);
+    // The same for stiff groups: there, K is large only because a body turns easily, and that share
+    // of it would let what spins on a long arm gain energy.
+    static constexpr double stiff_compliance = 1e-6;
+
+    // At the present poses and inertias.
+    void factor(StepContext &context, const JointGroup &group);
     // What `factor` added to a block's K.
-    const Mat3 &softening(std::uint32_t place) const { return softening_[place]; }
+    const WideMat3 &softening(std::uint32_t place) const { return softening_[place]; }
     // Solves in place for right-hand sides, one per position of the group.
-    void solve(const JointGroup &group, std::span<Vec3> sides) const;
+    void solve(const JointGroup &group, std::span<WideVec3> sides) const;
 
   private:
     // The Jacobian of a block's rows for one of its bodies (columns: linear and angular parts), and
     // that times the inverse mass.
-    struct Effect {
+    template <typename Number> struct Effect {
         std::uint32_t body = 0; // if it is the world, only this is set
         bool is_linear = false; // has linear parts
-        bool is_point = false;  // linear: the sign alone; angular: the arm's cross product with it
-        Real sign = Real(1);
-        Vec3 arm{Real(0)};
-        Vec3 inv_mass{Real(0)};
-        Mat3 turned{Real(0)}; // inverse inertia times angular
+        bool is_point = false;  // linear: the sign alone; angular: the cross product with the arm
+        Number sign = Number(1);
+        WideVector<Number> arm; // times the sign
+        WideVector<Number> inv_mass;
+        WideMatrix<Number> turned; // inverse inertia times angular
         // Only for rows other than points.
-        Mat3 linear{Real(0)};
-        Mat3 angular{Real(0)};
-        Mat3 moved{Real(0)}; // inverse mass times linear
+        WideMatrix<Number> linear;
+        WideMatrix<Number> angular;
+        WideMatrix<Number> moved; // inverse mass times linear
     };
+    // By place, or by entry.
+    template <typename Number> struct Factors {
+        std::vector<std::array<Effect<Number>, 2>> effects;
+        std::vector<WideMatrix<Number>> diagonal; // of K, then D^-1
+        std::vector<WideMatrix<Number>> lower;    // of K, then L
+        std::vector<WideVector<Number>> sides;    // of `solve`
+        void resize(std::size_t places, std::size_t entries);
+    };
+    template <typename Number>
     static void find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
-                            Effect &out);
-    static void add_coupling(const Effect &u, const Effect &v, Mat3 &sum);
+                            Effect<Number> &out);
+    template <typename Number>
+    static void add_coupling(const Effect<Number> &u, const Effect<Number> &v,
+                             WideMatrix<Number> &sum);
+    template <typename Number>
+    void factor(StepContext &context, const JointGroup &group, Number compliance, Number rounding,
+                Factors<Number> &into);
+    template <typename Number>
+    void solve(const JointGroup &group, const Factors<Number> &factors,
+               std::span<WideVector<Number>> sides) const;
     void find_order(StepContext &context);
     bool eliminate(const std::vector<std::uint32_t> &members, std::size_t work_a_block);
     void note_touched(const StepContext &context);
+    void note_stiff(StepContext &context);
 
     bool is_arranged_ = false;
     std::vector<std::uint64_t> key_; // identifies the arrangement: pairs of bodies
@@ -105,10 +131,9 @@ class JointSystem {
     std::vector<std::vector<std::uint32_t>> neighbours_;
     std::vector<std::uint32_t> place_of_;
     std::vector<std::pair<std::size_t, std::uint32_t>> queue_;
-    std::vector<std::array<Effect, 2>> effects_; // per position
-    std::vector<Mat3> softening_;
-    std::vector<WideMat3> diagonal_; // of K, then D^-1
-    std::vector<WideMat3> lower_;    // of K, then L
+    std::vector<WideMat3> softening_; // per position
+    Factors<Real> factors_;
+    mutable Factors<double> fine_factors_; // of stiff groups
 };
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -266,6 +266,7 @@ void advance_avbd(StepContext &context) {
                 s.contacts.size() + s.joints.size() + s.springs.size() + s.particle_contacts.size();
         }
         end(context, h);
+        note_joint_loads(context, h);
         restitute_particles(context, threshold);
         note_loads(context);
     }

@@ -205,6 +205,7 @@ void advance_xpbd(StepContext &context) {
         solve_motors(context, h);
         solve_particle_contact_velocities(context, h);
         solve_contact_velocities(context, h);
+        note_joint_loads(context, Real(1) / h);
     }
     store(context, h);
 }

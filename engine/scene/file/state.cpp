@@ -39,8 +39,14 @@ void read_contact(Reading &reading, const toml::table &source) {
                         "shapes are numbered from 0 to " + std::to_string(most_children));
         *child = static_cast<std::uint32_t>(given);
     }
-    if (const std::optional<std::uint64_t> triangle = table.natural("triangle"))
-        contact.triangle = static_cast<std::uint32_t>(*triangle);
+    if (const std::optional<std::uint64_t> triangle = table.natural("triangle")) {
+        constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max() - 1;
+        if (*triangle > most)
+            table.error("triangle", "no surface has a triangle " + std::to_string(*triangle),
+                        "triangles are numbered from 0; " + std::to_string(most) +
+                            " stands for the inside of a solid surface");
+        contact.triangle = static_cast<std::uint32_t>(std::min(*triangle, most));
+    }
     const toml::array *features = array_at(table, "features");
     static constexpr std::array<std::string_view, 3> vectors{"impulses", "cores_a", "cores_b"};
     std::array<const toml::array *, 3> arrays{};

@@ -21,7 +21,7 @@ void read_contacts(const World &world, std::vector<ContactView> &views) {
             view.body_b = contact.key.b;
             view.child_a = contact.key.child_a;
             view.child_b = contact.key.child_b;
-            if (contact.key.triangle != ContactKey::no_triangle)
+            if (contact.key.triangle < ContactKey::inside)
                 view.triangle = contact.key.triangle;
             view.feature = point.feature;
             view.is_sensor = contact.sensor;

@@ -153,6 +153,7 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
             solve_particle_contacts(context, particle_push, h);
             solve_contacts(context, in_order(contact_bias, order), h);
         });
+        note_joint_loads(context);
         end_motion(context, h);
         drift_particles(context, h);
         // Speeds that only removed penetration end with the substep.
