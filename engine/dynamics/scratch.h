@@ -52,8 +52,9 @@ struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Paddin
     std::vector<Candidate> sorted_candidates;
     FoundParts<std::uint64_t> pair_parts;
     FoundParts<Candidate> candidate_parts;
-    // Candidates with one static body: (the other collider << 32 | the static one), ascending.
-    std::vector<std::uint64_t> beside_static;
+    // Candidates with a static or kinematic body, a floor: (the other collider << 32 | the floor's),
+    // ascending.
+    std::vector<std::uint64_t> floors;
 
     // Contacts of the last step, or found again since. `contacts_are_current`: they belong to this
     // model, and to these poses or the step that led to them.

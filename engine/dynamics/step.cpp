@@ -1,4 +1,5 @@
 // The step, phase by phase.
+#include "engine/dynamics/bodies/solid.h"
 #include "engine/dynamics/contacts/contact_columns.h"
 #include "engine/dynamics/world.h"
 #include "engine/math/basis.h"
@@ -61,9 +62,10 @@ bool World::is_turned(const Candidate &candidate) const {
     // How far a circle leaves its tangent: t^2 / 2 of the radius.
     constexpr Real far = Real(0.02);
     const auto dt = static_cast<Real>(settings_.dt);
-    const Real extent =
-        model_->colliders[is_a ? candidate.collider_a : candidate.collider_b].extent;
-    return Real(0.5) * squared * dt * dt * extent > far * moving_width(candidate);
+    const Collider &turning = model_->colliders[is_a ? candidate.collider_a : candidate.collider_b];
+    return Real(0.5) * squared * dt * dt * turning.extent > far * moving_width(candidate) &&
+           !is_round_about(turning.shape, glm::conjugate(state_.motions[is_a ? a : b].rotation) *
+                                              (is_a ? spin_a : spin_b));
 }
 
 // All phases but the last work on scratch, so until then the state is unchanged. Scratch that a

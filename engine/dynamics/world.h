@@ -305,8 +305,9 @@ class World {
     void set_anchor(Contact &contact, std::size_t k, const Motion &a, const Motion &b) const;
     // A point's separation, from its anchor (m).
     Real separation_now(const Contact &contact, std::size_t k) const;
-    void note_static_neighbors() const;
-    // Drops the part that a static body's neighbours cover (inner_edges.h).
+    void note_floors() const;
+    bool moves_as_one(std::uint32_t one, std::uint32_t other, Real apart) const;
+    // Drops the part that the neighbours of a static or kinematic body cover (inner_edges.h).
     void drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
                           FoundManifold &found) const;
     // Contacts of bodies that do not touch yet (predicted_contact.cpp).

@@ -109,6 +109,47 @@ Manifold collide(const Sphere &a, const Box &b, Real margin) {
     return in_world(contact, normal, b, true);
 }
 
+// Where a segment leans over a face that it touches at the border, at `surface`: the other end of
+// what is over the face, along the normal.
+void add_other_end(FaceContacts &contacts, const Vec3 &half, const Vec3 &start, const Vec3 &along,
+                   Real radius, const Vec3 &surface, const Vec3 &normal, Real margin) {
+    const Vec3 steep = glm::abs(normal);
+    const int axis = steep.x >= steep.y && steep.x >= steep.z ? 0 : (steep.y >= steep.z ? 1 : 2);
+    if (steep[axis] < leaning_cosine)
+        return;
+    const Real sign = normal[axis] < Real(0) ? Real(-1) : Real(1);
+    // The segment's height over the face, and its shadow there, both along the normal.
+    const auto height_at = [&](Real s) {
+        return (sign * (start[axis] + s * along[axis]) - half[axis]) / steep[axis];
+    };
+    const auto shadow_at = [&](Real s) { return start + s * along - height_at(s) * normal; };
+    const Vec3 first = shadow_at(Real(0));
+    const Vec3 way = shadow_at(Real(1)) - first;
+    Real low = Real(0);
+    Real high = Real(1);
+    for (const int side : {(axis + 1) % 3, (axis + 2) % 3})
+        for (const Real sense : {Real(1), Real(-1)}) {
+            const Real left = half[side] - sense * first[side]; // up to the border
+            const Real slope = sense * way[side];
+            if (slope > Real(0))
+                high = std::min(high, left / slope);
+            else if (slope < Real(0))
+                low = std::max(low, left / slope);
+            else if (left < Real(0))
+                return;
+        }
+    if (!(high > low))
+        return;
+    const auto distance_at = [&](Real s) { return glm::distance(shadow_at(s), surface); };
+    const bool is_high = distance_at(high) > distance_at(low);
+    const Real s = is_high ? high : low;
+    const Real separation = height_at(s) - radius;
+    if (separation <= margin && distance_at(s) > Real(100) * feature_tolerance)
+        contacts.add(shadow_at(s) + Real(0.5) * separation * normal, separation,
+                     kind_closest | 4U << 16 | bits(face_number(axis, sign)) << 1 |
+                         (is_high ? 1U : 0U));
+}
+
 Manifold collide(const Box &a, const Capsule &b, Real margin) {
     const Vec3 &half = a.half_extents;
     const Quat to_box = glm::conjugate(a.rotation);
@@ -290,6 +331,7 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
         }
     }
     contacts.add(surface + Real(0.5) * separation * normal, separation, feature);
+    add_other_end(contacts, half, start, along, b.radius, surface, normal, margin);
     return in_world(contacts, normal, a, false);
 }
 

@@ -15,6 +15,7 @@ constexpr int corner_limit = 16;
 
 // Point names, in the lowest bits of a feature id: corners by number, then the crossings of 16 + 16
 // sides with 16 planes, then these.
+constexpr std::uint32_t name_other_end = 1020; // and the next
 constexpr std::uint32_t name_support = 1022;
 constexpr std::uint32_t name_closest = 1023;
 
@@ -381,6 +382,46 @@ CandidatePoints along_sides(const Feature &a, Real radius_a, const Feature &b, R
     return result;
 }
 
+// Where a side leans over a face that it touches at the border, at `closest`: the other end of what
+// is over the face, along the contact normal `out`, which points from the face to the side.
+void add_other_end(CandidatePoints &contacts, const Feature &face, const Feature &side, Real radius,
+                   const Vec3 &closest, const Vec3 &out, Real margin, std::uint32_t feature) {
+    const Real cosine = glm::dot(face.normal, out);
+    if (!face.is_face() || side.count != 2 || cosine < leaning_cosine)
+        return;
+    const auto height_of = [&](const Vec3 &point) {
+        return glm::dot(point - face.corners[0], face.normal) / cosine;
+    };
+    // The side's shadow on the face.
+    Polygon shadow;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        const Vec3 &end = side.corners[i];
+        shadow.add({end - height_of(end) * out, i, i});
+    }
+    const Vec3 start = shadow.corners[0].position;
+    const Vec3 way = shadow.corners[1].position - start;
+    for (int i = 0; i < face.count && shadow.count > 0; ++i) {
+        const Vec3 &at = face.corners[index(i)];
+        const Vec3 outward =
+            glm::cross(face.corners[index((i + 1) % face.count)] - at, face.normal);
+        const Real length = glm::length(outward);
+        if (length > Real(0))
+            shadow = clipped(shadow, static_cast<std::uint32_t>(i), at, outward / length);
+    }
+    if (shadow.count != 2)
+        return;
+    const auto distance_of = [&](int i) {
+        return glm::distance(shadow.corners[index(i)].position, closest);
+    };
+    const int far = distance_of(1) > distance_of(0) ? 1 : 0;
+    const Vec3 &foot = shadow.corners[index(far)].position;
+    const Real s = glm::dot(foot - start, way) / glm::dot(way, way);
+    const Real height = height_of(side.corners[0] + s * (side.corners[1] - side.corners[0]));
+    if (height - radius <= margin && distance_of(far) > Real(100) * feature_tolerance)
+        contacts.add(foot + Real(0.5) * (height - radius) * out, height - radius,
+                     feature | (name_other_end + static_cast<std::uint32_t>(far)));
+}
+
 // Whether a point is over a face, within the tolerance.
 bool is_over(const Feature &face, const Vec3 &point) {
     for (int i = 0; i < face.count; ++i) {
@@ -482,6 +523,8 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     }
     CandidatePoints one;
     one.add(Real(0.5) * (found.on_a + found.on_b), found.separation, feature | name_closest);
+    add_other_end(one, on_b, on_a, a.radius, found.on_b, -found.normal, margin, feature);
+    add_other_end(one, on_a, on_b, b.radius, found.on_a, found.normal, margin, feature);
     return accept(one, found.normal);
 }
 

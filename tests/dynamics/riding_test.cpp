@@ -130,5 +130,37 @@ TEST(Riding, ASwingWithARiderSwingsOn) {
         }
 }
 
+// A round roller's surface stays where it is however fast it turns: what rests on it without
+// friction is not moved.
+TEST(Riding, AFastRollerDoesNotThrowWhatLiesOnIt) {
+    for (const double radius : {0.05, 0.5, 5.0})
+        for (const double turn : {0.05, 0.25, 1.0}) // rad a step
+            for (const bool is_capsule : {false, true})
+                for (const double width : {0.04, 1.0}) {
+                    World world("soft_step", settings_for("soft_step"));
+                    const Vec3 end = narrow(V{0, 0, 2 * radius});
+                    BodyDef roller =
+                        static_body(is_capsule ? Shape{Capsule{-end, end, Real(radius)}}
+                                               : Shape{Cylinder{-end, end, Real(radius)}},
+                                    V{0, -radius, 0});
+                    roller.kind = BodyKind::kinematic;
+                    roller.angular_velocity = narrow(V{0, 0, -60 * turn});
+                    world.add_body(with_material(roller, 0, 0));
+                    const double half = width * radius;
+                    BodyDef plate = with_material(
+                        dynamic_body(block(V{half, 0.2 * half, half}), 1, V{0, 0.2 * half, 0}), 0,
+                        0);
+                    plate.locked = {true, false, true, true, true, true};
+                    const BodyId id = world.add_body(plate);
+                    double highest = 0;
+                    for (int i = 0; i < 120; ++i) {
+                        run(world, 1);
+                        highest = std::max(highest, position_of(world, id).y);
+                    }
+                    EXPECT_NEAR(highest, 0.2 * half, 1e-3 * radius)
+                        << radius << ' ' << turn << ' ' << is_capsule << ' ' << width;
+                }
+}
+
 } // namespace
 } // namespace plumb::inline PLUMB_PRECISION

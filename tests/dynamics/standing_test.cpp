@@ -227,5 +227,40 @@ TEST(Standing, HeavyBallsStayInALightBox) {
     }
 }
 
+// A beam put down askew across two round rails comes to rest: each holds it over its whole width.
+TEST(Standing, ABeamOnRoundRailsComesToRest) {
+    for (const bool is_capsule : {false, true})
+        for (const double scale : {0.1, 1.0, 10.0})
+            for (const int rate : {30, 60, 120})
+                for (const double roll : {0.01, 0.3, 1.0})
+                    for (const double yaw : {0.0, 7.0, 30.0}) {
+                        StepSettings settings = settings_for("soft_step");
+                        settings.dt = 1.0 / rate;
+                        World world("soft_step", settings);
+                        const Vec3 end = narrow(V{0, 0, 3 * scale});
+                        const Real radius = Real(0.1 * scale);
+                        for (const double x : {-0.4, 0.4})
+                            world.add_body(with_material(
+                                static_body(is_capsule ? Shape{Capsule{-end, end, radius}}
+                                                       : Shape{Cylinder{-end, end, radius}},
+                                            V{x * scale, -0.1 * scale, 0}),
+                                0.2, 0));
+                        BodyDef beam =
+                            with_material(dynamic_body(block(V{1, 0.1, 0.1} * scale), 8,
+                                                       V{0.05 * scale, 0.102 * scale, 0}),
+                                          0.2, 0);
+                        beam.pose.rotation =
+                            glm::normalize(narrow(glm::angleAxis(yaw * pi / 180, V{0, 1, 0}) *
+                                                  glm::angleAxis(roll * pi / 180, V{1, 0, 0})));
+                        const BodyId id = world.add_body(beam);
+                        run(world, 10 * rate);
+                        EXPECT_LT(glm::length(velocity_of(world, id)) +
+                                      scale * glm::length(spin_of(world, id)),
+                                  2e-3 * std::sqrt(scale))
+                            << is_capsule << ' ' << scale << ' ' << rate << ' ' << roll << ' '
+                            << yaw;
+                    }
+}
+
 } // namespace
 } // namespace plumb::inline PLUMB_PRECISION

@@ -118,6 +118,24 @@ struct Middle {
     std::optional<Vec3> operator()(const HalfSpace &) const { return std::nullopt; }
 };
 
+struct IsRoundAbout {
+    Vec3 axis;
+    bool is_on_axis(const Vec3 &point, Real radius) const {
+        constexpr Real off = Real(1e-3);
+        return glm::length(glm::cross(point, axis)) <= off * radius * glm::length(axis);
+    }
+    bool operator()(const Sphere &sphere) const { return is_on_axis(sphere.center, sphere.radius); }
+    bool operator()(const Capsule &capsule) const {
+        return is_on_axis(capsule.a, capsule.radius) && is_on_axis(capsule.b, capsule.radius);
+    }
+    bool operator()(const Cylinder &cylinder) const {
+        return is_on_axis(cylinder.a, cylinder.radius) && is_on_axis(cylinder.b, cylinder.radius);
+    }
+    bool operator()(const Box &) const { return false; }
+    bool operator()(const ConvexHull &) const { return false; }
+    bool operator()(const HalfSpace &) const { return false; }
+};
+
 template <typename Round> bool is_upright(const Round &round) {
     return round.a == -round.b && round.b.x == Real(0) && round.b.z == Real(0);
 }
@@ -165,6 +183,10 @@ Real half_width(const Shape &solid) {
 
 std::optional<Vec3> axis_of(const Shape &solid) {
     return std::visit(Axis{}, solid);
+}
+
+bool is_round_about(const Shape &solid, const Vec3 &axis) {
+    return std::visit(IsRoundAbout{axis}, solid);
 }
 
 std::optional<Vec3> middle_if_turning_shows(const Shape &solid) {

@@ -26,6 +26,9 @@ Real half_width(const Shape &solid);
 // From end to end along the straight sides of a capsule or cylinder, else none (m).
 std::optional<Vec3> axis_of(const Shape &solid);
 
+// Whether a turn about an axis through the origin leaves the surface where it is.
+bool is_round_about(const Shape &solid, const Vec3 &axis);
+
 // The middle, if turning about it moves the surface: not of a ball, nor of a half-space.
 std::optional<Vec3> middle_if_turning_shows(const Shape &solid);
 

@@ -76,9 +76,9 @@ constexpr Real rolling_gap = Real(2e-4);
 // A body that rolls on a rim stands where it will in the middle of the step; `half_turn`: of a
 // against b. `follows_a`, `follows_b`: whether its point may then follow the rim. Not on triangles:
 // where it runs over their edges, more of what tumbles down hills would gain energy.
-void lead_rims(const StaticPiece &a, const StaticPiece &b, const Vec3 &half_turn, bool follows_a,
+void lead_rims(const FloorPiece &a, const FloorPiece &b, const Vec3 &half_turn, bool follows_a,
                bool follows_b, FoundManifold &found) {
-    const auto lead = [&](const StaticPiece &piece, const StaticPiece &other, const Vec3 &out,
+    const auto lead = [&](const FloorPiece &piece, const FloorPiece &other, const Vec3 &out,
                           const Vec3 &turn, bool follows) -> std::optional<std::uint32_t> {
         const Shape *solid = std::get_if<Shape>(&piece);
         if (solid == nullptr)

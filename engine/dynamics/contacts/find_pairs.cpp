@@ -308,24 +308,25 @@ void World::find_pairs() const {
     s.candidates.resize(s.pair_candidates.size() + s.plane_candidates.size());
     std::ranges::merge(s.pair_candidates, s.plane_candidates, s.candidates.begin(), {},
                        &Candidate::key, &Candidate::key);
-    note_static_neighbors();
+    note_floors();
 }
 
-// The static colliders near each of the others: where there are several they may be flush.
-void World::note_static_neighbors() const {
+// The static and kinematic colliders near each of the others: where there are several they may be
+// flush.
+void World::note_floors() const {
     Scratch &s = scratch_;
-    s.beside_static.clear();
+    s.floors.clear();
     for (const Candidate &candidate : s.candidates) {
-        const bool a_is_static = model_->bodies[candidate.key.a].kind == BodyKind::static_body;
-        const bool b_is_static = model_->bodies[candidate.key.b].kind == BodyKind::static_body;
-        if (!a_is_static && !b_is_static)
+        const bool a_is_floor = model_->bodies[candidate.key.a].kind != BodyKind::dynamic;
+        const bool b_is_floor = model_->bodies[candidate.key.b].kind != BodyKind::dynamic;
+        if (!a_is_floor && !b_is_floor)
             continue;
-        const std::uint32_t other = a_is_static ? candidate.collider_b : candidate.collider_a;
-        const std::uint32_t of_static = a_is_static ? candidate.collider_a : candidate.collider_b;
-        if (!model_->colliders[of_static].sensor && !model_->colliders[other].sensor)
-            s.beside_static.push_back(std::uint64_t{other} << 32 | of_static);
+        const std::uint32_t other = a_is_floor ? candidate.collider_b : candidate.collider_a;
+        const std::uint32_t of_floor = a_is_floor ? candidate.collider_a : candidate.collider_b;
+        if (!model_->colliders[of_floor].sensor && !model_->colliders[other].sensor)
+            s.floors.push_back(std::uint64_t{other} << 32 | of_floor);
     }
-    radix_sort(s.beside_static, s.sorted_numbers, std::identity{});
+    radix_sort(s.floors, s.sorted_numbers, std::identity{});
 }
 
 } // namespace plumb::inline PLUMB_PRECISION

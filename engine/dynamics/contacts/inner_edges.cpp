@@ -22,7 +22,7 @@ bool is_along(const Vec3 &unit, const Vec3 &direction) {
     return glm::dot(unit, direction) > Real(1) - small_angle * small_angle;
 }
 
-template <typename Visit> auto visit_solid(const StaticPiece &piece, Visit &&visit) {
+template <typename Visit> auto visit_solid(const FloorPiece &piece, Visit &&visit) {
     if (const auto *triangle = std::get_if<Triangle>(&piece))
         return visit(*triangle);
     return std::visit(visit, std::get<Shape>(piece));
@@ -30,7 +30,7 @@ template <typename Visit> auto visit_solid(const StaticPiece &piece, Visit &&vis
 
 // Whether the piece has points in front of the plane through `point`, by more than a small angle as
 // seen from there.
-bool is_in_front(const StaticPiece &piece, const Vec3 &point, const Vec3 &normal) {
+bool is_in_front(const FloorPiece &piece, const Vec3 &point, const Vec3 &normal) {
     return visit_solid(piece, [&]<typename Solid>(const Solid &solid) {
         if constexpr (std::same_as<Solid, HalfSpace>) {
             return !is_along(solid.normal, normal);
@@ -47,7 +47,7 @@ Vec3 normal_of(const Triangle &triangle) {
 }
 
 // Calls visit(plane) for each flat face.
-template <typename Visit> void each_face(const StaticPiece &piece, Visit &&visit) {
+template <typename Visit> void each_face(const FloorPiece &piece, Visit &&visit) {
     visit_solid(piece, [&]<typename Solid>(const Solid &solid) {
         if constexpr (std::same_as<Solid, HalfSpace>) {
             visit(solid);
@@ -75,7 +75,7 @@ template <typename Visit> void each_face(const StaticPiece &piece, Visit &&visit
     });
 }
 
-bool has_face(const StaticPiece &piece, const Vec3 &normal) {
+bool has_face(const FloorPiece &piece, const Vec3 &normal) {
     bool found = false;
     each_face(piece,
               [&](const HalfSpace &face) { found = found || is_along(face.normal, normal); });
@@ -83,14 +83,14 @@ bool has_face(const StaticPiece &piece, const Vec3 &normal) {
 }
 
 // Whether a neighbour lies against the face with that normal at `point`.
-bool is_covered(const StaticPiece &neighbor, const Vec3 &point, const Vec3 &normal, Real flush) {
+bool is_covered(const FloorPiece &neighbor, const Vec3 &point, const Vec3 &normal, Real flush) {
     if (const auto *triangle = std::get_if<Triangle>(&neighbor))
         return is_along(-normal_of(*triangle), normal) && distance_to(neighbor, point) <= flush;
     return distance_to(neighbor, point + Real(2) * flush * normal) <= flush;
 }
 
 // Whether part of the piece's face around the point is free of neighbours.
-bool is_free(const StaticPiece &piece, std::span<const StaticPiece> neighbors, const Vec3 &point,
+bool is_free(const FloorPiece &piece, std::span<const FloorPiece> neighbors, const Vec3 &point,
              const Vec3 &normal, Real flush) {
     const TangentBasis tangents = tangent_basis(normal);
     const Real aside = Real(4) * flush;
@@ -100,7 +100,7 @@ bool is_free(const StaticPiece &piece, std::span<const StaticPiece> neighbors, c
                                                  static_cast<Real>(j) * tangents.t2);
             if (distance_to(piece, beside) > Real(0.5) * flush)
                 continue; // beyond the face
-            if (std::ranges::none_of(neighbors, [&](const StaticPiece &neighbor) {
+            if (std::ranges::none_of(neighbors, [&](const FloorPiece &neighbor) {
                     return is_covered(neighbor, beside, normal, flush);
                 }))
                 return true;
@@ -108,9 +108,9 @@ bool is_free(const StaticPiece &piece, std::span<const StaticPiece> neighbors, c
     return false;
 }
 
-bool is_inner(const StaticPiece &piece, std::span<const StaticPiece> neighbors, const Vec3 &point,
+bool is_inner(const FloorPiece &piece, std::span<const FloorPiece> neighbors, const Vec3 &point,
               const Vec3 &normal, Real flush) {
-    const bool goes_on = std::ranges::any_of(neighbors, [&](const StaticPiece &neighbor) {
+    const bool goes_on = std::ranges::any_of(neighbors, [&](const FloorPiece &neighbor) {
         return distance_to(neighbor, point) <= flush && is_in_front(neighbor, point, normal);
     });
     return goes_on && !(has_face(piece, normal) && is_free(piece, neighbors, point, normal, flush));
@@ -139,7 +139,7 @@ Real height_above(const HalfSpace &plane, const Shape &solid) {
 
 } // namespace
 
-Real distance_to(const StaticPiece &piece, const Vec3 &point) {
+Real distance_to(const FloorPiece &piece, const Vec3 &point) {
     return visit_solid(piece, [&]<typename Solid>(const Solid &solid) -> Real {
         if constexpr (std::same_as<Solid, HalfSpace>)
             return std::max(glm::dot(solid.normal, point) - solid.offset, Real(0));
@@ -148,8 +148,8 @@ Real distance_to(const StaticPiece &piece, const Vec3 &point) {
     });
 }
 
-Manifold without_inner_edges(const Manifold &manifold, const Shape &solid, const StaticPiece &piece,
-                             std::span<const StaticPiece> neighbors, Real margin, Real flush) {
+Manifold without_inner_edges(const Manifold &manifold, const Shape &solid, const FloorPiece &piece,
+                             std::span<const FloorPiece> neighbors, Real margin, Real flush) {
     const Vec3 out = -manifold.normal;
     Manifold left;
     left.normal = manifold.normal;

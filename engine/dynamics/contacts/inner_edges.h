@@ -1,5 +1,5 @@
-// Inner edges and faces, where static solids lie flush: a tiled floor acts as one slab, and bodies
-// slide or roll over its seams without catching.
+// Inner edges and faces, where solids that forces do not move lie flush: a tiled floor acts as one
+// slab, and bodies slide or roll over its seams without catching.
 #pragma once
 
 #include "engine/geometry/manifold.h"
@@ -9,15 +9,15 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// A static solid, or one triangle of a static surface, in the world.
-using StaticPiece = std::variant<Shape, Triangle>;
+// A solid, or one triangle of a surface, in the world, of a static or kinematic body.
+using FloorPiece = std::variant<Shape, Triangle>;
 
 // How far a free face that stands in for a covered point may be from it, in units of `flush`; all
 // neighbours this near must be passed in.
 inline constexpr Real near_reach = Real(200);
 
 // How far a point is from a piece (m); 0 inside.
-Real distance_to(const StaticPiece &piece, const Vec3 &point);
+Real distance_to(const FloorPiece &piece, const Vec3 &point);
 
 // The manifold of a solid (a) and a piece (b) without the points covered by other pieces near them.
 // A normal is an inner one if a neighbour reaches the point and continues in front of the contact
@@ -28,7 +28,7 @@ Real distance_to(const StaticPiece &piece, const Vec3 &point);
 //
 // `flush` (> 0, m): how far apart, or out of one plane, faces may be and still count as flush.
 // Points farther apart than `margin` make no contact.
-Manifold without_inner_edges(const Manifold &manifold, const Shape &solid, const StaticPiece &piece,
-                             std::span<const StaticPiece> neighbors, Real margin, Real flush);
+Manifold without_inner_edges(const Manifold &manifold, const Shape &solid, const FloorPiece &piece,
+                             std::span<const FloorPiece> neighbors, Real margin, Real flush);
 
 } // namespace plumb::inline PLUMB_PRECISION

@@ -127,7 +127,7 @@ Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const
 }
 
 std::optional<std::uint32_t> lead_along_rim(Manifold &manifold, const Shape &solid,
-                                            const StaticPiece &other, const Vec3 &out,
+                                            const FloorPiece &other, const Vec3 &out,
                                             const Vec3 &half_turn, Real least_sine) {
     const std::optional<Rim> rim = rim_along(solid, out, least_sine);
     if (!rim || manifold.count == 0)
@@ -206,7 +206,7 @@ Real missed_depth(const Manifold &manifold, const ConvexHull &hull, const Vec3 &
     return depth;
 }
 
-void add_next_corner(Manifold &manifold, const ConvexHull &hull, const StaticPiece &other,
+void add_next_corner(Manifold &manifold, const ConvexHull &hull, const FloorPiece &other,
                      const Vec3 &out, const Vec3 &turn) {
     const ManifoldPoint &deepest = deepest_of(manifold);
     if (!has_wide_face(hull) || !is_alone(manifold, deepest))

@@ -44,7 +44,7 @@ Real rolled_depth(const Shape &local, const Quat &before, const Quat &now, const
 // or more, and the other body is below the new place, too. Returns the point's feature if it moves
 // and the other body is below it until the end of the step: then it can be followed.
 std::optional<std::uint32_t> lead_along_rim(Manifold &manifold, const Shape &solid,
-                                            const StaticPiece &other, const Vec3 &out,
+                                            const FloorPiece &other, const Vec3 &out,
                                             const Vec3 &half_turn, Real least_sine);
 
 // Leaves out the points of a manifold within `radius` of the one with the feature, which stands for
@@ -63,7 +63,7 @@ Real missed_depth(const Manifold &manifold, const ConvexHull &hull, const Vec3 &
 // manifold lacks it: a manifold has four corners of a many-cornered face, and a hull rolling on its
 // edge would sink into the floor with the next ones. If there are four points already, it replaces
 // the one farthest from touching. Only where missed_depth may be more than 0.
-void add_next_corner(Manifold &manifold, const ConvexHull &hull, const StaticPiece &other,
+void add_next_corner(Manifold &manifold, const ConvexHull &hull, const FloorPiece &other,
                      const Vec3 &out, const Vec3 &turn);
 
 } // namespace plumb::inline PLUMB_PRECISION

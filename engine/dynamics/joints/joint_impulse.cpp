@@ -68,6 +68,11 @@ Mat3 inverse_of(const Mat3 &k, bool may_be_locked) {
     const Real trace = k[0][0] + k[1][1] + k[2][2];
     if (!(trace > Real(0)))
         return Mat3{Real(0)};
+    constexpr Real small = Real(1e-6);
+    const Real size = trace / Real(3);
+    if (trace > small && trace < Real(1) / small &&
+        glm::determinant(k) > least_determinant * size * size * size)
+        return glm::inverse(k);
     // Scaled by a power of two, which does not round: the determinant of a very heavy body's K
     // would underflow.
     const double scale = std::exp2(-std::ilogb(trace));

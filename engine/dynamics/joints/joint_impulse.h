@@ -13,6 +13,9 @@ namespace plumb::inline PLUMB_PRECISION {
 // direction in which nothing can move (a locked axis): it would pull in vain, ever harder. 0 where
 // there is no such direction. Only K of bodies that all have locked axes can need it.
 glm::dmat3 locked_compliance(const glm::dmat3 &k);
+// The least determinant of a K, as a share of its mean eigenvalue cubed, that is inverted in single
+// precision.
+inline constexpr Real least_determinant = Real(1e-3);
 // K^-1 of the rows; 0 where nothing can move.
 Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b);
 // The mean velocity over h of the end of a turning arm that starts at r.

@@ -5,6 +5,7 @@
 #include "engine/dynamics/joints/joint_columns.h"
 
 #include "engine/dynamics/joints/joint_constraint.h"
+#include "engine/dynamics/joints/joint_impulse.h"
 
 #include <limits>
 
@@ -180,11 +181,10 @@ HWY_INLINE void weigh_lanes(JointBlock &block, const BodyReals &bodies, std::siz
     const Lanes trace = hn::Add(hn::Add(k.x.x, k.y.y), k.z.z);
     const Lanes size = hn::Div(trace, all(Real(3)));
     constexpr Real small = Real(1e-6);
-    constexpr Real least = Real(64) * std::numeric_limits<Real>::epsilon();
-    const Lanes least_determinant = hn::Mul(hn::Mul(hn::Mul(all(least), size), size), size);
+    const Lanes least = hn::Mul(hn::Mul(hn::Mul(all(least_determinant), size), size), size);
     const auto is_usual =
         hn::And(hn::And(hn::Gt(trace, all(small)), hn::Lt(trace, all(Real(1) / small))),
-                hn::Gt(determinant, least_determinant));
+                hn::Gt(determinant, least));
     const Lanes scale = hn::Div(all(Real(1)), determinant);
     const auto cofactor = [&](Lanes a, Lanes b, Lanes c, Lanes d)
                               HWY_ATTR { return hn::Mul(minor(a, b, c, d), scale); };

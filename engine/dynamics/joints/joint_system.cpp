@@ -74,17 +74,18 @@ void JointSystem::note_touched(const StepContext &context) {
 // A point-like bob on a long arm, or a slender rod: what holds it is the small difference of large
 // numbers.
 void JointSystem::note_stiff(StepContext &context) {
-    constexpr Real many = Real(100);
+    constexpr Real much_faster = Real(4000); // an arm's end by turning than the body by moving
+    constexpr Real slender = Real(1000);     // one moment of inertia against another
     const auto is_stiff = [&](const JointConstraint &joint, std::uint32_t index, const Vec3 &arm) {
         const SolverBody &body = context.body(index);
         const Mat3 &inverse = body.inv_inertia;
         const Real trace = inverse[0][0] + inverse[1][1] + inverse[2][2];
         if (joint.rows.kind != RowKind::angular) // of K for a point, less the translation's share
             return trace * glm::dot(arm, arm) - glm::dot(arm, inverse * arm) >
-                   many * std::max({body.inv_mass.x, body.inv_mass.y, body.inv_mass.z});
+                   much_faster * std::max({body.inv_mass.x, body.inv_mass.y, body.inv_mass.z});
         const Vec3 &inertia = context.model.bodies[index].inertia;
         return std::max({inertia.x, inertia.y, inertia.z}) >
-               many * std::min({inertia.x, inertia.y, inertia.z});
+               slender * std::min({inertia.x, inertia.y, inertia.z});
     };
     for (JointGroup &group : groups_) {
         group.is_stiff = false;
