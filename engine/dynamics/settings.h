@@ -22,10 +22,10 @@ namespace plumb {
 struct StepSettings {
     glm::dvec3 gravity{0, -9.81, 0};
     double dt = 1.0 / 60.0;
-    int substeps = 4;       // methods set their own default in the registry
-    int max_substeps = 1;   // see the registry
-    double sleep_after = 0; // see the registry
-    int iterations = 1;     // see the registry
+    int substeps = 4; // methods override this and others (MethodInfo::defaults)
+    int max_substeps = 1;
+    double sleep_after = 0;
+    int iterations = 1;
     double substep_tolerance = 2e-4;
     int substep_budget = 8192;
     double speculative_distance = 0.02;

@@ -37,7 +37,8 @@ struct FoundManifold {
 
 // Three parts: the model (what only an edit changes), the state (everything that survives a step),
 // and scratch, which may be discarded between any two steps. The future depends only on the model,
-// the state, the method and the settings, never on how the world got there.
+// the state, the method and the settings, never on how the world got there. Not thread-safe, not
+// even for reading: const functions keep what they find in scratch.
 class World {
   public:
     // Fails a check on a method unknown to the registry, and on settings out of range.

@@ -19,7 +19,7 @@ inline constexpr Real feature_tolerance = Real(1e-4);
 // The cosine of how far a side may lean over a face and still touch it with both ends, if the other
 // end is within the margin: with one end alone, a beam across a round rail would rock from edge to
 // edge for ever.
-inline constexpr Real leaning_cosine = Real(0.98);
+inline constexpr Real leaning_cosine = Real(0.9998);
 
 // A direction perpendicular to `axis`, which need not be of unit length; +Y if `axis` is zero.
 Vec3 any_perpendicular(const Vec3 &axis);

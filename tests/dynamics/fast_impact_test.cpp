@@ -81,8 +81,7 @@ struct Lost {
     double mean = 0;
     double worst = 0;
 };
-Lost angular_momentum_lost(double speed, double friction, double restitution) {
-    constexpr int trials = 200;
+Lost angular_momentum_lost(double speed, double friction, double restitution, int trials = 200) {
     Lost lost;
     Random random(7);
     for (int trial = 0; trial < trials; ++trial) {
@@ -125,13 +124,14 @@ TEST(SoftStepFastImpact, BodiesOfAnyShapeKeepAngularMomentum) {
             }
 }
 
-// Known failing: bodies that slide on lose more, at 20 m/s a quarter at worst.
+// Known failing: bodies that slide on lose more; of 3000, at worst 8 % at 5 m/s and a quarter
+// at 20.
 TEST(SoftStepFastImpact, PlasticBlowsLoseSomeAngularMomentum) {
     for (const double speed : {5.0, 20.0}) {
-        const Lost lost = angular_momentum_lost(speed, 0, 0);
+        const Lost lost = angular_momentum_lost(speed, 0, 0, 3000);
         EXPECT_GT(lost.mean, 2e-3) << speed;
-        EXPECT_LT(lost.mean, 0.01) << speed;
-        EXPECT_LT(lost.worst, speed < 10 ? 0.05 : 0.3) << speed;
+        EXPECT_LT(lost.mean, 5e-3) << speed;
+        EXPECT_LT(lost.worst, speed < 10 ? 0.1 : 0.3) << speed;
     }
 }
 

@@ -52,7 +52,7 @@ constexpr std::size_t most_near_pairs = 100'000'000;
 constexpr std::size_t most_candidates = 6'000'000;
 
 void refuse_more_than(std::size_t limit, std::size_t pairs) {
-    PLUMB_CHECK(pairs <= limit, "more than " << limit << " pairs of shapes are near each other");
+    PLUMB_CHECK(pairs <= limit, "more than " << limit << " pairs of shapes may touch");
 }
 
 // A few microseconds of work.

@@ -225,8 +225,6 @@ bool World::find_contacts_of_deflected() {
     const std::vector<Candidate> expected = s.candidates;
     find_pairs();
     s.more.clear();
-    if (s.triangles.empty())
-        s.triangles.resize(1);
     for (const Candidate &candidate : s.candidates)
         collide_candidate(candidate, s.more, s.triangles.front());
     // find_missed_points looks at both.

@@ -6,7 +6,7 @@
 namespace plumb::inline PLUMB_PRECISION {
 
 // Sum over forces that keep their direction while the body turns. A force F at an arm r has the
-// ~potential -F (R r), whose second derivative with respect to rotation is (F r) 1 - (F r^T + r
+// potential -F (R r), whose second derivative with respect to rotation is (F r) 1 - (F r^T + r
 // F^T) / 2: pulling along a stick does not stiffen it about its own axis, however thin it is.
 struct GeometricStiffness {
     Mat3 tensor{Real(0)}; // world, N m

@@ -1,8 +1,8 @@
 // Particles and springs: point masses for cloth, ropes and nets.
 //
 // A particle is a point mass. Against bodies it is a sphere of its radius; particles do not collide
-// A spring pulls two points together or pushes them apart along the line between them; each is a
-// particle, a point of a body, or a point of the world.
+// with each other. A spring pulls two points together or pushes them apart along the line between
+// them; each is a particle, a point of a body, or a point of the world.
 #pragma once
 
 #include "engine/dynamics/bodies/body.h"
