@@ -22,7 +22,7 @@ class TaskPool { // NOLINT(clang-analyzer-optin.performance.Padding): cache line
     // `single` makes every part one item: slow, for finding races.
     enum class Parts { large, single };
     static constexpr std::size_t most_parts = (std::size_t{1} << 20) - 1; // of a loop
-    explicit TaskPool(int threads, Parts parts = Parts::large); // 1 to 1024
+    explicit TaskPool(int threads, Parts parts = Parts::large);           // 1 to 1024
     ~TaskPool();
     TaskPool(const TaskPool &) = delete;
     TaskPool &operator=(const TaskPool &) = delete;

@@ -52,8 +52,8 @@ struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Paddin
     std::vector<Candidate> sorted_candidates;
     FoundParts<std::uint64_t> pair_parts;
     FoundParts<Candidate> candidate_parts;
-    // Candidates with a static or kinematic body, a floor: (the other collider << 32 | the floor's),
-    // ascending.
+    // Candidates with a static or kinematic body, a floor: (the other collider << 32 | the
+    // floor's), ascending.
     std::vector<std::uint64_t> floors;
 
     // Contacts of the last step, or found again since. `contacts_are_current`: they belong to this

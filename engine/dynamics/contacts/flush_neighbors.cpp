@@ -108,9 +108,9 @@ void World::drop_inner_edges(const Candidate &candidate, std::uint32_t triangle,
     const Shape solid = placed(mover.shape, Transform{at.position, at.rotation});
     const Motion own_then = then(own.body);
     const FloorPiece piece =
-        own.surface ? FloorPiece{placed(own.surface->triangle(triangle),
-                                         surface_pose(own, own_then))}
-                    : FloorPiece{shape_then(of_floor, own_then)};
+        own.surface
+            ? FloorPiece{placed(own.surface->triangle(triangle), surface_pose(own, own_then))}
+            : FloorPiece{shape_then(of_floor, own_then)};
     Manifold &manifold = found.manifold;
     if (a_is_floor)
         manifold.normal = -manifold.normal;

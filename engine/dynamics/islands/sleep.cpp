@@ -123,8 +123,7 @@ void World::wake(std::uint32_t body) {
     const auto is_body = [](const SpringEnd &end) { return end.kind == SpringEnd::Kind::body; };
     for (std::size_t i = 0; i < model_->springs.size(); ++i) {
         const auto &[a, b] = std::pair{model_->springs[i].a, model_->springs[i].b};
-        if (state_.torn[i] == 0 && is_body(a) && is_body(b) &&
-            (a.index == body || b.index == body))
+        if (state_.torn[i] == 0 && is_body(a) && is_body(b) && (a.index == body || b.index == body))
             marked[a.index] = marked[b.index] = 1;
     }
     wake_marked(state_.paces);

@@ -61,8 +61,8 @@ class JointSystem {
     // The constraint at a position in the elimination order.
     std::uint32_t block(std::uint32_t place) const { return order_[place]; }
 
-    // Compliance of the joints, as a share of their own blocks' K: enough to solve redundant joints,
-    // too little to see.
+    // Compliance of the joints, as a share of their own blocks' K: enough to solve redundant
+    // joints, too little to see.
     static constexpr Real held_compliance = Real(1e-3);
     // The same for stiff groups: there, K is large only because a body turns easily, and that share
     // of it would let what spins on a long arm gain energy.
