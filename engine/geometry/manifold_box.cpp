@@ -4,7 +4,9 @@
 #include "engine/geometry/manifold_pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -109,45 +111,26 @@ Manifold collide(const Sphere &a, const Box &b, Real margin) {
     return in_world(contact, normal, b, true);
 }
 
-// Where a segment leans over a face that it touches at the border, at `surface`: the other end of
-// what is over the face, along the normal.
-void add_other_end(FaceContacts &contacts, const Vec3 &half, const Vec3 &start, const Vec3 &along,
+// The other end of a segment that leans over the face nearest to the normal.
+void add_other_end(FaceContacts &contacts, const Vec3 &half, const Vec3 &start, const Vec3 &end,
                    Real radius, const Vec3 &surface, const Vec3 &normal, Real margin) {
     const Vec3 steep = glm::abs(normal);
     const int axis = steep.x >= steep.y && steep.x >= steep.z ? 0 : (steep.y >= steep.z ? 1 : 2);
-    if (steep[axis] < leaning_cosine)
-        return;
     const Real sign = normal[axis] < Real(0) ? Real(-1) : Real(1);
-    // The segment's height over the face, and its shadow there, both along the normal.
-    const auto height_at = [&](Real s) {
-        return (sign * (start[axis] + s * along[axis]) - half[axis]) / steep[axis];
-    };
-    const auto shadow_at = [&](Real s) { return start + s * along - height_at(s) * normal; };
-    const Vec3 first = shadow_at(Real(0));
-    const Vec3 way = shadow_at(Real(1)) - first;
-    Real low = Real(0);
-    Real high = Real(1);
-    for (const int side : {(axis + 1) % 3, (axis + 2) % 3})
-        for (const Real sense : {Real(1), Real(-1)}) {
-            const Real left = half[side] - sense * first[side]; // up to the border
-            const Real slope = sense * way[side];
-            if (slope > Real(0))
-                high = std::min(high, left / slope);
-            else if (slope < Real(0))
-                low = std::max(low, left / slope);
-            else if (left < Real(0))
-                return;
-        }
-    if (!(high > low))
+    Vec3 face_normal{Real(0)};
+    face_normal[axis] = sign;
+    Vec3 u{Real(0)}, v{Real(0)};
+    u[(axis + 1) % 3] = half[(axis + 1) % 3];
+    v[(axis + 2) % 3] = sign * half[(axis + 2) % 3];
+    const Vec3 middle = half[axis] * face_normal;
+    const std::array<Vec3, 4> face{middle - u - v, middle + u - v, middle + u + v, middle - u + v};
+    const std::optional<OtherEnd> other = other_end(face, face_normal, start, end, surface, normal);
+    if (!other || other->height - radius > margin)
         return;
-    const auto distance_at = [&](Real s) { return glm::distance(shadow_at(s), surface); };
-    const bool is_high = distance_at(high) > distance_at(low);
-    const Real s = is_high ? high : low;
-    const Real separation = height_at(s) - radius;
-    if (separation <= margin && distance_at(s) > Real(100) * feature_tolerance)
-        contacts.add(shadow_at(s) + Real(0.5) * separation * normal, separation,
-                     kind_closest | 4U << 16 | bits(face_number(axis, sign)) << 1 |
-                         (is_high ? 1U : 0U));
+    const Real separation = other->height - radius;
+    contacts.add(other->foot + Real(0.5) * separation * normal, separation,
+                 kind_closest | 4U << 16 | bits(face_number(axis, sign)) << 1 |
+                     (other->is_last ? 1U : 0U));
 }
 
 Manifold collide(const Box &a, const Capsule &b, Real margin) {
@@ -331,7 +314,8 @@ Manifold collide(const Box &a, const Capsule &b, Real margin) {
         }
     }
     contacts.add(surface + Real(0.5) * separation * normal, separation, feature);
-    add_other_end(contacts, half, start, along, b.radius, surface, normal, margin);
+    if (separation <= feature_tolerance)
+        add_other_end(contacts, half, start, end, b.radius, surface, normal, margin);
     return in_world(contacts, normal, a, false);
 }
 

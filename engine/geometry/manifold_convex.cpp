@@ -6,6 +6,8 @@
 #include "engine/math/basis.h"
 
 #include <algorithm>
+#include <optional>
+#include <span>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -382,44 +384,19 @@ CandidatePoints along_sides(const Feature &a, Real radius_a, const Feature &b, R
     return result;
 }
 
-// Where a side leans over a face that it touches at the border, at `closest`: the other end of what
-// is over the face, along the contact normal `out`, which points from the face to the side.
+// Adds the other end of a side that leans over a face.
 void add_other_end(CandidatePoints &contacts, const Feature &face, const Feature &side, Real radius,
                    const Vec3 &closest, const Vec3 &out, Real margin, std::uint32_t feature) {
-    const Real cosine = glm::dot(face.normal, out);
-    if (!face.is_face() || side.count != 2 || cosine < leaning_cosine)
+    if (!face.is_face() || side.count != 2)
         return;
-    const auto height_of = [&](const Vec3 &point) {
-        return glm::dot(point - face.corners[0], face.normal) / cosine;
-    };
-    // The side's shadow on the face.
-    Polygon shadow;
-    for (std::uint32_t i = 0; i < 2; ++i) {
-        const Vec3 &end = side.corners[i];
-        shadow.add({end - height_of(end) * out, i, i});
-    }
-    const Vec3 start = shadow.corners[0].position;
-    const Vec3 way = shadow.corners[1].position - start;
-    for (int i = 0; i < face.count && shadow.count > 0; ++i) {
-        const Vec3 &at = face.corners[index(i)];
-        const Vec3 outward =
-            glm::cross(face.corners[index((i + 1) % face.count)] - at, face.normal);
-        const Real length = glm::length(outward);
-        if (length > Real(0))
-            shadow = clipped(shadow, static_cast<std::uint32_t>(i), at, outward / length);
-    }
-    if (shadow.count != 2)
+    const std::optional<OtherEnd> other =
+        other_end(std::span(face.corners).first(index(face.count)), face.normal, side.corners[0],
+                  side.corners[1], closest, out);
+    if (!other || other->height - radius > margin)
         return;
-    const auto distance_of = [&](int i) {
-        return glm::distance(shadow.corners[index(i)].position, closest);
-    };
-    const int far = distance_of(1) > distance_of(0) ? 1 : 0;
-    const Vec3 &foot = shadow.corners[index(far)].position;
-    const Real s = glm::dot(foot - start, way) / glm::dot(way, way);
-    const Real height = height_of(side.corners[0] + s * (side.corners[1] - side.corners[0]));
-    if (height - radius <= margin && distance_of(far) > Real(100) * feature_tolerance)
-        contacts.add(foot + Real(0.5) * (height - radius) * out, height - radius,
-                     feature | (name_other_end + static_cast<std::uint32_t>(far)));
+    const Real separation = other->height - radius;
+    contacts.add(other->foot + Real(0.5) * separation * out, separation,
+                 feature | (name_other_end + (other->is_last ? 1 : 0)));
 }
 
 // Whether a point is over a face, within the tolerance.
@@ -523,8 +500,10 @@ Manifold collide_convex(const A &shape_a, const B &shape_b, Real margin,
     }
     CandidatePoints one;
     one.add(Real(0.5) * (found.on_a + found.on_b), found.separation, feature | name_closest);
-    add_other_end(one, on_b, on_a, a.radius, found.on_b, -found.normal, margin, feature);
-    add_other_end(one, on_a, on_b, b.radius, found.on_a, found.normal, margin, feature);
+    if (found.separation <= feature_tolerance) {
+        add_other_end(one, on_b, on_a, a.radius, found.on_b, -found.normal, margin, feature);
+        add_other_end(one, on_a, on_b, b.radius, found.on_a, found.normal, margin, feature);
+    }
     return accept(one, found.normal);
 }
 
@@ -560,6 +539,41 @@ Manifold collide_half_space(const A &shape, const HalfSpace &half_space, Real ma
 }
 
 } // namespace
+
+std::optional<OtherEnd> other_end(std::span<const Vec3> face, const Vec3 &face_normal,
+                                  const Vec3 &start, const Vec3 &end, const Vec3 &closest,
+                                  const Vec3 &out) {
+    const Real cosine = glm::dot(face_normal, out);
+    if (cosine < leaning_cosine)
+        return std::nullopt;
+    const auto height_of = [&](const Vec3 &point) {
+        return glm::dot(point - face[0], face_normal) / cosine;
+    };
+    // The side's shadow on the face, along the contact normal, clipped to it.
+    const Vec3 first = start - height_of(start) * out;
+    const Vec3 way = (end - height_of(end) * out) - first;
+    Real low = Real(0);
+    Real high = Real(1);
+    for (std::size_t i = 0; i < face.size(); ++i) {
+        const Vec3 outward = glm::cross(face[(i + 1) % face.size()] - face[i], face_normal);
+        const Real left = glm::dot(face[i] - first, outward); // up to the border
+        const Real slope = glm::dot(way, outward);
+        if (slope > Real(0))
+            high = std::min(high, left / slope);
+        else if (slope < Real(0))
+            low = std::max(low, left / slope);
+        else if (left < Real(0))
+            return std::nullopt;
+    }
+    if (!(high > low))
+        return std::nullopt;
+    const auto distance_at = [&](Real s) { return glm::distance(first + s * way, closest); };
+    const bool is_last = distance_at(high) > distance_at(low);
+    const Real s = is_last ? high : low;
+    if (!(distance_at(s) > Real(100) * feature_tolerance))
+        return std::nullopt;
+    return OtherEnd{first + s * way, height_of(start + s * (end - start)), is_last};
+}
 
 namespace unchecked {
 

@@ -1,6 +1,7 @@
 #include "engine/core/task_pool.h"
 
 #include "engine/core/check.h"
+#include "engine/core/collect.h"
 
 #include <gtest/gtest.h>
 
@@ -60,8 +61,27 @@ TEST(TaskPool, LoopsOfOneItemAPartToLookForRacesWith) {
     EXPECT_EQ(tasks.equal_grain(1000, 64), 1U);
     EXPECT_EQ(tasks.grain(1000, 64), 1U);
     EXPECT_EQ(TaskPool(3).grain(1000, 64), 64U);
+    EXPECT_EQ(tasks.grain(3 * TaskPool::most_parts, 64), 3U);
     EXPECT_EQ(TaskPool(3).equal_grain(1000, 64), 84U); // 12 parts
     EXPECT_EQ(TaskPool(3).equal_grain(100, 64), 64U);
+}
+
+// More items than a loop has parts: the parts get larger, for what is collected by part, too.
+TEST(TaskPool, MoreItemsThanParts) {
+    TaskPool tasks(3, TaskPool::Parts::single);
+    constexpr std::size_t count = 2 * TaskPool::most_parts + 5;
+    FoundParts<std::size_t> scratch;
+    std::vector<std::size_t> found;
+    for (int turn = 0; turn < 2; ++turn)
+        collect(&tasks, count, 1, scratch, found,
+                [](std::size_t begin, std::size_t end, std::size_t, std::vector<std::size_t> &out) {
+                    for (std::size_t i = begin; i < end; ++i)
+                        if (i % 1000 == 0)
+                            out.push_back(i);
+                });
+    ASSERT_EQ(found.size(), (count + 999) / 1000);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        ASSERT_EQ(found[i], 1000 * i);
 }
 
 // A pool kept awake works like one that sleeps between loops, and goes back to sleep.

@@ -80,6 +80,7 @@ TEST(SoftStepFastImpact, BallsPartByTheClosedFormAndKeepAngularMomentum) {
 struct Lost {
     double mean = 0;
     double worst = 0;
+    int often = 0; // more than a twentieth
 };
 Lost angular_momentum_lost(double speed, double friction, double restitution, int trials = 200) {
     Lost lost;
@@ -100,6 +101,7 @@ Lost angular_momentum_lost(double speed, double friction, double restitution, in
             glm::distance(world.measure().angular_momentum, before) / (2 * speed * 0.3);
         lost.mean += off / trials;
         lost.worst = std::max(lost.worst, off);
+        lost.often += off > 0.05 ? 1 : 0;
     }
     return lost;
 }
@@ -124,14 +126,14 @@ TEST(SoftStepFastImpact, BodiesOfAnyShapeKeepAngularMomentum) {
             }
 }
 
-// Known failing: bodies that slide on lose more; of 3000, at worst 8 % at 5 m/s and a quarter
-// at 20.
+// Known failing: bodies that slide on lose more, at 20 m/s a quarter at worst.
 TEST(SoftStepFastImpact, PlasticBlowsLoseSomeAngularMomentum) {
     for (const double speed : {5.0, 20.0}) {
         const Lost lost = angular_momentum_lost(speed, 0, 0, 3000);
         EXPECT_GT(lost.mean, 2e-3) << speed;
         EXPECT_LT(lost.mean, 5e-3) << speed;
         EXPECT_LT(lost.worst, speed < 10 ? 0.1 : 0.3) << speed;
+        EXPECT_LE(lost.often, 10) << speed;
     }
 }
 

@@ -172,7 +172,7 @@ TEST(SoftStepPassing, WhatIsInATurningDrumStaysInIt) {
 // foreseen, so the step is retried. The retry adds passes over everything with the same number of
 // substeps, so the riders in the drum may differ by the little those change.
 TEST(SoftStepPassing, WhatIsTriedAgainForOthersGoesItsOwnWay) {
-    for (const double spin : {7.0, 9.0})
+    for (const double spin : {4.0, 6.5, 7.0, 9.0, 10.0})
         for (const Shape &shape : {Shape{ball(0.1)}, Shape{block(V{0.1})}}) {
             World alone("soft_step", settings_for("soft_step"));
             World with_others = alone;

@@ -396,6 +396,18 @@ TEST(Sleep, IsSaved) {
     }
 }
 
+// What never moves does not sleep, whatever is said of it.
+TEST(Sleep, IsForDynamicBodies) {
+    World world = floor_world();
+    const BodyId box = add_box(world, V{0, 0.5, 0});
+    for (const BodyId id : {world.body_id(0), box}) {
+        Pace pace;
+        pace.rested = Pace::asleep;
+        world.set_pace(id, pace);
+        EXPECT_EQ(sleeps(world, id), id == box);
+    }
+}
+
 // What hangs on a spring from a body that is removed falls.
 TEST(Sleep, WhatHangsOnASpringWakesWhenItsHookIsRemoved) {
     for (const bool moves : {false, true}) {

@@ -50,7 +50,18 @@ TEST(World, IdsOfRemovedBodiesAreRefusedAndSlotsUsedAgain) {
     expect_failure("1 to 4 points", [&] {
         world.remember_contact({a.index, b.index}, {}, {});
     }); // whose body is gone
+    PointMemory infinite;
+    infinite.impulse.x = std::numeric_limits<Real>::infinity();
+    expect_failure("impulses and places must be finite", [&] {
+        world.remember_contact({std::min(b.index, c.index), std::max(b.index, c.index)}, {},
+                               std::span(&infinite, 1));
+    });
     JointDef joint;
+    joint.a = b;
+    joint.b = c;
+    joint.memory.impulses.front() = std::numeric_limits<Real>::infinity();
+    expect_failure("remembered impulses must be finite", [&] { world.add_joint(joint); });
+    joint = JointDef{};
     joint.a = a;
     joint.b = b;
     expect_failure("body 0, which is not alive", [&] { world.add_joint(joint); });

@@ -281,6 +281,17 @@ impulses = [[0, @nan, 0]]
 )",
          {"features[0] is 4294967296; it must be a whole number from 0 to 4294967295",
           "impulses[0][1] is nan; it must be a finite number"}},
+        {"ContactTriangle",
+         two + R"([[state.contact]]
+body_a = "a"
+body_b = "b"
+triangle = @4294967296
+features = []
+impulses = []
+)",
+         {"no surface has a triangle 4294967296; triangles are numbered from 0; 4294967294 stands "
+          "for "
+          "the inside of a solid surface"}},
         {"ContactMissing",
          two + R"(@[[state.contact]]
 body_a = "a"

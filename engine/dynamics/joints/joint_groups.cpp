@@ -46,7 +46,7 @@ WideVec3 closing_velocity(StepContext &context, const JointConstraint &joint,
     const SolverBody &a = context.body(joint.a);
     const SolverBody &b = context.body(joint.b);
     if (joint.rows.kind == RowKind::point)
-        return wide_point_velocity(joint.rows, a, b, pass);
+        return point_velocity(joint.rows, a, b, pass);
     Vec3 v = axial_velocity(joint.rows, a, b, pass);
     v.z -= joint.rows.speed;
     return WideVec3(v);

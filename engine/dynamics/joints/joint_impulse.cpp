@@ -43,26 +43,6 @@ Real row_coupling(const RowBlock &rows, const SolverBody &a, const SolverBody &b
            glm::dot(b.inv_inertia * glm::cross(rows.r_b, u), glm::cross(rows.r_b, v));
 }
 
-// The sum of the principal minors of order two: of the products of two eigenvalues each.
-double sum_of_minors(const glm::dmat3 &k) {
-    return k[0][0] * k[1][1] - k[1][0] * k[0][1] + k[1][1] * k[2][2] - k[2][1] * k[1][2] +
-           k[2][2] * k[0][0] - k[0][2] * k[2][0];
-}
-
-// Whether the least eigenvalue is less than some `least` of the mean; then it is between a third
-// and the whole of determinant / sum_of_minors.
-bool is_flatter_than(double least, const glm::dmat3 &k, double size) {
-    return !(glm::determinant(k) > least * size * sum_of_minors(k));
-}
-
-// Whether both bodies, as far as they move, have locked axes.
-bool may_be_locked(const SolverBody &a, const SolverBody &b) {
-    const auto is_free = [](const SolverBody &body) {
-        return !body.has_locks && body.inv_mass.x > Real(0);
-    };
-    return !is_free(a) && !is_free(b);
-}
-
 // The inverse of a symmetric positive semidefinite matrix; 0 for 0.
 Mat3 inverse_of(const Mat3 &k, bool may_be_locked) {
     const Real trace = k[0][0] + k[1][1] + k[2][2];
@@ -112,10 +92,21 @@ Real limit_change(const JointConstraint &joint, Real speed, const Softness &soft
 
 } // namespace
 
+bool may_be_locked(const SolverBody &a, const SolverBody &b) {
+    const auto is_free = [](const SolverBody &body) {
+        return !body.has_locks && body.inv_mass.x > Real(0);
+    };
+    return !is_free(a) && !is_free(b);
+}
+
 glm::dmat3 locked_compliance(const glm::dmat3 &k) {
     const double size = (k[0][0] + k[1][1] + k[2][2]) / 3;
     constexpr double rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-    if (!(size > 0) || !is_flatter_than(rounding, k, size))
+    // The determinant over the sum of products of two eigenvalues each is between a third of the
+    // least eigenvalue and the whole.
+    const double minors = k[0][0] * k[1][1] - k[1][0] * k[0][1] + k[1][1] * k[2][2] -
+                          k[2][1] * k[1][2] + k[2][2] * k[0][0] - k[0][2] * k[2][0];
+    if (!(size > 0) || glm::determinant(k) > rounding * size * minors)
         return glm::dmat3{0.0};
     // Close to 1 along immovable directions, close to 0 along all others.
     constexpr double small = 16 * rounding;
@@ -173,51 +164,28 @@ Mat3 mass_of(const RowBlock &rows, const SolverBody &a, const SolverBody &b) {
 
 namespace {
 
-// The two factors of a chord for a turn whose square is small: sin(x) / x and (1 - cos(x)) / x^2.
-struct ChordSeries {
-    Real along;
-    Real inward;
-};
-ChordSeries chord_series(Real squared) {
+// The mean velocity over h of the end of a turning arm that starts at r: the chord of its circle,
+// ((exp(h [w]) - 1) r) / h (Rodrigues).
+WideVec3 chord_velocity(const WideVec3 &angular_velocity, const WideVec3 &r, Real h) {
+    const Real squared = h * h * dot(angular_velocity, angular_velocity);
+    // sin(x) / x and (1 - cos(x)) / x^2, both at once.
     using Pair [[gnu::vector_size(2 * sizeof(Real))]] = Real;
     const Pair square = {squared, squared};
-    const Pair sum =
+    Pair factors =
         Pair{Real(1), Real(0.5)} - square / Pair{Real(6), Real(24)} *
                                        (Pair{Real(1), Real(1)} - square / Pair{Real(20), Real(30)});
-    return {sum[0], sum[1]};
-}
-
-} // namespace
-
-// The chord of its circle, ((exp(h [w]) - 1) r) / h (Rodrigues).
-Vec3 chord_velocity(const Vec3 &angular_velocity, const Vec3 &r, Real h) {
-    const Real squared = h * h * glm::dot(angular_velocity, angular_velocity);
-    auto [along, inward] = chord_series(squared);
     if (squared > Real(0.04)) { // the series' next terms show
         const Real angle = std::sqrt(squared);
-        along = std::sin(angle) / angle;
-        inward = (Real(1) - std::cos(angle)) / squared;
+        factors = Pair{std::sin(angle) / angle, (Real(1) - std::cos(angle)) / squared};
     }
-    const Vec3 turning = glm::cross(angular_velocity, r);
-    return along * turning + (inward * h) * glm::cross(angular_velocity, turning);
-}
-
-namespace {
-
-// chord_velocity.
-WideVec3 wide_chord_velocity(const WideVec3 &angular_velocity, const WideVec3 &r, Real h) {
-    const Real squared = h * h * dot(angular_velocity, angular_velocity);
-    if (squared > Real(0.04))
-        return WideVec3(chord_velocity(angular_velocity.narrow(), r.narrow(), h));
-    const auto [along, inward] = chord_series(squared);
     const WideVec3 turning = cross(angular_velocity, r);
-    return along * turning + (inward * h) * cross(angular_velocity, turning);
+    return factors[0] * turning + (factors[1] * h) * cross(angular_velocity, turning);
 }
 
 } // namespace
 
-WideVec3 wide_point_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
-                             const JointPass &pass) {
+WideVec3 point_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
+                        const JointPass &pass) {
     const WideVec3 velocity_a = WideVec3::followed(a.velocity);
     const WideVec3 velocity_b = WideVec3::followed(b.velocity);
     const WideVec3 turning_a = WideVec3::followed(a.angular_velocity);
@@ -226,8 +194,8 @@ WideVec3 wide_point_velocity(const RowBlock &rows, const SolverBody &a, const So
     const WideVec3 r_b = WideVec3::followed(rows.r_b);
     if (!pass.at_the_end)
         return (velocity_b + cross(turning_b, r_b)) - (velocity_a + cross(turning_a, r_a));
-    return (velocity_b - velocity_a) + (wide_chord_velocity(turning_b, r_b, pass.h) -
-                                        wide_chord_velocity(turning_a, r_a, pass.h));
+    return (velocity_b - velocity_a) +
+           (chord_velocity(turning_b, r_b, pass.h) - chord_velocity(turning_a, r_a, pass.h));
 }
 
 Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody &b,
@@ -251,9 +219,11 @@ Vec3 axial_velocity(const RowBlock &rows, const SolverBody &a, const SolverBody 
         }
         return v;
     }
-    Vec3 relative = point_velocity(rows, a, b, pass);
+    Vec3 relative = point_velocity(rows, a, b, pass).narrow();
     if (pass.at_the_end && rows.turns_with_a)
-        relative += chord_velocity(-a.angular_velocity, pass.h * relative, pass.h);
+        relative +=
+            chord_velocity(WideVec3(-a.angular_velocity), WideVec3(pass.h * relative), pass.h)
+                .narrow();
     along(relative);
     if (pass.at_the_end && rows.swing_length > Real(0)) {
         // How much longer the line between the anchors gets as they swing sideways.
@@ -286,24 +256,25 @@ Vec3 half_bend(const RowBlock &rows, const SolverBody &a, const SolverBody &b, R
     return v;
 }
 
+void apply(SolverBody &body, const RowBlock &rows, const Vec3 &arm, const Vec3 &impulse) {
+    const bool is_linear = rows.kind != RowKind::angular;
+    const WideVec3 push(impulse);
+    const WideVec3 turn = is_linear ? cross(WideVec3::followed(arm), push) : push;
+    const WideVec3 turning =
+        WideVec3::followed(body.angular_velocity) + WideMat3::followed(body.inv_inertia) * turn;
+    if (is_linear)
+        body.velocity =
+            (WideVec3::followed(body.velocity) + WideVec3::followed(body.inv_mass) * push).narrow();
+    body.angular_velocity = turning.narrow();
+}
+
 void apply(StepContext &context, const JointConstraint &joint, const Vec3 &impulse) {
     const RowBlock &rows = joint.rows;
-    const WideVec3 along(world_impulse(rows, impulse));
-    const auto act = [&](SolverBody &body, const WideVec3 &way, const Vec3 &arm) {
-        const bool is_linear = rows.kind != RowKind::angular;
-        const WideVec3 turn = is_linear ? cross(WideVec3::followed(arm), way) : way;
-        const WideVec3 turning =
-            WideVec3::followed(body.angular_velocity) + WideMat3::followed(body.inv_inertia) * turn;
-        if (is_linear)
-            body.velocity =
-                (WideVec3::followed(body.velocity) + WideVec3::followed(body.inv_mass) * way)
-                    .narrow();
-        body.angular_velocity = turning.narrow();
-    };
+    const Vec3 along = world_impulse(rows, impulse);
     if (joint.moves_a)
-        act(context.bodies[joint.a], -along, rows.r_a);
+        apply(context.bodies[joint.a], rows, rows.r_a, -along);
     if (joint.moves_b)
-        act(context.bodies[joint.b], along, rows.r_b);
+        apply(context.bodies[joint.b], rows, rows.r_b, along);
 }
 
 Vec3 pushed(const Vec3 &bias, Real most) {

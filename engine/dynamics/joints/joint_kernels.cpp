@@ -84,7 +84,7 @@ HWY_INLINE Vector rotated(const Vector &axis, Lanes w, const Vector &v) {
     return plus(v, times(all(Real(2)), plus(times(w, once), twice)));
 }
 
-// chord_velocity (joint_impulse.h), for turns whose square is no more than this.
+// chord_velocity (joint_impulse.cpp), for turns whose square is no more than this.
 constexpr Real near = Real(0.04);
 HWY_INLINE Vector chord_velocity(const Vector &angular, Lanes squared, const Vector &arm, Real h) {
     const Lanes one = all(Real(1));

@@ -37,14 +37,6 @@ bool is_rigid(const JointConstraint &joint) {
            !joint.is_spring() && (joint.moves_a || joint.moves_b);
 }
 
-// Whether both bodies, as far as they move, have locked axes.
-bool may_be_locked(const StepContext &context, const JointConstraint &joint) {
-    const auto is_free = [&](bool moves, std::uint32_t body) {
-        return moves && !context.model.bodies[body].has_locks;
-    };
-    return !is_free(joint.moves_a, joint.a) && !is_free(joint.moves_b, joint.b);
-}
-
 } // namespace
 
 void JointSystem::arrange(StepContext &context) {
@@ -336,7 +328,8 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Number c
         find_effect(context, joint, true, effects[place][1]);
     }
     for (std::uint32_t place = group.first; place < group.last; ++place) {
-        const int count = joints[order_[place]].rows.count;
+        const JointConstraint &joint = joints[order_[place]];
+        const int count = joint.rows.count;
         WideMatrix<Number> own;
         for (const Effect<Number> &effect : effects[place])
             if (effect.body != Joint::world)
@@ -353,7 +346,7 @@ void JointSystem::factor(StepContext &context, const JointGroup &group, Number c
                 missing[i] = Number(0);
         }
         WideMatrix<Number> softening;
-        if (may_be_locked(context, joints[order_[place]]))
+        if (may_be_locked(context.body(joint.a), context.body(joint.b)))
             softening = WideMatrix<Number>(WideMatrix<double>(locked_compliance(glm::dmat3(all))));
         for (int i = 0; i < 3; ++i)
             softening[i] += compliance * own[i];
