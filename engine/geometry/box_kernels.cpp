@@ -346,6 +346,11 @@ HWY_INLINE Eight each_half(const Of &of, const Eights &...numbers) {
     points.count = n;
 }
 
+void clamp_heights(Clipped &points, Real most) {
+    for (Real &height : points.height)
+        height = std::min(height, most);
+}
+
 HWY_INLINE void add_face_contacts(Manifold &manifold, FaceContacts &contacts) {
     const Clipped &kept = contacts.points;
     if (kept.count > 4)
@@ -509,7 +514,7 @@ HWY_INLINE bool is_reference(const Vec3 &a, const Vec3 &b) {
                                   ? normal_of_face_b(placing, faces.b.i)
                                   : normal_of_face_a(placing, faces.a.i)) > little) {
         const bool a_first = faces.b.separation <= faces.a.separation + feature_tolerance;
-        for (std::size_t attempt = 0; attempt < 2; ++attempt) {
+        const auto is_tight_at = [&](std::size_t attempt, Real reach) HWY_ATTR {
             const bool use_a = a_first == (attempt == 0);
             const std::size_t axis = use_a ? faces.a.i : faces.b.i;
             const Real towards = use_a ? placing.b_position[axis] : placing.a_position[axis];
@@ -517,7 +522,7 @@ HWY_INLINE bool is_reference(const Vec3 &a, const Vec3 &b) {
             find_face_contacts(use_a ? a : b, use_a ? side : -side, axis,
                                is_up ? Real(1) : Real(-1), use_a ? placing.b_axes : placing.a_axes,
                                use_a ? placing.b_position : placing.a_position,
-                               use_a ? half_b : half_a, margin,
+                               use_a ? half_b : half_a, reach,
                                use_a ? kind_face : kind_face | 1U << 20, tried[attempt]);
             const Real off = std::abs(tried[attempt].points.lowest - best);
             if (off < least_off) {
@@ -525,11 +530,20 @@ HWY_INLINE bool is_reference(const Vec3 &a, const Vec3 &b) {
                 depth = tried[attempt].points.lowest;
                 closest_face = attempt;
             }
-            if (off <= tight) {
+            return off <= tight;
+        };
+        for (std::size_t attempt = 0; attempt < 2; ++attempt)
+            if (is_tight_at(attempt, margin)) {
                 add_face_contacts(manifold, tried[attempt]);
                 return;
             }
-        }
+        // Boxes that just touch, with points that rounding puts beyond the margin.
+        for (std::size_t attempt = 0; best <= Real(0) && attempt < 2; ++attempt)
+            if (is_tight_at(attempt, margin + tight)) {
+                clamp_heights(tried[attempt].points, margin);
+                add_face_contacts(manifold, tried[attempt]);
+                return;
+            }
     }
     if (edges.separation > -infinity) {
         Real sideways = Real(0);

@@ -104,6 +104,58 @@ TEST(SoftStepBlow, AHeavySlabStaysDown) {
     }
 }
 
+// The light ones are caught between the heavy one and the ground: each pass takes from the heavy
+// one only their share of the masses.
+TEST(SoftStepBlow, AHeavyBallOnALightOneDoesNotBounce) {
+    for (const double mass : {3.0, 10.0, 50.0, 200.0, 1000.0})
+        for (const double rate : {60.0, 120.0, 480.0})
+            for (const double speed : {1.0, 3.0, 10.0}) {
+                const double r = 0.25;
+                StepSettings settings = settings_for("soft_step");
+                settings.dt = 1 / rate;
+                World world("soft_step", settings);
+                world.add_body(ground(0.5, 0));
+                world.add_body(dynamic_body(ball(r), 1, V{0, r, 0}));
+                const BodyId heavy = world.add_body(
+                    dynamic_body(ball(r), mass, V{0, 3 * r + 0.05, 0}, V{0, -speed, 0}));
+                double up = 0, down = 0;
+                for (int step = 0; step < int(0.4 * rate); ++step) {
+                    world.step(nullptr);
+                    up = std::max(up, velocity_of(world, heavy).y);
+                    down = std::max(down, 3 * r - position_of(world, heavy).y);
+                }
+                EXPECT_LT(up, 0.03 * speed + 0.02) << mass << ", " << rate << ", " << speed;
+                EXPECT_LT(down, 0.01) << mass << ", " << rate << ", " << speed;
+            }
+}
+
+TEST(SoftStepBlow, AHeavyBodyOnLightOnesDoesNotBounce) {
+    for (const int count : {1, 2, 5})
+        for (const double mass : {5.0, 30.0, 300.0})
+            for (const double rate : {60.0, 240.0})
+                for (const Shape &shape : {Shape{block(V{0.25})}, Shape{ball(0.25)}}) {
+                    StepSettings settings = settings_for("soft_step");
+                    settings.dt = 1 / rate;
+                    World world("soft_step", settings);
+                    world.add_body(ground(0.5, 0));
+                    for (int i = 0; i < count; ++i)
+                        world.add_body(dynamic_body(block(V{0.25}), 1, V{0, 0.25 + 0.5 * i, 0}));
+                    const double rest = 0.25 + 0.5 * count;
+                    const double drop = 0.5;
+                    const BodyId heavy =
+                        world.add_body(dynamic_body(shape, mass, V{0.01, rest + drop, 0}));
+                    double up = 0;
+                    for (int step = 0; step < int(3 * rate); ++step) {
+                        world.step(nullptr);
+                        up = std::max(up, velocity_of(world, heavy).y);
+                    }
+                    EXPECT_LT(up, 0.05 * std::sqrt(2 * gravity * drop))
+                        << count << ", " << mass << ", " << rate << ", " << shape.index();
+                    EXPECT_NEAR(position_of(world, heavy).y, rest, 0.002)
+                        << count << ", " << mass << ", " << rate << ", " << shape.index();
+                }
+}
+
 // However thin and fast spinning: a needle, a match, a blade, a pole.
 TEST(SoftStepBlow, WhatIsThinAndSpinsGainsNoEnergy) {
     for (const double restitution : {0.0, 0.5})

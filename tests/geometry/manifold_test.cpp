@@ -247,6 +247,27 @@ TEST(Manifold, BoxesAreWithinTheStatedTolerance) {
     std::cout << "at most " << worst << " m off\n";
 }
 
+// Within rounding, where a margin of 0 may leave out the points that touch: a shallow contact must
+// not be taken for a deep one along another axis.
+TEST(Manifold, ShapesThatJustTouchAreNotDeep) {
+    Random random(18);
+    for (int trial = 0; trial < trials(300'000); ++trial) {
+        const std::uint32_t kind_a = random.next_index(3), kind_b = random.next_index(3);
+        const bool is_awkward = random.next_index(2) == 0;
+        Pair pair{any_shape(random, kind_a, any_vector(random, 1.0), is_awkward),
+                  any_shape(random, kind_b, any_vector(random, 3.0), is_awkward)};
+        const Manifold apart = collide(pair.a, pair.b, Real(10));
+        if (deepest(apart) < 0.01)
+            continue;
+        const Vec3 to_touch = Real(-deepest(apart)) * apart.normal;
+        pair.b = placed(pair.b, Transform{to_touch, identity_rotation});
+        const Manifold m = collide(pair.a, pair.b, Real(0));
+        EXPECT_GT(deepest(m), -preference)
+            << "trial " << trial << ", " << kind_names[kind_a] << " and " << kind_names[kind_b];
+        EXPECT_LE(m.count == 0 ? 0.0 : deepest(m), 0.0);
+    }
+}
+
 TEST(Manifold, HalfSpacesGiveNone) {
     EXPECT_EQ(collide(HalfSpace{}, HalfSpace{}, Real(1)).count, 0);
 }

@@ -261,13 +261,27 @@ void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h
     context.report.constraint_passes += context.scratch.schedule.lanes.size();
 }
 
-bool anything_is_struck(const StepContext &context) {
-    return std::ranges::any_of(context.scratch.schedule.blocks, [](const ContactBlock &block) {
-        for (std::size_t lane = 0; lane < block.used; ++lane)
-            if (is_blow(block, lane))
-                return true;
-        return false;
-    });
+Real striking_mass_ratio(const StepContext &context, Real changed) {
+    const auto inverse_mass = [](const Columns3 &columns, std::size_t lane) {
+        const Vec3 masses = get(columns, lane); // 0 along locked axes
+        return std::max({masses.x, masses.y, masses.z});
+    };
+    const auto ratio_of = [&](const ContactBlock &block, std::size_t lane) {
+        const Real a = inverse_mass(block.inv_mass_a, lane);
+        const Real b = inverse_mass(block.inv_mass_b, lane);
+        return std::min(a, b) > Real(0) ? std::max(a, b) / std::min(a, b) : Real(1);
+    };
+    Real greatest = Real(0);
+    for (const ContactBlock &block : context.scratch.schedule.blocks)
+        for (std::size_t lane = 0; lane < block.used; ++lane) {
+            const bool is_struck = is_blow(block, lane);
+            if (!is_struck && !(block.corrected.lanes[lane] > changed))
+                continue;
+            const Real ratio = ratio_of(block, lane);
+            if (is_struck || ratio > unlike_masses)
+                greatest = std::max(greatest, ratio);
+        }
+    return greatest;
 }
 
 bool any_is_corrected(const StepContext &context, Real speed) {

@@ -129,8 +129,13 @@ void fill_start_arms(const StepContext &context, const ContactBlock &block, Star
 // Like remember_contacts, warm_start_contacts, solve_contacts and store_contacts.
 void warm_start_contact_columns(StepContext &context, Real share, bool remember_first);
 void solve_contact_columns(StepContext &context, const ContactBias &bias, Real h);
-// Whether any contact was struck in this substep that is not pressed.
-bool anything_is_struck(const StepContext &context);
+// Bodies whose masses differ by more than this factor strike each other for longer: what is left of
+// the blow takes many passes.
+inline constexpr Real unlike_masses = Real(2);
+// The greatest ratio (at least 1) of the masses of two bodies that strike each other; immovable
+// bodies count as alike. 0 if none do. Their contact was struck in this substep and is not pressed,
+// or their masses are unlike and the last pass changed its speed by more than `changed` (m/s).
+Real striking_mass_ratio(const StepContext &context, Real changed);
 // Whether the last pass changed the speed of any contact point by more than this (m/s).
 bool any_is_corrected(const StepContext &context, Real speed);
 void store_contact_columns(StepContext &context);

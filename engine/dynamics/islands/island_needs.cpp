@@ -32,8 +32,9 @@ constexpr double followed_roll = 0.4;
 constexpr double finer = 4;
 
 // How far a loaded body may turn on its joints in a substep (rad): its energy loss falls with the
-// square of that.
+// square of that. Less where a light body may whip past a heavy one.
 constexpr double followed_turn = 0.08;
+constexpr double followed_whip = 0.04;
 
 std::uint16_t count_of(double substeps) {
     constexpr double most = std::numeric_limits<std::uint16_t>::max();
@@ -245,18 +246,27 @@ void World::note_turn_needs(const IslandGroup &group) {
             settings_.dt / (is_solved_together(i) ? followed_together : followed_alone);
         s.loads[i] = std::max(s.loads[i], squared * rate * rate);
     }
-    const double turn = settings_.dt / followed_turn;
-    // Only for joints to something at rest: a chain that whips would be stiffened mid-motion.
-    for (const JointConstraint &joint : s.solver.joints)
-        if (!moves(joint.a) || !moves(joint.b))
-            for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
-                if (model_->bodies[body].kind != BodyKind::dynamic ||
-                    !(s.stiffness[body].most > Real(0)))
-                    return;
-                const Vec3 &spin = s.bodies[body].angular_velocity;
-                s.loads[body] = std::max(s.loads[body],
-                                         static_cast<double>(glm::dot(spin, spin)) * turn * turn);
-            });
+    const auto is_uneven = [&](std::uint32_t body) {
+        JointSystem &system = *s.solver.joint_system;
+        return body != Joint::world && is_solved_together(body) &&
+               system.groups()[system.group_of(body)].is_uneven;
+    };
+    for (const JointConstraint &joint : s.solver.joints) {
+        const bool may_whip = is_uneven(joint.a) || is_uneven(joint.b);
+        // Else only for joints to something at rest: a chain that whips would be stiffened
+        // mid-motion.
+        if (!may_whip && moves(joint.a) && moves(joint.b))
+            continue;
+        const double turn = settings_.dt / (may_whip ? followed_whip : followed_turn);
+        for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
+            if (model_->bodies[body].kind != BodyKind::dynamic ||
+                !(s.stiffness[body].most > Real(0)))
+                return;
+            const Vec3 &spin = s.bodies[body].angular_velocity;
+            s.loads[body] =
+                std::max(s.loads[body], static_cast<double>(glm::dot(spin, spin)) * turn * turn);
+        });
+    }
 }
 
 // If joints solved together did not follow, the step is repeated with finer substeps. Joints that

@@ -63,6 +63,31 @@ void JointSystem::note_touched(const StepContext &context) {
         note(contact.body);
 }
 
+// A heavy bob on a light cart: what the light body's K is a share of would give way under the heavy
+// one as if that were moved by hand. Not where more joints follow each other: a chain that whips
+// would gain energy.
+bool JointSystem::is_uneven(const StepContext &context, const JointGroup &group) const {
+    constexpr Real unlike = Real(4);
+    constexpr int few_joints = 2;
+    int joints = 0;
+    std::uint32_t last = JointConstraint::grab;
+    Real least = std::numeric_limits<Real>::infinity(), greatest = Real(0);
+    for (std::uint32_t place = group.first; place < group.last; ++place) {
+        const JointConstraint &joint = context.scratch.joints[order_[place]];
+        joints += joint.joint == last ? 0 : 1;
+        last = joint.joint;
+        for (const auto &[body, moves] :
+             {std::pair{joint.a, joint.moves_a}, std::pair{joint.b, joint.moves_b}})
+            if (moves) {
+                const Vec3 &inverse = context.bodies[body].inv_mass;
+                const Real most = std::max({inverse.x, inverse.y, inverse.z});
+                least = std::min(least, most);
+                greatest = std::max(greatest, most);
+            }
+    }
+    return joints <= few_joints && greatest > unlike * least;
+}
+
 // A point-like bob on a long arm, or a slender rod: what holds it is the small difference of large
 // numbers.
 void JointSystem::note_stiff(StepContext &context) {
@@ -80,7 +105,8 @@ void JointSystem::note_stiff(StepContext &context) {
                slender * std::min({inertia.x, inertia.y, inertia.z});
     };
     for (JointGroup &group : groups_) {
-        group.is_stiff = false;
+        group.is_uneven = is_uneven(context, group);
+        group.is_stiff = group.is_uneven;
         for (std::uint32_t place = group.first; place < group.last && !group.is_stiff; ++place) {
             const JointConstraint &joint = context.scratch.joints[order_[place]];
             group.is_stiff = (joint.moves_a && is_stiff(joint, joint.a, joint.rows.r_a)) ||

@@ -17,7 +17,8 @@ struct StepContext;
 // Blocks first..last - 1 in the system's elimination order. `is_held`: solved together in this
 // substep, not left to Gauss-Seidel. `is_mesh`: has many loops, as nets and frames do.
 // `is_touched`: contacts act on its bodies. `is_stiff`: some of its bodies turn so much more easily
-// than they move that the group is factored in double precision. In this step:
+// than they move, or it `is_uneven` (two joints at most, between bodies of unlike masses), so that
+// it is factored in double precision. In this step:
 // `is_factored`: it was factored when its joints were last refreshed; `was_torn`: torn joints
 // kept it from being held; `was_let_go`: it was let go before that, or torn between two substeps.
 // `has_changed`: it was let go, or its active limits changed, since the masses of motors
@@ -30,6 +31,7 @@ struct JointGroup {
     bool is_factored = false;
     bool is_touched = false;
     bool is_stiff = false;
+    bool is_uneven = false;
     bool was_torn = false;
     bool was_let_go = false;
     bool has_changed = false;
@@ -114,6 +116,7 @@ class JointSystem {
     void find_order(StepContext &context);
     bool eliminate(const std::vector<std::uint32_t> &members, std::size_t work_a_block);
     void note_touched(const StepContext &context);
+    bool is_uneven(const StepContext &context, const JointGroup &group) const;
     void note_stiff(StepContext &context);
 
     bool is_arranged_ = false;

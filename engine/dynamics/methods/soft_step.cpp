@@ -26,40 +26,43 @@ int holding_passes(const StepContext &context) {
     return context.settings.iterations + context.active.pace.more_passes;
 }
 
-// How many relaxation passes a substep takes: the usual ones, and up to `most` as long as the last
-// one changed the speed of some contact point by more than `enough` (m/s).
-struct RelaxingPasses {
-    int usual = 1;
-    int most = 1;
+// Up to how many relaxation passes a substep takes in all: as long as the last one changed the
+// speed of some contact point by more than `enough` (m/s).
+struct MorePasses {
+    int most = 0;
     Real enough = Real(0);
 };
 
 // One pass removes only part of the push from the velocities of stacked bodies: a stack would
 // bounce back up on landing, and a heavy slab would be launched by whatever it lands on. So a hit
-// gets up to two passes for each contact that it may travel through. A hit lasts only a few steps,
-// so its passes may cost a multiple of the budget. If that affords only a few, they do nothing for
-// a tall stack; but in a crowd that lands on others they keep those beneath from being pressed deep
-// into each other, as long as the blows are hard. Not where there are joints: a rope under a light
-// cage full of heavy balls would stretch without end, as these passes hold what the next substep
-// then does not remember.
-RelaxingPasses relaxing_passes(const StepContext &context, Real struck_speed) {
-    constexpr std::size_t for_each_contact = 2, most = 128, least = 24, budgets = 16;
+// gets up to two passes for each contact that it may travel through, times the ratio of the masses
+// that meet: between a heavy body and the ground, a light one gives the heavy one only its own
+// share of the masses in each pass. A hit lasts only a few steps, so its passes may cost a multiple
+// of the budget. If that affords only a few, they do nothing for a tall stack of alike bodies; but
+// in a crowd that lands on others they keep those beneath from being pressed deep into each other,
+// as long as the blows are hard. Not where there are joints: a rope under a light cage full of
+// heavy balls would stretch without end, as these passes hold what the next substep then does not
+// remember.
+MorePasses more_passes(const StepContext &context, Real struck_speed) {
+    constexpr std::size_t for_each_contact = 2, most = 512, least = 24, budgets = 16;
     constexpr int in_a_crowd = 8;
     constexpr Real changed = Real(0.2), changed_much = Real(20); // of struck_speed
     const StepSettings &settings = context.settings;
-    const int usual = holding_passes(context) + context.active.pace.more_relaxing;
-    if (context.active.pace.is_joined || !anything_is_struck(context))
-        return {usual, usual};
+    if (context.active.pace.is_joined)
+        return {};
+    const Real mass_ratio = striking_mass_ratio(context, changed * struck_speed);
+    if (mass_ratio == Real(0))
+        return {};
     const auto affordable =
         static_cast<std::size_t>(settings.substep_budget / settings.substeps) * budgets;
     // Each group gets a share of the budget in proportion to its contacts.
     const std::size_t passes =
         affordable / (context.contacts.size() + context.active.joints.size() + 1);
-    if (passes < least)
-        return {usual, std::max(in_a_crowd, usual), changed_much * struck_speed};
-    const std::size_t wanted = for_each_contact * context.active.contacts.size();
-    return {usual, std::max(static_cast<int>(std::min({passes, wanted, most})), usual),
-            changed * struck_speed};
+    if (passes < least && mass_ratio <= unlike_masses)
+        return {in_a_crowd, changed_much * struck_speed};
+    const std::size_t wanted = for_each_contact * context.active.contacts.size() *
+                               static_cast<std::size_t>(std::min(mass_ratio, Real(most)));
+    return {static_cast<int>(std::min({passes, wanted, most})), changed * struck_speed};
 }
 
 // How much any body is pulled at most (m/s^2).
@@ -185,15 +188,18 @@ void advance_soft_step(StepContext &context) {
             kick_particles(context, gravity, Real(0.5) * h);
             repeat_particle_springs(context, h);
         }
-        const RelaxingPasses passes = relaxing_passes(context, relax_bias.struck_speed);
-        for (int i = 0;
-             i < passes.most && (i < passes.usual || any_is_corrected(context, passes.enough));
-             ++i) {
+        const auto relax = [&] {
             solve_joints(context, relaxing);
             if (has_particles)
                 solve_particle_contacts(context, {.loaded_only = true}, h);
             solve_contact_columns(context, relax_bias, h);
-        }
+        };
+        const int usual = holding_passes(context) + context.active.pace.more_relaxing;
+        for (int i = 0; i < usual; ++i)
+            relax();
+        const MorePasses more = more_passes(context, relax_bias.struck_speed);
+        for (int i = usual; i < more.most && any_is_corrected(context, more.enough); ++i)
+            relax();
         hold_touched_groups(context, relaxing);
         recall_borne(context);
         store_joint_columns(context); // the next substep's follow_loads reads them
