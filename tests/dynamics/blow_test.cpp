@@ -156,6 +156,40 @@ TEST(SoftStepBlow, AHeavyBodyOnLightOnesDoesNotBounce) {
                 }
 }
 
+// From half a metre onto the end of a lighter plate that a joint holds.
+TEST(SoftStepBlow, ALoadOnAJoinedPlateDoesNotBounce) {
+    for (const JointType type : {JointType::fixed, JointType::hinge, JointType::slider})
+        for (const double mass : {20.0, 100.0, 300.0, 1000.0})
+            for (const double rate : {60.0, 240.0}) {
+                StepSettings settings = settings_for("soft_step");
+                settings.dt = 1 / rate;
+                World world("soft_step", settings);
+                JointDef joint;
+                joint.type = type;
+                joint.b = world.add_body(dynamic_body(block(V{1, 0.05, 0.5}), 10, V{0}));
+                // The axis along z, or y for the slider; its lower limit holds the plate.
+                joint.frame_a_local = joint.frame_b_local =
+                    narrow(type == JointType::hinge ? glm::angleAxis(-pi / 2, V{0, 1, 0})
+                                                    : glm::angleAxis(pi / 2, V{0, 0, 1}));
+                joint.anchor_a_local = joint.anchor_b_local =
+                    narrow(V{type == JointType::slider ? 0.0 : -1.0, 0, 0});
+                if (type != JointType::fixed)
+                    joint.limits = JointLimits{Real(0), Real(1)};
+                world.add_joint(joint);
+                const BodyId load =
+                    world.add_body(dynamic_body(block(V{0.2}), mass, V{0.5, 0.25 + 0.5, 0}));
+                double up = 0;
+                for (int step = 0; step < int(2 * rate); ++step) {
+                    world.step(nullptr);
+                    up = std::max(up, velocity_of(world, load).y);
+                }
+                EXPECT_LT(up, 0.06 * std::sqrt(2 * gravity * 0.5))
+                    << int(type) << ", " << mass << ", " << rate;
+                EXPECT_NEAR(position_of(world, load).y, 0.25, 0.002)
+                    << int(type) << ", " << mass << ", " << rate;
+            }
+}
+
 // However thin and fast spinning: a needle, a match, a blade, a pole.
 TEST(SoftStepBlow, WhatIsThinAndSpinsGainsNoEnergy) {
     for (const double restitution : {0.0, 0.5})

@@ -28,6 +28,8 @@ constexpr double most_wanted_in_turns = 6.25;
 constexpr int most_wanted_in_balance = 2;
 // Contacts of a small island.
 constexpr int most_small = 32;
+// A single blow may take a few steps.
+constexpr double blow_lasts = 0.04; // s
 // Struck in each step for so long, a body is shaken by others that are so many times as heavy.
 constexpr double shaken_after = 0.1; // s
 constexpr Real shaken_by = Real(2);
@@ -162,6 +164,8 @@ void World::gather_needs() {
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
         needs.wanted = std::max(needs.wanted, int{s.paces[i].wanted});
         needs.before = std::max(needs.before, int{s.paces[i].substeps});
+        needs.is_struck_long =
+            needs.is_struck_long || state_.paces[i].struck * settings_.dt >= blow_lasts;
         const Real fast = static_cast<Real>(settings_.substep_tolerance / settings_.dt) *
                           least_half_width(model_->bodies[i]);
         const Vec3 &velocity = state_.motions[i].velocity;
@@ -242,6 +246,7 @@ void World::share_budget() {
         pace.remembers_all =
             !pace.alternates || needs.wanted <= most_wanted_in_balance * pace.substeps;
         pace.is_joined = needs.is_joined;
+        pace.is_struck_long = needs.is_joined && needs.is_struck_long;
         pace.is_shaken = needs.is_shaken && pace.substeps >= far_more_substeps * settings_.substeps;
     }
     settle_slow_islands();

@@ -46,6 +46,8 @@ struct IslandPace {
     bool is_joined = false; // has joints
     // Whether heavier bodies strike a light one all the time (calm_push).
     bool is_shaken = false;
+    // Whether it has joints and was struck in each step for longer than a single blow lasts.
+    bool is_struck_long = false;
     bool operator==(const IslandPace &) const = default;
 };
 
@@ -76,7 +78,8 @@ struct Islands : DisjointSets {
         int before = 0; // the most substeps that any of its bodies took in the last step
         bool rests = true;
         bool is_slow = true;
-        bool is_shaken = false;  // see IslandPace
+        bool is_shaken = false; // see IslandPace
+        bool is_struck_long = false;
         bool touches = false;    // has contacts
         bool is_joined = false;  // has joints
         bool was_let_go = false; // any of its joints was, see JointGroup

@@ -40,18 +40,21 @@ struct MorePasses {
 // share of the masses in each pass. A hit lasts only a few steps, so its passes may cost a multiple
 // of the budget. If that affords only a few, they do nothing for a tall stack of alike bodies; but
 // in a crowd that lands on others they keep those beneath from being pressed deep into each other,
-// as long as the blows are hard. Not where there are joints: a rope under a light cage full of
-// heavy balls would stretch without end, as these passes hold what the next substep then does not
-// remember.
+// as long as the blows are hard.
+//
+// Where there are joints, only between unlike masses, and no longer than a single blow lasts: a
+// rope under a light cage in which heavy balls strike each other all the time would stretch without
+// end, as these passes hold what the next substep then does not remember.
 MorePasses more_passes(const StepContext &context, Real struck_speed) {
     constexpr std::size_t for_each_contact = 2, most = 512, least = 24, budgets = 16;
     constexpr int in_a_crowd = 8;
     constexpr Real changed = Real(0.2), changed_much = Real(20); // of struck_speed
     const StepSettings &settings = context.settings;
-    if (context.active.pace.is_joined)
+    const IslandPace &pace = context.active.pace;
+    if (pace.is_struck_long)
         return {};
     const Real mass_ratio = striking_mass_ratio(context, changed * struck_speed);
-    if (mass_ratio == Real(0))
+    if (mass_ratio == Real(0) || (pace.is_joined && mass_ratio <= unlike_masses))
         return {};
     const auto affordable =
         static_cast<std::size_t>(settings.substep_budget / settings.substeps) * budgets;
@@ -198,8 +201,10 @@ void advance_soft_step(StepContext &context) {
         for (int i = 0; i < usual; ++i)
             relax();
         const MorePasses more = more_passes(context, relax_bias.struck_speed);
-        for (int i = usual; i < more.most && any_is_corrected(context, more.enough); ++i)
+        for (int i = usual; i < more.most && any_is_corrected(context, more.enough); ++i) {
+            hold_touched_groups(context, relaxing);
             relax();
+        }
         hold_touched_groups(context, relaxing);
         recall_borne(context);
         store_joint_columns(context); // the next substep's follow_loads reads them
