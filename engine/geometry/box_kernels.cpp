@@ -40,7 +40,6 @@ using wide::HWY_NAMESPACE::four;
 using wide::HWY_NAMESPACE::greater_bits;
 using wide::HWY_NAMESPACE::greatest;
 using wide::HWY_NAMESPACE::load;
-using wide::HWY_NAMESPACE::load_columns;
 using wide::HWY_NAMESPACE::max;
 using wide::HWY_NAMESPACE::sqrt;
 using wide::HWY_NAMESPACE::store;
@@ -271,7 +270,7 @@ HWY_INLINE Eight each_half(const Of &of, const Eights &...numbers) {
         Real u, v;
     };
     const auto eight = [](const std::array<Real, 8> &numbers) HWY_ATTR {
-        return Eight{load(&numbers[0]), load(&numbers[4])};
+        return Eight{load(numbers.data()), load(numbers.data() + 4)};
     };
     const Eight separation = eight(points.height);
     std::size_t first = 0;

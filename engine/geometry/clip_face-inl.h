@@ -100,7 +100,7 @@ HWY_INLINE void clip_by_corner(const FacePair &faces, Real highest, Clipped &cli
     const Four up = four(Real(1), Real(1), faces.up, Real(0));
     const Four base = four(Real(0), Real(0), faces.height, Real(0));
     std::array<FacePolygon, 2> polygons;
-    FacePolygon *polygon = &polygons[0], *other = &polygons[1];
+    FacePolygon *polygon = polygons.data(), *other = polygons.data() + 1;
     store((middle - side_j - side_k) * up - base, polygon->corners[0].data());
     store((middle + side_j - side_k) * up - base, polygon->corners[1].data());
     store((middle + side_j + side_k) * up - base, polygon->corners[2].data());
