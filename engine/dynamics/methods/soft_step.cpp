@@ -17,6 +17,7 @@
 #include "engine/dynamics/method.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace plumb::inline PLUMB_PRECISION {
 
@@ -49,11 +50,16 @@ MorePasses more_passes(const StepContext &context, Real struck_speed) {
     constexpr std::size_t for_each_contact = 2, most = 512, least = 24, budgets = 16;
     constexpr int in_a_crowd = 8;
     constexpr Real changed = Real(0.2), changed_much = Real(20); // of struck_speed
+    constexpr Real infinity = std::numeric_limits<Real>::infinity();
     const StepSettings &settings = context.settings;
     const IslandPace &pace = context.active.pace;
     if (pace.is_struck_long)
         return {};
-    const Real mass_ratio = striking_mass_ratio(context, changed * struck_speed);
+    // Without a pull any speed is a blow, and nothing presses together what is pushed apart: the
+    // push may leave some speed.
+    const bool is_pulled = struck_speed > Real(0);
+    const Real mass_ratio = is_pulled ? striking_mass_ratio(context, changed * struck_speed)
+                                      : std::min(striking_mass_ratio(context, infinity), Real(1));
     if (mass_ratio == Real(0) || (pace.is_joined && mass_ratio <= unlike_masses))
         return {};
     const auto affordable =
