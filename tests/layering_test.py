@@ -18,7 +18,7 @@ LIBRARIES = [
     (r"toml\+\+/|toml\.hpp", r"engine/scene/file/table\.h", 1),
     (r"tiny_obj_loader", r"engine/scene/[^/]+\.cpp", 1),
     (r"hwy/", r"engine/(geometry|space)/[^/]+|engine/math/(wide_vector|four)-inl\.h"
-     r"|engine/dynamics/(columns-inl\.h|\w+/(contact|flight|joint|spring)_kernels\.cpp)|"
+     r"|engine/dynamics/(columns-inl\.h|\w+/(contact|flight|front|joint|spring)_kernels\.cpp)|"
      r"tests/(geometry|space|dynamics)/[^/]+", None),
     (r"Eigen/", r"engine/math/sparse_cholesky\.cpp", 1),
     (r"benchmark/", r"app/lab/timing\.cpp", 1),

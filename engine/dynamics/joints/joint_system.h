@@ -1,10 +1,12 @@
 // Connected rigid joints, solved together.
 #pragma once
 
+#include "engine/dynamics/joints/fronts.h"
 #include "engine/dynamics/joints/joint_constraint.h"
 #include "engine/dynamics/joints/wide_matrix.h"
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -38,10 +40,10 @@ struct JointGroup {
 };
 
 // The equations of all rigid rows of joints that share dynamic bodies, and of their active limits
-// (JointConstraint::bearing), factored as L D L^T in 3 x 3 blocks, in minimum degree order. Without
-// loops (chains, trees, a door's pin and its axis) there is no fill-in, and the cost is linear in
-// the number of blocks (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers"). Groups
-// with too much fill-in, such as large nets, are left to Gauss-Seidel.
+// (JointConstraint::bearing), factored as L D L^T in 3 x 3 blocks, in an order of little fill-in.
+// Without loops (chains, trees, a door's pin and its axis) there is no fill-in, and the cost is
+// linear in the number of blocks (Baraff 1996, "Linear-Time Dynamics using Lagrange Multipliers").
+// Groups with too much fill-in, such as large nets, are left to Gauss-Seidel.
 //
 // Gauss-Seidel needs compliance, or heavy ends tear a chain; and compliance is damping that drains
 // a pendulum's energy. Solved together, joints need next to none.
@@ -99,7 +101,8 @@ class JointSystem {
         std::vector<WideMatrix<Number>> diagonal; // of K, then D^-1
         std::vector<WideMatrix<Number>> lower;    // of K, then L
         std::vector<WideVector<Number>> sides;    // of `solve`
-        void resize(std::size_t places, std::size_t entries);
+        Fronts::Memory<Number> fronts;            // of meshes, instead of `lower`
+        void resize(std::size_t places, std::size_t entries, const Fronts &meshes);
     };
     template <typename Number>
     static void find_effect(StepContext &context, const JointConstraint &joint, bool is_b,
@@ -111,10 +114,22 @@ class JointSystem {
     void factor(StepContext &context, const JointGroup &group, Number compliance, Number rounding,
                 Factors<Number> &into);
     template <typename Number>
-    void solve(const JointGroup &group, const Factors<Number> &factors,
+    void solve(const JointGroup &group, Factors<Number> &factors,
                std::span<WideVector<Number>> sides) const;
+    // What it costs to eliminate a block: couples of others, and how many it is coupled with.
+    struct Cost {
+        double pairs = 0;
+        std::size_t degree = 0;
+        std::uint32_t block = none;
+        auto operator<=>(const Cost &) const = default;
+    };
     void find_order(StepContext &context);
+    void rate_blocks(std::uint32_t body);
+    std::uint32_t merge_ends(std::uint32_t block);
+    void find_couplings(const StepContext &context);
     bool eliminate(const std::vector<std::uint32_t> &members, std::size_t work_a_block);
+    void order_by_tree(std::uint32_t first);
+    FactorColumns columns() const { return {column_start_, rows_}; }
     void note_touched(const StepContext &context);
     bool is_uneven(const StepContext &context, const JointGroup &group) const;
     void note_stiff(StepContext &context);
@@ -126,16 +141,22 @@ class JointSystem {
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> column_start_; // one more entry than positions
     std::vector<std::uint32_t> rows_;         // row of each entry, column by column, ascending
-    std::vector<std::uint32_t> targets_;      // the value that each elimination product updates
+    std::vector<std::uint32_t> couplings_;    // entries that are not all fill-in, column by column
+    std::vector<std::uint32_t> coupling_start_;
+    // The value that each elimination product updates; none for meshes, which have fronts.
+    std::vector<std::uint32_t> targets_;
     std::vector<std::uint32_t> target_start_;
-    // While arranging: each body's blocks; for each block, the blocks that it shares bodies with or
-    // is linked to by fill-in, and its position; blocks ordered by their number of neighbours.
+    Fronts fronts_;
+    // While arranging: each body's blocks; each block's bodies, rating and position; blocks ordered
+    // by their ratings; how many blocks one body shares with each other.
     std::vector<std::vector<std::uint32_t>> blocks_of_;
-    std::vector<std::vector<std::uint32_t>> neighbours_;
+    std::vector<std::array<std::uint32_t, 2>> ends_;
+    std::vector<Cost> costs_;
     std::vector<std::uint32_t> place_of_;
-    std::vector<std::pair<std::size_t, std::uint32_t>> queue_;
+    std::vector<Cost> queue_;
+    std::vector<std::uint32_t> shared_;
     std::vector<WideMat3> softening_; // per position
-    Factors<Real> factors_;
+    mutable Factors<Real> factors_;
     mutable Factors<double> fine_factors_; // of stiff groups
 };
 
