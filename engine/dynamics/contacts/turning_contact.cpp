@@ -185,18 +185,25 @@ Rolling World::rolling_of(const Contact &contact) const {
     const std::uint32_t flat = is_a ? contact.key.b : contact.key.a;
     const auto dt = static_cast<Real>(settings_.dt);
     const bool may_turn = rolls_freely(flat) || model_->bodies[flat].kind == BodyKind::kinematic;
-    if (may_turn && glm::length(state_.motions[flat].angular_velocity) * dt > rolling_far)
+    const auto turn_of = [&](std::uint32_t body) {
+        return dt * glm::length(state_.motions[body].angular_velocity);
+    };
+    // Arms held for the step brake limbs that rock slowly: otherwise a figure on its back would
+    // roll its legs for ever, as nothing in the model resists rolling.
+    const auto far_of = [&](std::uint32_t body) {
+        return model_->bodies[body].joint_count > 0 ? rolling_far : least;
+    };
+    const bool rocks = turn_of(flat) > std::max(far_of(flat), turn_of(round));
+    if (may_turn && (rocks || turn_of(flat) > rolling_far))
         return Rolling::on_face;
     const Motion &motion = state_.motions[round];
     if (!rolls_freely(round) || otherwise == Rolling::straight)
         return otherwise;
     const Vec3 turn = dt * (glm::conjugate(motion.rotation) * motion.angular_velocity);
     const Real way = contact.way_round(is_a, turn);
-    // Arms held for the step brake limbs that rock slowly: otherwise a figure on its back would
-    // roll its legs for ever, as nothing in the model resists rolling.
-    const Real far = model_->bodies[round].joint_count > 0 ? rolling_far : least;
-    return way > far && way < much * static_cast<Real>(substeps_of(round)) ? Rolling::on_face
-                                                                           : otherwise;
+    return way > far_of(round) && way < much * static_cast<Real>(substeps_of(round))
+               ? Rolling::on_face
+               : otherwise;
 }
 
 void World::choose_rolling(Contact &contact) const {
