@@ -243,6 +243,7 @@ class World {
     void load_particles();
     void join_particles();
     void gather_particle_needs();
+    void gather_wedge_needs();
     double spring_rate() const;
     void tear_springs();
     void tear_springs_of(std::uint32_t body);

@@ -114,22 +114,47 @@ void World::guess_needs() {
         load(joint.b, joint.anchor_b_local);
     }
     for (const std::uint32_t i : s.moving) {
-        Islands::Needs &needs = islands.needs[islands.root_of(i)];
-        needs.mass += static_cast<double>(model_->bodies[i].mass);
-        if (model_->bodies[i].has_force)
-            needs.force += static_cast<double>(glm::length(model_->bodies[i].force));
-    }
-    for (const std::uint32_t i : s.moving) {
         const Body &body = model_->bodies[i];
         if (body.kind != BodyKind::dynamic || !is_first(i))
             continue;
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
         // A body that is let go suddenly pulls twice as hard at first.
-        const double weight = 2 * (needs.mass * glm::length(settings_.gravity) + needs.force);
+        const double weight = 2 * needs.weight;
         const double rate = std::sqrt(
             weight * static_cast<double>(squared_rate(s.guessed_stiffness[i], body.inertia)));
         needs.wanted =
             std::max(needs.wanted, int{count_of(rate * settings_.dt / followed_together)});
+    }
+}
+
+// What falls between two walls that face each other strikes them in turns. Each pass leaves it some
+// of its speed, which presses it into them. So it takes as many substeps as it needs to move little
+// for its size in each.
+void World::gather_wedge_needs() {
+    Scratch &s = scratch_;
+    constexpr Real facing = Real(-0.5); // the normals' product: 60 degrees between the walls
+    constexpr Real little = Real(0.1);  // of its half width
+    s.wall_normals.assign(s.bodies.size(), Vec3{Real(0)});
+    s.is_wedged.assign(s.bodies.size(), 0);
+    for (const Contact &contact : s.contacts) {
+        const bool is_a = moves(contact.key.a);
+        if (contact.sensor || contact.manifold.count == 0 || is_a == moves(contact.key.b))
+            continue;
+        const std::uint32_t body = is_a ? contact.key.a : contact.key.b;
+        const Vec3 normal = is_a ? -contact.manifold.normal : contact.manifold.normal;
+        Vec3 &first = s.wall_normals[body];
+        if (first == Vec3{Real(0)})
+            first = normal;
+        if (!(glm::dot(first, normal) < facing))
+            continue;
+        s.is_wedged[body] = 1;
+        const Motion &motion = state_.motions[body];
+        const Real speed = glm::length(motion.velocity) + static_cast<Real>(extent_of(body)) *
+                                                              glm::length(motion.angular_velocity);
+        const Real far = little * least_half_width(model_->bodies[body]);
+        Islands::Needs &needs = s.islands.needs[s.islands.root_of(body)];
+        needs.wanted =
+            std::max(needs.wanted, int{count_of(settings_.dt * static_cast<double>(speed / far))});
     }
 }
 
@@ -158,6 +183,11 @@ void World::note_contact_needs(const IslandGroup &group) {
                 width = std::min(width,
                                  2 * static_cast<double>(least_half_width(model_->bodies[body])));
         const double depth = settings_.substep_tolerance * width;
+        // What is wedged between walls presses on them as hard as it has been driven in. Contacts
+        // that much stiffer would only throw it out.
+        const Islands::Needs &needs = s.islands.needs[s.islands.root_of(island_body(a, b))];
+        if ((s.is_wedged[a] != 0 || s.is_wedged[b] != 0) && !needs.is_joined && !needs.is_driven)
+            load = std::min(load, needs.weight * settings_.dt / group.pace.substeps);
         return 0.5 * load * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * depth);
     };
     const auto roll_of = [&](std::uint32_t body) {

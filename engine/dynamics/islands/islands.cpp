@@ -162,6 +162,8 @@ void World::gather_needs() {
                 : gravity;
         const auto slow = static_cast<Real>(slow_share * pull * settings_.dt);
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
+        needs.weight += static_cast<double>(model_->bodies[i].mass) * pull;
+        needs.is_driven = needs.is_driven || model_->bodies[i].kind != BodyKind::dynamic;
         needs.wanted = std::max(needs.wanted, int{s.paces[i].wanted});
         needs.before = std::max(needs.before, int{s.paces[i].substeps});
         needs.is_struck_long =
@@ -194,6 +196,7 @@ void World::gather_needs() {
     }
     if (model_->has_particles())
         gather_particle_needs();
+    gather_wedge_needs();
 }
 
 // Up immediately; down slowly and at rest: bodies that stretched softly while they moved and are

@@ -70,10 +70,9 @@ struct IslandGroup {
 // The islands of a step, as sets of bodies. Kinematic bodies join what they touch, static ones do
 // not.
 struct Islands : DisjointSets {
-    struct Needs {        // per root's island
-        int work = 0;     // contacts and joints
-        double mass = 0;  // kg
-        double force = 0; // N, the bodies' own, all added up in size
+    struct Needs {         // per root's island
+        int work = 0;      // contacts and joints
+        double weight = 0; // N, with the bodies' own forces, all added up in size
         int wanted = 0;
         int before = 0; // the most substeps that any of its bodies took in the last step
         bool rests = true;
@@ -82,6 +81,7 @@ struct Islands : DisjointSets {
         bool is_struck_long = false;
         bool touches = false;    // has contacts
         bool is_joined = false;  // has joints
+        bool is_driven = false;  // has kinematic bodies or particles
         bool was_let_go = false; // any of its joints was, see JointGroup
         IslandPace pace;
     };

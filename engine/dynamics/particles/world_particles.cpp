@@ -210,6 +210,7 @@ void World::gather_particle_needs() {
     Islands::Needs &needs =
         s.islands.needs[s.islands.root_of(static_cast<std::uint32_t>(model_->bodies.size()))];
     const std::size_t rows = model_->springs.size() + s.particle_contacts.size();
+    needs.is_driven = true;
     needs.work += static_cast<int>((rows + 7) / 8);
     needs.wanted = std::max(needs.wanted,
                             static_cast<int>(std::min(spring_rate() * settings_.dt, 65535.0)) + 1);
