@@ -98,6 +98,7 @@ struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Paddin
     std::vector<JointSystem> joint_systems;    // one per group with joints, often last step's
     JointSystem no_joints;                     // for groups without
     std::vector<double> loads;                 // per body: the square of the substeps that it wants
+    bool was_let_go = false;                   // joints were, so that the step is repeated
     std::vector<Vec3> wall_normals;            // per body: of the first that does not move
     std::vector<std::uint8_t> is_wedged;       // per body: between walls that face each other
     std::vector<double> contact_loads;         // the same, per contact of a group

@@ -131,9 +131,11 @@ void World::step_together(StepTimes *times) {
             load_bodies();
             advance();
         };
+        scratch_.was_let_go = false;
         try_step();
         constexpr int most_refinements = 2;
         for (int i = 0; i < most_refinements && went_too_coarsely(); ++i) {
+            scratch_.was_let_go = scratch_.was_let_go || was_any_let_go();
             // Those of the coarse try are several times too large for finer substeps: a pile of
             // balls would burst. Shared out among them they still make it slide.
             recall_impulses();

@@ -212,6 +212,8 @@ class World {
     void note_let_go(const IslandGroup &group);
     bool is_solved_together(std::uint32_t body) const;
     void note_needs(const IslandGroup &group);
+    int finer_budget() const;
+    bool was_any_let_go() const;
     bool went_too_coarsely() const;
 
     // Sleep (sleep.cpp).

@@ -341,6 +341,16 @@ void World::note_needs(const IslandGroup &group) {
         s.paces[i].wanted = count_of(std::sqrt(s.loads[i]));
 }
 
+// Joints that are let go once may never be held again, and what hangs on them falls apart: the step
+// that is repeated may cost more than others.
+int World::finer_budget() const {
+    return static_cast<int>(finer) * settings_.substep_budget;
+}
+
+bool World::was_any_let_go() const {
+    return std::ranges::any_of(scratch_.islands.needs, &Islands::Needs::was_let_go);
+}
+
 // Whether bodies that had no pace before asked for more than they got, or joints were let go that
 // more substeps may follow.
 bool World::went_too_coarsely() const {
@@ -353,8 +363,7 @@ bool World::went_too_coarsely() const {
     };
     const auto was_let_go = [&](Islands::Needs needs) {
         needs.wanted = needs.before = static_cast<int>(finer) * needs.pace.substeps;
-        return needs.was_let_go &&
-               chosen_substeps(needs, settings_.substep_budget) > needs.pace.substeps;
+        return needs.was_let_go && chosen_substeps(needs, finer_budget()) > needs.pace.substeps;
     };
     return std::ranges::any_of(s.moving, has_begun) ||
            std::ranges::any_of(s.islands.needs, was_let_go);

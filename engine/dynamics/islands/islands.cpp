@@ -231,7 +231,8 @@ void World::share_budget() {
             roots.push_back(i);
     }
     std::int64_t work = 0;
-    int each = settings_.substep_budget;
+    const int budget = s.was_let_go ? finer_budget() : settings_.substep_budget;
+    int each = budget;
     do {
         work = 0;
         for (const std::uint32_t root : roots) {
@@ -241,7 +242,7 @@ void World::share_budget() {
                 work += std::int64_t{needs.work} * needs.pace.substeps;
         }
         each = fewer_substeps(each);
-    } while (work > settings_.substep_budget);
+    } while (work > budget);
     for (const std::uint32_t root : roots) {
         const Islands::Needs &needs = s.islands.needs[root];
         IslandPace &pace = s.islands.needs[root].pace;
