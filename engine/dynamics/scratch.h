@@ -100,7 +100,7 @@ struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Paddin
     std::vector<double> loads;                 // per body: the square of the substeps that it wants
     bool was_let_go = false;                   // joints were, so that the step is repeated
     std::vector<Vec3> wall_normals;            // per body: of the first that does not move
-    std::vector<std::uint8_t> is_wedged;       // per body: between walls that face each other
+    std::vector<double> most_loads;            // per body: that its contacts may count, N
     std::vector<double> contact_loads;         // the same, per contact of a group
     std::vector<GeometricStiffness> stiffness; // per body, from its joints' forces
     std::vector<Vec3> guessed_stiffness;       // the same, per newton its joints may carry (m)

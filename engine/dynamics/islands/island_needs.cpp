@@ -135,7 +135,7 @@ void World::gather_wedge_needs() {
     constexpr Real facing = Real(-0.5); // the normals' product: 60 degrees between the walls
     constexpr Real little = Real(0.1);  // of its half width
     s.wall_normals.assign(s.bodies.size(), Vec3{Real(0)});
-    s.is_wedged.assign(s.bodies.size(), 0);
+    s.most_loads.assign(s.bodies.size(), std::numeric_limits<double>::infinity());
     for (const Contact &contact : s.contacts) {
         const bool is_a = moves(contact.key.a);
         if (contact.sensor || contact.manifold.count == 0 || is_a == moves(contact.key.b))
@@ -147,12 +147,13 @@ void World::gather_wedge_needs() {
             first = normal;
         if (!(glm::dot(first, normal) < facing))
             continue;
-        s.is_wedged[body] = 1;
+        Islands::Needs &needs = s.islands.needs[s.islands.root_of(body)];
+        if (!needs.is_joined && !needs.is_driven)
+            s.most_loads[body] = needs.weight;
         const Motion &motion = state_.motions[body];
         const Real speed = glm::length(motion.velocity) + static_cast<Real>(extent_of(body)) *
                                                               glm::length(motion.angular_velocity);
         const Real far = little * least_half_width(model_->bodies[body]);
-        Islands::Needs &needs = s.islands.needs[s.islands.root_of(body)];
         needs.wanted =
             std::max(needs.wanted, int{count_of(settings_.dt * static_cast<double>(speed / far))});
     }
@@ -185,9 +186,8 @@ void World::note_contact_needs(const IslandGroup &group) {
         const double depth = settings_.substep_tolerance * width;
         // What is wedged between walls presses on them as hard as it has been driven in. Contacts
         // that much stiffer would only throw it out.
-        const Islands::Needs &needs = s.islands.needs[s.islands.root_of(island_body(a, b))];
-        if ((s.is_wedged[a] != 0 || s.is_wedged[b] != 0) && !needs.is_joined && !needs.is_driven)
-            load = std::min(load, needs.weight * settings_.dt / group.pace.substeps);
+        load = std::min(load, std::min(s.most_loads[a], s.most_loads[b]) * settings_.dt /
+                                  group.pace.substeps);
         return 0.5 * load * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * depth);
     };
     const auto roll_of = [&](std::uint32_t body) {

@@ -1,6 +1,7 @@
 #include "engine/dynamics/joints/fronts.h"
 
 #include <algorithm>
+#include <array>
 
 #include <glm/matrix.hpp>
 
@@ -186,7 +187,7 @@ void Fronts::solve(std::uint32_t first, const FactorColumns &columns,
                    std::span<const WideMatrix<Number>> inverse_diagonal, Memory<Number> &memory,
                    std::span<WideVector<Number>> sides) const {
     const Mesh &mesh = mesh_of(first);
-    Number *const dense = memory.work.data() + mesh.pivots;
+    Number *const dense = memory.work.data() + mesh.pivots; // a front's, 3 a block
     const auto put = [&](std::size_t row, const WideVector<Number> &value) {
         for (int k = 0; k < 3; ++k)
             dense[3 * row + static_cast<std::size_t>(k)] = value[k];
@@ -195,31 +196,36 @@ void Fronts::solve(std::uint32_t first, const FactorColumns &columns,
         return WideVector<Number>(typename WideVector<Number>::Narrow{
             dense[3 * row], dense[3 * row + 1], dense[3 * row + 2]});
     };
+    const auto own_sides = [&](const Front &front) {
+        return sides.subspan(front.first - first, front.count);
+    };
+    const auto rows_of = [&](const Front &front) {
+        return columns.of(front.first + front.count - 1);
+    };
+    const auto put_own = [&](const Front &front, const FrontColumns<Number> &panel) {
+        std::fill_n(dense, panel.stride, Number(0));
+        for (std::size_t k = 0; k < front.count; ++k)
+            put(k, own_sides(front)[k]);
+    };
     for (std::uint32_t i = mesh.first; i < mesh.last; ++i) {
         const Front &front = fronts_[i];
-        const std::span rows = columns.of(front.first + front.count - 1);
         const FrontColumns<Number> panel = panel_of(front, memory);
-        std::fill_n(dense, panel.stride, Number(0));
-        for (std::uint32_t k = 0; k < front.count; ++k)
-            put(k, sides[front.first + k - first]);
+        put_own(front, panel);
         kernels::substitute(panel, std::size_t{3} * front.count, dense);
-        for (std::uint32_t k = 0; k < front.count; ++k)
-            sides[front.first + k - first] = inverse_diagonal[front.first + k] * get(k);
-        for (std::size_t k = 0; k < rows.size(); ++k)
-            sides[rows[k] - first] += get(front.count + k);
+        for (std::size_t k = 0; k < front.count; ++k)
+            own_sides(front)[k] = inverse_diagonal[front.first + k] * get(k);
+        for (std::size_t k = 0; k < front.rows; ++k)
+            sides[rows_of(front)[k] - first] += get(front.count + k);
     }
     for (std::uint32_t i = mesh.last; i-- > mesh.first;) {
         const Front &front = fronts_[i];
-        const std::span rows = columns.of(front.first + front.count - 1);
         const FrontColumns<Number> panel = panel_of(front, memory);
-        std::fill_n(dense, panel.stride, Number(0));
-        for (std::uint32_t k = 0; k < front.count; ++k)
-            put(k, sides[front.first + k - first]);
-        for (std::size_t k = 0; k < rows.size(); ++k)
-            put(front.count + k, sides[rows[k] - first]);
+        put_own(front, panel);
+        for (std::size_t k = 0; k < front.rows; ++k)
+            put(front.count + k, sides[rows_of(front)[k] - first]);
         kernels::substitute_back(panel, std::size_t{3} * front.count, dense);
-        for (std::uint32_t k = 0; k < front.count; ++k)
-            sides[front.first + k - first] = get(k);
+        for (std::size_t k = 0; k < front.count; ++k)
+            own_sides(front)[k] = get(k);
     }
 }
 

@@ -5,7 +5,6 @@
 
 #include "engine/dynamics/joints/wide_matrix.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -16,27 +16,21 @@ namespace plumb::inline PLUMB_PRECISION {
 
 struct StepContext;
 
-// Blocks first..last - 1 in the system's elimination order. `is_held`: solved together in this
-// substep, not left to Gauss-Seidel. `is_mesh`: has many loops, as nets and frames do.
-// `is_touched`: contacts act on its bodies. `is_stiff`: some of its bodies turn so much more easily
-// than they move, or it `is_uneven` (two joints at most, between bodies of unlike masses), so that
-// it is factored in double precision. In this step:
-// `is_factored`: it was factored when its joints were last refreshed; `was_torn`: torn joints
-// kept it from being held; `was_let_go`: it was let go before that, or torn between two substeps.
-// `has_changed`: it was let go, or its active limits changed, since the masses of motors
-// and limits were computed with it.
+// Blocks first..last - 1 in the system's elimination order.
 struct JointGroup {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
-    bool is_held = false;
-    bool is_mesh = false;
-    bool is_factored = false;
-    bool is_touched = false;
-    bool is_stiff = false;
-    bool is_uneven = false;
-    bool was_torn = false;
-    bool was_let_go = false;
-    bool has_changed = false;
+    bool is_held = false;    // solved together in this substep, not left to Gauss-Seidel
+    bool is_mesh = false;    // has many loops, as nets and frames do
+    bool is_touched = false; // contacts act on its bodies
+    bool is_uneven = false;  // two joints at most, between bodies of unlike masses
+    bool is_stiff = false;   // factored in double: uneven, or bodies turn far more easily than move
+    // In this step:
+    bool is_factored = false; // when its joints were last refreshed
+    bool was_torn = false;    // torn joints kept it from being held
+    bool was_let_go = false;  // before that, or torn between two substeps
+    bool has_changed = false; // was let go, or its active limits changed, since masses of motors
+                              // and limits were computed with it
 };
 
 // The equations of all rigid rows of joints that share dynamic bodies, and of their active limits
