@@ -163,7 +163,8 @@ void World::gather_needs() {
         const auto slow = static_cast<Real>(slow_share * pull * settings_.dt);
         Islands::Needs &needs = islands.needs[islands.root_of(i)];
         needs.weight += static_cast<double>(model_->bodies[i].mass) * pull;
-        needs.is_driven = needs.is_driven || model_->bodies[i].kind != BodyKind::dynamic;
+        needs.is_driven = needs.is_driven || model_->bodies[i].kind != BodyKind::dynamic ||
+                          model_->bodies[i].has_torque || !model_->attractors.empty();
         needs.wanted = std::max(needs.wanted, int{s.paces[i].wanted});
         needs.before = std::max(needs.before, int{s.paces[i].substeps});
         needs.is_struck_long =
@@ -194,6 +195,8 @@ void World::gather_needs() {
         ++needs.work;
         needs.is_joined = true;
     }
+    if (s.grab.is_holding())
+        islands.needs[islands.root_of(s.grab.body)].is_driven = true;
     if (model_->has_particles())
         gather_particle_needs();
     gather_wedge_needs();

@@ -81,7 +81,7 @@ struct Islands : DisjointSets {
         bool is_struck_long = false;
         bool touches = false;    // has contacts
         bool is_joined = false;  // has joints
-        bool is_driven = false;  // has kinematic bodies or particles
+        bool is_driven = false;  // pressed by more than weight
         bool was_let_go = false; // any of its joints was, see JointGroup
         IslandPace pace;
     };

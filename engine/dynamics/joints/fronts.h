@@ -1,6 +1,7 @@
 // Elimination of joints with many loops, as in nets and frames, by dense fronts. Duff and Reid
 // 1983, "The Multifrontal Solution of Indefinite Sparse Symmetric Linear Equations"; Liu 1992, "The
-// Multifrontal Method for Sparse Matrix Solution: Theory and Practice".
+// Multifrontal Method for Sparse Matrix Solution: Theory and Practice". Eigen's factors are of
+// single numbers, one at a time; CHOLMOD's come of a BLAS, whose bits depend on the machine.
 #pragma once
 
 #include "engine/dynamics/joints/wide_matrix.h"
