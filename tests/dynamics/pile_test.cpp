@@ -1,4 +1,5 @@
-// Piles of bodies of any shape in a pen: no step adds energy, however hard the bodies are squeezed.
+// Piles of bodies in a pen: no step adds energy, however hard the bodies are squeezed, and none is
+// deep at rest.
 #include "tests/dynamics/worlds.h"
 
 namespace plumb::inline PLUMB_PRECISION {
@@ -77,6 +78,38 @@ TEST(Piles, GainNoEnergyInAnyStep) {
         EXPECT_LT(worst_gain(seed, 0.01, 240, 0.1), gains) << seed;
         EXPECT_LT(worst_gain(seed, 0.5, 60, 0.6), gains) << seed;
     }
+}
+
+// Few substeps make soft contacts, above all where one corner bears the load of a face.
+TEST(Piles, AreNotDeepAtRestWithFewSubsteps) {
+    for (const auto &[size, share] : {std::pair(0.1, 0.08), {1.0, 0.01}})
+        for (std::uint32_t seed = 1; seed <= 2; ++seed) {
+            Random random(seed);
+            StepSettings settings = settings_for("soft_step");
+            settings.substep_budget = 256;
+            settings.sleep_after = 0;
+            World world("soft_step", settings);
+            world.add_body(ground(0.6, 0));
+            for (int side = 0; side < 4; ++side) {
+                const double angle = 0.5 * pi * side;
+                const V at = size * V{3 * std::cos(angle), 10, 3 * std::sin(angle)};
+                world.add_body(
+                    static_body(block(size * (side % 2 == 0 ? V{0.5, 10, 3} : V{3, 10, 0.5})), at));
+            }
+            for (int i = 0; i < 400; ++i) {
+                const V at = V{i % 5 - 2, 0.5 + i / 25, i / 5 % 5 - 2} + any_vector(random, 0.02);
+                Shape shape = ball(0.3 * size);
+                if (i % 3 > 0)
+                    shape = block(size * V{0.3, 0.2, 0.25});
+                BodyDef def = dynamic_body(shape, 100 * size * size * size, size * at);
+                def.pose.rotation = narrow(any_rotation(random));
+                world.add_body(def);
+            }
+            run(world, 60 * 8);
+            const Measures m = world.measure();
+            EXPECT_LT(m.max_penetration, share * size) << size << ' ' << seed;
+            EXPECT_LT(m.kinetic_energy, 1e-5 * m.potential_energy) << size << ' ' << seed;
+        }
 }
 
 } // namespace

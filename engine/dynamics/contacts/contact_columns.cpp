@@ -66,6 +66,13 @@ bool is_found_again(const StepContext &context, const Contact &contact) {
            touch_nothing_else(context, contact) && !are_balls(context, contact);
 }
 
+Real hard_depth(const StepContext &context, const Contact &contact) {
+    const Collider &on_a = context.model.colliders[contact.collider_a];
+    const Collider &on_b = context.model.colliders[contact.collider_b];
+    const Real width = Real(2) * std::min(on_a.half_width, on_b.half_width);
+    return static_cast<Real>(hard_depths * context.settings.substep_tolerance) * width;
+}
+
 void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane,
                std::uint32_t index) {
     const Contact &contact = context.contacts[index];
@@ -98,6 +105,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     const Real spread = patch_spread(context, contact);
     block.spread.lanes[lane] = spread;
     block.spins = block.spins || spread < Real(1);
+    block.hard_depth.lanes[lane] = hard_depth(context, contact);
     block.rounding_a.lanes[lane] = contact.rounding_a;
     block.rounding_b.lanes[lane] = contact.rounding_b;
     set(block.inv_mass_a, lane, a.inv_mass);

@@ -33,6 +33,14 @@ inline constexpr Real remembered_blow = Real(1) / Real(64);
 inline constexpr Real growing_blow = Real(1.5);
 inline constexpr double pressed_after = 0.4; // s
 
+// A corner that bears the load of a whole face is as soft as the light corner that it is. In an
+// island that gets far fewer substeps than it wants (IslandPace::hardens), points that bear more
+// than hard_share of their contact's load are four times as stiff (ContactBias::stiff) beyond so
+// many times the tolerated depth. If all points were, waves would grow in whatever is stacked high:
+// walls and towers fall.
+inline constexpr Real hard_share = Real(0.4);
+inline constexpr double hard_depths = 3;
+
 struct ContactBlock {
     struct Point {
         Columns3 r_a; // world, from a's centre of mass
@@ -77,6 +85,8 @@ struct ContactBlock {
     Column began;     // sum of the normal impulses remembered as it began (N s)
     // Friction's lever arms about the centre of pressure, as a share of the points' (patch_spread).
     Column spread;
+    // A point that bears most of the contact's load is stiffer beyond this depth (m).
+    Column hard_depth;
     Column rounding_a; // radius of a round surface beyond its core (m)
     Column rounding_b;
     Columns3 inv_mass_a; // along the world's axes

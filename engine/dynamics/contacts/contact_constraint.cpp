@@ -209,7 +209,7 @@ void solve_contacts(StepContext &context, const ContactBias &bias, Real h) {
         SolverBody &a = context.bodies[contact.a];
         SolverBody &b = context.bodies[contact.b];
         const bool is_on_static = a.inv_mass == Vec3{Real(0)} || b.inv_mass == Vec3{Real(0)};
-        const Softness &softness = is_on_static ? bias.on_static : bias.softness;
+        const Softness &softness = is_on_static ? bias.stiff : bias.softness;
         for (int i = 0; i < contact.count; ++i) {
             const int k = bias.backwards ? contact.count - 1 - i : i;
             ContactPointConstraint &point = contact.points[static_cast<std::size_t>(k)];

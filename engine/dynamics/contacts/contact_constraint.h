@@ -63,8 +63,10 @@ struct ContactBias {
     Real struck_speed = std::numeric_limits<Real>::infinity();
     // Whether each contact's points are taken from last to first.
     bool backwards = false;
-    // For penetrating points against a body without inverse mass.
-    Softness on_static{};
+    // Twice the frequency: for penetrating points against a body without inverse mass, and if it
+    // `hardens` for those that bear most of a contact's load (ContactBlock::hard_depth).
+    Softness stiff{};
+    bool hardens = false;
 };
 
 // Whether a body, or both of a contact's, are dynamic; and whether both colliders are balls.

@@ -450,8 +450,7 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
         const auto on_static =
             hn::Or(does_not_move(pair.inv_mass_a), does_not_move(pair.inv_mass_b));
         const auto softness = [&](Real Softness::*member) HWY_ATTR {
-            return hn::IfThenElse(on_static, all(bias.on_static.*member),
-                                  all(bias.softness.*member));
+            return hn::IfThenElse(on_static, all(bias.stiff.*member), all(bias.softness.*member));
         };
         const Lanes rate = softness(&Softness::bias_rate);
         const Lanes soft_mass = pushes ? softness(&Softness::mass_scale) : one;
@@ -489,6 +488,11 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
             const Lanes push = pushes ? max(hn::Mul(rate, depth), least) : zero;
             return hn::IfThenElse(hn::Gt(separation, zero), hn::Mul(separation, all(inv_h)), push);
         };
+        Lanes hard_load = zero; // N s
+        if (bias.hardens)
+            for (int k = 0; k < block.points_used; ++k)
+                hard_load = hn::Add(hard_load, load(block.points[k].remembered.x, lane));
+        hard_load = hn::Mul(all(hard_share), hard_load);
         // Judged by one point: when a body lands flat they are all alike.
         const Lanes first_speed = dot(
             pair.velocity_at(load(block.points[0].r_a, lane), load(block.points[0].r_b, lane)), n);
@@ -523,7 +527,22 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                 const Lanes separation = separation_at(k);
                 const Lanes before = load(point.impulse.x, lane);
                 const auto apart = hn::Gt(separation, zero);
-                const Lanes target = target_of(separation);
+                Lanes target = target_of(separation);
+                Lanes own_mass = soft_mass;
+                Lanes own_impulse = soft_impulse;
+                if (bias.hardens) {
+                    const Lanes beyond = load(block.hard_depth, lane);
+                    const auto bears_most =
+                        hn::AndNot(on_static, hn::Gt(load(point.remembered.x, lane), hard_load));
+                    const auto is_hard = hn::And(bears_most, hn::Lt(separation, hn::Neg(beyond)));
+                    // Four times as stiff from there on, where both push alike.
+                    const Lanes depth = hn::Add(separation, hn::Mul(all(Real(0.75)), beyond));
+                    const Lanes push = max(hn::Mul(all(bias.stiff.bias_rate), depth), least);
+                    target = hn::IfThenElse(is_hard, push, target);
+                    own_mass = hn::IfThenElse(is_hard, all(bias.stiff.mass_scale), own_mass);
+                    own_impulse =
+                        hn::IfThenElse(is_hard, all(bias.stiff.impulse_scale), own_impulse);
+                }
                 const Lanes speed = dot(pair.velocity_at(r_a, r_b), n);
                 if (is_first)
                     struck = hn::Or(struck, hn::Lt(speed, struck_speed));
@@ -534,8 +553,8 @@ void solve_impl(ContactBlock &block, const StartArms *start_arms, const BodyReal
                             is_blow(driven, before,
                                     hn::Neg(hn::Mul(load(point.normal_mass, lane), speed))));
                 const auto rigid = hn::Or(apart, hn::Or(stops, breaks_in));
-                const Lanes mass_scale = hn::IfThenElse(rigid, one, soft_mass);
-                const Lanes impulse_scale = hn::IfThenElse(rigid, zero, soft_impulse);
+                const Lanes mass_scale = hn::IfThenElse(rigid, one, own_mass);
+                const Lanes impulse_scale = hn::IfThenElse(rigid, zero, own_impulse);
                 const Lanes change =
                     hn::Sub(hn::Neg(hn::Mul(hn::Mul(load(point.normal_mass, lane), mass_scale),
                                             hn::Add(speed, target))),

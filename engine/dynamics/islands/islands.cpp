@@ -250,8 +250,8 @@ void World::share_budget() {
         const Islands::Needs &needs = s.islands.needs[root];
         IslandPace &pace = s.islands.needs[root].pace;
         pace.alternates = needs.wanted <= most_wanted_in_turns * pace.substeps;
-        pace.remembers_all =
-            !pace.alternates || needs.wanted <= most_wanted_in_balance * pace.substeps;
+        pace.hardens = needs.wanted > most_wanted_in_balance * pace.substeps;
+        pace.remembers_all = !pace.alternates || !pace.hardens;
         pace.is_joined = needs.is_joined;
         pace.is_struck_long = needs.is_joined && needs.is_struck_long;
         pace.is_shaken = needs.is_shaken && pace.substeps >= far_more_substeps * settings_.substeps;

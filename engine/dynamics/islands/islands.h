@@ -39,6 +39,9 @@ struct IslandPace {
     bool alternates = true;
     // Whether all that the relaxation pass adds to a load is remembered (relaxed_again), or half.
     bool remembers_all = true;
+    // Whether it gets far fewer substeps than it wants: points that bear much become stiffer
+    // (hard_share).
+    bool hardens = false;
     // How many passes over the constraints, and relaxation passes, each substep takes on top of the
     // settings' own.
     int more_passes = 0;

@@ -114,9 +114,10 @@ void advance_soft_step(StepContext &context) {
     // Twice as stiff against immovable bodies: the ground carries everything that stands on it
     // (Catto 2024, Solver2D). From 2.25 times up, some bodies that carry several times their own
     // weight rock and walk away.
-    contact_bias.on_static =
+    contact_bias.stiff =
         make_soft(Real(2) * static_cast<Real>(settings.contact_frequency_ratio) * rate,
                   static_cast<Real>(settings.contact_damping_ratio), h);
+    contact_bias.hardens = context.active.pace.hardens;
     contact_bias.struck_speed = relax_bias.struck_speed =
         strongest_pull(context) * static_cast<Real>(settings.dt);
 

@@ -27,7 +27,7 @@ void advance_tgs_soft(StepContext &context) {
     };
     const ContactBias biased{.softness = contact_softness(Real(1)),
                              .push_velocity = static_cast<Real>(settings.push_velocity),
-                             .on_static = contact_softness(Real(2))};
+                             .stiff = contact_softness(Real(2))};
     const ParticlePush particle_push{biased.softness.bias_rate, biased.push_velocity};
     const JointPass holding{.softness = joint_softness, .h = h};
     const JointPass relaxing{.softness = {}, .h = h, .springs = Springs::skip};

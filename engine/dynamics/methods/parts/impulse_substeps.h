@@ -124,7 +124,7 @@ template <typename Solve> void advance_by_impulses(StepContext &context, Solve &
                            .push_velocity = static_cast<Real>(settings.push_velocity),
                            .slop = static_cast<Real>(settings.penetration_slop),
                            .frictionless = splits,
-                           .on_static = rigid};
+                           .stiff = rigid};
     const ParticlePush particle_push{rigid.bias_rate, push.push_velocity};
     const JointPass joint_pass{.softness = splits_joints ? Softness{} : gentle, .h = h};
     const ContactBias contact_bias = splits ? ContactBias{} : push;
