@@ -105,7 +105,8 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
     const Real spread = patch_spread(context, contact);
     block.spread.lanes[lane] = spread;
     block.spins = block.spins || spread < Real(1);
-    block.hard_depth.lanes[lane] = hard_depth(context, contact);
+    if (context.active.pace.hardens)
+        block.hard_depth.lanes[lane] = hard_depth(context, contact);
     block.rounding_a.lanes[lane] = contact.rounding_a;
     block.rounding_b.lanes[lane] = contact.rounding_b;
     set(block.inv_mass_a, lane, a.inv_mass);

@@ -63,9 +63,10 @@ struct ContactBias {
     Real struck_speed = std::numeric_limits<Real>::infinity();
     // Whether each contact's points are taken from last to first.
     bool backwards = false;
-    // Twice the frequency: for penetrating points against a body without inverse mass, and if it
-    // `hardens` for those that bear most of a contact's load (ContactBlock::hard_depth).
+    // Of penetrating points against a body without inverse mass.
     Softness stiff{};
+    // Whether points that bear most of a contact's load are as stiff (ContactBlock::hard_depth);
+    // `stiff` must then be of twice the frequency of `softness`.
     bool hardens = false;
 };
 

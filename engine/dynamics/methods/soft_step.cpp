@@ -11,7 +11,8 @@
 // Also, connected joints are solved together with their loaded limits, unless they close too many
 // loops, as long as the substep can follow them, and once more after their bodies' contacts.
 // Resting bodies keep their contacts as found (kept_travel); bodies that move fast for their size
-// are collided where they will be (looks_ahead). All contacts are solved in columns.
+// are collided where they will be (looks_ahead). Where substeps are too few, corners that bear the
+// load of a face are stiffer (hard_share). All contacts are solved in columns.
 #include "engine/dynamics/bodies/flight_columns.h"
 #include "engine/dynamics/joints/joint_groups.h"
 #include "engine/dynamics/method.h"
