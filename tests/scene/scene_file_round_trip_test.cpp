@@ -1,5 +1,6 @@
 // write_scene gives text that parses to the same values, bit for bit.
 #include "engine/scene/scene_file.h"
+#include "tests/trials.h"
 
 #include "engine/core/random.h"
 #include "engine/scene/cloth.h"
@@ -601,7 +602,8 @@ class Scenes {
 
 TEST(RoundTrip, KeepsEveryBitOfRandomScenes) {
     Scenes scenes(1);
-    for (int i = 0; i < 500; ++i) {
+    const int count = std::max(100, trials(500));
+    for (int i = 0; i < count; ++i) {
         const SceneDesc scene = scenes.next();
         const std::string text = write_scene(scene);
         const SceneFileResult read = parse_scene(text, "s.toml");
