@@ -225,6 +225,8 @@ class World {
     void wake(std::uint32_t body);
     void wake_all();
     bool is_at_rest(std::uint32_t index) const;
+    bool is_giving_way(const Spring &spring) const;
+    void mark_giving_way();
     std::uint16_t steps_to_sleep() const;
     void fall_asleep();
 

@@ -22,6 +22,13 @@ double rest_time(const StepSettings &settings) {
     return settings.sleep_after > 0 ? settings.sleep_after : where_nothing_sleeps;
 }
 
+// How far a place moves at least when it does, as its coordinates are rounded (m).
+double rounding_at(const Vec3 &position) {
+    const Vec3 place = glm::abs(position);
+    return static_cast<double>(std::numeric_limits<Real>::epsilon() *
+                               std::max({place.x, place.y, place.z}));
+}
+
 bool is_zero(const Vec3 &v) {
     return v == Vec3{Real(0)};
 }
@@ -146,9 +153,7 @@ std::uint16_t World::steps_to_sleep() const {
 bool World::is_at_rest(std::uint32_t index) const {
     const Body &body = model_->bodies[index];
     const Motion &motion = scratch_.bodies[index];
-    const Vec3 place = glm::abs(motion.position);
-    const double rounding = static_cast<double>(std::numeric_limits<Real>::epsilon() *
-                                                std::max({place.x, place.y, place.z}));
+    const double rounding = rounding_at(motion.position);
     const double substep = settings_.dt / std::max<int>(scratch_.paces[index].substeps, 1);
     const double pull = glm::length(glm::dvec3{pull_on(index)});
     const double slow =
@@ -166,16 +171,54 @@ bool World::is_at_rest(std::uint32_t index) const {
     return glm::length(motion.velocity) + extent * glm::length(motion.angular_velocity) <= limit;
 }
 
+// Whether a spring's damper still holds its ends so far from where the spring would, as a body at
+// rest may move: they approach that place ever more slowly.
+bool World::is_giving_way(const Spring &spring) const {
+    const auto is_body = [](const SpringEnd &end) { return end.kind == SpringEnd::Kind::body; };
+    if (spring.damping == Real(0) || !(is_body(spring.a) || is_body(spring.b)))
+        return false;
+    const SpringPoint a = spring_point(spring.a, scratch_.bodies, scratch_.particles);
+    const SpringPoint b = spring_point(spring.b, scratch_.bodies, scratch_.particles);
+    const Vec3 line = b.position - a.position;
+    const double length = glm::length(line);
+    const double speed = std::abs(glm::dot(b.velocity - a.velocity, line));
+    bool any = false;
+    for (const SpringEnd &end : {spring.a, spring.b}) {
+        if (!is_body(end))
+            continue;
+        const double width = 2 * static_cast<double>(least_half_width(model_->bodies[end.index]));
+        any = any || (spring.damping * speed >
+                          spring.stiffness * settings_.substep_tolerance * width * length &&
+                      speed * settings_.dt >
+                          0.5 * rounding_at(scratch_.bodies[end.index].position) * length);
+    }
+    return any;
+}
+
+void World::mark_giving_way() {
+    Scratch &s = scratch_;
+    s.marked.assign(s.bodies.size(), 0);
+    for (std::size_t i = 0; i < model_->springs.size(); ++i)
+        if (s.torn[i] == 0 && is_giving_way(model_->springs[i]))
+            for (const SpringEnd &end : {model_->springs[i].a, model_->springs[i].b})
+                if (end.kind == SpringEnd::Kind::body)
+                    s.marked[end.index] = 1;
+}
+
 // Counts how long each body has been at rest; islands that have rested long enough fall asleep.
 void World::fall_asleep() {
     if (!sleeps() && !chooses_substeps())
         return;
     Scratch &s = scratch_;
     const std::uint16_t enough = steps_to_sleep();
+    const bool has_springs = !model_->springs.empty();
+    if (has_springs)
+        mark_giving_way();
     bool any = false;
     for (const std::uint32_t i : s.moving) {
         std::uint16_t &rested = s.paces[i].rested;
-        if (model_->bodies[i].kind != BodyKind::dynamic || !is_at_rest(i))
+        if (model_->bodies[i].kind != BodyKind::dynamic || !is_at_rest(i) ||
+            (has_springs && s.marked[i] != 0))
             rested = 0;
         else if (rested < enough)
             ++rested;

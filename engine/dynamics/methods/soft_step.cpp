@@ -160,6 +160,8 @@ void advance_soft_step(StepContext &context) {
             weigh_changed_joints(context);
         resolve_impacts(context, h);
         meet_contact_columns(context);
+        if (has_particles)
+            note_damper_speeds(context);
         begin_flight_columns(context, gravity, h);
         remember_joints(context);
         warm_start_joints(context, Real(0.5), Springs::midpoint);
@@ -185,6 +187,8 @@ void advance_soft_step(StepContext &context) {
         // Contacts give way, joints solved together do not: jointed bodies would be pulled apart by
         // whatever they rest on, and never come to rest.
         hold_touched_groups(context, holding);
+        if (has_particles)
+            note_damper_speeds(context);
         end_flight_columns(context, h);
         if (has_particles)
             drift_particles(context, h);

@@ -29,6 +29,11 @@ int passes_for_damped(Real turn) {
     return turn <= Real(0.6) ? 1 : turn <= Real(1.5) ? 2 : passes_for(turn);
 }
 
+// Dampers that take more than this of a speed in a substep, nearly, are strong; others let loads
+// sink too fast by a share of half a per cent at most (x^2 / 12).
+constexpr Real strong_damping = Real(0.25);
+constexpr int passes_for_strong = 4; // where they share a body
+
 // What a spring's end is attached to, as impulses see it.
 struct EndMass {
     const StepContext &context;
@@ -113,11 +118,34 @@ Vec2 rates_of(const StepContext &context, const Spring &spring) {
     return Real(2) * glm::max(rates_at(context, spring.a), rates_at(context, spring.b));
 }
 
-void set_mass(const StepContext &context, SpringConstraint &row) {
+Real inverse_mass(const StepContext &context, const SpringConstraint &row) {
     const Spring &spring = context.model.springs[row.spring];
-    const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
-                         EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+    return EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
+           EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+}
+
+void set_mass(const StepContext &context, SpringConstraint &row) {
+    const Real inverse = inverse_mass(context, row);
     row.mass = inverse > Real(0) ? Real(1) / (inverse + row.softness) : Real(0);
+}
+
+// A strong damper as a soft row; its impulse starts from what it would be alone, from the same
+// velocities for all, as far as they stay stable together.
+void aim_damper(const StepContext &context, SpringConstraint &row, Real h, bool before_move) {
+    const Real damping = context.model.springs[row.spring].damping;
+    const Real inverse = inverse_mass(context, row);
+    row.mass = row.impulse = Real(0);
+    if (!(inverse > Real(0)))
+        return; // coincident ends
+    const Real x = h * damping * inverse;
+    const DamperHalf half = before_move ? damper_before_move(x) : damper_after_move(x);
+    const Real taken = Real(1) - half.of_force;
+    row.mass = taken / inverse;
+    row.softness = half.of_force / row.mass;
+    row.bias = -half.of_start / taken * row.start;
+    const Real all = Real(0.5) * rates_of(context, context.model.springs[row.spring]).y;
+    row.impulse = -std::min(Real(1), damping * inverse / all) * row.mass *
+                  (speed_of(context, row) + row.bias);
 }
 
 void solve(StepContext &context, SpringConstraint &row) {
@@ -186,6 +214,8 @@ void refresh_midpoint(StepContext &context, SpringConstraint &row, Real h) {
         row.time.is_swift ? ahead * relative_velocity(context, row) : Vec3{Real(0)};
     row.pull = row.time.guessed *
                pull_of(context.model.springs[row.spring], row.line, half_move, ahead).impulse;
+    if (row.is_strong)
+        aim_damper(context, row, h, true);
 }
 
 // Starts from the impulse of the explicit force at the end of the substep, as far as that is
@@ -232,22 +262,27 @@ void repeat(StepContext &context, SpringConstraint &row, Real h) {
     const Vec3 both = row.pull + rest_of_pull(spring, row, line);
     const Vec3 held = pull_of(spring, row.line, Real(0.5) * move, h).impulse;
     apply(context, row, both - row.pull);
-    const Real inverse = EndMass{context, spring.a, row.r_a}.inverse_along(row.axis) +
-                         EndMass{context, spring.b, row.r_b}.inverse_along(row.axis);
+    const Real inverse = inverse_mass(context, row);
     apply(context, row,
           returned_impulse(speed_of(context, row), inverse, glm::dot(move, both - held) / h));
 }
 
 // Damping over the whole substep, of the velocities that the pulls before and after the move leave,
 // which are 0 where those balance. It removes energy however few the passes are; within the move it
-// would remove what the pulls pass on.
+// would remove what the pulls pass on. Strong dampers have their second half here.
 void damp(StepContext &context, Real h) {
     const auto for_damped = [&](auto &&use) {
         for (SpringConstraint &row : context.scratch.springs)
             if (context.model.springs[row.spring].damping > Real(0))
                 use(row);
     };
+    bool any_strong = false;
     for_damped([&](SpringConstraint &row) {
+        any_strong = any_strong || row.is_strong;
+        if (row.is_strong) {
+            aim_damper(context, row, h, false);
+            return;
+        }
         const Real damping = h * context.model.springs[row.spring].damping;
         row.bias = Real(0);
         row.impulse = -row.time.damped * damping * speed_of(context, row);
@@ -261,7 +296,8 @@ void damp(StepContext &context, Real h) {
     aim_spring_columns(context, SpringPart::damping);
     for_damped([&](SpringConstraint &row) { apply(context, row, row.impulse); });
     begin_spring_columns(context, SpringPart::damping);
-    for (int i = 0; i < context.settings.iterations; ++i) {
+    const int passes = std::max(context.settings.iterations, any_strong ? passes_for_strong : 0);
+    for (int i = 0; i < passes; ++i) {
         for_damped([&](SpringConstraint &row) { solve(context, row); });
         solve_spring_columns(context, SpringPart::damping);
     }
@@ -304,6 +340,21 @@ Real decay_softness(Real inverse, Real damping) {
     return inverse / std::expm1(std::min(damping * inverse, none_left));
 }
 
+DamperHalf damper_before_move(Real x) {
+    // (1 - e^-x) / x, and twice what is missing to 1, over x: by its series where that would round.
+    const Real mean = -std::expm1(-x) / x;
+    const Real of_force = x < Real(1e-2) ? Real(1) - x * (Real(1) / Real(3) - x / Real(12))
+                                         : Real(2) * (Real(1) - mean) / x;
+    return {of_force, mean - of_force};
+}
+
+DamperHalf damper_after_move(Real x) {
+    const Real mean = -std::expm1(-x) / x;
+    const Real left = std::exp(-x) / mean; // of the mean speed
+    const Real of_force = x < Real(1e-2) ? Real(1) - x / Real(6) : Real(2) * (Real(1) - left) / x;
+    return {of_force, left - of_force};
+}
+
 void prepare_springs(StepContext &context, SpringRule rule) {
     SolverScratch &s = context.scratch;
     const Real h = context.substep();
@@ -328,6 +379,21 @@ void prepare_springs(StepContext &context, SpringRule rule) {
         most = std::max(most, h * std::sqrt(Real(2) * rates.x));
     }
     s.spring_schedule.passes = std::max(passes_for(undamped), passes_for_damped(damped));
+    if (rule != SpringRule::midpoint)
+        return;
+    for (SpringConstraint &row : s.springs) {
+        align(context, row);
+        const Real inverse = row.axis == Vec3{Real(0)} ? Real(0) : inverse_mass(context, row);
+        row.is_strong = h * context.model.springs[row.spring].damping * inverse > strong_damping;
+        if (row.is_strong)
+            s.spring_schedule.passes = std::max(s.spring_schedule.passes, passes_for_strong);
+    }
+}
+
+void note_damper_speeds(StepContext &context) {
+    for (SpringConstraint &row : context.scratch.springs)
+        if (row.is_strong)
+            row.start = speed_of(context, row);
 }
 
 void begin_springs(StepContext &context, Real h, SpringRule rule) {
@@ -341,10 +407,13 @@ void begin_springs(StepContext &context, Real h, SpringRule rule) {
     }
     aim_spring_columns(context, SpringPart::pull);
     for (const SpringConstraint &row : rows)
-        if (rule == SpringRule::midpoint)
+        if (rule == SpringRule::midpoint) {
             apply(context, row, row.pull);
-        else
+            if (row.is_strong)
+                apply(context, row, row.impulse);
+        } else {
             apply(context, row, row.impulse);
+        }
     begin_spring_columns(context, SpringPart::pull);
 }
 
@@ -354,10 +423,13 @@ int spring_passes(const StepContext &context) {
 
 void solve_springs(StepContext &context, SpringRule rule) {
     for (SpringConstraint &row : context.scratch.springs)
-        if (rule == SpringRule::midpoint)
+        if (rule == SpringRule::midpoint) {
             solve_midpoint(context, row, context.substep());
-        else
+            if (row.is_strong)
+                solve(context, row);
+        } else {
             solve(context, row);
+        }
     solve_spring_columns(context, SpringPart::pull);
     context.report.constraint_passes +=
         context.scratch.springs.size() + context.scratch.spring_schedule.springs.size();

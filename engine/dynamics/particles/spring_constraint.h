@@ -42,6 +42,22 @@ SpringTime spring_time(const StepContext &context, const Spring &spring, Real h,
 // `inverse`: the row's inverse mass (1/kg); `damping`: over the substep (N s / (m/s)); both > 0.
 Real decay_softness(Real inverse, Real damping);
 
+// A damper over a substep in which all else adds up to a constant force: exact on its own, by the
+// exponential Euler method (Hochbruck and Ostermann 2010, "Exponential Integrators"), at any
+// damping. A damper that slows the velocities after the move only would let heavy loads sink at
+// x / 2 coth(x / 2) times the right speed, x = damping inverse.
+//
+// The speed along its line becomes of_force times what it is without the damper, half of the
+// substep's force included, plus of_start times what it was before that half.
+struct DamperHalf {
+    Real of_force = Real(1);
+    Real of_start = Real(0);
+};
+// In the first half, up to the move, it becomes the mean speed, by which the ends then move; in the
+// second half it starts from that. `x` > 0.
+DamperHalf damper_before_move(Real x);
+DamperHalf damper_after_move(Real x);
+
 // The impulse along the line between two ends separating at `speed`, with inverse mass `inverse`
 // (1/kg), that removes the energy `gained` (J) from them, or returns what they lost. It never
 // removes more than stops them, and returns only what is small against what they have: otherwise
@@ -57,6 +73,8 @@ struct SpringConstraint {
     SpringTime time;
     Vec3 line{Real(0)};        // midpoint: from a to b at the start of the substep (m)
     Vec3 pull{Real(0)};        // midpoint: the impulse on b before the move (N s)
+    bool is_strong = false;    // midpoint: slowed before the move, too (damper_before_move)
+    Real start = Real(0);      // strong: speed along the axis before the present half (m/s)
     Real softness = Real(0);   // gamma, 1/kg; midpoint: for damping only
     Real bias = Real(0);       // beta / h times the error, m/s
     Real mass = Real(0);       // 1 / (K + gamma)
@@ -77,6 +95,9 @@ void find_spring_rates(const Model &model, std::span<const SolverBody> bodies,
 void prepare_springs(StepContext &context, SpringRule rule);
 // At the present poses, with the impulses they start from.
 void begin_springs(StepContext &context, Real h, SpringRule rule);
+// Notes how fast the ends of strong dampers part: before the forces of a substep, and before its
+// move.
+void note_damper_speeds(StepContext &context);
 // The number of passes that soft_step makes over them.
 int spring_passes(const StepContext &context);
 void solve_springs(StepContext &context, SpringRule rule = SpringRule::implicit_euler);
