@@ -332,7 +332,7 @@ class World {
     Real turning_reach(std::uint32_t index) const;
     Real way_of(const Candidate &candidate) const;
     void guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
-                      Manifold &manifold) const;
+                      FoundManifold &found) const;
     // `now`, `normal`: the manifold and its normal at the start.
     FoundManifold predicted_manifold(const Candidate &candidate, const Manifold &now) const;
     FoundManifold predicted_manifold(const Candidate &candidate, const Vec3 &normal,

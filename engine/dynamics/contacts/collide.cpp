@@ -417,7 +417,7 @@ void World::collide_candidate(const Candidate &candidate, std::vector<Contact> &
                 add_next_corners(scratch_.placed[i], scratch_.placed[j], half_turn, found.manifold);
             }
             if (is_predicted)
-                guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found.manifold);
+                guard_middle(candidate, scratch_.placed[i], scratch_.placed[j], found);
         } else if (found.manifold.count > 0 && is_predicted) {
             found = predicted_manifold(candidate, found.manifold);
         }

@@ -47,7 +47,8 @@ struct Passage {
 // the points deepest behind the plane those deeper than `deep`, and the middle, without which
 // nothing would hold the solid any more (surface_contact.h). A point's path is taken as straight.
 // In the surface's frame; the normal points away from the solid.
-Manifold passed_points(const Passage &passage, const Triangle &triangle, Sides sides, Real deep) {
+Manifold passed_points(const Passage &passage, const Collider &solid, const Triangle &triangle,
+                       Sides sides, Real deep) {
     Manifold passed;
     const Vec3 cross = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
     const Real doubled_area = glm::length(cross);
@@ -81,8 +82,12 @@ Manifold passed_points(const Passage &passage, const Triangle &triangle, Sides s
     };
     constexpr std::uint32_t middle_feature = 0xFFFFFFFDU;
     const Vec3 middle = middle_of(bounds(passage.solid_after));
-    if (height_of(middle) < Real(0) && is_through(middle))
-        add({middle - Real(0.5) * height_of(middle) * face, height_of(middle), middle_feature});
+    if (height_of(middle) < Real(0) && is_through(middle)) {
+        // Its core is the middle itself, so turning does not move it.
+        const Real rounding = rounding_along(solid, passage.after.rotation, passed.normal);
+        add({middle - (rounding + Real(0.5) * height_of(middle)) * face, height_of(middle),
+             middle_feature});
+    }
     const HalfSpace behind{face, glm::dot(face, triangle.a)};
     const Manifold lowest = collide(passage.solid_after, Shape{behind}, Real(0));
     for (int k = 0; k < lowest.count && passed.count < 4; ++k) {
@@ -194,7 +199,7 @@ bool World::find_passed_points(const Candidate &candidate) {
     const Aabb around = joined(passage.bounds_before, bounds(passage.solid_after));
     bool any = false;
     surface.surface->each_touching(around, s.triangles.front(), [&](std::uint32_t triangle) {
-        Manifold passed = passed_points(passage, surface.surface->triangle(triangle),
+        Manifold passed = passed_points(passage, solid, surface.surface->triangle(triangle),
                                         surface.surface->sides(), deep);
         if (passed.count == 0)
             return;

@@ -4,6 +4,7 @@
 #include "engine/dynamics/bodies/solid.h"
 #include "engine/dynamics/contacts/approach.h"
 #include "engine/dynamics/contacts/inner_edges.h"
+#include "engine/dynamics/contacts/rolling_contact.h"
 #include "engine/dynamics/contacts/surface_contact.h"
 #include "engine/dynamics/world.h"
 
@@ -60,17 +61,19 @@ namespace {
 
 // A body that strikes with a corner is spun so fast that other corners could pass the contact plane
 // within the step, and the whole body with them: the guard keeps at least its middle in front.
-// `normal` points from the solid to the body it strikes, `plane` is a point of that.
-ManifoldPoint guard(const Vec3 &middle, Real half_width, const Vec3 &plane, const Vec3 &normal) {
+// `normal` points from the solid to the body it strikes, `plane` is a point of that. The point's
+// core is the middle itself, so turning does not move it.
+ManifoldPoint guard(const Vec3 &middle, Real half_width, Real rounding, const Vec3 &plane,
+                    const Vec3 &normal) {
     constexpr std::uint32_t guard_feature = 0xFFFFFFFEU;
     const Real separation = glm::dot(plane - middle, normal) - half_width;
-    return {middle + Real(0.5) * separation * normal, separation, guard_feature};
+    return {middle + (rounding + Real(0.5) * separation) * normal, separation, guard_feature};
 }
 
 // Adds a solid's guard to its manifold with another solid, if that lies beneath the middle. `sign`
 // is 1 if the manifold's normal points away from the solid.
-void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Shape &other,
-               Real sign) {
+void add_guard(Manifold &manifold, const Shape &solid, Real half_width, Real rounding,
+               const Shape &other, Real sign) {
     const std::optional<Vec3> middle = middle_if_turning_shows(solid);
     if (manifold.count == 0 || !middle)
         return;
@@ -80,7 +83,7 @@ void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Sh
     const Vec3 beneath = *middle + glm::dot(plane - *middle, normal) * normal;
     if (distance_to(other, beneath) > Real(0.1) * half_width)
         return;
-    const ManifoldPoint point = guard(*middle, half_width, plane, normal);
+    const ManifoldPoint point = guard(*middle, half_width, rounding, plane, normal);
     if (manifold.count < 4)
         manifold.points[static_cast<std::size_t>(manifold.count++)] = point;
     else
@@ -91,20 +94,23 @@ void add_guard(Manifold &manifold, const Shape &solid, Real half_width, const Sh
 
 // Guards the smaller of two solids, if they approach far for its size in a step.
 void World::guard_middle(const Candidate &candidate, const Shape &solid_a, const Shape &solid_b,
-                         Manifold &manifold) const {
+                         FoundManifold &found) const {
+    const Vec3 &normal = found.manifold.normal;
     const Real way =
         static_cast<Real>(settings_.dt) * glm::dot(expected_motion(candidate.key.a).velocity -
                                                        expected_motion(candidate.key.b).velocity,
-                                                   manifold.normal);
-    const Real width_a = model_->colliders[candidate.collider_a].half_width;
-    const Real width_b = model_->colliders[candidate.collider_b].half_width;
+                                                   normal);
+    const Collider &a = model_->colliders[candidate.collider_a];
+    const Collider &b = model_->colliders[candidate.collider_b];
     const bool a_moves = model_->bodies[candidate.key.a].kind == BodyKind::dynamic;
     const bool b_moves = model_->bodies[candidate.key.b].kind == BodyKind::dynamic;
-    const bool is_a = a_moves && (!b_moves || width_a <= width_b);
-    if (is_a && way > width_a)
-        add_guard(manifold, solid_a, width_a, solid_b, Real(1));
-    else if (!is_a && way > width_b)
-        add_guard(manifold, solid_b, width_b, solid_a, Real(-1));
+    const bool is_a = a_moves && (!b_moves || a.half_width <= b.half_width);
+    if (is_a && way > a.half_width)
+        add_guard(found.manifold, solid_a, a.half_width,
+                  rounding_along(a, found.a.rotation, normal), solid_b, Real(1));
+    else if (!is_a && way > b.half_width)
+        add_guard(found.manifold, solid_b, b.half_width,
+                  rounding_along(b, found.b.rotation, normal), solid_a, Real(-1));
 }
 
 namespace {
@@ -144,7 +150,7 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Manifo
     FoundManifold found{
         plumb::collide(solid_a, solid_b, near + left * way_of(candidate), now.normal), at_a, at_b,
         Moment::touch};
-    guard_middle(candidate, solid_a, solid_b, found.manifold);
+    guard_middle(candidate, solid_a, solid_b, found);
     return found;
 }
 

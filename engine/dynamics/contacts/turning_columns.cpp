@@ -138,7 +138,8 @@ void turn_lane(StepContext &context, ContactBlock &block, std::size_t lane, Real
 // in a substep. Thin bodies get there sooner: along an arm that has turned by t against a stick, K
 // grows by about 3 t^2 / m times its largest over its least inertia, and passes with the effective
 // mass of before the turn would push ever harder.
-bool is_far_turn(const StepContext &context, std::uint32_t body, const Vec3 &turn, bool bounces) {
+bool is_far_turn(const StepContext &context, std::uint32_t body, const Vec3 &turn,
+                 bool was_resolved) {
     constexpr Real far = Real(0.2);
     constexpr Real share = Real(0.1);
     const Real squared = glm::dot(turn, turn);
@@ -148,12 +149,12 @@ bool is_far_turn(const StepContext &context, std::uint32_t body, const Vec3 &tur
     const Real least = std::min({inertia.x, inertia.y, inertia.z});
     const Real most = std::max({inertia.x, inertia.y, inertia.z});
     // Bouncing contacts were resolved at impact, but thin bodies cannot be left like that.
-    if (bounces && least > Real(0.25) * most)
+    if (was_resolved && least > Real(0.25) * most)
         return false;
     return squared > std::min(far * far, share * least / most);
 }
-bool has_other_arms(const StepContext &context, std::uint32_t body, bool bounces) {
-    return is_far_turn(context, body, context.bodies[body].turned, bounces);
+bool has_other_arms(const StepContext &context, std::uint32_t body, bool was_resolved) {
+    return is_far_turn(context, body, context.bodies[body].turned, was_resolved);
 }
 
 // Whether two bodies have turned so far against each other since the step began that their
@@ -176,10 +177,12 @@ bool goes_round(const StepContext &context, const Contact &contact, bool of_a) {
     return contact.way_round(of_a, glm::conjugate(moves.rotation) * moves.turned) > rolling_far;
 }
 bool has_other_arms(const StepContext &context, const Contact &contact, bool of_a) {
-    return (context.model.colliders[of_a ? contact.collider_a : contact.collider_b].extent >
-                Real(0) &&
-            has_other_arms(context, of_a ? contact.key.a : contact.key.b,
-                           contact.restitution > Real(0))) ||
+    const Collider &collider =
+        context.model.colliders[of_a ? contact.collider_a : contact.collider_b];
+    // The ends of a capsule are struck in turns within a step.
+    const bool was_resolved = contact.restitution > Real(0) && !(collider.rounding > Real(0));
+    return (collider.extent > Real(0) &&
+            has_other_arms(context, of_a ? contact.key.a : contact.key.b, was_resolved)) ||
            goes_round(context, contact, of_a);
 }
 bool has_other_arms(const StepContext &context, const Contact &contact) {
