@@ -6,9 +6,12 @@
 #include "engine/dynamics/method.h"
 #include "engine/space/dynamic_tree.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace plumb::inline PLUMB_PRECISION {
+
+inline constexpr std::size_t contacts_a_part = 256; // per thread
 
 // What decides how far a collider may go in a step, from its body.
 struct ColliderReach {
@@ -95,13 +98,15 @@ struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Paddin
     Islands islands;
     std::vector<IslandGroup> groups; // the first group_count of them
     std::size_t group_count = 0;
-    std::vector<JointSystem> joint_systems;    // one per group with joints, often last step's
-    JointSystem no_joints;                     // for groups without
-    std::vector<double> loads;                 // per body: the square of the substeps that it wants
-    bool was_let_go = false;                   // joints were, so that the step is repeated
-    std::vector<Vec3> wall_normals;            // per body: of the first that does not move
-    std::vector<double> most_loads;            // per body: that its contacts may count, N
-    std::vector<double> contact_loads;         // the same, per contact of a group
+    std::vector<JointSystem> joint_systems; // one per group with joints, often last step's
+    JointSystem no_joints;                  // for groups without
+    std::vector<double> wanted_squared;     // per body: the square of the substeps that it wants
+    bool was_let_go = false;                // joints were, so that the step is repeated
+    std::vector<Vec3> wall_normals;         // per body: of the first that does not move
+    std::vector<double>
+        greatest_contact_load; // per body: the most load that its contacts count for substeps (N)
+    // The same as wanted_squared, per contact of a group.
+    std::vector<double> contact_wanted_squared;
     std::vector<GeometricStiffness> stiffness; // per body, from its joints' forces
     std::vector<Vec3> guessed_stiffness;       // the same, per newton its joints may carry (m)
     std::vector<Impact> impacts;

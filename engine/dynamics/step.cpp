@@ -19,7 +19,6 @@ namespace {
 
 // A few microseconds of work.
 constexpr std::size_t loads_a_part = 256;
-constexpr std::size_t contacts_a_part = 256;
 
 // Adds its lifetime to the time of a phase, if anybody asks.
 class PhaseTimer {
@@ -242,7 +241,8 @@ bool World::is_pressed(const ContactKey &key) const {
     return is_struck(key.a) && is_struck(key.b);
 }
 
-void World::note_ends() {
+// Before a try of the step: forgets what the last one found of the contacts, and notes their ends.
+void World::begin_contacts() {
     Scratch &s = scratch_;
     s.ends.resize(s.contacts.size());
     for_parts(s.tasks, s.ends.size(), contacts_a_part, [&](std::size_t begin, std::size_t end) {
@@ -258,7 +258,7 @@ void World::note_ends() {
 }
 
 void World::advance() {
-    note_ends();
+    begin_contacts();
     choose_substeps();
     advance_groups();
 }
@@ -343,7 +343,7 @@ std::uint32_t World::remembered_points(const Contact &contact) const {
 void World::remember(const Contact &contact, ContactMemory &memory) {
     memory.key = contact.key;
     memory.origin = contact.origin;
-    const bool is_collision = contact.is_new && contact.moment == Moment::touch;
+    const bool is_collision = contact.is_new && contact.found_at == FoundAt::touch;
     for (std::size_t k = 0; k < memory.point_count; ++k) {
         const Vec3 &impulse = contact.impulses[k];
         scratch_.next_points[memory.first_point + k] = {

@@ -27,7 +27,7 @@ struct FoundManifold {
     Manifold manifold;
     Motion a;
     Motion b;
-    Moment moment = Moment::start;
+    FoundAt found_at = FoundAt::start;
     bool is_turning = false;
     Real hollow = Real(0); // Contact::hollow
     // The feature of the point that runs round the body's rim.
@@ -175,7 +175,7 @@ class World {
     void load_motions();
     void load_bodies();
     bool is_pressed(const ContactKey &key) const;
-    void note_ends();
+    void begin_contacts();
     void note_struck();
     void record_landings();
     void advance();

@@ -212,7 +212,7 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
         return;
     Contact &contact = begin_contact(candidate, triangle, out);
     contact.manifold = found.manifold;
-    contact.moment = found.moment;
+    contact.found_at = found.found_at;
     contact.is_turning = found.is_turning;
     contact.origin = origin_of(contact.manifold.normal, found.a, found.b);
     set_rounding(contact, *model_);
@@ -241,7 +241,7 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
     }
     for (int k = 0; k < contact.manifold.count; ++k) {
         const auto index = static_cast<std::size_t>(k);
-        if (found.moment != Moment::start || contact.turns())
+        if (found.found_at != FoundAt::start || contact.turns())
             contact.manifold.points[index].separation = separation_now(contact, index);
     }
 }
@@ -249,7 +249,6 @@ void World::add_contact(const Candidate &candidate, std::uint32_t triangle,
 // A step that is tried again begins as before, with the impulses that the last step left.
 void World::recall_impulses() {
     Scratch &s = scratch_;
-    constexpr std::size_t contacts_a_part = 256;
     for_parts(s.tasks, s.contacts.size(), contacts_a_part, [&](std::size_t begin, std::size_t end) {
         for (Contact &contact : std::span(s.contacts).subspan(begin, end - begin)) {
             contact.impulses = {};

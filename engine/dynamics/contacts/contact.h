@@ -54,7 +54,7 @@ struct ContactOrigin {
 };
 
 // start: of the step. touch: where the bodies will meet.
-enum class Moment { start, touch };
+enum class FoundAt { start, touch };
 
 // How a contact point moves while a body rolls, tips, or rides on another. straight: arms and
 // normal stay as they were. on_face: in each substep it follows the face of a turning body, the
@@ -75,13 +75,13 @@ struct Contact {
     std::uint32_t collider_b = 0;
     Real friction = Real(0);
     Real restitution = Real(0);
-    bool sensor = false;           // pushes nothing
-    bool is_new = false;           // nothing is remembered of it
-    bool is_struck = false;        // in the last substep (ContactBlock)
-    bool is_pressed = false;       // struck for so long that it carries a load
-    Moment moment = Moment::start; // at whose poses its normal and anchors were found
-    bool is_turning = false;       // turns through the substeps with a kinematic body
-    bool is_braced = false;        // acts at one place on both bodies and turns (bracing.h)
+    bool sensor = false;               // pushes nothing
+    bool is_new = false;               // nothing is remembered of it
+    bool is_struck = false;            // in the last substep (ContactBlock)
+    bool is_pressed = false;           // struck for so long that it carries a load
+    FoundAt found_at = FoundAt::start; // at whose poses its normal and anchors were found
+    bool is_turning = false;           // turns through the substeps with a kinematic body
+    bool is_braced = false;            // acts at one place on both bodies and turns (bracing.h)
     Rolling rolling = Rolling::straight;
     bool turns_with_b = false; // if it turns; else with a
     // Which point runs round a rim: of a if it turns with b, else of b. Below 0: none.
@@ -96,8 +96,9 @@ struct Contact {
     // the normal and along the two vectors of tangent_basis(normal).
     std::array<Vec3, 4> impulses{};
 
-    // Radius of the arc that the solid's core points follow in a hollow of a surface (m), around
-    // the surface's core points: its own rounding is that and the solid's, below 0. 0: no arc.
+    // In a hollow of a surface: the radius of the arc that the solid's core points follow (m). The
+    // surface then counts as a round body seen from inside: its rounding is minus the sum of this
+    // and the solid's rounding. 0: no arc.
     Real hollow = Real(0);
 
     bool turns() const {

@@ -127,7 +127,7 @@ void fill_lane(const StepContext &context, ContactBlock &block, std::size_t lane
 
 bool is_ahead(const StepContext &context, const ContactBlock &block) {
     return std::any_of(block.contacts, block.contacts + block.used, [&](std::uint32_t contact) {
-        return context.contacts[contact].moment != Moment::start ||
+        return context.contacts[contact].found_at != FoundAt::start ||
                context.contacts[contact].turns();
     });
 }
@@ -156,7 +156,7 @@ Real remembered_share(const ContactBlock &block, std::size_t lane) {
 }
 
 Real share_relaxed_again(const StepContext &context) {
-    return context.active.pace.remembers_all ? relaxed_again : relaxed_again_unbalanced;
+    return context.active.pace.remembers_all() ? relaxed_again : relaxed_again_unbalanced;
 }
 
 // The same as in the kernels between substeps (warm_start_impl).

@@ -13,14 +13,14 @@
 
 namespace plumb::inline PLUMB_PRECISION {
 
-// What the relaxation pass adds to a load is missing in both halves of a substep, and was found in
-// the second half alone, so the next substep begins with twice as much of it. Without that a tall
-// stack, whose loads one pass does not balance, sways for minutes. Where an island gets far fewer
-// substeps than it wants, with half of that (IslandPace::remembers_all): the whole would feed waves
-// in a large pyramid. But no more of it than a share of the load: an impact is not a load of the
-// next substep.
+// How much of what the relaxation pass adds to a load the next substep begins with, doubled: the
+// pass adds it in the second half only, and it is missing in both. Without it a tall stack, whose
+// loads one pass does not balance, sways for minutes.
 inline constexpr Real relaxed_again = 1;
+// The same in islands that get far fewer substeps than they want (IslandPace::remembers_all): all
+// of it would feed waves in large pyramids.
 inline constexpr Real relaxed_again_unbalanced = Real(0.5);
+// At most this share of the load: an impact is no load of the next substep.
 inline constexpr Real relaxed_share = Real(1) / Real(16);
 // An impact is not a load: warm starting the next substep with it would push just as hard although
 // nothing hits any more, and launch whatever rests on top. So where bodies close fast
@@ -35,9 +35,9 @@ inline constexpr double pressed_after = 0.4; // s
 
 // A corner that bears the load of a whole face is as soft as the light corner that it is. In an
 // island that gets far fewer substeps than it wants (IslandPace::hardens), points that bear more
-// than hard_share of their contact's load are four times as stiff (ContactBias::stiff) beyond so
-// many times the tolerated depth. If all points were, waves would grow in whatever is stacked high:
-// walls and towers fall.
+// than hard_share of their contact's load are four times as stiff (ContactBias::stiff) beyond
+// hard_depths, in units of substep_tolerance times the smaller width. If all points were, waves
+// would grow in whatever is stacked high: walls and towers fall.
 inline constexpr Real hard_share = Real(0.4);
 inline constexpr double hard_depths = 3;
 
@@ -56,22 +56,23 @@ struct ContactBlock {
     };
     // Where each lane's bodies start, in Reals from the start of the body array, and whether they
     // are dynamic: others are never written.
-    static constexpr std::uint32_t none = UINT32_MAX;
     IndexColumn body_a;
     IndexColumn body_b;
-    std::uint16_t writes_a = 0; // bit k: lane k
+    // Masks; bit k stands for lane k.
+    std::uint16_t writes_a = 0;
     std::uint16_t writes_b = 0;
-    std::uint16_t turning = 0;            // bit k: Contact::turns
+    std::uint16_t turning = 0;            // Contact::turns
     std::uint16_t braced = 0;             // Contact::is_braced
     std::uint16_t round = 0;              // Rolling::round
-    std::uint16_t found_again = 0;        // bit k: found again in each substep
-    std::uint16_t rearmed = 0;            // lanes whose arms have changed since the step began
+    std::uint16_t found_again = 0;        // in each substep
+    std::uint16_t rearmed = 0;            // arms are renewed in this substep
     std::uint32_t contacts[column_lanes]; // NOLINT(modernize-avoid-c-arrays) in the context
     std::size_t used = 0;                 // lanes
     int points_used = 0;
     // Whether any contact is new and not solved yet.
     bool is_new = false;
-    bool spins = false;         // whether any spread is not 1
+    bool spins = false; // whether any spread is not 1
+    static constexpr std::uint32_t none = UINT32_MAX;
     std::uint32_t ahead = none; // its StartArms, if any contact is not from the start of the step
     // Whether any body's inertia turns with it.
     bool inertia_turns = false;

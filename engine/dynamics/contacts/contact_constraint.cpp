@@ -128,7 +128,7 @@ void prepare_contacts(StepContext &context, Prepare which) {
         const Contact &contact = context.contacts[i];
         const bool strikes =
             contact.restitution > Real(0) ||
-            (contact.moment == Moment::touch && touch_nothing_else(context, contact));
+            (contact.found_at == FoundAt::touch && touch_nothing_else(context, contact));
         if (which == Prepare::striking && !strikes)
             continue;
         ContactConstraint &out = constraints.emplace_back();

@@ -70,16 +70,18 @@ struct ContactBias {
     bool hardens = false;
 };
 
-// Whether a body, or both of a contact's, are dynamic; and whether both colliders are balls.
+// Not for Joint::world.
 bool is_dynamic(const StepContext &context, std::uint32_t body);
 bool are_both_dynamic(const StepContext &context, const Contact &contact);
+// Whether both colliders are spheres.
 bool are_balls(const StepContext &context, const Contact &contact);
 // touch_nothing_else: whether two dynamic bodies touch each other and nothing else, and no joint or
 // grab holds either. find_partners works that out for all bodies first.
 void find_partners(StepContext &context);
 bool touch_nothing_else(const StepContext &context, const Contact &contact);
 
-// K along a unit vector: the inverse of the effective mass of two points against each other.
+// K along a unit vector: the inverse of the effective mass of two points against each other (1/kg),
+// with their arms from the centres of mass (world, m). 0 if neither body can move.
 Real inverse_effective_mass(const SolverBody &a, const SolverBody &b, const Vec3 &r_a,
                             const Vec3 &r_b, const Vec3 &direction);
 

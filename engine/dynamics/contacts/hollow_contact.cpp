@@ -205,7 +205,7 @@ void World::follow_hollow(const Candidate &candidate, std::uint32_t triangle,
     manifold.normal = solid_first ? -normal : normal;
     found.a = state_.motions[candidate.key.a];
     found.b = state_.motions[candidate.key.b];
-    found.moment = Moment::start;
+    found.found_at = FoundAt::start;
     found.hollow = path->radius;
 }
 

@@ -323,7 +323,8 @@ void share_out(StepContext &context, std::span<Blow> blows, Answers &joints) {
 Real time_to_touch(const StepContext &context, std::span<const Blow> blows, Real h) {
     Real time = h;
     for (const Blow &blow : blows) {
-        if (context.contacts[blow.contact->contact].moment != Moment::touch || blow.pull != Real(0))
+        if (context.contacts[blow.contact->contact].found_at != FoundAt::touch ||
+            blow.pull != Real(0))
             return Real(0);
         for (const Rebound &point : blow.rebounds)
             if (point.struck)
@@ -402,7 +403,7 @@ bool touch(const StepContext &context, const Contact &contact, Real time) {
 // passes give back no speed.
 bool comes_to_touch(const StepContext &context, Blow &blow, Real h) {
     const Contact &contact = context.contacts[blow.contact->contact];
-    if (contact.moment != Moment::touch || !touch_nothing_else(context, contact) ||
+    if (contact.found_at != FoundAt::touch || !touch_nothing_else(context, contact) ||
         (!blow.is_plastic() && !are_balls(context, contact)))
         return true;
     if (blow.pull != Real(0))

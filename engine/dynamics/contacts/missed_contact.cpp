@@ -139,7 +139,7 @@ bool World::add_missed(const Manifold &now, Real deep, Contact &contact) const {
             continue; // the contact has it already
         with.manifold.points[place].separation = separation_now(with, place);
         with.impulses[place] = Vec3{Real(0)};
-        with.moment = Moment::touch;
+        with.found_at = FoundAt::touch;
         with.manifold.count = static_cast<int>(std::max(count, place + 1));
         contact = with;
         any = true;
@@ -215,7 +215,7 @@ bool World::find_passed_points(const Candidate &candidate) {
                   any;
             return;
         }
-        const FoundManifold found{passed, s.bodies[key.a], s.bodies[key.b], Moment::touch};
+        const FoundManifold found{passed, s.bodies[key.a], s.bodies[key.b], FoundAt::touch};
         add_contact(candidate, triangle, nullptr, found, s.more);
         any = true;
     });

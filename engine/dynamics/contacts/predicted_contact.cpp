@@ -149,7 +149,7 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Manifo
     const Shape solid_b = placed(b.shape, mass_pose(at_b));
     FoundManifold found{
         plumb::collide(solid_a, solid_b, near + left * way_of(candidate), now.normal), at_a, at_b,
-        Moment::touch};
+        FoundAt::touch};
     guard_middle(candidate, solid_a, solid_b, found);
     return found;
 }
@@ -188,9 +188,9 @@ FoundManifold World::predicted_manifold(const Candidate &candidate, const Vec3 &
     Manifold manifold = plumb::collide(solid_then, *surface.surface, pose_then, triangle,
                                        near + left * way_of(candidate));
     if (solid_first)
-        return {manifold, at_solid, at_surface, Moment::touch};
+        return {manifold, at_solid, at_surface, FoundAt::touch};
     manifold.normal = -manifold.normal;
-    return {manifold, at_surface, at_solid, Moment::touch};
+    return {manifold, at_surface, at_solid, FoundAt::touch};
 }
 
 Real World::least_half_width(const Body &body) const {

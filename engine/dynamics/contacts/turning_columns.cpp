@@ -289,7 +289,7 @@ unsigned take_back_pushes(StepContext &context, ContactBlock &block) {
         if ((block.found_again >> lane & 1U) == 0)
             continue;
         const bool bears = block.points[0].impulse.x.lanes[lane] > Real(0);
-        if (bears || context.contacts[block.contacts[lane]].moment == Moment::start)
+        if (bears || context.contacts[block.contacts[lane]].found_at == FoundAt::start)
             lanes |= 1U << lane;
         if (bears)
             take_back_push(context, block, lane);

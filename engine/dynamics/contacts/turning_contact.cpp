@@ -76,7 +76,8 @@ bool World::rolls_over_the_other(const Contact &contact) const {
     const Vec3 line = contact.line_between_cores(a, b);
     const Vec3 velocity = b.velocity - a.velocity;
     const Real length = glm::length(line);
-    if (contact.moment == Moment::touch && glm::length(glm::cross(normal, line)) > askew * length)
+    if (contact.found_at == FoundAt::touch &&
+        glm::length(glm::cross(normal, line)) > askew * length)
         return false; // they meet later in the step
     const Real slow = dt * static_cast<Real>(glm::length(settings_.gravity));
     if (contact.is_new && std::abs(glm::dot(velocity, normal)) >= slow)

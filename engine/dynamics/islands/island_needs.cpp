@@ -82,7 +82,7 @@ void note_moment_needs(Scratch &s, const StepSettings &settings, int substeps) {
             const double turn = h * static_cast<double>(glm::length(turned));
             const double squared = square(substeps) * turn / settings.substep_tolerance;
             for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
-                s.loads[body] = std::max(s.loads[body], squared);
+                s.wanted_squared[body] = std::max(s.wanted_squared[body], squared);
             });
         }
 }
@@ -135,7 +135,7 @@ void World::gather_wedge_needs() {
     constexpr Real facing = Real(-0.5); // the normals' product: 60 degrees between the walls
     constexpr Real little = Real(0.1);  // of its half width
     s.wall_normals.assign(s.bodies.size(), Vec3{Real(0)});
-    s.most_loads.assign(s.bodies.size(), std::numeric_limits<double>::infinity());
+    s.greatest_contact_load.assign(s.bodies.size(), std::numeric_limits<double>::infinity());
     for (const Contact &contact : s.contacts) {
         const bool is_a = moves(contact.key.a);
         if (contact.sensor || contact.manifold.count == 0 || is_a == moves(contact.key.b))
@@ -149,7 +149,7 @@ void World::gather_wedge_needs() {
             continue;
         Islands::Needs &needs = s.islands.needs[s.islands.root_of(body)];
         if (!needs.is_joined && !needs.is_driven)
-            s.most_loads[body] = needs.weight;
+            s.greatest_contact_load[body] = needs.weight;
         const Motion &motion = state_.motions[body];
         const Real speed = glm::length(motion.velocity) + static_cast<Real>(extent_of(body)) *
                                                               glm::length(motion.angular_velocity);
@@ -186,8 +186,8 @@ void World::note_contact_needs(const IslandGroup &group) {
         const double depth = settings_.substep_tolerance * width;
         // What is wedged between walls presses on them as hard as it has been driven in. Contacts
         // that much stiffer would only throw it out.
-        load = std::min(load, std::min(s.most_loads[a], s.most_loads[b]) * settings_.dt /
-                                  group.pace.substeps);
+        load = std::min(load, std::min(s.greatest_contact_load[a], s.greatest_contact_load[b]) *
+                                  settings_.dt / group.pace.substeps);
         return 0.5 * load * group.pace.substeps * settings_.dt * inverse / (ratio * ratio * depth);
     };
     const auto roll_of = [&](std::uint32_t body) {
@@ -200,17 +200,17 @@ void World::note_contact_needs(const IslandGroup &group) {
                    ? roll
                    : 0.0;
     };
-    constexpr std::size_t contacts_a_part = 256;
-    s.contact_loads.resize(group.contacts.size());
+    s.contact_wanted_squared.resize(group.contacts.size());
     for_parts(s.tasks, group.contacts.size(), contacts_a_part,
               [&](std::size_t begin, std::size_t end) {
                   for (std::size_t i = begin; i < end; ++i)
-                      s.contact_loads[i] = wanted_of(s.contacts[group.contacts[i]]);
+                      s.contact_wanted_squared[i] = wanted_of(s.contacts[group.contacts[i]]);
               });
     for (std::size_t i = 0; i < group.contacts.size(); ++i) {
         const ContactEnds &ends = s.ends[group.contacts[i]];
         for (const std::uint32_t body : {ends.a, ends.b})
-            s.loads[body] = std::max({s.loads[body], s.contact_loads[i], roll_of(body)});
+            s.wanted_squared[body] =
+                std::max({s.wanted_squared[body], s.contact_wanted_squared[i], roll_of(body)});
     }
 }
 
@@ -220,7 +220,7 @@ void World::note_joint_needs(const IslandGroup &group) {
     const double ratio = 2 * std::numbers::pi * settings_.joint_frequency_ratio;
     const auto ask = [&](const JointConstraint &joint, double squared) {
         for_ends(joint, [&](std::uint32_t body, const Vec3 &) {
-            s.loads[body] = std::max(s.loads[body], squared);
+            s.wanted_squared[body] = std::max(s.wanted_squared[body], squared);
         });
     };
     for (const std::uint32_t i : group.moving)
@@ -274,7 +274,7 @@ void World::note_turn_needs(const IslandGroup &group) {
             axial_stiffness(s.stiffness[i], body.inertia, s.bodies[i].rotation), body.inertia));
         const double rate =
             settings_.dt / (is_solved_together(i) ? followed_together : followed_alone);
-        s.loads[i] = std::max(s.loads[i], squared * rate * rate);
+        s.wanted_squared[i] = std::max(s.wanted_squared[i], squared * rate * rate);
     }
     const auto is_uneven = [&](std::uint32_t body) {
         JointSystem &system = *s.solver.joint_system;
@@ -293,8 +293,8 @@ void World::note_turn_needs(const IslandGroup &group) {
                 !(s.stiffness[body].most > Real(0)))
                 return;
             const Vec3 &spin = s.bodies[body].angular_velocity;
-            s.loads[body] =
-                std::max(s.loads[body], static_cast<double>(glm::dot(spin, spin)) * turn * turn);
+            s.wanted_squared[body] = std::max(
+                s.wanted_squared[body], static_cast<double>(glm::dot(spin, spin)) * turn * turn);
         });
     }
 }
@@ -307,12 +307,12 @@ void World::note_let_go(const IslandGroup &group) {
     JointSystem &system = *s.solver.joint_system;
     for (const JointGroup &joints : system.groups()) {
         const auto note = [&](std::uint32_t body, const Vec3 &) {
-            double &load = s.loads[body];
+            double &squared = s.wanted_squared[body];
             if (joints.was_let_go) {
-                load = std::max(load, square(finer * group.pace.substeps));
+                squared = std::max(squared, square(finer * group.pace.substeps));
                 s.islands.needs[s.islands.root_of(body)].was_let_go = true;
             } else if (state_.paces[body].substeps > 0) {
-                load = std::min(load, more);
+                squared = std::min(squared, more);
             }
         };
         for (std::uint32_t place = joints.first; place < joints.last; ++place)
@@ -329,16 +329,16 @@ void World::note_needs(const IslandGroup &group) {
             s.paces[i].wanted = 0;
         return;
     }
-    s.loads.resize(s.bodies.size());
+    s.wanted_squared.resize(s.bodies.size());
     s.stiffness.resize(s.bodies.size());
     for (const std::uint32_t i : group.moving)
-        s.loads[i] = 0;
+        s.wanted_squared[i] = 0;
     note_contact_needs(group);
     note_joint_needs(group);
     note_turn_needs(group);
     note_let_go(group);
     for (const std::uint32_t i : group.moving)
-        s.paces[i].wanted = count_of(std::sqrt(s.loads[i]));
+        s.paces[i].wanted = count_of(std::sqrt(s.wanted_squared[i]));
 }
 
 // Joints that are let go once may never be held again, and what hangs on them falls apart: the step

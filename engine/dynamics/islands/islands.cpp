@@ -18,12 +18,12 @@ constexpr std::uint64_t steps_to_go_down = 4;
 
 // An island goes down only if this multiple of the substeps it wants is still less than it takes.
 constexpr double spare = 1.25;
-// An island that wants more than this many times the substeps it gets takes its points in one
-// order: in pyramids of base 75 and up, which the passes balance only in part, points taken in
-// turns feed waves. Below that one order feeds them: those of base 45 to 70 never come to rest.
+// An island that wants more than this many times the substeps it gets visits its contact points in
+// one order. Alternating feeds waves in pyramids of base 75 and up, which the passes balance only
+// in part; a single order feeds them in those of base 45 to 70, which then never come to rest.
 constexpr double most_wanted_in_turns = 6.25;
-// Beyond this many times, where points are taken in turns, its passes balance its loads only in
-// part (relaxed_again_unbalanced). Taken in one order they need all of it: with half, the top of a
+// Beyond this many times, where the order alternates, its passes balance its loads only in part
+// (relaxed_again_unbalanced). In a single order they need all of it: with half, the top of a
 // pyramid of base 100 strays by 0.8 m in half a minute instead of 0.4 m.
 constexpr int most_wanted_in_balance = 2;
 // Contacts of a small island.
@@ -251,7 +251,6 @@ void World::share_budget() {
         IslandPace &pace = s.islands.needs[root].pace;
         pace.alternates = needs.wanted <= most_wanted_in_turns * pace.substeps;
         pace.hardens = needs.wanted > most_wanted_in_balance * pace.substeps;
-        pace.remembers_all = !pace.alternates || !pace.hardens;
         pace.is_joined = needs.is_joined;
         pace.is_struck_long = needs.is_joined && needs.is_struck_long;
         pace.is_shaken = needs.is_shaken && pace.substeps >= far_more_substeps * settings_.substeps;
@@ -356,11 +355,8 @@ void World::group_freely() {
         s.groups.emplace_back();
     IslandGroup &group = s.groups.front();
     group.pace = {.substeps = settings_.substeps};
+    group.clear();
     group.moving.assign(s.moving.begin(), s.moving.end());
-    group.contacts.clear();
-    group.joints.clear();
-    group.holds_grab = false;
-    group.has_particles = false;
 }
 
 // Groups islands of the same pace, in the order in which their bodies come.
@@ -370,14 +366,10 @@ void World::group_islands() {
     const auto empty = [&](IslandGroup &group) {
         // Room for everything in each group, so that nothing is allocated when islands change
         // groups.
-        group.moving.clear();
+        group.clear();
         group.moving.reserve(s.moving.size());
-        group.contacts.clear();
         group.contacts.reserve(s.contacts.capacity());
-        group.joints.clear();
         group.joints.reserve(model_->alive_joints);
-        group.holds_grab = false;
-        group.has_particles = false;
     };
     const auto group_with = [&](const IslandPace &pace) -> IslandGroup & {
         for (std::size_t i = 0; i < s.group_count; ++i)

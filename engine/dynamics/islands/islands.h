@@ -29,7 +29,8 @@ struct Pace {
 // adds in a 60th of a second, or in a step if that is longer.
 double rest_speed(double pull, double dt);
 
-// Islands that take so many times the least substeps carry far more than single weights.
+// From this many times settings.substeps on, an island's loads are far more than its bodies' own
+// weights.
 inline constexpr int far_more_substeps = 8;
 
 // How an island is stepped.
@@ -37,8 +38,6 @@ struct IslandPace {
     int substeps = 0;
     // Whether passes take a contact's points first to last and last to first in turns.
     bool alternates = true;
-    // Whether all that the relaxation pass adds to a load is remembered (relaxed_again), or half.
-    bool remembers_all = true;
     // Whether it gets far fewer substeps than it wants: points that bear much become stiffer
     // (hard_share).
     bool hardens = false;
@@ -51,6 +50,8 @@ struct IslandPace {
     bool is_shaken = false;
     // Whether it has joints and was struck in each step for longer than a single blow lasts.
     bool is_struck_long = false;
+    // Whether all that the relaxation pass adds to a load is remembered (relaxed_again), or half.
+    bool remembers_all() const { return !alternates || !hardens; }
     bool operator==(const IslandPace &) const = default;
 };
 
@@ -64,6 +65,12 @@ struct IslandGroup {
     bool holds_grab = false;
     bool has_particles = false; // all of them, with all springs
 
+    void clear() {
+        moving.clear();
+        contacts.clear();
+        joints.clear();
+        holds_grab = has_particles = false;
+    }
     // Whether no body is connected to another.
     bool is_free() const {
         return contacts.empty() && joints.empty() && !holds_grab && !has_particles;
