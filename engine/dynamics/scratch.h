@@ -103,8 +103,8 @@ struct Scratch {               // NOLINT(clang-analyzer-optin.performance.Paddin
     std::vector<double> wanted_squared;     // per body: the square of the substeps that it wants
     bool was_let_go = false;                // joints were, so that the step is repeated
     std::vector<Vec3> wall_normals;         // per body: of the first that does not move
-    std::vector<double>
-        greatest_contact_load; // per body: the most load that its contacts count for substeps (N)
+    // Per body: the most load that its contacts count for substeps (N).
+    std::vector<double> greatest_contact_load;
     // The same as wanted_squared, per contact of a group.
     std::vector<double> contact_wanted_squared;
     std::vector<GeometricStiffness> stiffness; // per body, from its joints' forces

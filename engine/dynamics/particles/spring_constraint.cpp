@@ -140,6 +140,8 @@ void aim_damper(const StepContext &context, SpringConstraint &row, Real h, bool 
     const Real x = h * damping * inverse;
     const DamperHalf half = before_move ? damper_before_move(x) : damper_after_move(x);
     const Real taken = Real(1) - half.of_force;
+    if (!(taken > Real(0)))
+        return; // its ends hardly move along the line any more
     row.mass = taken / inverse;
     row.softness = half.of_force / row.mass;
     row.bias = -half.of_start / taken * row.start;
